@@ -1,0 +1,72 @@
+/* The material NAME.weft: what compress writes and the player and other renderers read.
+ * The file format is docs/weft-format.md; this is its image in memory, laid out as it is uploaded to a GPU.
+ *
+ * Value of a texel (Daubert et al. 2001, eq. 1 and 2), as BRDF x pi:
+ *     f(l, v) = T(v) (rho + sum_i max(0, l' . diag(Cx, Cy, Cz)_i . v')^N_i)
+ * l', v' in the frame of the texel. Multiplied by l_z it is the dataset's reflectance times cosine. */
+#ifndef WEFT_BTF_MATERIAL_H
+#define WEFT_BTF_MATERIAL_H
+
+#include "btf/half.h"
+#include "btf/status.h"
+#include "btf/vector.h"
+
+#include <stdint.h>
+
+enum { WEFT_MATERIAL_MAX_LOBES = 3, WEFT_MATERIAL_MAX_LEVELS = 16, WEFT_MATERIAL_MAX_VIEWS = 4096 };
+
+/* What was measured when the material was written: decoded material against the dataset, over its valid samples. */
+typedef struct weft_material_error {
+    double median_relative;      /* |fit - sample| / sample over samples above 1e-4 of the largest */
+    double percentile80_relative;
+    double rmse;                 /* of reflectance times cosine */
+    double relative_rmse;        /* rmse / rms of the samples */
+    double psnr_db;              /* 20 log10(peak / rmse), peak = 99.9th percentile of the samples */
+} weft_material_error;
+
+/* One mip level, row 0 at the top. Every array is owned by the material. */
+typedef struct weft_material_level {
+    int width, height;
+    int16_t *frame;     /* [height][width][3]: n_x, n_y (x 32767; n_z = sqrt(1 - n_x^2 - n_y^2)), azimuth of the tangent
+                           about n, from x projected on the tangent plane, / pi (x 32767) */
+    weft_half *diffuse; /* [height][width][4]: rho r, g, b, 0 */
+    weft_half *lobe;    /* [lobe_count][channel 3][height][width][4]: Cx, Cy, Cz, N */
+    uint8_t *table;     /* [view_count][height][width][4]: r, g, b square-root coded, T = (code/255)^2; alpha = code/255.
+                           NULL where the material has no table (T = 1) */
+    weft_material_error error;
+} weft_material_level;
+
+typedef struct weft_material {
+    int lobe_count;   /* 0..WEFT_MATERIAL_MAX_LOBES */
+    int level_count;  /* level k + 1 has ceil half the size of level k, down to 1 x 1 */
+    int view_count;   /* directions of T; 0 without a table */
+    double texel_pitch_mm; /* of level 0 */
+    weft_vec3 *view;  /* [view_count], unit */
+    weft_material_level level[WEFT_MATERIAL_MAX_LEVELS];
+    char *metadata;   /* JSON text: provenance, fit settings; never NULL once read */
+} weft_material;
+
+/* Allocates all arrays of a material (zeroed) for a level 0 of width x height; full mip chain when
+ * `with_levels`, else one level. metadata = "{}". Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. */
+weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int with_levels,
+                               weft_material *material, weft_error *error);
+void weft_material_free(weft_material *material);
+
+/* Writes atomically. Errors: WEFT_SYSTEM. */
+weft_code weft_material_write(const char *path, const weft_material *material, weft_error *error);
+
+/* Reads and checks all of a file: every size against the file before anything is allocated, every checksum.
+ * Errors: WEFT_BAD_INPUT naming the file and the section. The caller frees with weft_material_free. */
+weft_code weft_material_read(const char *path, weft_material *material, weft_error *error);
+
+/* ---- Codes of single values. Pure. ---- */
+typedef struct weft_frame {
+    weft_vec3 normal, tangent, bitangent; /* orthonormal, right-handed: bitangent = normal x tangent */
+} weft_frame;
+
+/* The tangent is x projected on the plane of `normal` (y where x is parallel to it), turned by `azimuth_rad`. */
+weft_frame weft_frame_of_normal(weft_vec3 normal, weft_real azimuth_rad);
+weft_frame weft_frame_decode(const int16_t code[3]);
+void weft_frame_encode(const weft_frame *frame, int16_t code[3]);
+
+#endif

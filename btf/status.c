@@ -1,0 +1,37 @@
+#include "btf/status.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void blank_control_characters(char *text)
+{
+    for (; *text; text++) {
+        if ((unsigned char)*text < 0x20 || *text == 0x7f)
+            *text = '?';
+    }
+}
+
+weft_code weft_fail(weft_error *error, weft_code code, const char *format, ...)
+{
+    if (!error)
+        return code;
+    error->code = code;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->message, sizeof error->message, format, arguments);
+    va_end(arguments);
+    blank_control_characters(error->message);
+    return code;
+}
+
+weft_code weft_fail_errno(weft_error *error, const char *action, const char *path)
+{
+    return weft_fail(error, WEFT_SYSTEM, "cannot %s '%s': %s", action, path, strerror(errno));
+}
+
+weft_code weft_fail_memory(weft_error *error, const char *what, unsigned long long bytes)
+{
+    return weft_fail(error, WEFT_SYSTEM, "out of memory (%s, %llu bytes)", what, bytes);
+}

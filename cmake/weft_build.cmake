@@ -1,0 +1,52 @@
+# What every target of Weft shares: language, warnings, packages, and how a room is declared.
+set(CMAKE_C_STANDARD 17)
+set(CMAKE_C_STANDARD_REQUIRED ON)
+set(CMAKE_C_EXTENSIONS OFF)
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+option(WEFT_SANITIZE "AddressSanitizer and UndefinedBehaviorSanitizer in every target" OFF)
+
+add_library(weft_options INTERFACE)
+target_include_directories(weft_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_definitions(weft_options INTERFACE _GNU_SOURCE WEFT_VERSION="${PROJECT_VERSION}")
+target_compile_options(weft_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wvla -Werror
+    $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes> -fno-math-errno)
+target_link_libraries(weft_options INTERFACE m)
+if(WEFT_SANITIZE)
+    target_compile_options(weft_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(weft_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+find_package(PkgConfig REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS C)
+pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(ZLIB REQUIRED IMPORTED_TARGET zlib)
+pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
+pkg_check_modules(GLFW REQUIRED IMPORTED_TARGET glfw3)
+pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video aruco)
+
+# weft_room(NAME SOURCES file... LINKS target...): the static library of one room. A room sees only the
+# libraries it links, so nothing can point backwards along the corridor.
+function(weft_room name)
+    cmake_parse_arguments(room "" "" "SOURCES;LINKS" ${ARGN})
+    add_library(weft_${name} STATIC ${room_SOURCES})
+    target_link_libraries(weft_${name} PUBLIC weft_options ${room_LINKS})
+endfunction()
+
+# weft_test(NAME SOURCES file... LINKS target... [LABELS label...]): a cmocka program run by ctest.
+function(weft_test name)
+    cmake_parse_arguments(test "" "" "SOURCES;LINKS;LABELS" ${ARGN})
+    add_executable(test_${name} ${test_SOURCES})
+    target_link_libraries(test_${name} PRIVATE weft_options ${test_LINKS} cmocka)
+    target_compile_definitions(test_${name} PRIVATE
+        WEFT_TEST_DATA="${CMAKE_SOURCE_DIR}/tests/data" WEFT_ASSETS="${CMAKE_SOURCE_DIR}/assets"
+        WEFT_SHARED="${CMAKE_SOURCE_DIR}/../shared")
+    add_test(NAME ${name} COMMAND test_${name} WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+    set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 LABELS "${test_LABELS}")
+endfunction()
