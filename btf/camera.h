@@ -9,10 +9,10 @@
 #include "btf/direction.h"
 
 typedef struct weft_camera {
-    int width, height;            /* pixels */
-    double fx, fy, cx, cy;        /* focal lengths and principal point, pixels */
-    double k1, k2;                /* distorted = undistorted x (1 + k1 r^2 + k2 r^4), r in normalised coordinates */
-    double vignetting[3];         /* relative response 1 + a r^2 + b r^4 + c r^6, r normalised as above, undistorted */
+    int width, height;     /* pixels */
+    double fx, fy, cx, cy; /* focal lengths and principal point, pixels */
+    double k1, k2;         /* distorted = undistorted x (1 + k1 r^2 + k2 r^4), r in normalised coordinates */
+    double vignetting[3];  /* relative response 1 + a r^2 + b r^4 + c r^6, r normalised as above, undistorted */
 } weft_camera;
 
 typedef struct weft_pixel {

@@ -33,9 +33,9 @@ enum {
 
 /* Everything but the samples. */
 typedef struct weft_dataset_layout {
-    int width, height;      /* texels; row 0 is the top row (v near 1) */
-    int image_count;        /* photographs, in any order */
-    int view_count;         /* distinct views among them */
+    int width, height; /* texels; row 0 is the top row (v near 1) */
+    int image_count;   /* photographs, in any order */
+    int view_count;    /* distinct views among them */
     weft_values values;
     weft_distance distance;
     double texel_pitch_mm;
@@ -71,8 +71,8 @@ const char *weft_dataset_path(const weft_dataset *dataset);
  * samples [height][width][image_count][3], mask [height][width][image_count]; either may be NULL.
  * Not thread-safe (HDF5 is not): one reader at a time.
  * Errors: WEFT_BAD_INPUT for a truncated file, or where a sample that the mask calls valid is NaN or infinite. */
-weft_code weft_dataset_read_block(weft_dataset *dataset, int x, int y, int width, int height,
-                                  weft_half *samples, uint8_t *mask, weft_error *error);
+weft_code weft_dataset_read_block(weft_dataset *dataset, int x, int y, int width, int height, weft_half *samples,
+                                  uint8_t *mask, weft_error *error);
 
 /* Opacity of the texels [y, y + height) rows: [height][layout width][view_count], 0 (hole) .. 1, in `opacity`.
  * All 1 where the dataset holds none. Not thread-safe. */
@@ -86,8 +86,8 @@ weft_code weft_dataset_read_opacity(weft_dataset *dataset, int y, int height, fl
 typedef struct weft_dataset_writer weft_dataset_writer;
 
 /* Copies `layout`; reserves the disk space. Errors: WEFT_BAD_INPUT for an impossible layout, WEFT_SYSTEM. */
-weft_code weft_dataset_writer_create(const char *path, const weft_dataset_layout *layout,
-                                     weft_dataset_writer **result, weft_error *error);
+weft_code weft_dataset_writer_create(const char *path, const weft_dataset_layout *layout, weft_dataset_writer **result,
+                                     weft_error *error);
 
 /* samples [height][width][3], mask [height][width] (NULL: all valid). Thread-safe for distinct images. */
 weft_code weft_dataset_writer_put_image(weft_dataset_writer *writer, int image, const weft_half *samples,

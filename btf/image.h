@@ -34,18 +34,17 @@ weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *
 /* Writes atomically; the format follows the extension: .png 8 bit (values clamped to 0..1),
  * .exr half floats, .tif float. `description` (may be NULL) goes into the file's metadata.
  * Errors: WEFT_SYSTEM. */
-weft_code weft_image_write(const char *path, const weft_image *image, const char *description,
-                           weft_error *error);
+weft_code weft_image_write(const char *path, const weft_image *image, const char *description, weft_error *error);
 
 /* Raw camera values: [height][width][3] 16-bit samples, of which the low `bits` are used; TIFF without
- * compression, packed to `bits` (10, 12, 14 or 16) on disk. Writes to `path` directly: the caller names it atomically. */
-weft_code weft_photograph_write(const char *path, int width, int height, int bits,
-                                const uint16_t *samples, weft_error *error);
+ * compression, packed to `bits` (10, 12, 14 or 16) on disk. Writes to `path` directly: the caller names it atomically.
+ */
+weft_code weft_photograph_write(const char *path, int width, int height, int bits, const uint16_t *samples,
+                                weft_error *error);
 
 /* Reads a photograph of exactly width x height x 3 into `samples`, as raw camera values of `bits`
  * bits. Errors: WEFT_BAD_INPUT naming the file for missing, truncated, or another size. Thread-safe. */
-weft_code weft_photograph_read(const char *path, int width, int height, int bits, uint16_t *samples,
-                               weft_error *error);
+weft_code weft_photograph_read(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error);
 
 #ifdef __cplusplus
 }

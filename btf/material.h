@@ -17,11 +17,11 @@ enum { WEFT_MATERIAL_MAX_LOBES = 3, WEFT_MATERIAL_MAX_LEVELS = 16, WEFT_MATERIAL
 
 /* What was measured when the material was written: decoded material against the dataset, over its valid samples. */
 typedef struct weft_material_error {
-    double median_relative;      /* |fit - sample| / sample over samples above 1e-4 of the largest */
+    double median_relative; /* |fit - sample| / sample over samples above 1e-4 of the largest */
     double percentile80_relative;
-    double rmse;                 /* of reflectance times cosine */
-    double relative_rmse;        /* rmse / rms of the samples */
-    double psnr_db;              /* 20 log10(peak / rmse), peak = 99.9th percentile of the samples */
+    double rmse;          /* of reflectance times cosine */
+    double relative_rmse; /* rmse / rms of the samples */
+    double psnr_db;       /* 20 log10(peak / rmse), peak = 99.9th percentile of the samples */
 } weft_material_error;
 
 /* One mip level, row 0 at the top. Every array is owned by the material. */
@@ -31,19 +31,19 @@ typedef struct weft_material_level {
                            about n, from x projected on the tangent plane, / pi (x 32767) */
     weft_half *diffuse; /* [height][width][4]: rho r, g, b, 0 */
     weft_half *lobe;    /* [lobe_count][channel 3][height][width][4]: Cx, Cy, Cz, N */
-    uint8_t *table;     /* [view_count][height][width][4]: r, g, b square-root coded, T = (code/255)^2; alpha = code/255.
-                           NULL where the material has no table (T = 1) */
+    uint8_t *table; /* [view_count][height][width][4]: r, g, b square-root coded, T = (code/255)^2; alpha = code/255.
+                       NULL where the material has no table (T = 1) */
     weft_material_error error;
 } weft_material_level;
 
 typedef struct weft_material {
-    int lobe_count;   /* 0..WEFT_MATERIAL_MAX_LOBES */
-    int level_count;  /* level k + 1 has ceil half the size of level k, down to 1 x 1 */
-    int view_count;   /* directions of T; 0 without a table */
+    int lobe_count;        /* 0..WEFT_MATERIAL_MAX_LOBES */
+    int level_count;       /* level k + 1 has ceil half the size of level k, down to 1 x 1 */
+    int view_count;        /* directions of T; 0 without a table */
     double texel_pitch_mm; /* of level 0 */
-    weft_vec3 *view;  /* [view_count], unit */
+    weft_vec3 *view;       /* [view_count], unit */
     weft_material_level level[WEFT_MATERIAL_MAX_LEVELS];
-    char *metadata;   /* JSON text: provenance, fit settings; never NULL once read */
+    char *metadata; /* JSON text: provenance, fit settings; never NULL once read */
 } weft_material;
 
 /* Allocates all arrays of a material (zeroed) for a level 0 of width x height; full mip chain when

@@ -15,32 +15,32 @@
 
 /* One planned photograph. */
 typedef struct weft_shot {
-    weft_angles light, view;   /* of the grid: they name the file */
-    weft_angles light_driven;  /* where the light is really sent; differs where the camera would stand in its way */
+    weft_angles light, view;  /* of the grid: they name the file */
+    weft_angles light_driven; /* where the light is really sent; differs where the camera would stand in its way */
 } weft_shot;
 
 /* What the journal says of a shot. */
 typedef struct weft_shot_record {
     bool taken;
-    int stay;             /* counts the moves of the camera axes: photographs of one stay share one pose */
+    int stay; /* counts the moves of the camera axes: photographs of one stay share one pose */
     double exposure_s;
-    uint64_t bytes;       /* size of the file */
-    uint32_t crc32;       /* of its bytes */
+    uint64_t bytes; /* size of the file */
+    uint32_t crc32; /* of its bytes */
 } weft_shot_record;
 
 typedef struct weft_session {
     char *folder;
-    char *rig;                  /* name of the back end */
-    char *sample;               /* name of the sample, for the report */
-    char *rig_settings;         /* JSON text of the back end's own settings (seed, ...) */
-    weft_camera camera;         /* as calibrated */
+    char *rig;                                    /* name of the back end */
+    char *sample;                                 /* name of the sample, for the report */
+    char *rig_settings;                           /* JSON text of the back end's own settings (seed, ...) */
+    weft_camera camera;                           /* as calibrated */
     double camera_distance_mm, light_distance_mm; /* as set up */
-    int bits;                   /* of the raw values; full scale is 2^bits - 1 */
-    int black_level;            /* raw value of no light */
+    int bits;                                     /* of the raw values; full scale is 2^bits - 1 */
+    int black_level;                              /* raw value of no light */
     weft_target target;
     int shot_count;
-    weft_shot *shot;            /* [shot_count], in the order of the plan */
-    weft_shot_record *record;   /* [shot_count] */
+    weft_shot *shot;          /* [shot_count], in the order of the plan */
+    weft_shot_record *record; /* [shot_count] */
 } weft_session;
 
 /* Writes session.json atomically into session->folder, which must exist. Errors: WEFT_SYSTEM. */

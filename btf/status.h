@@ -28,8 +28,7 @@ typedef struct weft_error {
 
 /* Fills `error` (which may be NULL) with a formatted one-line message and returns `code`.
  * A message that is too long is cut; control characters become '?'. Thread-safe. */
-weft_code weft_fail(weft_error *error, weft_code code, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+weft_code weft_fail(weft_error *error, weft_code code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* weft_fail with WEFT_SYSTEM and "cannot ACTION 'PATH': strerror(errno)". */
 weft_code weft_fail_errno(weft_error *error, const char *action, const char *path);
@@ -38,11 +37,11 @@ weft_code weft_fail_errno(weft_error *error, const char *action, const char *pat
 weft_code weft_fail_memory(weft_error *error, const char *what, unsigned long long bytes);
 
 /* Returns from the calling function with the code of `call` unless it is WEFT_OK. */
-#define WEFT_TRY(call)                  \
-    do {                                \
-        weft_code try_code = (call);    \
-        if (try_code != WEFT_OK)        \
-            return try_code;            \
+#define WEFT_TRY(call)                                                                                                 \
+    do {                                                                                                               \
+        weft_code try_code = (call);                                                                                   \
+        if (try_code != WEFT_OK)                                                                                       \
+            return try_code;                                                                                           \
     } while (0)
 
 #ifdef __cplusplus

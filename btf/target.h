@@ -5,10 +5,10 @@
 #define WEFT_BTF_TARGET_H
 
 typedef struct weft_target {
-    double opening_mm;         /* side of the square opening, centred at the origin */
-    double white_reflectance;  /* of the reference patches (diffuse) */
-    double paper_reflectance;  /* of the bare print */
-    double ink_reflectance;    /* of the black print */
+    double opening_mm;        /* side of the square opening, centred at the origin */
+    double white_reflectance; /* of the reference patches (diffuse) */
+    double paper_reflectance; /* of the bare print */
+    double ink_reflectance;   /* of the black print */
 } weft_target;
 
 typedef enum weft_target_region {

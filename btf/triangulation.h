@@ -20,8 +20,8 @@ typedef struct weft_barycentric {
  * One direction gives a constant, two an arc. The caller owns *result and frees it with
  * weft_triangulation_free. Errors: WEFT_BAD_INPUT for count < 1, a direction that is not finite
  * or is zero; WEFT_SYSTEM for memory. */
-weft_code weft_triangulation_build(const weft_vec3 *direction, int count,
-                                   weft_triangulation **result, weft_error *error);
+weft_code weft_triangulation_build(const weft_vec3 *direction, int count, weft_triangulation **result,
+                                   weft_error *error);
 void weft_triangulation_free(weft_triangulation *triangulation);
 
 /* Planar barycentric weights of the point where the ray along `query` (unit) meets its triangle;

@@ -8,8 +8,8 @@
 #include <argp.h>
 #include <stdbool.h>
 
-/* --quiet, --json and --threads, as an argp child: { &common_argp, 0, "Common options:", 9 }. The child's input must be a
- * common_options; commands pass it in ARGP_KEY_INIT: state->child_inputs[0] = &options.common. */
+/* --quiet, --json and --threads, as an argp child: { &common_argp, 0, "Common options:", 9 }. The child's input must be
+ * a common_options; commands pass it in ARGP_KEY_INIT: state->child_inputs[0] = &options.common. */
 typedef struct common_options {
     bool quiet, json;
     int threads; /* 0 = all cores; applied to OpenMP by common_start */
@@ -17,11 +17,12 @@ typedef struct common_options {
 
 extern const struct argp common_argp;
 
-/* Parses a command line with argp; wrong usage prints a hint and exits with WEFT_BAD_USAGE. Then applies the common options. */
+/* Parses a command line with argp; wrong usage prints a hint and exits with WEFT_BAD_USAGE. Then applies the common
+ * options. */
 void command_parse(const struct argp *parser, int argc, char **argv, void *input, common_options *common);
 
-/* The progress reporter of the command line: a line with an ETA that rewrites itself on a terminal, a plain line every few
- * seconds otherwise, a JSON event with --json, nothing with --quiet. */
+/* The progress reporter of the command line: a line with an ETA that rewrites itself on a terminal, a plain line every
+ * few seconds otherwise, a JSON event with --json, nothing with --quiet. */
 weft_progress command_progress(const common_options *common);
 
 /* A result for the user, on stdout (nothing with --quiet; an event {"event":"note","text":...} with --json). */

@@ -1,0 +1,194 @@
+#include "btf/atomic_file.h"
+#include "btf/image.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+constexpr long long max_pixels = 1ll << 28;
+
+/* One line of OpenImageIO's last message. */
+std::string first_line(std::string text)
+{
+    return text.substr(0, text.find('\n'));
+}
+
+weft_code unreadable(weft_error *error, const char *path, const std::string &why)
+{
+    return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path, first_line(why).c_str());
+}
+
+std::unique_ptr<OIIO::ImageInput> open_input(const char *path, weft_code *code, weft_error *error)
+{
+    auto input = OIIO::ImageInput::open(path);
+    *code = input ? WEFT_OK : unreadable(error, path, OIIO::geterror());
+    return input;
+}
+
+weft_code read_floats(OIIO::ImageInput &input, const char *path, weft_image *image, weft_error *error)
+{
+    const OIIO::ImageSpec &spec = input.spec();
+    int channels = spec.nchannels < 3 ? 1 : 3;
+    size_t pixel_count = size_t(spec.width) * size_t(spec.height);
+    WEFT_TRY(weft_image_create(spec.width, spec.height, image, error));
+    if (input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, image->pixels, 3 * sizeof(float)))
+        for (size_t i = 0; channels == 1 && i < pixel_count; i++)
+            image->pixels[3 * i + 1] = image->pixels[3 * i + 2] = image->pixels[3 * i];
+    else {
+        weft_image_free(image);
+        return unreadable(error, path, input.geterror());
+    }
+    return WEFT_OK;
+}
+
+weft_code read_image(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+{
+    weft_code code;
+    auto input = open_input(path, &code, error);
+    WEFT_TRY(code);
+    const OIIO::ImageSpec &spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.depth > 1 ||
+        (long long)spec.width * spec.height > max_pixels)
+        return weft_fail(error, WEFT_BAD_INPUT, "image '%s' has an unusable size: %d x %d x %d, %d channels", path,
+                         spec.width, spec.height, spec.depth, spec.nchannels);
+    if (kind)
+        *kind = spec.format.is_floating_point() ? WEFT_IMAGE_FLOAT : WEFT_IMAGE_INTEGER;
+    return read_floats(*input, path, image, error);
+}
+
+bool has_extension(const std::string &path, const char *extension)
+{
+    size_t length = strlen(extension);
+    return path.size() >= length && strcasecmp(path.c_str() + path.size() - length, extension) == 0;
+}
+
+OIIO::TypeDesc type_for(const std::string &path)
+{
+    if (has_extension(path, ".exr"))
+        return OIIO::TypeDesc::HALF;
+    if (has_extension(path, ".tif") || has_extension(path, ".tiff"))
+        return OIIO::TypeDesc::FLOAT;
+    return OIIO::TypeDesc::UINT8;
+}
+
+bool write_output(const char *path, const OIIO::ImageSpec &spec, OIIO::TypeDesc type, const void *pixels,
+                  std::string *why)
+{
+    auto output = OIIO::ImageOutput::create(path);
+    if (!output) {
+        *why = OIIO::geterror();
+        return false;
+    }
+    bool written = output->open(path, spec) && output->write_image(type, pixels) && output->close();
+    if (!written)
+        *why = output->geterror();
+    return written;
+}
+
+weft_code write_image(const char *path, const weft_image *image, const char *description, weft_error *error)
+{
+    OIIO::TypeDesc type = type_for(path);
+    OIIO::ImageSpec spec(image->width, image->height, 3, type);
+    spec.attribute("oiio:ColorSpace", type == OIIO::TypeDesc::UINT8 ? "sRGB" : "linear");
+    if (description)
+        spec.attribute("ImageDescription", description);
+    weft_atomic_file file;
+    WEFT_TRY(weft_atomic_file_begin(path, &file, error));
+    std::string why;
+    if (!write_output(file.temporary_path, spec, OIIO::TypeDesc::FLOAT, image->pixels, &why)) {
+        weft_atomic_file_abandon(&file);
+        return weft_fail(error, WEFT_SYSTEM, "cannot write image '%s': %s", path, first_line(why).c_str());
+    }
+    return weft_atomic_file_commit(&file, error);
+}
+
+weft_code write_photograph(const char *path, int width, int height, int bits, const uint16_t *samples,
+                           weft_error *error)
+{
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT16);
+    spec.attribute("oiio:BitsPerSample", bits);
+    spec.attribute("oiio:ColorSpace", "linear");
+    spec.attribute("compression", "none");
+    spec.attribute("tiff:RowsPerStrip", height);
+    /* OpenImageIO packs the high bits of 16-bit samples. */
+    std::vector<uint16_t> shifted(size_t(width) * size_t(height) * 3);
+    for (size_t i = 0; i < shifted.size(); i++)
+        shifted[i] = uint16_t(samples[i] << (16 - bits) | samples[i] >> (2 * bits - 16));
+    std::string why;
+    if (!write_output(path, spec, OIIO::TypeDesc::UINT16, shifted.data(), &why))
+        return weft_fail(error, WEFT_SYSTEM, "cannot write photograph '%s': %s", path, first_line(why).c_str());
+    return WEFT_OK;
+}
+
+weft_code read_photograph(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error)
+{
+    weft_code code;
+    auto input = open_input(path, &code, error);
+    WEFT_TRY(code);
+    const OIIO::ImageSpec &spec = input->spec();
+    if (spec.width != width || spec.height != height || spec.nchannels != 3)
+        return weft_fail(error, WEFT_BAD_INPUT, "photograph '%s' is %d x %d with %d channels, not %d x %d with 3", path,
+                         spec.width, spec.height, spec.nchannels, width, height);
+    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT16, samples))
+        return unreadable(error, path, input->geterror());
+    size_t count = size_t(width) * size_t(height) * 3;
+    for (size_t i = 0; i < count; i++)
+        samples[i] = uint16_t(samples[i] >> (16 - bits));
+    return WEFT_OK;
+}
+
+/* No C++ exception leaves the bridge. */
+template <typename Action> weft_code guarded(const char *path, weft_error *error, Action action)
+{
+    try {
+        return action();
+    } catch (const std::bad_alloc &) {
+        return weft_fail_memory(error, path, 0);
+    } catch (const std::exception &exception) {
+        return weft_fail(error, WEFT_BAD_INPUT, "image '%s': %s", path, first_line(exception.what()).c_str());
+    }
+}
+
+} // namespace
+
+weft_code weft_image_create(int width, int height, weft_image *image, weft_error *error)
+{
+    size_t bytes = size_t(width) * size_t(height) * 3 * sizeof(float);
+    *image = weft_image{width, height, static_cast<float *>(calloc(1, bytes))};
+    return image->pixels ? WEFT_OK : weft_fail_memory(error, "image", bytes);
+}
+
+void weft_image_free(weft_image *image)
+{
+    free(image->pixels);
+    *image = weft_image{0, 0, nullptr};
+}
+
+weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+{
+    return guarded(path, error, [&] { return read_image(path, image, kind, error); });
+}
+
+weft_code weft_image_write(const char *path, const weft_image *image, const char *description, weft_error *error)
+{
+    return guarded(path, error, [&] { return write_image(path, image, description, error); });
+}
+
+weft_code weft_photograph_write(const char *path, int width, int height, int bits, const uint16_t *samples,
+                                weft_error *error)
+{
+    return guarded(path, error, [&] { return write_photograph(path, width, height, bits, samples, error); });
+}
+
+weft_code weft_photograph_read(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error)
+{
+    return guarded(path, error, [&] { return read_photograph(path, width, height, bits, samples, error); });
+}
