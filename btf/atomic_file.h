@@ -7,6 +7,10 @@
 
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A path being written. Owned by the caller; begin, then exactly one of commit or abandon. */
 typedef struct weft_atomic_file {
     char *final_path;
@@ -34,4 +38,7 @@ weft_code weft_read_file(const char *path, size_t limit, char **bytes, size_t *s
 /* Creates a folder and its parents; an existing folder is fine. */
 weft_code weft_make_folder(const char *path, weft_error *error);
 
+#ifdef __cplusplus
+}
+#endif
 #endif
