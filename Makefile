@@ -1,0 +1,27 @@
+# Two commands do everything: `make demo` and `make test`. The build itself is CMake's.
+build := build/release
+
+.PHONY: demo test build check bench packages clean
+
+demo: build
+	scripts/demo.sh $(build)/cli/weft demo-out
+
+test: build
+	ctest --test-dir $(build) --output-on-failure
+
+build: packages
+	cmake --preset release -Wno-dev --log-level=WARNING
+	cmake --build --preset release
+
+packages:
+	scripts/install-packages.sh
+
+# What a reviewer runs: formatting, static analysis, and every test under AddressSanitizer and UndefinedBehaviorSanitizer.
+check: packages
+	scripts/check.sh
+
+bench: build
+	scripts/bench.sh $(build)
+
+clean:
+	rm -rf build demo-out

@@ -1,0 +1,72 @@
+#include "cli/command.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct command {
+    const char *name;
+    int (*run)(int argc, char **argv);
+    const char *summary;
+} command;
+
+static const command commands[] = {
+    {"capture", command_capture, "photograph a sample under all views and lights"},
+    {"register", command_register, "turn the photographs of a session into a dataset"},
+    {"import", command_import, "turn foreign photographs into a dataset"},
+    {"compress", command_compress, "fit lobes and a view table to a dataset"},
+    {"render", command_render, "draw a material to an image file"},
+    {"play", command_play, "draw a material in a window"},
+    {"compare", command_compare, "put dataset, material and analytic cloth side by side"},
+    {"eval", command_eval, "evaluate any model at listed directions"},
+    {"info", command_info, "say what a file holds"},
+    {"verify", command_verify, "check a file from end to end"},
+};
+
+static void print_usage(FILE *stream)
+{
+    fputs("Example: weft compress silk.btf.h5 -o silk.weft\n\n"
+          "Usage: weft COMMAND [OPTION...]\n"
+          "Turns photographs of a material into something you can play back in real time.\n\n",
+          stream);
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
+        fprintf(stream, "  %-10s %s\n", commands[i].name, commands[i].summary);
+    fputs("\n'weft COMMAND --help' explains a command. 'weft --version' prints the version.\n"
+          "Exit codes: 0 done, 1 bad input, 2 bad usage, 3 device or system failure.\n",
+          stream);
+}
+
+static int run_command(const command *chosen, int argc, char **argv)
+{
+    /* argp names the program by argv[0] in its messages: "weft NAME". */
+    char name[64];
+    snprintf(name, sizeof name, "weft %s", chosen->name);
+    argv[0] = name;
+    return chosen->run(argc, argv);
+}
+
+int main(int argc, char **argv)
+{
+    /* A file-size limit is then an error like a full disk, and a closed pipe an error of write(). */
+    signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+    if (argc < 2) {
+        print_usage(stderr);
+        return WEFT_BAD_USAGE;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "help") == 0) {
+        print_usage(stdout);
+        return EXIT_SUCCESS;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        puts("weft " WEFT_VERSION);
+        return EXIT_SUCCESS;
+    }
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        if (strcmp(argv[1], commands[i].name) == 0)
+            return run_command(&commands[i], argc - 1, argv + 1);
+    }
+    fprintf(stderr, "weft: there is no command '%s'; 'weft --help' lists them\n", argv[1]);
+    return WEFT_BAD_USAGE;
+}

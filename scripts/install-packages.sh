@@ -1,0 +1,38 @@
+#!/bin/sh
+# Installs the Debian packages that building, testing and the demo need. Says what is missing where it may not install.
+set -eu
+
+packages="
+    build-essential cmake ninja-build pkg-config
+    libopencv-dev libopencv-contrib-dev libopenimageio-dev openimageio-tools libhdf5-dev libzstd-dev zlib1g-dev libjansson-dev
+    libglfw3-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri libhidapi-dev
+    libcmocka-dev python3 python3-h5py python3-numpy xvfb xauth xdotool imagemagick
+"
+
+missing=""
+for package in $packages; do
+    status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
+    [ "$status" = "install ok installed" ] || missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+command="apt-get install -y --no-install-recommends$missing"
+if ! command -v apt-get >/dev/null 2>&1; then
+    echo "This is no Debian system. Install what these Debian packages hold, then run again:$missing" >&2
+    exit 3
+fi
+if [ "$(id -u)" = 0 ]; then
+    elevate=""
+elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
+    elevate="sudo"
+else
+    echo "Packages are missing and may not be installed from this account. Run as root:" >&2
+    echo "    $command" >&2
+    exit 3
+fi
+
+echo "Installing:$missing"
+$elevate apt-get update -q >/dev/null
+export DEBIAN_FRONTEND=noninteractive
+# shellcheck disable=SC2086
+$elevate apt-get install -y -q --no-install-recommends $missing >/dev/null
