@@ -65,7 +65,7 @@ weft_code weft_session_create(const weft_session *session, weft_error *error)
     char path[PATH_MAX];
     session_path(session, path);
     json_t *root = pack_session(session);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(15)) : NULL;
+    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(root);
     if (!text)
         return weft_fail_memory(error, session_name, 0);

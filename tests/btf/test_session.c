@@ -1,0 +1,202 @@
+#include "btf/atomic_file.h"
+#include "btf/image.h"
+#include "btf/session.h"
+
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static char folder[] = "session-XXXXXX";
+
+static int make_scratch(void **state)
+{
+    (void)state;
+    signal(SIGXFSZ, SIG_IGN);
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_scratch(void **state)
+{
+    (void)state;
+    char command[64];
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command);
+}
+
+static weft_angles angles_deg(double theta_deg, double phi_deg)
+{
+    return (weft_angles){weft_rad_of_deg(theta_deg), weft_rad_of_deg(phi_deg)};
+}
+
+enum { SHOTS = 3 };
+
+static weft_shot shots[SHOTS];
+static weft_shot_record records[SHOTS];
+
+static weft_session example(void)
+{
+    shots[0] = (weft_shot){angles_deg(0, 0), angles_deg(75, 345), angles_deg(0, 0)};
+    shots[1] = (weft_shot){angles_deg(75, 345), angles_deg(75, 345), angles_deg(70, 345)};
+    shots[2] = (weft_shot){angles_deg(15, 60), angles_deg(75, 345), angles_deg(15, 60)};
+    memset(records, 0, sizeof records);
+    weft_session session = {.folder = folder, .rig = "virtual", .sample = "silk", .rig_settings = "{\"seed\":7}"};
+    session.camera = (weft_camera){416, 400, 3850.25, 3845.5, 206.3, 209.1, -0.35, 1.2, {-0.4, 0.1, 0.01}};
+    session.camera_distance_mm = 1000;
+    session.light_distance_mm = 1200;
+    session.bits = 12;
+    session.black_level = 64;
+    session.target = weft_target_for_opening(32);
+    session.shot_count = SHOTS;
+    session.shot = shots;
+    session.record = records;
+    return session;
+}
+
+static void journal_path(char path[256])
+{
+    snprintf(path, 256, "%s/journal.jsonl", folder);
+}
+
+static void write_journal(const char *text)
+{
+    char path[256];
+    weft_error error = {0};
+    journal_path(path);
+    assert_int_equal(weft_write_file(path, text, strlen(text), &error), WEFT_OK);
+}
+
+static void session_survives_the_round_trip(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_session written = example(), read;
+    assert_int_equal(weft_session_create(&written, &error), WEFT_OK);
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
+    assert_memory_equal(&read.camera, &written.camera, sizeof read.camera);
+    assert_memory_equal(&read.target, &written.target, sizeof read.target);
+    assert_string_equal(read.rig_settings, "{\"seed\":7}");
+    assert_int_equal(read.shot_count, SHOTS);
+    assert_true(fabs(read.shot[1].light_driven.theta_rad - weft_rad_of_deg(70)) < 1e-14);
+    assert_false(read.record[0].taken);
+    char path[256];
+    weft_session_photograph_path(&read, 2, path, sizeof path);
+    assert_non_null(strstr(path, "/tv075_pv345/tl015_pl060_tv075_pv345.tif"));
+    weft_session_free(&read);
+}
+
+static void journal_gives_back_what_was_appended(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_session session = example(), read;
+    write_journal("");
+    weft_shot_record record = {true, 4, 0.0123456, 778954, 0xfedcba98u};
+    assert_int_equal(weft_session_append(&session, 2, &record, &error), WEFT_OK);
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
+    assert_false(read.record[0].taken);
+    assert_true(read.record[2].taken);
+    assert_int_equal(read.record[2].stay, 4);
+    assert_int_equal(read.record[2].crc32, 0xfedcba98u);
+    assert_true(read.record[2].exposure_s == 0.0123456);
+    weft_session_free(&read);
+}
+
+static void cut_last_line_is_forgotten_and_overwritten(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_session session = example(), read;
+    write_journal("{\"shot\":0,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":1}\n{\"shot\":1,\"st");
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
+    assert_true(read.record[0].taken);
+    assert_false(read.record[1].taken);
+    weft_session_free(&read);
+    weft_shot_record record = {true, 1, 0.25, 20, 2};
+    assert_int_equal(weft_session_append(&session, 1, &record, &error), WEFT_OK);
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
+    assert_true(read.record[1].taken && read.record[1].bytes == 20);
+    weft_session_free(&read);
+}
+
+static void malformed_journal_line_is_named(void **state)
+{
+    (void)state;
+    static const char *bad[] = {"nonsense\n", "{\"shot\":3,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":1}\n",
+                                "{\"shot\":-1,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":1}\n",
+                                "{\"shot\":0,\"stay\":0,\"exposure_s\":0,\"bytes\":10,\"crc32\":1}\n",
+                                "{\"shot\":0,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":4294967296}\n"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        weft_error error = {0};
+        weft_session read;
+        write_journal(bad[i]);
+        assert_int_equal(weft_session_open(folder, &read, &error), WEFT_BAD_INPUT);
+        assert_non_null(strstr(error.message, "journal.jsonl"));
+        assert_non_null(strstr(error.message, "line 1"));
+    }
+    write_journal("");
+}
+
+static void append_to_a_full_disk_fails_and_loses_nothing(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_session session = example(), read;
+    write_journal("{\"shot\":0,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":1}\n");
+    char path[256];
+    struct stat status;
+    journal_path(path);
+    assert_int_equal(stat(path, &status), 0);
+    struct rlimit before, small;
+    getrlimit(RLIMIT_FSIZE, &before);
+    small = (struct rlimit){(rlim_t)status.st_size + 10, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    weft_shot_record record = {true, 1, 0.25, 20, 2};
+    weft_code code = weft_session_append(&session, 1, &record, &error);
+    setrlimit(RLIMIT_FSIZE, &before);
+    assert_int_equal(code, WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "journal.jsonl"));
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
+    assert_true(read.record[0].taken);
+    assert_false(read.record[1].taken);
+    weft_session_free(&read);
+}
+
+static void every_cut_of_session_json_is_an_error_that_names_it(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_session session = example(), read;
+    assert_int_equal(weft_session_create(&session, &error), WEFT_OK);
+    char path[256], *text;
+    size_t size;
+    snprintf(path, sizeof path, "%s/session.json", folder);
+    assert_int_equal(weft_read_file(path, 1 << 20, &text, &size, &error), WEFT_OK);
+    for (size_t length = 0; length + 1 < size; length += 7) {
+        assert_int_equal(weft_write_file(path, text, length, &error), WEFT_OK);
+        assert_int_equal(weft_session_open(folder, &read, &error), WEFT_BAD_INPUT);
+        assert_non_null(strstr(error.message, "session.json"));
+    }
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(session_survives_the_round_trip),
+        cmocka_unit_test(journal_gives_back_what_was_appended),
+        cmocka_unit_test(cut_last_line_is_forgotten_and_overwritten),
+        cmocka_unit_test(malformed_journal_line_is_named),
+        cmocka_unit_test(append_to_a_full_disk_fails_and_loses_nothing),
+        cmocka_unit_test(every_cut_of_session_json_is_an_error_that_names_it),
+    };
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
+}
