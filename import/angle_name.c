@@ -1,0 +1,56 @@
+#include "import/angle_name.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ANGLE_COUNT = 4 };
+
+/* A word like "tl030" or "pv7.5". */
+static bool parse_word(const char *word, double angle_deg[ANGLE_COUNT], bool found[ANGLE_COUNT])
+{
+    static const char *const prefix[ANGLE_COUNT] = {"tl", "pl", "tv", "pv"};
+    for (int i = 0; i < ANGLE_COUNT; i++) {
+        if (strncasecmp(word, prefix[i], 2) != 0 || strspn(word + 2, "0123456789.") != strlen(word + 2))
+            continue;
+        char *end;
+        double value = strtod(word + 2, &end);
+        if (end == word + 2 || *end)
+            return true;
+        if (found[i])
+            return false;
+        angle_deg[i] = value;
+        found[i] = true;
+    }
+    return true;
+}
+
+bool weft_parse_angle_name(const char *name, weft_named_angles *angles)
+{
+    const char *slash = strrchr(name, '/');
+    char text[256];
+    int length = snprintf(text, sizeof text, "%s", slash ? slash + 1 : name);
+    if (length < 0 || (size_t)length >= sizeof text)
+        return false;
+    char *dot = strrchr(text, '.');
+    if (dot)
+        *dot = 0;
+    double angle_deg[ANGLE_COUNT];
+    bool found[ANGLE_COUNT] = {false};
+    for (char *rest = text; rest;) {
+        if (!parse_word(strsep(&rest, " _-"), angle_deg, found))
+            return false;
+    }
+    if (!(found[0] && found[1] && found[2] && found[3]))
+        return false;
+    angles->light = (weft_angles){weft_rad_of_deg(angle_deg[0]), weft_rad_of_deg(angle_deg[1])};
+    angles->view = (weft_angles){weft_rad_of_deg(angle_deg[2]), weft_rad_of_deg(angle_deg[3])};
+    return true;
+}
+
+void weft_angle_name(const weft_named_angles *angles, char name[64])
+{
+    snprintf(name, 64, "tl%03.0f_pl%03.0f_tv%03.0f_pv%03.0f", weft_deg_of_rad(angles->light.theta_rad),
+             weft_deg_of_rad(angles->light.phi_rad), weft_deg_of_rad(angles->view.theta_rad),
+             weft_deg_of_rad(angles->view.phi_rad));
+}

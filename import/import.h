@@ -1,0 +1,51 @@
+/* Import: collections of photographs that others made become a dataset (docs/import.md).
+ *
+ *   - a folder with positions: NN.png, camera_pos.txt, light_pos.txt, image_size.txt, light_power.txt
+ *     (a near light and a near camera);
+ *   - a folder of photographs named by their angles, in the layouts of UTIA (tv045_pv090/tl030_pl120_tv045_pv090.png)
+ * and UBO2003 ("00008 tl000 pl000 tv030 pv030.jpg"), or listed in a directions.csv (far light and camera). */
+#ifndef WEFT_IMPORT_IMPORT_H
+#define WEFT_IMPORT_IMPORT_H
+
+#include "btf/dataset.h"
+#include "btf/progress.h"
+#include "import/lines.h"
+
+#include <stdbool.h>
+
+typedef struct weft_import_options {
+    int width;             /* of the dataset, texels; 0 = as photographed */
+    double texel_pitch_mm; /* of the dataset; 0 = what the collection says, else 1 mm */
+    double
+        saturated_at; /* encoded value in 0..1 from which a sample of an integer image counts as clipped; > 1 = never */
+    weft_values
+        values; /* what photographs of a far light hold; those of a near light always give reflectance times cosine */
+    bool skip_bad; /* mask photographs that cannot be used, instead of failing */
+} weft_import_options;
+
+/* What came of it. Freed with weft_import_report_free. */
+typedef struct weft_import_report {
+    const char *kind; /* of collection, in words */
+    int width, height, image_count, view_count;
+    int missing_count;         /* photographs that the collection should hold but does not */
+    int skipped_count;         /* photographs that skip_bad masked */
+    double saturated_fraction; /* of the samples of the photographs that were read */
+    weft_lines notes;          /* what the user should know, a line each */
+} weft_import_report;
+
+/* Size as photographed, saturated from 250/255, reflectance times cosine, no bad photograph skipped. */
+weft_import_options weft_import_defaults(void);
+
+/* Reads the collection in folder `source` and writes the dataset `output` atomically. Photographs are decoded in
+ * parallel (OpenMP); memory holds one photograph a thread.
+ *
+ * Integer images are decoded from sRGB, float images are linear. A smaller width averages exact areas in linear light;
+ * a texel with any clipped pixel under it is masked WEFT_MASK_SATURATED. A near light of radiant intensity I at
+ * distance d gives reflectance times cosine = pi p d^2 / I for a linear pixel value p = BRDF cos(theta) I / d^2.
+ *
+ * Errors: WEFT_BAD_INPUT naming the photograph or the table that cannot be used; WEFT_SYSTEM from writing. */
+weft_code weft_import(const char *source, const char *output, const weft_import_options *options,
+                      const weft_progress *progress, weft_import_report *report, weft_error *error);
+void weft_import_report_free(weft_import_report *report);
+
+#endif

@@ -1,0 +1,96 @@
+#include "import/layout.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double assumed_pitch_mm = 1;
+
+static int by_view(const void *a, const void *b)
+{
+    const weft_photograph *p = *(const weft_photograph *const *)a, *q = *(const weft_photograph *const *)b;
+    const weft_real difference[3] = {p->view.x - q->view.x, p->view.y - q->view.y, p->view.z - q->view.z};
+    for (int i = 0; i < 3; i++) {
+        if (difference[i] != 0)
+            return difference[i] < 0 ? -1 : 1;
+    }
+    return p < q ? -1 : p > q;
+}
+
+static bool same_view(const weft_photograph *p, const weft_photograph *q)
+{
+    return p->view.x == q->view.x && p->view.y == q->view.y && p->view.z == q->view.z;
+}
+
+/* Numbers the distinct views in the order in which they first occur; among equal views the pointers order, so the head
+ * is the first. */
+static int number_views(const weft_photograph **sorted, const weft_photograph *photograph, int count,
+                        int32_t *view_of_image)
+{
+    for (int i = 0; i < count; i++)
+        sorted[i] = &photograph[i];
+    qsort(sorted, (size_t)count, sizeof *sorted, by_view);
+    for (int i = 0, head = 0; i < count; i++) {
+        if (!same_view(sorted[i], sorted[head]))
+            head = i;
+        view_of_image[sorted[i] - photograph] = (int32_t)(sorted[head] - photograph);
+    }
+    int views = 0;
+    for (int i = 0; i < count; i++)
+        view_of_image[i] = view_of_image[i] == i ? views++ : view_of_image[view_of_image[i]];
+    return views;
+}
+
+static void copy_directions(const weft_collection *collection, const int32_t *view_of_image,
+                            weft_dataset_layout *layout)
+{
+    for (int i = 0; i < collection->count; i++) {
+        layout->light[i] = collection->photograph[i].light;
+        layout->view[view_of_image[i]] = collection->photograph[i].view;
+        layout->view_of_image[i] = view_of_image[i];
+    }
+}
+
+static weft_code choose_pitch(const weft_collection *collection, const weft_import_options *options,
+                              weft_dataset_layout *layout, weft_lines *notes, weft_error *error)
+{
+    layout->texel_pitch_mm = options->texel_pitch_mm;
+    if (collection->side_mm > 0)
+        layout->texel_pitch_mm = collection->side_mm / layout->width;
+    if (layout->texel_pitch_mm > 0)
+        return WEFT_OK;
+    layout->texel_pitch_mm = assumed_pitch_mm;
+    return weft_lines_add(notes, error, "the photographs do not say how large a texel is: %g mm assumed",
+                          assumed_pitch_mm);
+}
+
+weft_code weft_import_layout(const weft_collection *collection, const weft_import_options *options,
+                             const weft_decoding *decoding, weft_dataset_layout *layout, weft_lines *notes,
+                             weft_error *error)
+{
+    size_t count = (size_t)collection->count;
+    int32_t *view_of_image = malloc(count * sizeof *view_of_image);
+    const weft_photograph **sorted = malloc(count * sizeof *sorted);
+    *layout =
+        (weft_dataset_layout){.width = decoding->width,
+                              .height = decoding->height,
+                              .image_count = collection->count,
+                              .distance = collection->distance,
+                              .values = collection->distance == WEFT_FAR ? options->values : WEFT_REFLECTANCE_COSINE};
+    weft_code code = WEFT_OK;
+    if (!view_of_image || !sorted)
+        code = weft_fail_memory(error, "views", count * sizeof *sorted);
+    if (code == WEFT_OK) {
+        layout->view_count = number_views(sorted, collection->photograph, collection->count, view_of_image);
+        code = weft_dataset_layout_allocate(layout, error);
+    }
+    if (code == WEFT_OK) {
+        copy_directions(collection, view_of_image, layout);
+        code = choose_pitch(collection, options, layout, notes, error);
+        if (code != WEFT_OK)
+            weft_dataset_layout_free(layout);
+    }
+    free(view_of_image);
+    free(sorted);
+    return code;
+}

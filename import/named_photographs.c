@@ -1,0 +1,31 @@
+#include "import/far_photograph.h"
+
+static weft_code add_named(const char *folder, const weft_lines *names, weft_collection *collection, weft_error *error)
+{
+    int unreadable = 0;
+    for (int i = 0; i < names->count; i++) {
+        weft_named_angles angles;
+        if (weft_parse_angle_name(names->line[i], &angles))
+            WEFT_TRY(weft_collection_add_far(collection, names->line[i], 0, &angles, error));
+        else if (unreadable++ == 0)
+            WEFT_TRY(weft_lines_add(&collection->notes, error, "left out '%s': no tl, pl, tv and pv in its name",
+                                    names->line[i]));
+    }
+    if (unreadable > 1)
+        WEFT_TRY(weft_lines_add(&collection->notes, error, "left out %d images in '%s' without angles in their names",
+                                unreadable, folder));
+    return WEFT_OK;
+}
+
+weft_code weft_collection_of_names(const char *folder, weft_collection *collection, weft_error *error)
+{
+    collection->kind = "photographs named by their angles";
+    collection->distance = WEFT_FAR;
+    weft_lines names;
+    WEFT_TRY(weft_list_images(folder, &names, error));
+    weft_code code = add_named(folder, &names, collection, error);
+    weft_lines_free(&names);
+    WEFT_TRY(code);
+    WEFT_TRY(weft_collection_sort_far(collection, folder, error));
+    return weft_collection_complete_grid(collection, error);
+}
