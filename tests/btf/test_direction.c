@@ -1,0 +1,44 @@
+#include "btf/csv.h"
+#include "btf/direction.h"
+#include "tests/btf/cmocka_all.h"
+
+static void ubo81_equals_the_reference_table(void **state)
+{
+    (void)state;
+    weft_csv csv;
+    weft_error error = {0};
+    assert_int_equal(weft_csv_read(WEFT_TEST_DATA "/reference/directions81.csv", true, &csv, &error), WEFT_OK);
+    assert_int_equal(csv.row_count, WEFT_UBO81_COUNT);
+    for (int i = 0; i < csv.row_count; i++) {
+        double row[6];
+        for (int column = 0; column < 6; column++)
+            assert_int_equal(weft_csv_number(&csv, i, column, &row[column], &error), WEFT_OK);
+        weft_angles angles = weft_ubo81_angles((int)row[0]);
+        assert_true(fabs(weft_deg_of_rad(angles.theta_rad) - row[1]) < 1e-7);
+        assert_true(fabs(weft_deg_of_rad(angles.phi_rad) - row[2]) < 1e-6);
+        weft_vec3 d = weft_direction_of_angles(angles);
+        assert_true(fabs(d.x - row[3]) < 1e-9 && fabs(d.y - row[4]) < 1e-9 && fabs(d.z - row[5]) < 1e-9);
+    }
+    weft_csv_free(&csv);
+}
+
+static void angles_and_directions_are_inverse(void **state)
+{
+    (void)state;
+    for (int i = 0; i < WEFT_UBO81_COUNT; i++) {
+        weft_angles expected = weft_ubo81_angles(i);
+        weft_angles angles = weft_angles_of_direction(weft_direction_of_angles(expected));
+        assert_true(fabs(angles.theta_rad - expected.theta_rad) < 1e-14);
+        assert_true(fabs(angles.phi_rad - expected.phi_rad) < 1e-14);
+        assert_int_equal(weft_ubo81_ring(angles.theta_rad), (int)lround(weft_deg_of_rad(angles.theta_rad) / 15));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ubo81_equals_the_reference_table),
+        cmocka_unit_test(angles_and_directions_are_inverse),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
