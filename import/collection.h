@@ -3,7 +3,7 @@
 #define WEFT_IMPORT_COLLECTION_H
 
 #include "btf/dataset.h"
-#include "import/lines.h"
+#include "btf/lines.h"
 
 typedef struct weft_photograph {
     char *name; /* of the file, relative to the folder; where it is missing, what it should be called */

@@ -8,8 +8,8 @@
 #define WEFT_IMPORT_IMPORT_H
 
 #include "btf/dataset.h"
+#include "btf/lines.h"
 #include "btf/progress.h"
-#include "import/lines.h"
 
 #include <stdbool.h>
 

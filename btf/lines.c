@@ -1,4 +1,4 @@
-#include "import/lines.h"
+#include "btf/lines.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* A growing list of lines: names of files, or what the user should know (a library never prints). */
-#ifndef WEFT_IMPORT_LINES_H
-#define WEFT_IMPORT_LINES_H
+#ifndef WEFT_BTF_LINES_H
+#define WEFT_BTF_LINES_H
 
 #include "btf/status.h"
 
