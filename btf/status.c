@@ -13,25 +13,19 @@ static void blank_control_characters(char *text)
     }
 }
 
-weft_code weft_fail(weft_error *error, weft_code code, const char *format, ...)
+void weft_error_set(weft_error *error, weft_code code, const char *format, ...)
 {
     if (!error)
-        return code;
+        return;
     error->code = code;
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(error->message, sizeof error->message, format, arguments);
     va_end(arguments);
     blank_control_characters(error->message);
-    return code;
 }
 
-weft_code weft_fail_errno(weft_error *error, const char *action, const char *path)
+void weft_error_set_errno(weft_error *error, const char *action, const char *path)
 {
-    return weft_fail(error, WEFT_SYSTEM, "cannot %s '%s': %s", action, path, strerror(errno));
-}
-
-weft_code weft_fail_memory(weft_error *error, const char *what, unsigned long long bytes)
-{
-    return weft_fail(error, WEFT_SYSTEM, "out of memory (%s, %llu bytes)", what, bytes);
+    weft_error_set(error, WEFT_SYSTEM, "cannot %s '%s': %s", action, path, strerror(errno));
 }

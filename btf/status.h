@@ -26,15 +26,29 @@ typedef struct weft_error {
     char message[WEFT_MESSAGE_SIZE]; /* one line, no newline, names the file and the numbers */
 } weft_error;
 
-/* Fills `error` (which may be NULL) with a formatted one-line message and returns `code`.
- * A message that is too long is cut; control characters become '?'. Thread-safe. */
-weft_code weft_fail(weft_error *error, weft_code code, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Fills `error` (which may be NULL) with a formatted one-line message. A message that is too long is cut; control
+ * characters become '?'. Thread-safe. */
+void weft_error_set(weft_error *error, weft_code code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/* weft_fail with WEFT_SYSTEM and "cannot ACTION 'PATH': strerror(errno)". */
-weft_code weft_fail_errno(weft_error *error, const char *action, const char *path);
+/* weft_error_set with WEFT_SYSTEM and "cannot ACTION 'PATH': strerror(errno)". */
+void weft_error_set_errno(weft_error *error, const char *action, const char *path);
+
+/* Fills the error and has the value of `code`, for `return weft_fail(...)`. A macro, so that the compiler and the
+ * analyser see that it is never WEFT_OK. */
+#define weft_fail(error, code, ...) (weft_error_set(error, code, __VA_ARGS__), (code))
+
+/* weft_fail with weft_error_set_errno. */
+static inline weft_code weft_fail_errno(weft_error *error, const char *action, const char *path)
+{
+    weft_error_set_errno(error, action, path);
+    return WEFT_SYSTEM;
+}
 
 /* weft_fail with WEFT_SYSTEM and "out of memory (WHAT, N bytes)". */
-weft_code weft_fail_memory(weft_error *error, const char *what, unsigned long long bytes);
+static inline weft_code weft_fail_memory(weft_error *error, const char *what, unsigned long long bytes)
+{
+    return weft_fail(error, WEFT_SYSTEM, "out of memory (%s, %llu bytes)", what, bytes);
+}
 
 /* Returns from the calling function with the code of `call` unless it is WEFT_OK. */
 #define WEFT_TRY(call)                                                                                                 \
