@@ -1,0 +1,61 @@
+#include "player/mesh.h"
+
+#include "btf/real.h"
+
+#include <math.h>
+#include <string.h>
+
+void weft_mesh_index_grid(weft_mesh *mesh, int columns, int rows)
+{
+    uint32_t(*index)[3] = mesh->index;
+    for (int row = 0; row + 1 < rows; row++) {
+        for (int column = 0; column + 1 < columns; column++) {
+            uint32_t a = (uint32_t)(row * columns + column), b = a + 1, c = a + (uint32_t)columns, d = c + 1;
+            memcpy(*index++, (uint32_t[3]){a, b, d}, sizeof *index);
+            memcpy(*index++, (uint32_t[3]){a, d, c}, sizeof *index);
+        }
+    }
+}
+
+weft_code weft_mesh_plane(weft_mesh *mesh, weft_error *error)
+{
+    WEFT_TRY(weft_mesh_allocate(4, 2, mesh, error));
+    for (int i = 0; i < 4; i++) {
+        float u = (float)(i % 2), v = (float)(i / 2);
+        mesh->vertex[i] = (weft_vertex){{u - 0.5f, v - 0.5f, 0}, {0, 0, 1}, {1, 0, 0, 1}, {u, v}};
+    }
+    weft_mesh_index_grid(mesh, 2, 2);
+    return WEFT_OK;
+}
+
+weft_code weft_mesh_sphere(weft_mesh *mesh, weft_error *error)
+{
+    enum { COLUMNS = 129, ROWS = 65 };
+    const double radius = 0.5;
+    WEFT_TRY(weft_mesh_allocate(COLUMNS * ROWS, 2 * (COLUMNS - 1) * (ROWS - 1), mesh, error));
+    for (int row = 0; row < ROWS; row++) {
+        for (int column = 0; column < COLUMNS; column++) {
+            double longitude = 2 * WEFT_PI * column / (COLUMNS - 1), latitude = WEFT_PI * (row / (ROWS - 1.0) - 0.5);
+            double x = cos(latitude) * cos(longitude), y = cos(latitude) * sin(longitude), z = sin(latitude);
+            mesh->vertex[row * COLUMNS + column] = (weft_vertex){
+                .position = {(float)(radius * x), (float)(radius * y), (float)(radius * z)},
+                .normal = {(float)x, (float)y, (float)z},
+                .tangent = {(float)-sin(longitude), (float)cos(longitude), 0, 1},
+                .coordinate = {(float)(radius * longitude), (float)(radius * latitude)},
+            };
+        }
+    }
+    weft_mesh_index_grid(mesh, COLUMNS, ROWS);
+    return WEFT_OK;
+}
+
+weft_code weft_mesh_open(const char *name, weft_mesh *mesh, weft_error *error)
+{
+    if (strcmp(name, "plane") == 0)
+        return weft_mesh_plane(mesh, error);
+    if (strcmp(name, "sphere") == 0)
+        return weft_mesh_sphere(mesh, error);
+    if (strcmp(name, "drape") == 0)
+        return weft_mesh_drape(mesh, error);
+    return weft_mesh_read_obj(name, mesh, error);
+}
