@@ -10,8 +10,8 @@ typedef struct weft_lines {
 } weft_lines;
 
 /* Appends a formatted line. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_lines_add(weft_lines *notes, weft_error *error, const char *format, ...)
+weft_code weft_lines_add(weft_lines *lines, weft_error *error, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-void weft_lines_free(weft_lines *notes);
+void weft_lines_free(weft_lines *lines);
 
 #endif

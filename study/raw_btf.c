@@ -1,0 +1,305 @@
+#include "study/raw_btf.h"
+
+#include "btf/triangulation.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Where the images of a dataset were lit and seen from, as a place of the material sees it. */
+typedef struct directions {
+    weft_triangulation *views;
+    weft_triangulation *
+        *lights; /* [view_count] of the images of a view, in the order of image_of_view; NULL for a view without any */
+} directions;
+
+struct weft_raw_btf {
+    weft_dataset *dataset;
+    const weft_dataset_layout *layout;
+    int *first_image;   /* [view_count + 1] into image_of_view */
+    int *image_of_view; /* [image_count] images sorted by view */
+    directions centre;  /* everywhere in a far dataset */
+    weft_half *samples; /* [image_count][3] of a texel */
+    uint8_t *mask;      /* [image_count] of a texel */
+    float *mean;        /* [image_count][3]; NULL until asked for */
+    uint8_t *mean_mask; /* [image_count] */
+};
+
+/* ---- Directions ---- */
+
+static void directions_free(directions *d, int view_count)
+{
+    weft_triangulation_free(d->views);
+    for (int v = 0; d->lights && v < view_count; v++)
+        weft_triangulation_free(d->lights[v]);
+    free(d->lights);
+    *d = (directions){0};
+}
+
+static weft_code triangulate_lights(const weft_raw_btf *raw, int x, int y, weft_vec3 *scratch, directions *d,
+                                    weft_error *error)
+{
+    for (int v = 0; v < raw->layout->view_count; v++) {
+        int count = raw->first_image[v + 1] - raw->first_image[v];
+        for (int i = 0; i < count; i++)
+            scratch[i] = weft_dataset_light_direction(raw->layout, raw->image_of_view[raw->first_image[v] + i], x, y);
+        if (count > 0)
+            WEFT_TRY(weft_triangulation_build(scratch, count, &d->lights[v], error));
+    }
+    return WEFT_OK;
+}
+
+/* As texel (x, y) sees them. */
+static weft_code directions_create(const weft_raw_btf *raw, int x, int y, directions *d, weft_error *error)
+{
+    const weft_dataset_layout *layout = raw->layout;
+    size_t most = (size_t)(layout->image_count > layout->view_count ? layout->image_count : layout->view_count);
+    *d = (directions){.lights = calloc((size_t)layout->view_count, sizeof(weft_triangulation *))};
+    weft_vec3 *scratch = malloc(most * sizeof *scratch);
+    weft_code code = WEFT_OK;
+    if (!d->lights || !scratch)
+        code = weft_fail_memory(error, "directions", most * sizeof *scratch);
+    if (code == WEFT_OK) {
+        for (int v = 0; v < layout->view_count; v++)
+            scratch[v] = weft_dataset_view_direction(layout, v, x, y);
+        code = weft_triangulation_build(scratch, layout->view_count, &d->views, error);
+    }
+    if (code == WEFT_OK)
+        code = triangulate_lights(raw, x, y, scratch, d, error);
+    free(scratch);
+    if (code != WEFT_OK)
+        directions_free(d, layout->view_count);
+    return code;
+}
+
+/* ---- Life ---- */
+
+static void sort_images_by_view(weft_raw_btf *raw)
+{
+    const weft_dataset_layout *layout = raw->layout;
+    for (int i = 0; i < layout->image_count; i++)
+        raw->first_image[layout->view_of_image[i] + 1]++;
+    for (int v = 0; v < layout->view_count; v++)
+        raw->first_image[v + 1] += raw->first_image[v];
+    /* Filling moves every start to the next one; going backwards and decrementing the ends instead keeps them. */
+    for (int i = layout->image_count - 1; i >= 0; i--)
+        raw->image_of_view[--raw->first_image[layout->view_of_image[i] + 1]] = i;
+    memmove(raw->first_image, raw->first_image + 1, (size_t)layout->view_count * sizeof *raw->first_image);
+    raw->first_image[layout->view_count] = layout->image_count;
+}
+
+weft_code weft_raw_btf_create(weft_dataset *dataset, weft_raw_btf **result, weft_error *error)
+{
+    weft_raw_btf *raw = calloc(1, sizeof *raw);
+    if (!raw)
+        return weft_fail_memory(error, "dataset", sizeof *raw);
+    raw->dataset = dataset;
+    raw->layout = weft_dataset_get_layout(dataset);
+    size_t images = (size_t)raw->layout->image_count, views = (size_t)raw->layout->view_count;
+    raw->first_image = calloc(views + 1, sizeof *raw->first_image);
+    raw->image_of_view = malloc(images * sizeof *raw->image_of_view);
+    raw->samples = malloc(3 * images * sizeof *raw->samples);
+    raw->mask = malloc(images);
+    weft_code code = WEFT_OK;
+    if (!raw->first_image || !raw->image_of_view || !raw->samples || !raw->mask)
+        code = weft_fail_memory(error, "dataset", images * 16);
+    if (code == WEFT_OK) {
+        sort_images_by_view(raw);
+        code = directions_create(raw, raw->layout->width / 2, raw->layout->height / 2, &raw->centre, error);
+    }
+    if (code != WEFT_OK)
+        weft_raw_btf_free(raw);
+    else
+        *result = raw;
+    return code;
+}
+
+void weft_raw_btf_free(weft_raw_btf *raw)
+{
+    if (!raw)
+        return;
+    directions_free(&raw->centre, raw->layout->view_count);
+    free(raw->first_image);
+    free(raw->image_of_view);
+    free(raw->samples);
+    free(raw->mask);
+    free(raw->mean);
+    free(raw->mean_mask);
+    free(raw);
+}
+
+/* ---- Interpolation ---- */
+
+/* Weighted sum of valid samples: BRDF x pi in [0..2], the sum of the weights in [3]. */
+typedef struct blend {
+    double sum[4];
+} blend;
+
+static void blend_add(blend *b, double weight, const double value[3])
+{
+    for (int c = 0; c < 3; c++)
+        b->sum[c] += weight * value[c];
+    b->sum[3] += weight;
+}
+
+static weft_rgb blend_brdf(const blend *b)
+{
+    double scale = b->sum[3] > 0 ? 1 / (WEFT_PI * b->sum[3]) : NAN;
+    return (weft_rgb){b->sum[0] * scale, b->sum[1] * scale, b->sum[2] * scale};
+}
+
+/* The samples of one place: half floats of a texel, or the float means. */
+typedef struct place {
+    const weft_half *half;
+    const float *mean;
+    const uint8_t *mask;
+    int x, y;
+} place;
+
+static void add_image(const weft_raw_btf *raw, const place *at, int image, double weight, blend *b)
+{
+    double cosine = 1;
+    if (raw->layout->values == WEFT_REFLECTANCE_COSINE)
+        cosine = weft_dataset_light_direction(raw->layout, image, at->x, at->y).z;
+    if (at->mask[image] || !(cosine > 0) || !(weight > 0))
+        return;
+    double value[3];
+    for (int c = 0; c < 3; c++) {
+        size_t index = 3 * (size_t)image + (size_t)c;
+        value[c] = (double)(at->mean ? at->mean[index] : weft_float_of_half(at->half[index])) / cosine;
+    }
+    blend_add(b, weight, value);
+}
+
+static void interpolate(const weft_raw_btf *raw, const directions *d, const place *at, weft_vec3 light, weft_vec3 view,
+                        blend *b)
+{
+    weft_barycentric views = weft_triangulation_lookup(d->views, view);
+    for (int i = 0; i < 3; i++) {
+        if (views.index[i] < 0 || !d->lights[views.index[i]])
+            continue;
+        weft_barycentric lights = weft_triangulation_lookup(d->lights[views.index[i]], light);
+        const int *image = raw->image_of_view + raw->first_image[views.index[i]];
+        for (int k = 0; k < 3; k++) {
+            if (lights.index[k] >= 0)
+                add_image(raw, at, image[lights.index[k]], views.weight[i] * lights.weight[k], b);
+        }
+    }
+}
+
+static weft_code sample_texel(weft_raw_btf *raw, int x, int y, weft_vec3 light, weft_vec3 view, weft_rgb *brdf,
+                              weft_error *error)
+{
+    WEFT_TRY(weft_dataset_read_block(raw->dataset, x, y, 1, 1, raw->samples, raw->mask, error));
+    place at = {.half = raw->samples, .mask = raw->mask, .x = x, .y = y};
+    blend b = {0};
+    if (raw->layout->distance == WEFT_FAR) {
+        interpolate(raw, &raw->centre, &at, light, view, &b);
+    } else {
+        directions near;
+        WEFT_TRY(directions_create(raw, x, y, &near, error));
+        interpolate(raw, &near, &at, light, view, &b);
+        directions_free(&near, raw->layout->view_count);
+    }
+    *brdf = blend_brdf(&b);
+    return WEFT_OK;
+}
+
+static bool below_horizon(weft_vec3 light, weft_vec3 view)
+{
+    return !(light.z > 0 && view.z > 0);
+}
+
+static int wrapped(int index, int count)
+{
+    return ((index % count) + count) % count;
+}
+
+weft_code weft_raw_btf_sample(weft_raw_btf *raw, weft_real u, weft_real v, weft_vec3 light, weft_vec3 view,
+                              weft_rgb *brdf, weft_error *error)
+{
+    *brdf = (weft_rgb){0, 0, 0};
+    if (below_horizon(light, view))
+        return WEFT_OK;
+    int width = raw->layout->width, height = raw->layout->height;
+    double x = (u - floor(u)) * width - 0.5, y = (1 - (v - floor(v))) * height - 0.5;
+    int x0 = (int)floor(x), y0 = (int)floor(y);
+    blend b = {0};
+    for (int corner = 0; corner < 4; corner++) {
+        int right = corner & 1, down = corner >> 1;
+        double weight = (right ? x - x0 : x0 + 1 - x) * (down ? y - y0 : y0 + 1 - y);
+        weft_rgb value;
+        if (!(weight > 0))
+            continue;
+        WEFT_TRY(sample_texel(raw, wrapped(x0 + right, width), wrapped(y0 + down, height), light, view, &value, error));
+        if (!isnan(value.r))
+            blend_add(&b, weight, (double[]){WEFT_PI * value.r, WEFT_PI * value.g, WEFT_PI * value.b});
+    }
+    *brdf = blend_brdf(&b);
+    return WEFT_OK;
+}
+
+/* ---- Mean of all texels ---- */
+
+static void add_texel(const weft_raw_btf *raw, double *sum, long *count)
+{
+    for (int i = 0; i < raw->layout->image_count; i++) {
+        if (raw->mask[i])
+            continue;
+        for (int c = 0; c < 3; c++)
+            sum[3 * i + c] += (double)weft_float_of_half(raw->samples[3 * i + c]);
+        count[i]++;
+    }
+}
+
+static weft_code sum_texels(weft_raw_btf *raw, double *sum, long *count, weft_error *error)
+{
+    for (int y = 0; y < raw->layout->height; y++) {
+        for (int x = 0; x < raw->layout->width; x++) {
+            WEFT_TRY(weft_dataset_read_block(raw->dataset, x, y, 1, 1, raw->samples, raw->mask, error));
+            add_texel(raw, sum, count);
+        }
+    }
+    return WEFT_OK;
+}
+
+static weft_code read_mean(weft_raw_btf *raw, weft_error *error)
+{
+    size_t images = (size_t)raw->layout->image_count;
+    double *sum = calloc(3 * images, sizeof *sum);
+    long *count = calloc(images, sizeof *count);
+    raw->mean = malloc(3 * images * sizeof *raw->mean);
+    raw->mean_mask = malloc(images);
+    weft_code code = WEFT_OK;
+    if (!sum || !count || !raw->mean || !raw->mean_mask)
+        code = weft_fail_memory(error, "mean", 3 * images * sizeof *sum);
+    else
+        code = sum_texels(raw, sum, count, error);
+    for (size_t i = 0; code == WEFT_OK && i < images; i++) {
+        raw->mean_mask[i] = count[i] == 0;
+        for (size_t c = 0; c < 3; c++)
+            raw->mean[3 * i + c] = count[i] ? (float)(sum[3 * i + c] / (double)count[i]) : 0;
+    }
+    free(sum);
+    free(count);
+    if (code != WEFT_OK) {
+        free(raw->mean);
+        raw->mean = NULL;
+    }
+    return code;
+}
+
+weft_code weft_raw_btf_mean(weft_raw_btf *raw, weft_vec3 light, weft_vec3 view, weft_rgb *brdf, weft_error *error)
+{
+    *brdf = (weft_rgb){0, 0, 0};
+    if (below_horizon(light, view))
+        return WEFT_OK;
+    if (!raw->mean)
+        WEFT_TRY(read_mean(raw, error));
+    place at = {.mean = raw->mean, .mask = raw->mean_mask, .x = raw->layout->width / 2, .y = raw->layout->height / 2};
+    blend b = {0};
+    interpolate(raw, &raw->centre, &at, light, view, &b);
+    *brdf = blend_brdf(&b);
+    return WEFT_OK;
+}
