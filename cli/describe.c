@@ -1,0 +1,103 @@
+#include "cli/describe.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINE_SIZE = 1024 };
+
+/* One value on one line: numbers short, strings bare. */
+static void format_value(const json_t *value, char *text, size_t size)
+{
+    char *dumped = NULL;
+    if (json_is_real(value))
+        snprintf(text, size, "%.6g", json_real_value(value));
+    else if (json_is_string(value))
+        snprintf(text, size, "%s", json_string_value(value));
+    else if (json_is_array(value) && json_array_size(value) == 2 && json_is_integer(json_array_get(value, 0)))
+        snprintf(text, size, "%lld x %lld", json_integer_value(json_array_get(value, 0)),
+                 json_integer_value(json_array_get(value, 1)));
+    else if ((dumped = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(6))))
+        snprintf(text, size, "%s", dumped);
+    free(dumped);
+}
+
+static bool is_list_of_objects(const json_t *value)
+{
+    return json_is_array(value) && json_is_object(json_array_get(value, 0));
+}
+
+static void say_object(const common_options *common, json_t *object, int indent);
+
+static void say_member(const common_options *common, const char *name, json_t *value, int indent)
+{
+    if (json_is_object(value)) {
+        command_say(common, "%*s%s:", indent, "", name);
+        say_object(common, value, indent + 2);
+    } else if (is_list_of_objects(value)) {
+        for (size_t i = 0; i < json_array_size(value); i++) {
+            command_say(common, "%*s%s %zu:", indent, "", name, i);
+            say_object(common, json_array_get(value, i), indent + 2);
+        }
+    } else {
+        char text[LINE_SIZE] = "";
+        format_value(value, text, sizeof text);
+        command_say(common, "%*s%s: %s", indent, "", name, text);
+    }
+}
+
+static void say_object(const common_options *common, json_t *object, int indent)
+{
+    const char *name;
+    json_t *value;
+    json_object_foreach(object, name, value) say_member(common, name, value, indent);
+}
+
+void describe(const common_options *common, const char *event, json_t *object)
+{
+    if (!common->json) {
+        say_object(common, object, 0);
+        return;
+    }
+    json_t *whole = json_pack("{s:s}", "event", event);
+    json_object_update(whole, object);
+    char *line = json_dumps(whole, JSON_COMPACT);
+    if (line)
+        command_event(common, line);
+    free(line);
+    json_decref(whole);
+}
+
+typedef struct one_file {
+    common_options *common;
+    const char *path;
+} one_file;
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    one_file *file = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = file->common;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (file->path)
+            argp_error(state, "one file at a time: '%s' is one too many", argument);
+        file->path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!file->path)
+            argp_error(state, "needs a file");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const char *parse_one_file(int argc, char **argv, const char *documentation, common_options *common)
+{
+    static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
+    const struct argp parser = {NULL, parse_option, "FILE", documentation, children, NULL, NULL};
+    one_file file = {common, NULL};
+    command_parse(&parser, argc, argv, &file, common);
+    return file.path;
+}

@@ -1,0 +1,162 @@
+#include "study/inspect.h"
+
+#include "btf/dataset.h"
+#include "btf/material.h"
+#include "btf/session.h"
+#include "reflectance/weave.h"
+#include "study/file_kind.h"
+#include "study/verify.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <sys/stat.h>
+
+static json_int_t file_size(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 ? (json_int_t)status.st_size : 0;
+}
+
+/* A JSON text that came with a file, as an object. Long lists of file names are counted instead of shown. */
+static json_t *parsed(const char *text)
+{
+    json_t *value = json_loads(text, JSON_DECODE_ANY, NULL);
+    if (!value)
+        return json_string("not JSON");
+    const json_t *names = json_object_get(value, "photographs");
+    if (json_is_array(names))
+        json_object_set_new(value, "photographs", json_integer((json_int_t)json_array_size(names)));
+    return value;
+}
+
+/* ---- Material ---- */
+
+static json_t *describe_level(const weft_material_level *level)
+{
+    const weft_material_error *e = &level->error;
+    return json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f}", "texels", level->width, level->height,
+                     "median_relative_error", e->median_relative, "percentile80_relative_error",
+                     e->percentile80_relative, "rmse", e->rmse, "relative_rmse", e->relative_rmse, "psnr_db",
+                     isfinite(e->psnr_db) ? e->psnr_db : 0);
+}
+
+static json_t *describe_material(const char *path, const weft_material *material)
+{
+    json_t *levels = json_array();
+    for (int i = 0; i < material->level_count; i++)
+        json_array_append_new(levels, describe_level(&material->level[i]));
+    return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
+                     file_size(path), "texels", material->level[0].width, material->level[0].height, "lobes",
+                     material->lobe_count, "views_in_table", material->view_count, "texel_pitch_mm",
+                     material->texel_pitch_mm, "levels", levels, "metadata", parsed(material->metadata));
+}
+
+static weft_code inspect_material(const char *path, json_t **result, weft_error *error)
+{
+    weft_material material;
+    WEFT_TRY(weft_material_read(path, &material, error));
+    weft_code code = weft_verify_material(path, &material, error);
+    if (code == WEFT_OK)
+        *result = describe_material(path, &material);
+    weft_material_free(&material);
+    return code;
+}
+
+/* ---- Dataset ---- */
+
+static json_t *describe_dataset(const char *path, const weft_dataset_layout *layout)
+{
+    json_int_t raw =
+        (json_int_t)layout->width * layout->height * layout->image_count * 3 * (json_int_t)sizeof(weft_half);
+    return json_pack("{s:s, s:s, s:I, s:I, s:[ii], s:i, s:i, s:s, s:s, s:f, s:o}", "file", path, "kind", "dataset",
+                     "bytes", file_size(path), "half_float_bytes", raw, "texels", layout->width, layout->height,
+                     "images", layout->image_count, "views", layout->view_count, "values",
+                     layout->values == WEFT_REFLECTANCE ? "reflectance" : "reflectance times cosine",
+                     "lights_and_views", layout->distance == WEFT_NEAR ? "positions (near)" : "directions (far)",
+                     "texel_pitch_mm", layout->texel_pitch_mm, "provenance", parsed(layout->provenance));
+}
+
+static weft_code inspect_dataset(const char *path, const weft_progress *progress, bool all, json_t **result,
+                                 weft_error *error)
+{
+    weft_dataset *dataset;
+    WEFT_TRY(weft_dataset_open(path, &dataset, error));
+    *result = describe_dataset(path, weft_dataset_get_layout(dataset));
+    weft_code code = all ? weft_verify_dataset(dataset, progress, *result, error) : WEFT_OK;
+    weft_dataset_close(dataset);
+    return code;
+}
+
+/* ---- Session ---- */
+
+static json_t *describe_session(const weft_session *session)
+{
+    int taken = 0;
+    for (int i = 0; i < session->shot_count; i++)
+        taken += session->record[i].taken;
+    return json_pack("{s:s, s:s, s:s, s:s, s:[ii], s:i, s:i, s:i, s:f}", "folder", session->folder, "kind", "session",
+                     "rig", session->rig, "sample", session->sample, "photograph_size", session->camera.width,
+                     session->camera.height, "bits", session->bits, "planned", session->shot_count, "taken", taken,
+                     "opening_mm", session->target.opening_mm);
+}
+
+static weft_code inspect_session(const char *path, const weft_progress *progress, bool all, json_t **result,
+                                 weft_error *error)
+{
+    weft_session session;
+    WEFT_TRY(weft_session_open(path, &session, error));
+    *result = describe_session(&session);
+    weft_code code = all ? weft_verify_session(&session, progress, *result, error) : WEFT_OK;
+    weft_session_free(&session);
+    return code;
+}
+
+/* ---- Weave ---- */
+
+static weft_code inspect_weave(const char *path, json_t **result, weft_error *error)
+{
+    weft_weave weave;
+    char warning[WEFT_MESSAGE_SIZE] = "";
+    WEFT_TRY(weft_weave_read(path, NULL, 0, &weave, warning, error));
+    *result = json_pack("{s:s, s:s, s:s, s:[ii], s:i, s:f, s:s}", "file", path, "kind", "weave", "name", weave.name,
+                        "tile_cells", weave.tile_width, weave.tile_height, "yarns", weave.yarn_count, "specular_scale",
+                        weave.specular_scale, "warning", warning);
+    weft_weave_free(&weave);
+    return WEFT_OK;
+}
+
+/* ---- Any ---- */
+
+static weft_code inspect_any(const char *path, const weft_progress *progress, bool all, json_t **result,
+                             weft_error *error)
+{
+    *result = NULL;
+    weft_file_kind kind;
+    WEFT_TRY(weft_file_kind_of(path, &kind, error));
+    weft_code code;
+    if (kind == WEFT_FILE_MATERIAL)
+        code = inspect_material(path, result, error);
+    else if (kind == WEFT_FILE_DATASET)
+        code = inspect_dataset(path, progress, all, result, error);
+    else if (kind == WEFT_FILE_SESSION)
+        code = inspect_session(path, progress, all, result, error);
+    else
+        code = inspect_weave(path, result, error);
+    if (code == WEFT_OK && !*result)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' cannot be described: its texts are not UTF-8", path);
+    if (code != WEFT_OK) {
+        json_decref(*result);
+        *result = NULL;
+    }
+    return code;
+}
+
+weft_code weft_inspect(const char *path, json_t **result, weft_error *error)
+{
+    return inspect_any(path, NULL, false, result, error);
+}
+
+weft_code weft_verify(const char *path, const weft_progress *progress, json_t **result, weft_error *error)
+{
+    return inspect_any(path, progress, true, result, error);
+}
