@@ -1,0 +1,110 @@
+#include "btf/material.h"
+
+#include "btf/material_format.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static weft_code check_count(const char *what, int count, int least, int most, weft_error *error)
+{
+    if (count < least || count > most)
+        return weft_fail(error, WEFT_BAD_USAGE, "%s is %d, must be %d to %d", what, count, least, most);
+    return WEFT_OK;
+}
+
+static int chain_length(int width, int height)
+{
+    int levels = 1;
+    for (int side = width > height ? width : height; side > 1; side = (side + 1) / 2)
+        levels++;
+    return levels;
+}
+
+weft_code weft_material_set_shape(weft_material *material, int width, int height, int level_count, int lobe_count,
+                                  int view_count, weft_error *error)
+{
+    WEFT_TRY(check_count("width of the material", width, 1, WEFT_FORMAT_MAX_SIDE, error));
+    WEFT_TRY(check_count("height of the material", height, 1, WEFT_FORMAT_MAX_SIDE, error));
+    WEFT_TRY(check_count("number of lobes", lobe_count, 0, WEFT_MATERIAL_MAX_LOBES, error));
+    WEFT_TRY(check_count("number of views", view_count, 0, WEFT_MATERIAL_MAX_VIEWS, error));
+    int chain = chain_length(width, height);
+    WEFT_TRY(check_count("number of levels", level_count, 0, chain, error));
+    material->lobe_count = lobe_count;
+    material->view_count = view_count;
+    material->level_count = level_count > 0 ? level_count : chain;
+    for (int k = 0; k < material->level_count; k++) {
+        material->level[k].width = width;
+        material->level[k].height = height;
+        width = (width + 1) / 2;
+        height = (height + 1) / 2;
+    }
+    return WEFT_OK;
+}
+
+static weft_code allocate_array(const weft_material *material, weft_section_kind kind, int level, void **array,
+                                weft_error *error)
+{
+    if (level >= weft_section_levels(material, kind))
+        return WEFT_OK;
+    uint64_t size = weft_section_size(material, kind, level);
+    *array = calloc(1, size);
+    return *array ? WEFT_OK : weft_fail_memory(error, "material", size);
+}
+
+static weft_code allocate_level(weft_material *material, int k, weft_error *error)
+{
+    weft_material_level *level = &material->level[k];
+    void *array[4] = {0};
+    weft_code code = WEFT_OK;
+    for (int i = 0; i < 4 && code == WEFT_OK; i++)
+        code = allocate_array(material, (weft_section_kind)(WEFT_SECTION_FRAM + i), k, &array[i], error);
+    level->frame = array[0];
+    level->diffuse = array[1];
+    level->lobe = array[2];
+    level->table = array[3];
+    return code;
+}
+
+static weft_code allocate_all(weft_material *material, weft_error *error)
+{
+    material->metadata = strdup("{}");
+    if (!material->metadata)
+        return weft_fail_memory(error, "material", 3);
+    if (material->view_count > 0) {
+        material->view = calloc((size_t)material->view_count, sizeof *material->view);
+        if (!material->view)
+            return weft_fail_memory(error, "views", (size_t)material->view_count * sizeof *material->view);
+    }
+    for (int k = 0; k < material->level_count; k++)
+        WEFT_TRY(allocate_level(material, k, error));
+    return WEFT_OK;
+}
+
+weft_code weft_material_allocate(weft_material *material, weft_error *error)
+{
+    weft_code code = allocate_all(material, error);
+    if (code != WEFT_OK)
+        weft_material_free(material);
+    return code;
+}
+
+weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int with_levels,
+                               weft_material *material, weft_error *error)
+{
+    *material = (weft_material){.texel_pitch_mm = 1};
+    WEFT_TRY(weft_material_set_shape(material, width, height, with_levels ? 0 : 1, lobe_count, view_count, error));
+    return weft_material_allocate(material, error);
+}
+
+void weft_material_free(weft_material *material)
+{
+    for (int k = 0; k < material->level_count; k++) {
+        free(material->level[k].frame);
+        free(material->level[k].diffuse);
+        free(material->level[k].lobe);
+        free(material->level[k].table);
+    }
+    free(material->view);
+    free(material->metadata);
+    *material = (weft_material){0};
+}

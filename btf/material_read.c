@@ -1,0 +1,307 @@
+#include "btf/atomic_file.h"
+#include "btf/material_format.h"
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+#include <zstd.h>
+
+static const size_t largest_file = (size_t)1 << 40;
+
+typedef struct file_image {
+    const char *path;
+    unsigned char *bytes;
+    size_t size;
+    int section_count;
+    weft_section *section;                                   /* [section_count] */
+    int found[WEFT_SECTION_KINDS][WEFT_MATERIAL_MAX_LEVELS]; /* index + 1 of the section, 0 = none */
+} file_image;
+
+static uint32_t u32_at(const unsigned char *bytes)
+{
+    uint32_t value;
+    memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+static uint64_t u64_at(const unsigned char *bytes)
+{
+    uint64_t value;
+    memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+/* ---- Header and table ---- */
+
+static weft_code check_header(const file_image *file, weft_error *error)
+{
+    if (file->size < WEFT_FORMAT_HEADER_SIZE)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is cut: %zu bytes, the header alone has %d", file->path,
+                         file->size, WEFT_FORMAT_HEADER_SIZE);
+    if (memcmp(file->bytes, weft_format_magic, sizeof weft_format_magic) != 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no .weft file", file->path);
+    uint32_t version = u32_at(file->bytes + 8), sections = u32_at(file->bytes + 12);
+    uint64_t size = u64_at(file->bytes + 16);
+    if (version != WEFT_FORMAT_VERSION)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has version %u of the format, this program reads version %d",
+                         file->path, version, WEFT_FORMAT_VERSION);
+    if (size != file->size)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is %s: %zu bytes, its header says %llu", file->path,
+                         file->size < size ? "cut" : "too long", file->size, (unsigned long long)size);
+    if (sections < 1 || sections > WEFT_FORMAT_MAX_SECTIONS)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has %u sections, must be 1 to %d", file->path, sections,
+                         WEFT_FORMAT_MAX_SECTIONS);
+    size_t table_size = (size_t)sections * WEFT_FORMAT_ENTRY_SIZE;
+    if (file->size - WEFT_FORMAT_HEADER_SIZE < table_size)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is cut: no room for its table of %u sections", file->path,
+                         sections);
+    uLong checksum = crc32_z(0, file->bytes, WEFT_FORMAT_HEADER_SIZE - 4);
+    checksum = crc32_z(checksum, file->bytes + WEFT_FORMAT_HEADER_SIZE, table_size);
+    if (checksum != u32_at(file->bytes + 60))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: checksum of the header and section table",
+                         file->path);
+    return WEFT_OK;
+}
+
+static int limited_int(uint32_t value)
+{
+    return value > INT32_MAX ? INT32_MAX : (int)value;
+}
+
+static weft_code read_shape(const file_image *file, weft_material *material, weft_error *error)
+{
+    const unsigned char *b = file->bytes;
+    int level_count = limited_int(u32_at(b + 32));
+    weft_error cause = {0};
+    weft_code code =
+        weft_material_set_shape(material, limited_int(u32_at(b + 24)), limited_int(u32_at(b + 28)), level_count,
+                                limited_int(u32_at(b + 36)), limited_int(u32_at(b + 40)), &cause);
+    if (code == WEFT_OK && level_count == 0)
+        code = weft_fail(&cause, WEFT_BAD_INPUT, "number of levels is 0");
+    memcpy(&material->texel_pitch_mm, b + 48, sizeof material->texel_pitch_mm);
+    if (code == WEFT_OK && !(material->texel_pitch_mm > 0 && isfinite(material->texel_pitch_mm)))
+        code = weft_fail(&cause, WEFT_BAD_INPUT, "texel pitch is %g mm", material->texel_pitch_mm);
+    if (code == WEFT_OK && (u32_at(b + 44) != 0 || u32_at(b + 56) != 0))
+        code = weft_fail(&cause, WEFT_BAD_INPUT, "reserved fields are not zero");
+    return code == WEFT_OK ? WEFT_OK
+                           : weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: %s", file->path, cause.message);
+}
+
+static weft_section parse_entry(const unsigned char *entry)
+{
+    weft_section section = {.level = u32_at(entry + 4),
+                            .codec = u32_at(entry + 8),
+                            .checksum = u32_at(entry + 12),
+                            .offset = u64_at(entry + 16),
+                            .stored_size = u64_at(entry + 24),
+                            .decoded_size = u64_at(entry + 32)};
+    memcpy(section.type, entry, 4);
+    return section;
+}
+
+static weft_code fail_section(const file_image *file, const weft_section *section, weft_error *error, const char *what)
+{
+    return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: section %s of level %u: %s", file->path, section->type,
+                     section->level, what);
+}
+
+/* `end` is where the section before ends; on success where this one does. */
+static weft_code check_place(const file_image *file, const weft_section *section, uint64_t *end, weft_error *error)
+{
+    if (section->offset % WEFT_FORMAT_ALIGNMENT != 0 || section->offset < *end ||
+        section->offset - *end >= WEFT_FORMAT_ALIGNMENT)
+        return fail_section(file, section, error, "does not follow the one before");
+    if (section->offset > file->size || section->stored_size > file->size - section->offset)
+        return fail_section(file, section, error, "reaches beyond the end of the file");
+    for (uint64_t i = *end; i < section->offset; i++) {
+        if (file->bytes[i] != 0)
+            return fail_section(file, section, error, "bytes before it are not zero");
+    }
+    *end = section->offset + section->stored_size;
+    return WEFT_OK;
+}
+
+static weft_code check_codec(const file_image *file, const weft_section *section, weft_error *error)
+{
+    if (section->codec == WEFT_CODEC_NONE)
+        return section->decoded_size == section->stored_size
+                   ? WEFT_OK
+                   : fail_section(file, section, error, "stored and decoded size differ without a codec");
+    if (section->codec != WEFT_CODEC_ZSTD)
+        return fail_section(file, section, error, "unknown codec");
+    /* stored_size is at most the size of the file, so the product cannot overflow. */
+    if (section->decoded_size > section->stored_size * WEFT_FORMAT_MAX_RATIO + WEFT_FORMAT_FREE_RATIO)
+        return fail_section(file, section, error, "claims to decode to more than 1024 times its size");
+    return WEFT_OK;
+}
+
+static weft_code note_section(file_image *file, int index, const weft_material *material, weft_error *error)
+{
+    const weft_section *section = &file->section[index];
+    weft_section_kind kind = weft_section_kind_of(section->type);
+    if (kind == WEFT_SECTION_KINDS)
+        return WEFT_OK;
+    if (section->level >= (uint32_t)weft_section_levels(material, kind))
+        return fail_section(file, section, error, "the material has no such section");
+    if (file->found[kind][section->level])
+        return fail_section(file, section, error, "occurs twice");
+    uint64_t expected = weft_section_size(material, kind, (int)section->level);
+    if (kind == WEFT_SECTION_META ? section->decoded_size > WEFT_FORMAT_MAX_METADATA
+                                  : section->decoded_size != expected)
+        return fail_section(file, section, error, "its size does not fit the material");
+    file->found[kind][section->level] = index + 1;
+    return WEFT_OK;
+}
+
+static weft_code check_complete(const file_image *file, const weft_material *material, weft_error *error)
+{
+    for (int kind = 0; kind < WEFT_SECTION_KINDS; kind++) {
+        for (int k = 0; k < weft_section_levels(material, (weft_section_kind)kind); k++) {
+            if (!file->found[kind][k])
+                return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: section %s of level %d is missing",
+                                 file->path, weft_section_type[kind], k);
+        }
+    }
+    return WEFT_OK;
+}
+
+static weft_code read_table(file_image *file, const weft_material *material, weft_error *error)
+{
+    file->section_count = (int)u32_at(file->bytes + 12);
+    file->section = calloc((size_t)file->section_count, sizeof *file->section);
+    if (!file->section)
+        return weft_fail_memory(error, "section table", (size_t)file->section_count * sizeof *file->section);
+    uint64_t end = WEFT_FORMAT_HEADER_SIZE + (uint64_t)file->section_count * WEFT_FORMAT_ENTRY_SIZE;
+    for (int i = 0; i < file->section_count; i++) {
+        const unsigned char *entry = file->bytes + WEFT_FORMAT_HEADER_SIZE + (size_t)i * WEFT_FORMAT_ENTRY_SIZE;
+        file->section[i] = parse_entry(entry);
+        WEFT_TRY(check_place(file, &file->section[i], &end, error));
+        WEFT_TRY(check_codec(file, &file->section[i], error));
+        WEFT_TRY(note_section(file, i, material, error));
+    }
+    if (end != file->size)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: %llu bytes follow its last section", file->path,
+                         (unsigned long long)(file->size - end));
+    return check_complete(file, material, error);
+}
+
+static weft_code check_checksums(const file_image *file, weft_error *error)
+{
+    for (int i = 0; i < file->section_count; i++) {
+        const weft_section *section = &file->section[i];
+        if (crc32_z(0, file->bytes + section->offset, section->stored_size) != section->checksum)
+            return fail_section(file, section, error, "checksum does not match");
+    }
+    return WEFT_OK;
+}
+
+/* ---- Contents ---- */
+
+static weft_code unpack(const file_image *file, const weft_section *section, void *bytes, weft_error *error)
+{
+    const unsigned char *stored = file->bytes + section->offset;
+    if (section->codec == WEFT_CODEC_NONE) {
+        memcpy(bytes, stored, section->decoded_size);
+        return WEFT_OK;
+    }
+    size_t size = ZSTD_decompress(bytes, section->decoded_size, stored, section->stored_size);
+    if (ZSTD_isError(size) || size != section->decoded_size)
+        return fail_section(file, section, error, "cannot be decoded to the size it claims");
+    return WEFT_OK;
+}
+
+/* `bytes` holds decoded_size bytes. */
+static weft_code decode(const file_image *file, const weft_section *section, void *bytes, weft_error *error)
+{
+    WEFT_TRY(unpack(file, section, bytes, error));
+    const char *fault = weft_section_fault(weft_section_kind_of(section->type), bytes, section->decoded_size);
+    return fault ? fail_section(file, section, error, fault) : WEFT_OK;
+}
+
+static weft_code read_metadata(const file_image *file, const weft_section *section, weft_material *material,
+                               weft_error *error)
+{
+    char *text = calloc(1, section->decoded_size + 1);
+    if (!text)
+        return weft_fail_memory(error, "metadata", section->decoded_size);
+    free(material->metadata);
+    material->metadata = text;
+    WEFT_TRY(decode(file, section, text, error));
+    json_error_t where;
+    json_t *object = json_loadb(text, section->decoded_size, 0, &where);
+    bool valid = json_is_object(object) && strlen(text) == section->decoded_size;
+    json_decref(object);
+    return valid ? WEFT_OK : fail_section(file, section, error, "no JSON object");
+}
+
+static weft_code read_views(const file_image *file, const weft_section *section, weft_material *material,
+                            weft_error *error)
+{
+    float *view = malloc(section->decoded_size);
+    if (!view)
+        return weft_fail_memory(error, "views", section->decoded_size);
+    weft_code code = decode(file, section, view, error);
+    for (int i = 0; i < material->view_count && code == WEFT_OK; i++)
+        material->view[i] = weft_unit(weft_vec3_of(view[3 * i], view[3 * i + 1], view[3 * i + 2]));
+    free(view);
+    return code;
+}
+
+static weft_code read_error(const file_image *file, const weft_section *section, weft_material_error *measured,
+                            weft_error *error)
+{
+    double value[WEFT_FORMAT_ERRORS];
+    WEFT_TRY(decode(file, section, value, error));
+    *measured = (weft_material_error){value[0], value[1], value[2], value[3], value[4]};
+    return WEFT_OK;
+}
+
+static weft_code read_section(const file_image *file, weft_material *material, weft_section_kind kind, int k,
+                              weft_error *error)
+{
+    const weft_section *section = &file->section[file->found[kind][k] - 1];
+    switch (kind) {
+    case WEFT_SECTION_META:
+        return read_metadata(file, section, material, error);
+    case WEFT_SECTION_VIEW:
+        return read_views(file, section, material, error);
+    case WEFT_SECTION_ERRO:
+        return read_error(file, section, &material->level[k].error, error);
+    default:
+        return decode(file, section, weft_section_texels(material, kind, k), error);
+    }
+}
+
+static weft_code read_sections(const file_image *file, weft_material *material, weft_error *error)
+{
+    for (int kind = 0; kind < WEFT_SECTION_KINDS; kind++) {
+        for (int k = 0; k < weft_section_levels(material, (weft_section_kind)kind); k++)
+            WEFT_TRY(read_section(file, material, (weft_section_kind)kind, k, error));
+    }
+    return WEFT_OK;
+}
+
+static weft_code read_image(file_image *file, weft_material *material, weft_error *error)
+{
+    WEFT_TRY(check_header(file, error));
+    WEFT_TRY(read_shape(file, material, error));
+    WEFT_TRY(read_table(file, material, error));
+    WEFT_TRY(check_checksums(file, error));
+    WEFT_TRY(weft_material_allocate(material, error));
+    return read_sections(file, material, error);
+}
+
+weft_code weft_material_read(const char *path, weft_material *material, weft_error *error)
+{
+    *material = (weft_material){0};
+    file_image file = {.path = path};
+    WEFT_TRY(weft_read_file(path, largest_file, (char **)&file.bytes, &file.size, error));
+    weft_code code = read_image(&file, material, error);
+    if (code != WEFT_OK)
+        weft_material_free(material);
+    free(file.section);
+    free(file.bytes);
+    return code;
+}
