@@ -40,14 +40,15 @@ weft_rgba weft_view_table_interpolate(const weft_rgba *values, const weft_baryce
 
 /* ---- A texel of a material ---- */
 
-/* BRDF x pi (r, g, b) and opacity of texel (x, y) of a level, for light and view in the frame of the surface; 0 where either is
- * below the horizon. `views` triangulates material->view (unused without a table). The reference of the player's shader. */
+/* BRDF x pi (r, g, b) and opacity of texel (x, y) of a level, for light and view in the frame of the surface; 0 where
+ * either is below the horizon. `views` triangulates material->view (unused without a table). The reference of the
+ * player's shader. */
 weft_rgba weft_material_texel(const weft_material *material, const weft_triangulation *views, int level, int x, int y,
                               weft_vec3 light, weft_vec3 view);
 
-/* The same at texture coordinates (u, v), repeated; bilinear between evaluated texels, trilinear between evaluated levels
- * (level >= 0 may be fractional; it is clamped to the last). */
-weft_rgba weft_material_sample(const weft_material *material, const weft_triangulation *views, weft_real level, weft_real u,
-                               weft_real v, weft_vec3 light, weft_vec3 view);
+/* The same at texture coordinates (u, v), repeated; bilinear between evaluated texels, trilinear between evaluated
+ * levels (level >= 0 may be fractional; it is clamped to the last). */
+weft_rgba weft_material_sample(const weft_material *material, const weft_triangulation *views, weft_real level,
+                               weft_real u, weft_real v, weft_vec3 light, weft_vec3 view);
 
 #endif

@@ -9,23 +9,29 @@
 
 typedef struct weft_yarn {
     weft_segment segment;
-    bool warp;                      /* else weft */
-    weft_real center_u, center_v;   /* tile units, may lie outside [0, 1] */
+    bool warp;                    /* else weft */
+    weft_real center_u, center_v; /* tile units, may lie outside [0, 1] */
     weft_rgb kd, ks;
-    bool admissible;                /* false: no highlight, its diffuse term stays */
+    bool admissible; /* false: no highlight, its diffuse term stays */
+    /* Derived when the weave is read: */
+    weft_prepared_segment prepared;
+    weft_real min_umax, max_umax; /* where the inclination noise keeps umax, rad */
+    weft_real cell_fraction;      /* F: cells of the pattern with this yarn / all cells */
+    weft_real area_weight;        /* aw: (warp_area + weft_area) / area of this kind of yarn; 0 where that area is 0 */
 } weft_yarn;
 
 typedef struct weft_weave {
     char name[128];
-    int tile_width, tile_height;    /* cells */
+    int tile_width, tile_height; /* cells */
     weft_real warp_area, weft_area;
-    weft_real inclination_noise_deg[4]; /* dWarpUmaxOverDWarp, dWarpUmaxOverDWeft, dWeftUmaxOverDWarp, dWeftUmaxOverDWeft */
-    weft_real fineness;             /* intensity noise: cells per unit of texture; 0 = off */
-    weft_real period;               /* of the inclination noise, cells; 0 = off */
-    int *pattern;                   /* [tile_height][tile_width] 0-based index into yarn; first row = top of the tile */
+    /* dWarpUmaxOverDWarp, dWarpUmaxOverDWeft, dWeftUmaxOverDWarp, dWeftUmaxOverDWeft */
+    weft_real inclination_noise_deg[4];
+    weft_real fineness; /* intensity noise: fineness x fineness rectangles per segment; 0 = off */
+    weft_real period;   /* of the inclination noise, cells; 0 = off */
+    int *pattern;       /* [tile_height][tile_width] 0-based index into yarn; first row = top of the tile */
     int yarn_count;
     weft_yarn *yarn;
-    weft_real specular_scale;       /* s: makes the bihemispherical reflectance of the specular part 1 for ks = 1 */
+    weft_real specular_scale; /* s: makes the bihemispherical reflectance of the specular part 1 for ks = 1 */
 } weft_weave;
 
 /* A value for a `$name` in a weave file: scalars use `value.r`. */
@@ -34,31 +40,34 @@ typedef struct weft_weave_parameter {
     weft_rgb value;
 } weft_weave_parameter;
 
-/* Reads a weave file and computes specular_scale. `parameters` [parameter_count] fill in `$name`s. `warning` (may be NULL) receives
- * one line, empty if all is well, that names segments the model does not have. The caller frees with weft_weave_free.
- * Errors: WEFT_BAD_INPUT "FILE:LINE:COLUMN: what is wrong". */
+/* Reads a weave file and computes specular_scale. `parameters` [parameter_count] fill in `$name`s. `warning` (may be
+ * NULL) receives one line, empty if all is well, that names segments the model does not have. The caller frees with
+ * weft_weave_free. Errors: WEFT_BAD_INPUT "FILE:LINE:COLUMN: what is wrong". */
 weft_code weft_weave_read(const char *path, const weft_weave_parameter *parameters, int parameter_count,
                           weft_weave *weave, char warning[WEFT_MESSAGE_SIZE], weft_error *error);
 /* The same from text in memory; `path` only names it in messages. */
-weft_code weft_weave_parse(const char *text, const char *path, const weft_weave_parameter *parameters, int parameter_count,
-                           weft_weave *weave, char warning[WEFT_MESSAGE_SIZE], weft_error *error);
+weft_code weft_weave_parse(const char *text, const char *path, const weft_weave_parameter *parameters,
+                           int parameter_count, weft_weave *weave, char warning[WEFT_MESSAGE_SIZE], weft_error *error);
 void weft_weave_free(weft_weave *weave);
 
-/* The constant s by a converged deterministic quadrature (0 where no segment is admissible). Part of weft_weave_read. */
+/* The constant s (0 where no segment is admissible) by a deterministic quadrature: the same value for any number of
+ * threads. Part of weft_weave_read. */
 weft_real weft_weave_specular_scale(const weft_weave *weave);
 
 /* Where a point of the cloth lies: U along x, V along y, tile units, any sign. */
 typedef struct weft_weave_point {
-    int yarn;          /* index */
-    weft_real x, y;    /* in the frame of the segment, cells */
-    weft_real umax_offset_rad; /* noise: added to umax of the segment */
+    int yarn;                  /* index */
+    weft_real x, y;            /* in the frame of the segment, cells */
+    weft_real umax_offset_rad; /* noise: added to umax of the segment, which stays admissible */
     weft_real intensity;       /* noise: multiplies the highlight */
 } weft_weave_point;
 
-/* Without noise: offset 0, intensity 1. `seed` 0 = no noise. Pure; the noise is tile-free (it never repeats with the tile). */
+/* Without noise: offset 0, intensity 1. `seed` 0 = no noise. Pure; the noise belongs to the segments of the endless
+ * cloth, so it does not repeat with the tile. */
 weft_weave_point weft_weave_locate(const weft_weave *weave, weft_real U, weft_real V, uint64_t seed);
 
-/* aw T(x, y) at a located point: the specular texture without s and ks. `light`, `view` in the frame of the cloth. */
+/* intensity aw T(x, y) at a located point: the specular texture without s and ks. `light`, `view` in the frame of the
+ * cloth. */
 weft_real weft_weave_specular(const weft_weave *weave, const weft_weave_point *point, weft_vec3 light, weft_vec3 view);
 
 /* BRDF in 1/sr: kd/pi + ks s aw T; 0 where either direction is below the horizon. */

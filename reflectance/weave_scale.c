@@ -1,0 +1,105 @@
+/* The constant s of a weave: 1/s = (1/pi) times the integral of its specular part against both cosines, a
+ * five-dimensional quadrature (two directions and the coordinate along or round the yarn) over an additive recurrence.
+ */
+#include "reflectance/weave.h"
+
+#include <stdlib.h>
+
+enum { DIMENSIONS = 5, BLOCK_POINTS = 4096, MAX_BLOCKS = 256, MIN_BLOCKS = 1, BUDGET_BLOCKS = 1024 };
+
+/* One segment and the share of the cloth that looks like it. */
+typedef struct kind_of_yarn {
+    const weft_prepared_segment *prepared;
+    double share; /* sum of F aw */
+} kind_of_yarn;
+
+/* Steps of the recurrence: inverse powers of the root of g^6 = g + 1 (Roberts 2018). */
+static void recurrence_steps(double step[DIMENSIONS])
+{
+    double g = 1, power = 1;
+    for (int i = 0; i < 64; i++)
+        g = pow(1 + g, 1 / (double)6);
+    for (int i = 0; i < DIMENSIONS; i++)
+        step[i] = power /= g;
+}
+
+static weft_vec3 cosine_weighted(double r1, double r2)
+{
+    double radius = sqrt(r1), phi = 2 * (double)WEFT_PI * r2;
+    return weft_vec3_of((weft_real)(radius * cos(phi)), (weft_real)(radius * sin(phi)), (weft_real)sqrt(1 - r1));
+}
+
+static double block_sum(const weft_prepared_segment *prepared, const double step[DIMENSIONS], int block)
+{
+    weft_real limit = prepared->filament ? (weft_real)(WEFT_PI / 2) : prepared->spine.umax;
+    double sum = 0;
+    for (int k = block * BLOCK_POINTS + 1; k <= (block + 1) * BLOCK_POINTS; k++) {
+        double r[DIMENSIONS];
+        for (int i = 0; i < DIMENSIONS; i++) {
+            double x = k * step[i] + 1 / (double)2;
+            r[i] = x - floor(x);
+        }
+        weft_vec3 light = cosine_weighted(r[0], r[1]), view = cosine_weighted(r[2], r[3]);
+        sum += weft_prepared_integrand(prepared, (weft_real)(2 * r[4] - 1) * limit, light, view);
+    }
+    return sum * 2 * limit;
+}
+
+/* Mean of f_s over cosine-weighted pairs of directions. */
+static double mean_reflectance(const weft_prepared_segment *prepared, int blocks)
+{
+    double step[DIMENSIONS], partial[MAX_BLOCKS], sum = 0;
+    recurrence_steps(step);
+#pragma omp parallel for schedule(dynamic)
+    for (int block = 0; block < blocks; block++)
+        partial[block] = block_sum(prepared, step, block);
+    for (int block = 0; block < blocks; block++)
+        sum += partial[block];
+    return sum / ((double)blocks * BLOCK_POINTS);
+}
+
+static bool same_segment(const weft_segment *a, const weft_segment *b)
+{
+    return a->alpha == b->alpha && a->beta == b->beta && a->delta == b->delta && a->psi == b->psi &&
+           a->umax == b->umax && a->kappa == b->kappa && a->width == b->width && a->length == b->length &&
+           a->highlight_width == b->highlight_width;
+}
+
+/* Merges equal segments: a weave has few kinds, however many yarns. Warp and weft need not be told apart, because
+ * turning the frame leaves the integral over both hemispheres as it is. */
+static int collect_kinds(const weft_weave *weave, kind_of_yarn *kind)
+{
+    int count = 0;
+    for (int i = 0; i < weave->yarn_count; i++) {
+        const weft_yarn *yarn = &weave->yarn[i];
+        double share = (double)yarn->cell_fraction * yarn->area_weight;
+        if (!yarn->admissible || !(share > 0))
+            continue;
+        int k = 0;
+        while (k < count && !same_segment(&kind[k].prepared->segment, &yarn->segment))
+            k++;
+        if (k == count)
+            kind[count++] = (kind_of_yarn){&yarn->prepared, 0};
+        kind[k].share += share;
+    }
+    return count;
+}
+
+static double inverse_scale(const kind_of_yarn *kind, int count)
+{
+    int blocks = (int)weft_clamp((weft_real)(BUDGET_BLOCKS / (count > 0 ? count : 1)), MIN_BLOCKS, MAX_BLOCKS);
+    double sum = 0;
+    for (int k = 0; k < count; k++)
+        sum += kind[k].share * mean_reflectance(kind[k].prepared, blocks);
+    return (double)WEFT_PI * sum;
+}
+
+weft_real weft_weave_specular_scale(const weft_weave *weave)
+{
+    kind_of_yarn *kind = calloc((size_t)weave->yarn_count, sizeof *kind);
+    if (!kind)
+        return 0;
+    double inverse = inverse_scale(kind, collect_kinds(weave, kind));
+    free(kind);
+    return inverse > 0 ? (weft_real)(1 / inverse) : 0;
+}

@@ -1,0 +1,100 @@
+/* The reference vectors of one yarn segment. Built twice: in double, and in single precision. */
+#include "reflectance/woven.h"
+#include "tests/reflectance/vectors.h"
+
+#include <string.h>
+
+static weft_real real_at(const reference_vectors *v, int row, const char *column)
+{
+    return (weft_real)vectors_number(v, row, column);
+}
+
+static weft_segment segment_at(const reference_vectors *v, int row)
+{
+    return (weft_segment){.alpha = real_at(v, row, "alpha"),
+                          .beta = real_at(v, row, "beta"),
+                          .delta = real_at(v, row, "delta"),
+                          .psi = real_at(v, row, "psi"),
+                          .umax = real_at(v, row, "umax"),
+                          .kappa = real_at(v, row, "kappa"),
+                          .width = real_at(v, row, "w"),
+                          .length = real_at(v, row, "l"),
+                          .highlight_width = 1};
+}
+
+static void spine_radius_matches_every_row(void **state)
+{
+    (void)state;
+    reference_vectors v = vectors_open("woven_R.csv", 260);
+    for (int row = 0; row < v.csv.row_count; row++) {
+        weft_segment segment = {.umax = real_at(&v, row, "umax"),
+                                .kappa = real_at(&v, row, "kappa"),
+                                .width = real_at(&v, row, "w"),
+                                .length = real_at(&v, row, "l"),
+                                .highlight_width = 1};
+        vectors_check(&v, row, "R", weft_spine_radius(&segment, real_at(&v, row, "u")));
+    }
+    vectors_close(&v);
+}
+
+static void highlight_point_matches_every_row(void **state)
+{
+    (void)state;
+    reference_vectors v = vectors_open("woven_point.csv", 492);
+    for (int row = 0; row < v.csv.row_count; row++) {
+        weft_segment segment = segment_at(&v, row);
+        weft_yarn_point point = weft_yarn_highlight(&segment, real_at(&v, row, "coord"),
+                                                    vectors_direction(&v, row, "wi"), vectors_direction(&v, row, "wo"));
+        vectors_check_within(&v, row, "active", point.active, 0);
+        vectors_check(&v, row, "integrand", point.integrand);
+        vectors_check(&v, row, "G", point.geometry);
+        vectors_check(&v, row, "fc", point.phase);
+        vectors_check(&v, row, "A", point.attenuation);
+        /* Angles and components of a unit vector: the tolerance is relative to 1, not to a value that may be near 0. */
+        double tolerance = vectors_tolerance(&v, row);
+        vectors_check_within(&v, row, "solved", point.solved, tolerance);
+        vectors_check_within(&v, row, "nx", point.normal.x, tolerance);
+        vectors_check_within(&v, row, "ny", point.normal.y, tolerance);
+        vectors_check_within(&v, row, "nz", point.normal.z, tolerance);
+        vectors_check(&v, row, "R", point.radius);
+    }
+    vectors_close(&v);
+}
+
+static void segment_reflectance_matches_every_row(void **state)
+{
+    (void)state;
+    reference_vectors v = vectors_open("woven_reflectance.csv", 323);
+    for (int row = 0; row < v.csv.row_count; row++) {
+        weft_segment segment = segment_at(&v, row);
+        vectors_check(
+            &v, row, "fs",
+            weft_segment_reflectance(&segment, vectors_direction(&v, row, "wi"), vectors_direction(&v, row, "wo")));
+    }
+    vectors_close(&v);
+}
+
+static void segment_texture_matches_every_row(void **state)
+{
+    (void)state;
+    reference_vectors v = vectors_open("woven_texture.csv", 360);
+    for (int row = 0; row < v.csv.row_count; row++) {
+        weft_segment segment = segment_at(&v, row);
+        segment.highlight_width = real_at(&v, row, "hwidth");
+        vectors_check(&v, row, "T",
+                      weft_segment_texture(&segment, real_at(&v, row, "x"), real_at(&v, row, "y"),
+                                           vectors_direction(&v, row, "wi"), vectors_direction(&v, row, "wo")));
+    }
+    vectors_close(&v);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spine_radius_matches_every_row),
+        cmocka_unit_test(highlight_point_matches_every_row),
+        cmocka_unit_test(segment_reflectance_matches_every_row),
+        cmocka_unit_test(segment_texture_matches_every_row),
+    };
+    return cmocka_run_group_tests_name("woven vectors", tests, NULL, NULL);
+}

@@ -1,0 +1,80 @@
+#include "tests/reflectance/vectors.h"
+
+#include <stdio.h>
+
+reference_vectors vectors_open(const char *name, int rows)
+{
+    char path[512];
+    reference_vectors vectors = {0};
+    weft_error error = {0};
+    snprintf(path, sizeof path, "%s/reference/%s", WEFT_TEST_DATA, name);
+    if (weft_csv_read(path, true, &vectors.csv, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    assert_int_equal(vectors.csv.row_count, rows);
+    return vectors;
+}
+
+void vectors_close(reference_vectors *vectors)
+{
+    print_message("%s: %d rows, %d failed, worst error %.3g of the allowed\n", vectors->csv.path,
+                  vectors->csv.row_count, vectors->failures, vectors->worst);
+    int failures = vectors->failures;
+    weft_csv_free(&vectors->csv);
+    assert_int_equal(failures, 0);
+}
+
+static int column_of(const reference_vectors *vectors, const char *column)
+{
+    int index = weft_csv_column(&vectors->csv, column);
+    if (index < 0)
+        fail_msg("%s has no column %s", vectors->csv.path, column);
+    return index;
+}
+
+double vectors_number(const reference_vectors *vectors, int row, const char *column)
+{
+    double value = 0;
+    weft_error error = {0};
+    if (weft_csv_number(&vectors->csv, row, column_of(vectors, column), &value, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    return value;
+}
+
+const char *vectors_text(const reference_vectors *vectors, int row, const char *column)
+{
+    return weft_csv_text(&vectors->csv, row, column_of(vectors, column));
+}
+
+weft_vec3 vectors_direction(const reference_vectors *vectors, int row, const char *prefix)
+{
+    double value[3];
+    for (int i = 0; i < 3; i++) {
+        char column[16];
+        snprintf(column, sizeof column, "%s%c", prefix, "xyz"[i]);
+        value[i] = vectors_number(vectors, row, column);
+    }
+    return weft_unit(weft_vec3_of((weft_real)value[0], (weft_real)value[1], (weft_real)value[2]));
+}
+
+double vectors_tolerance(const reference_vectors *vectors, int row)
+{
+    return 1e-6 + 20 * vectors_number(vectors, row, "cond") * (double)WEFT_REAL_EPSILON;
+}
+
+void vectors_check_within(reference_vectors *vectors, int row, const char *column, double actual, double tolerance)
+{
+    double expected = vectors_number(vectors, row, column), error = fabs(actual - expected);
+    if (error > 0 && !(error / tolerance <= vectors->worst))
+        vectors->worst = error / tolerance;
+    if (error <= tolerance)
+        return;
+    vectors->failures++;
+    print_error("%s:%d: %s is %.9g, expected %.9g +- %.3g\n", vectors->csv.path, vectors->csv.line[row], column, actual,
+                expected, tolerance);
+}
+
+void vectors_check(reference_vectors *vectors, int row, const char *column, double actual)
+{
+    double expected = vectors_number(vectors, row, column);
+    vectors_check_within(vectors, row, column, actual, fabs(expected) * vectors_tolerance(vectors, row));
+}

@@ -1,0 +1,36 @@
+/* Rows of the reference vectors and their rule of acceptance. */
+#ifndef WEFT_TESTS_REFLECTANCE_VECTORS_H
+#define WEFT_TESTS_REFLECTANCE_VECTORS_H
+
+#include "btf/csv.h"
+#include "btf/vector.h"
+#include "tests/btf/cmocka_all.h"
+
+typedef struct reference_vectors {
+    weft_csv csv;
+    int failures;
+    double worst; /* largest error / allowed error over all rows */
+} reference_vectors;
+
+/* Opens tests/data/reference/NAME; fails the test where it has not `rows` rows. */
+reference_vectors vectors_open(const char *name, int rows);
+
+/* Frees the table, prints the worst ratio and fails the test if any row failed. */
+void vectors_close(reference_vectors *vectors);
+
+double vectors_number(const reference_vectors *vectors, int row, const char *column);
+const char *vectors_text(const reference_vectors *vectors, int row, const char *column);
+
+/* Columns PREFIXx, PREFIXy, PREFIXz as a unit vector. */
+weft_vec3 vectors_direction(const reference_vectors *vectors, int row, const char *prefix);
+
+/* Compares `actual` with a column: |actual - expected| <= |expected| (1e-6 + 20 cond eps); an expected 0 must be 0. */
+void vectors_check(reference_vectors *vectors, int row, const char *column, double actual);
+
+/* The same with a given absolute tolerance. */
+void vectors_check_within(reference_vectors *vectors, int row, const char *column, double actual, double tolerance);
+
+/* 20 cond eps + 1e-6 of a row. */
+double vectors_tolerance(const reference_vectors *vectors, int row);
+
+#endif
