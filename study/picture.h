@@ -1,0 +1,21 @@
+/* Pictures of samples for the eye: exposure, sRGB, differences in false colour. */
+#ifndef WEFT_STUDY_PICTURE_H
+#define WEFT_STUDY_PICTURE_H
+
+#include "btf/image.h"
+
+/* Factor that brings the 99th percentile of the unmasked values of `image` to 0.9; 1 for a black image. `mask`
+ * [height][width] may be NULL. */
+double weft_picture_exposure(const weft_image *image, const uint8_t *mask);
+
+/* Linear values times `exposure`, sRGB encoded, clamped; masked pixels are grey. `result` is allocated here.
+ * Errors: WEFT_SYSTEM for memory. */
+weft_code weft_picture_encode(const weft_image *linear, const uint8_t *mask, double exposure, weft_image *result,
+                              weft_error *error);
+
+/* Luminance of (b - a) x exposure in false colour: white 0, red b brighter, blue b darker, full at +-0.25; masked
+ * pixels are grey. */
+weft_code weft_picture_difference(const weft_image *a, const weft_image *b, const uint8_t *mask, double exposure,
+                                  weft_image *result, weft_error *error);
+
+#endif

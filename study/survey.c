@@ -1,0 +1,219 @@
+#include "study/survey.h"
+
+#include "btf/direction.h"
+#include "reflectance/lafortune.h"
+
+#include <stdlib.h>
+
+/* More samples than these do not change a median that is printed with three digits. */
+static const long enough_samples = 2000000;
+
+/* What the pass over the rows carries along. */
+typedef struct survey_pass {
+    weft_dataset *dataset;
+    const weft_dataset_layout *layout;
+    const weft_material *material;
+    weft_triangulation *views;
+    weft_survey *survey;
+    weft_half *samples; /* [width][image_count][3] */
+    uint8_t *mask;      /* [width][image_count] */
+    long stride;        /* every stride-th texel is measured */
+    weft_prediction *value;
+    long value_count;
+} survey_pass;
+
+weft_rgb weft_predict_sample(const weft_material *material, const weft_triangulation *views,
+                             const weft_dataset_layout *layout, int image, int x, int y)
+{
+    weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
+    weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
+    weft_rgba value = weft_material_texel(material, views, 0, x, y, light, view);
+    double cosine = layout->values == WEFT_REFLECTANCE_COSINE ? light.z : 1;
+    return (weft_rgb){cosine * value.r, cosine * value.g, cosine * value.b};
+}
+
+static void count_masks(const survey_pass *pass)
+{
+    weft_survey *survey = pass->survey;
+    long count = (long)pass->layout->width * pass->layout->image_count;
+    survey->sample_count += count;
+    for (long i = 0; i < count; i++) {
+        survey->missing += (pass->mask[i] & WEFT_MASK_MISSING) != 0;
+        survey->saturated += (pass->mask[i] & WEFT_MASK_SATURATED) != 0;
+        survey->shadowed += (pass->mask[i] & WEFT_MASK_SHADOWED) != 0;
+    }
+}
+
+static void store_rgb(weft_image *image, size_t texel, weft_rgb value)
+{
+    image->pixels[3 * texel] = (float)value.r;
+    image->pixels[3 * texel + 1] = (float)value.g;
+    image->pixels[3 * texel + 2] = (float)value.b;
+}
+
+static weft_rgb sample_at(const survey_pass *pass, int x, int image)
+{
+    const weft_half *half = pass->samples + 3 * ((size_t)x * (size_t)pass->layout->image_count + (size_t)image);
+    return (weft_rgb){(double)weft_float_of_half(half[0]), (double)weft_float_of_half(half[1]),
+                      (double)weft_float_of_half(half[2])};
+}
+
+static void fill_pair(const survey_pass *pass, weft_image_pair *pair, int y)
+{
+    int width = pass->layout->width;
+    for (int x = 0; x < width; x++) {
+        size_t texel = (size_t)y * (size_t)width + (size_t)x;
+        pair->mask[texel] = pass->mask[(size_t)x * (size_t)pass->layout->image_count + (size_t)pair->image];
+        store_rgb(&pair->sample, texel, sample_at(pass, x, pair->image));
+        store_rgb(&pair->prediction, texel,
+                  weft_predict_sample(pass->material, pass->views, pass->layout, pair->image, x, y));
+    }
+}
+
+static void measure_sample(survey_pass *pass, int image, int x, int y)
+{
+    const weft_dataset_layout *layout = pass->layout;
+    weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
+    weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
+    if (!(light.z > 0 && view.z > 0))
+        return;
+    weft_rgb p = weft_predict_sample(pass->material, pass->views, layout, image, x, y), s = sample_at(pass, x, image);
+    uint8_t view_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(view).theta_rad);
+    uint8_t light_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(light).theta_rad);
+    const double prediction[3] = {p.r, p.g, p.b}, sample[3] = {s.r, s.g, s.b};
+    for (int c = 0; c < 3; c++)
+        pass->value[pass->value_count++] =
+            (weft_prediction){(float)prediction[c], (float)sample[c], view_ring, light_ring};
+}
+
+static void measure_texel(survey_pass *pass, int x, int y)
+{
+    for (int image = 0; image < pass->layout->image_count; image++) {
+        if (pass->mask[(size_t)x * (size_t)pass->layout->image_count + (size_t)image] == 0)
+            measure_sample(pass, image, x, y);
+    }
+    pass->survey->texel_count++;
+}
+
+static weft_code read_rows(survey_pass *pass, const weft_progress *progress, weft_error *error)
+{
+    const weft_dataset_layout *layout = pass->layout;
+    for (int y = 0; y < layout->height; y++) {
+        WEFT_TRY(weft_dataset_read_block(pass->dataset, 0, y, layout->width, 1, pass->samples, pass->mask, error));
+        count_masks(pass);
+        for (int i = 0; i < pass->survey->pair_count; i++)
+            fill_pair(pass, &pass->survey->pair[i], y);
+        for (int x = 0; x < layout->width; x++) {
+            if (((long)y * layout->width + x) % pass->stride == 0)
+                measure_texel(pass, x, y);
+        }
+        weft_progress_report(progress, "measuring the material", y + 1, layout->height);
+    }
+    return WEFT_OK;
+}
+
+static weft_code summarise(const survey_pass *pass, weft_error *error)
+{
+    weft_survey *survey = pass->survey;
+    const weft_prediction *value = pass->value;
+    long count = pass->value_count;
+    WEFT_TRY(weft_prediction_error_of(value, count, (weft_prediction_choice){WEFT_CHOOSE_ALL, 0}, &survey->all, error));
+    for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
+        weft_prediction_choice view = {WEFT_CHOOSE_VIEW_RING, ring}, light = {WEFT_CHOOSE_LIGHT_RING, ring};
+        WEFT_TRY(weft_prediction_error_of(value, count, view, &survey->by_view[ring], error));
+        WEFT_TRY(weft_prediction_error_of(value, count, light, &survey->by_light[ring], error));
+    }
+    return WEFT_OK;
+}
+
+static weft_code create_pairs(survey_pass *pass, const int *image, int image_count, weft_error *error)
+{
+    const weft_dataset_layout *layout = pass->layout;
+    weft_survey *survey = pass->survey;
+    size_t texels = (size_t)layout->width * (size_t)layout->height;
+    survey->pair = calloc((size_t)image_count + 1, sizeof *survey->pair);
+    if (!survey->pair)
+        return weft_fail_memory(error, "pictures", (size_t)image_count * sizeof *survey->pair);
+    survey->pair_count = image_count;
+    for (int i = 0; i < image_count; i++) {
+        weft_image_pair *pair = &survey->pair[i];
+        pair->image = image[i];
+        WEFT_TRY(weft_image_create(layout->width, layout->height, &pair->sample, error));
+        WEFT_TRY(weft_image_create(layout->width, layout->height, &pair->prediction, error));
+        pair->mask = calloc(texels, 1);
+        if (!pair->mask)
+            return weft_fail_memory(error, "mask", texels);
+    }
+    return WEFT_OK;
+}
+
+/* An odd stride that no common width divides spreads the chosen texels over all columns. */
+static long choose_stride(const weft_dataset_layout *layout)
+{
+    long stride = ((long)layout->width * layout->height * layout->image_count + enough_samples - 1) / enough_samples;
+    return stride <= 1 ? 1 : stride | 1;
+}
+
+static weft_code allocate_pass(survey_pass *pass, weft_error *error)
+{
+    const weft_dataset_layout *layout = pass->layout;
+    size_t row = (size_t)layout->width * (size_t)layout->image_count;
+    pass->stride = choose_stride(layout);
+    size_t measured = (size_t)(((long)layout->width * layout->height + pass->stride - 1) / pass->stride);
+    size_t values = 3 * measured * (size_t)layout->image_count;
+    pass->samples = malloc(3 * row * sizeof *pass->samples);
+    pass->mask = malloc(row);
+    pass->value = malloc(values * sizeof *pass->value);
+    if (!pass->samples || !pass->mask || !pass->value)
+        return weft_fail_memory(error, "samples", values * sizeof *pass->value + 7 * row);
+    return WEFT_OK;
+}
+
+static weft_code check_size(const weft_dataset *dataset, const weft_material *material, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    if (material->level[0].width != layout->width || material->level[0].height != layout->height)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' has %d x %d texels, but the material %d x %d: it is not made from it",
+                         weft_dataset_path(dataset), layout->width, layout->height, material->level[0].width,
+                         material->level[0].height);
+    return WEFT_OK;
+}
+
+weft_code weft_survey_make(weft_dataset *dataset, const weft_material *material, const int *image, int image_count,
+                           const weft_progress *progress, weft_survey *survey, weft_error *error)
+{
+    *survey = (weft_survey){0};
+    WEFT_TRY(check_size(dataset, material, error));
+    survey_pass pass = {
+        .dataset = dataset, .layout = weft_dataset_get_layout(dataset), .material = material, .survey = survey};
+    weft_code code = WEFT_OK;
+    if (material->view_count > 0)
+        code = weft_triangulation_build(material->view, material->view_count, &pass.views, error);
+    if (code == WEFT_OK)
+        code = create_pairs(&pass, image, image_count, error);
+    if (code == WEFT_OK)
+        code = allocate_pass(&pass, error);
+    if (code == WEFT_OK)
+        code = read_rows(&pass, progress, error);
+    if (code == WEFT_OK)
+        code = summarise(&pass, error);
+    weft_triangulation_free(pass.views);
+    free(pass.samples);
+    free(pass.mask);
+    free(pass.value);
+    if (code != WEFT_OK)
+        weft_survey_free(survey);
+    return code;
+}
+
+void weft_survey_free(weft_survey *survey)
+{
+    for (int i = 0; i < survey->pair_count; i++) {
+        weft_image_free(&survey->pair[i].sample);
+        weft_image_free(&survey->pair[i].prediction);
+        free(survey->pair[i].mask);
+    }
+    free(survey->pair);
+    *survey = (weft_survey){0};
+}

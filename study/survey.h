@@ -1,0 +1,44 @@
+/* A material measured against its dataset in one pass over the samples. */
+#ifndef WEFT_STUDY_SURVEY_H
+#define WEFT_STUDY_SURVEY_H
+
+#include "btf/dataset.h"
+#include "btf/image.h"
+#include "btf/material.h"
+#include "btf/progress.h"
+#include "btf/triangulation.h"
+#include "study/prediction_error.h"
+
+enum { WEFT_RING_COUNT = 6 };
+
+/* One image of the dataset and what the material makes of it. */
+typedef struct weft_image_pair {
+    int image;
+    weft_image sample, prediction; /* in the quantity of the dataset */
+    uint8_t *mask;                 /* [height][width] */
+} weft_image_pair;
+
+/* Freed with weft_survey_free. */
+typedef struct weft_survey {
+    int pair_count;
+    weft_image_pair *pair; /* [pair_count] */
+    long texel_count;      /* texels whose samples were measured */
+    weft_prediction_error all;
+    weft_prediction_error by_view[WEFT_RING_COUNT],
+        by_light[WEFT_RING_COUNT];                   /* rings of ubo81: theta nearest 0, 15, .. 75 degrees */
+    long sample_count, missing, saturated, shadowed; /* texels times images, and how many of them are masked and why */
+} weft_survey;
+
+/* The prediction of a material (level 0) for a sample of the dataset, in the quantity of the dataset. `views`
+ * triangulates the views of the material (NULL without a table). Pure. */
+weft_rgb weft_predict_sample(const weft_material *material, const weft_triangulation *views,
+                             const weft_dataset_layout *layout, int image, int x, int y);
+
+/* Measures the error over all texels, or over an even choice of them where the samples would be more than about two
+ * million; makes the pairs of the given images [image_count]. The material must have the size of the dataset. Errors:
+ * WEFT_BAD_INPUT for another size or a dataset that cannot be read. */
+weft_code weft_survey_make(weft_dataset *dataset, const weft_material *material, const int *image, int image_count,
+                           const weft_progress *progress, weft_survey *survey, weft_error *error);
+void weft_survey_free(weft_survey *survey);
+
+#endif

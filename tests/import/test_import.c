@@ -1,0 +1,314 @@
+#include "btf/colour.h"
+#include "folder.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+/* A grid of 4 views and 5 lights; photograph (v, l) is grey. */
+static const char *const view_name[] = {"tv000_pv000", "tv030_pv000", "tv030_pv180", "tv060_pv090"};
+static const char *const light_name[] = {"tl000_pl000", "tl030_pl045", "tl030_pl225", "tl060_pl120", "tl075_pl300"};
+
+static float grey_of(int view, int light)
+{
+    return 0.1f + 0.04f * (float)(5 * view + light);
+}
+
+static void utia_name(int view, int light, const char *extension, char name[128])
+{
+    snprintf(name, 128, "%s/%s_%s.%s", view_name[view], light_name[light], view_name[view], extension);
+}
+
+static test_folder utia_folder(const char *extension)
+{
+    test_folder folder = folder_make();
+    for (int i = 0; i < 20; i++) {
+        char name[128];
+        utia_name(i / 5, i % 5, extension, name);
+        folder_put_grey(&folder, name, 6, 4, grey_of(i / 5, i % 5));
+    }
+    return folder;
+}
+
+static void a_utia_folder_of_8_bit_photographs_is_decoded_from_srgb(void **state)
+{
+    (void)state;
+    test_folder folder = utia_folder("png");
+    weft_error error = {0};
+    assert_int_equal(folder_import(&folder, NULL, &error), WEFT_OK);
+    imported import = folder_open(&folder);
+    assert_int_equal(import.layout->width, 6);
+    assert_int_equal(import.layout->height, 4);
+    assert_int_equal(import.layout->image_count, 20);
+    assert_int_equal(import.layout->view_count, 4);
+    assert_int_equal(import.layout->distance, WEFT_FAR);
+    assert_int_equal(import.layout->values, WEFT_REFLECTANCE_COSINE);
+    int image = imported_image(&import, 60, 120, 30, 180);
+    float expected = weft_linear_of_srgb(roundf(grey_of(2, 3) * 255) / 255);
+    assert_float_equal(imported_sample(&import, 5, 3, image, 1), expected, 2e-4);
+    assert_int_equal(imported_mask(&import, 5, 3, image), 0);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
+static void float_photographs_are_linear_already(void **state)
+{
+    (void)state;
+    test_folder folder = utia_folder("exr");
+    assert_int_equal(folder_import(&folder, NULL, NULL), WEFT_OK);
+    imported import = folder_open(&folder);
+    int image = imported_image(&import, 75, 300, 60, 90);
+    assert_float_equal(imported_sample(&import, 0, 0, image, 2), grey_of(3, 4), 5e-4);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
+static void rows_and_channels_keep_their_place(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    weft_image image;
+    assert_int_equal(weft_image_create(3, 2, &image, NULL), WEFT_OK);
+    for (int i = 0; i < 18; i++)
+        image.pixels[i] = 0.01f * (float)i;
+    folder_put_image(&folder, "00001 tl015 pl000 tv000 pv000.exr", &image);
+    weft_image_free(&image);
+    assert_int_equal(folder_import(&folder, NULL, NULL), WEFT_OK);
+    imported import = folder_open(&folder);
+    for (int i = 0; i < 18; i++)
+        assert_float_equal(imported_sample(&import, i / 3 % 3, i / 9, 0, i % 3), 0.01f * (float)i, 1e-4);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
+static void a_hole_in_a_grid_becomes_a_masked_image(void **state)
+{
+    (void)state;
+    test_folder folder = utia_folder("png");
+    char name[128], path[256];
+    utia_name(1, 2, "png", name);
+    snprintf(path, sizeof path, "%s/%s", folder.path, name);
+    assert_int_equal(unlink(path), 0);
+    weft_import_options options = weft_import_defaults();
+    weft_import_report report;
+    assert_int_equal(weft_import(folder.path, folder.dataset, &options, NULL, &report, NULL), WEFT_OK);
+    assert_int_equal(report.missing_count, 1);
+    assert_int_equal(report.image_count, 20);
+    bool named = false;
+    for (int i = 0; i < report.notes.count; i++)
+        named = named || strstr(report.notes.line[i], "tl030_pl225_tv030_pv000");
+    assert_true(named);
+    weft_import_report_free(&report);
+    imported import = folder_open(&folder);
+    int image = imported_image(&import, 30, 225, 30, 0);
+    assert_int_equal(imported_mask(&import, 2, 2, image), WEFT_MASK_MISSING);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
+static void a_table_of_directions_wins_over_names(void **state)
+{
+    (void)state;
+    test_folder folder = utia_folder("png");
+    folder_put_text(&folder, "directions.csv",
+                    "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg,file\n"
+                    "7.5,12,0,0,tv000_pv000/tl030_pl045_tv000_pv000.png\n"
+                    "30,90,10,20,tv000_pv000/none.png\n");
+    assert_int_equal(folder_import(&folder, NULL, NULL), WEFT_OK);
+    imported import = folder_open(&folder);
+    assert_int_equal(import.layout->image_count, 2);
+    int image = imported_image(&import, 7.5, 12, 0, 0);
+    assert_float_equal(imported_sample(&import, 0, 0, image, 0), weft_linear_of_srgb(roundf(grey_of(0, 1) * 255) / 255),
+                       2e-4);
+    assert_int_equal(imported_mask(&import, 0, 0, imported_image(&import, 30, 90, 10, 20)), WEFT_MASK_MISSING);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
+static void a_table_cannot_reach_outside_its_folder(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    folder_put_text(&folder, "directions.csv",
+                    "file,theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n../a.png,0,0,0,0\n");
+    weft_error error = {0};
+    assert_int_equal(folder_import(&folder, NULL, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "directions.csv:2"));
+    folder_remove(&folder);
+}
+
+static void a_clipped_pixel_masks_the_texel_it_falls_into(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    weft_image image;
+    assert_int_equal(weft_image_create(4, 4, &image, NULL), WEFT_OK);
+    for (int i = 0; i < 48; i++)
+        image.pixels[i] = 0.5f;
+    image.pixels[3 * (4 * 3 + 2) + 1] = 1;
+    folder_put_image(&folder, "tl000_pl000_tv000_pv000.png", &image);
+    weft_image_free(&image);
+    weft_import_options options = weft_import_defaults();
+    options.width = 2;
+    assert_int_equal(folder_import(&folder, &options, NULL), WEFT_OK);
+    imported import = folder_open(&folder);
+    assert_int_equal(imported_mask(&import, 1, 1, 0), WEFT_MASK_SATURATED);
+    assert_int_equal(
+        imported_mask(&import, 0, 0, 0) + imported_mask(&import, 1, 0, 0) + imported_mask(&import, 0, 1, 0), 0);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
+static void areas_that_divide_pixels_keep_the_mean(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    weft_image image;
+    assert_int_equal(weft_image_create(5, 5, &image, NULL), WEFT_OK);
+    double mean = 0;
+    for (int i = 0; i < 75; i++) {
+        image.pixels[i] = (float)(i * 37 % 64) / 64;
+        mean += (double)image.pixels[i] / 75;
+    }
+    folder_put_image(&folder, "tl000_pl000_tv000_pv000.exr", &image);
+    weft_image_free(&image);
+    weft_import_options options = weft_import_defaults();
+    options.width = 3;
+    assert_int_equal(folder_import(&folder, &options, NULL), WEFT_OK);
+    imported import = folder_open(&folder);
+    double reduced = 0;
+    for (int i = 0; i < 27; i++)
+        reduced += (double)imported_sample(&import, i / 3 % 3, i / 9, 0, i % 3) / 27;
+    assert_float_equal(reduced, mean, 1e-4);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
+/* ---- Photographs that cannot be used ---- */
+
+static void expect_refusal(const test_folder *folder, const char *name, const char *what)
+{
+    weft_error error = {0};
+    assert_int_equal(folder_import(folder, NULL, &error), WEFT_BAD_INPUT);
+    if (!strstr(error.message, name) || !strstr(error.message, what))
+        fail_msg("'%s' does not say %s and %s", error.message, name, what);
+    assert_int_not_equal(access(folder->dataset, F_OK), 0);
+}
+
+static void a_truncated_photograph_is_named_or_skipped(void **state)
+{
+    (void)state;
+    test_folder folder = utia_folder("png");
+    char name[128];
+    utia_name(2, 1, "png", name);
+    folder_truncate(&folder, name);
+    expect_refusal(&folder, name, "");
+    weft_import_options options = weft_import_defaults();
+    options.skip_bad = true;
+    assert_int_equal(folder_import(&folder, &options, NULL), WEFT_OK);
+    imported import = folder_open(&folder);
+    assert_int_equal(imported_mask(&import, 0, 0, imported_image(&import, 30, 45, 30, 180)), WEFT_MASK_MISSING);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
+static void a_photograph_of_another_size_is_named_with_both_sizes(void **state)
+{
+    (void)state;
+    test_folder folder = utia_folder("png");
+    char name[128];
+    utia_name(3, 3, "png", name);
+    folder_put_grey(&folder, name, 5, 4, 0.5f);
+    expect_refusal(&folder, name, "5 x 4");
+    expect_refusal(&folder, name, "6 x 4");
+    folder_remove(&folder);
+}
+
+static void a_photograph_with_nan_is_named_with_the_pixel(void **state)
+{
+    (void)state;
+    test_folder folder = utia_folder("exr");
+    weft_image image;
+    assert_int_equal(weft_image_create(6, 4, &image, NULL), WEFT_OK);
+    image.pixels[3 * (6 * 2 + 5)] = NAN;
+    char name[128];
+    utia_name(1, 1, "exr", name);
+    folder_put_image(&folder, name, &image);
+    weft_image_free(&image);
+    expect_refusal(&folder, name, "(5, 2)");
+    folder_remove(&folder);
+}
+
+static void two_photographs_of_one_pair_of_directions_are_refused(void **state)
+{
+    (void)state;
+    test_folder folder = utia_folder("png");
+    folder_put_grey(&folder, "again tl030 pl045 tv030 pv000.png", 6, 4, 0.5f);
+    expect_refusal(&folder, "again tl030 pl045 tv030 pv000.png", "tl030_pl045_tv030_pv000.png");
+    folder_remove(&folder);
+}
+
+static void a_view_below_the_horizon_is_refused(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    folder_put_grey(&folder, "tl030_pl000_tv095_pv000.png", 2, 2, 0.5f);
+    expect_refusal(&folder, "tl030_pl000_tv095_pv000.png", "95 degrees");
+    folder_remove(&folder);
+}
+
+static void an_empty_folder_and_a_file_are_refused(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    expect_refusal(&folder, folder.path, "no photograph");
+    folder_put_text(&folder, "set.zip", "PK");
+    char path[128];
+    snprintf(path, sizeof path, "%s/set.zip", folder.path);
+    weft_import_options options = weft_import_defaults();
+    weft_import_report report;
+    weft_error error = {0};
+    assert_int_equal(weft_import(path, folder.dataset, &options, NULL, &report, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "not a folder"));
+    folder_remove(&folder);
+}
+
+static void more_texels_than_pixels_are_refused(void **state)
+{
+    (void)state;
+    test_folder folder = utia_folder("png");
+    weft_import_options options = weft_import_defaults();
+    options.width = 7;
+    assert_int_equal(folder_import(&folder, &options, NULL), WEFT_BAD_USAGE);
+    options.width = 4;
+    assert_int_equal(folder_import(&folder, &options, NULL), WEFT_BAD_USAGE);
+    folder_remove(&folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_utia_folder_of_8_bit_photographs_is_decoded_from_srgb),
+        cmocka_unit_test(float_photographs_are_linear_already),
+        cmocka_unit_test(rows_and_channels_keep_their_place),
+        cmocka_unit_test(a_hole_in_a_grid_becomes_a_masked_image),
+        cmocka_unit_test(a_table_of_directions_wins_over_names),
+        cmocka_unit_test(a_table_cannot_reach_outside_its_folder),
+        cmocka_unit_test(a_clipped_pixel_masks_the_texel_it_falls_into),
+        cmocka_unit_test(areas_that_divide_pixels_keep_the_mean),
+        cmocka_unit_test(a_truncated_photograph_is_named_or_skipped),
+        cmocka_unit_test(a_photograph_of_another_size_is_named_with_both_sizes),
+        cmocka_unit_test(a_photograph_with_nan_is_named_with_the_pixel),
+        cmocka_unit_test(two_photographs_of_one_pair_of_directions_are_refused),
+        cmocka_unit_test(a_view_below_the_horizon_is_refused),
+        cmocka_unit_test(an_empty_folder_and_a_file_are_refused),
+        cmocka_unit_test(more_texels_than_pixels_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
