@@ -1,0 +1,164 @@
+#include "capture/photograph_writer.h"
+
+#include "btf/atomic_file.h"
+#include "btf/image.h"
+#include "capture/file_crc.h"
+
+#include <limits.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct weft_photograph_writer {
+    weft_session *session;
+    uint16_t *filling, *writing; /* two buffers that change places */
+    pthread_t thread;
+    pthread_mutex_t mutex;
+    pthread_cond_t changed;
+    bool busy, closing; /* a photograph is waiting or being written; no more will come */
+    int shot;
+    weft_shot_record record;
+    weft_code code;
+    weft_error error;
+};
+
+/* ---- In the writer's thread ---- */
+
+static weft_code make_folder_of(const char *path, weft_error *error)
+{
+    char folder[PATH_MAX];
+    snprintf(folder, sizeof folder, "%.*s", (int)(strrchr(path, '/') - path), path);
+    return weft_make_folder(folder, error);
+}
+
+/* Nothing is synced to disk here: a photograph that a power cut has damaged does not match the journal, and resuming
+ * takes it again. */
+static weft_code store(weft_photograph_writer *writer, weft_error *error)
+{
+    weft_session *session = writer->session;
+    const weft_camera *camera = &session->camera;
+    char path[PATH_MAX], temporary[PATH_MAX];
+    weft_session_photograph_path(session, writer->shot, path, sizeof path);
+    snprintf(temporary, sizeof temporary, "%s/.photograph.tif", session->folder);
+    WEFT_TRY(make_folder_of(path, error));
+    WEFT_TRY(weft_photograph_write(temporary, camera->width, camera->height, session->bits, writer->writing, error));
+    weft_shot_record record = writer->record;
+    record.taken = true;
+    WEFT_TRY(weft_file_crc(temporary, &record.bytes, &record.crc32, error));
+    if (rename(temporary, path) != 0)
+        return weft_fail_errno(error, "write", path);
+    return weft_session_append(session, writer->shot, &record, error);
+}
+
+static void remove_temporary(const weft_session *session)
+{
+    char temporary[PATH_MAX];
+    snprintf(temporary, sizeof temporary, "%s/.photograph.tif", session->folder);
+    remove(temporary);
+}
+
+static void *write_photographs(void *argument)
+{
+    weft_photograph_writer *writer = argument;
+    pthread_mutex_lock(&writer->mutex);
+    for (;;) {
+        while (!writer->busy && !writer->closing)
+            pthread_cond_wait(&writer->changed, &writer->mutex);
+        if (!writer->busy)
+            break;
+        pthread_mutex_unlock(&writer->mutex);
+        weft_error error = {0};
+        weft_code code = store(writer, &error);
+        if (code != WEFT_OK)
+            remove_temporary(writer->session);
+        pthread_mutex_lock(&writer->mutex);
+        writer->code = code;
+        writer->error = error;
+        writer->busy = false;
+        pthread_cond_broadcast(&writer->changed);
+        if (code != WEFT_OK)
+            break;
+    }
+    pthread_mutex_unlock(&writer->mutex);
+    return NULL;
+}
+
+/* ---- In the caller's thread ---- */
+
+static void free_writer(weft_photograph_writer *writer)
+{
+    pthread_mutex_destroy(&writer->mutex);
+    pthread_cond_destroy(&writer->changed);
+    free(writer->filling);
+    free(writer->writing);
+    free(writer);
+}
+
+weft_code weft_photograph_writer_start(weft_session *session, weft_photograph_writer **result, weft_error *error)
+{
+    weft_photograph_writer *writer = calloc(1, sizeof *writer);
+    if (!writer)
+        return weft_fail_memory(error, "photograph writer", sizeof *writer);
+    size_t bytes = (size_t)session->camera.width * (size_t)session->camera.height * 3 * sizeof(uint16_t);
+    writer->session = session;
+    pthread_mutex_init(&writer->mutex, NULL);
+    pthread_cond_init(&writer->changed, NULL);
+    writer->filling = malloc(bytes);
+    writer->writing = malloc(bytes);
+    weft_code code = WEFT_OK;
+    if (!writer->filling || !writer->writing)
+        code = weft_fail_memory(error, "photographs", 2 * bytes);
+    else if (pthread_create(&writer->thread, NULL, write_photographs, writer) != 0)
+        code = weft_fail(error, WEFT_SYSTEM, "cannot start the thread that writes photographs");
+    if (code != WEFT_OK) {
+        free_writer(writer);
+        return code;
+    }
+    *result = writer;
+    return WEFT_OK;
+}
+
+uint16_t *weft_photograph_writer_buffer(weft_photograph_writer *writer)
+{
+    return writer->filling;
+}
+
+static weft_code failure_of(const weft_photograph_writer *writer, weft_error *error)
+{
+    if (writer->code != WEFT_OK && error)
+        *error = writer->error;
+    return writer->code;
+}
+
+weft_code weft_photograph_writer_submit(weft_photograph_writer *writer, int shot, const weft_shot_record *record,
+                                        weft_error *error)
+{
+    pthread_mutex_lock(&writer->mutex);
+    while (writer->busy)
+        pthread_cond_wait(&writer->changed, &writer->mutex);
+    weft_code code = failure_of(writer, error);
+    if (code == WEFT_OK) {
+        uint16_t *filled = writer->filling;
+        writer->filling = writer->writing;
+        writer->writing = filled;
+        writer->shot = shot;
+        writer->record = *record;
+        writer->busy = true;
+        pthread_cond_broadcast(&writer->changed);
+    }
+    pthread_mutex_unlock(&writer->mutex);
+    return code;
+}
+
+weft_code weft_photograph_writer_finish(weft_photograph_writer *writer, weft_error *error)
+{
+    pthread_mutex_lock(&writer->mutex);
+    writer->closing = true;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->mutex);
+    pthread_join(writer->thread, NULL);
+    weft_code code = failure_of(writer, error);
+    free_writer(writer);
+    return code;
+}

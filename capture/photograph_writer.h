@@ -1,0 +1,27 @@
+/* Writes photographs into a session in a thread of its own, while the rig takes the next one. */
+#ifndef WEFT_CAPTURE_PHOTOGRAPH_WRITER_H
+#define WEFT_CAPTURE_PHOTOGRAPH_WRITER_H
+
+#include "btf/session.h"
+
+typedef struct weft_photograph_writer weft_photograph_writer;
+
+/* Starts the thread. It writes session->record and the journal until finish; nobody else may meanwhile.
+ * Errors: WEFT_SYSTEM. */
+weft_code weft_photograph_writer_start(weft_session *session, weft_photograph_writer **result, weft_error *error);
+
+/* The buffer for the next photograph, [height][width][3] raw samples, owned by the writer and valid until it is
+ * submitted. */
+uint16_t *weft_photograph_writer_buffer(weft_photograph_writer *writer);
+
+/* Hands over the buffer: the photograph of `shot`, of which `record` holds stay and exposure. Waits until the
+ * photograph before it is on disk, so at most one is under way. The file appears under its final name when it is
+ * complete, and after that the journal names it. Errors: the first failure of an earlier photograph. */
+weft_code weft_photograph_writer_submit(weft_photograph_writer *writer, int shot, const weft_shot_record *record,
+                                        weft_error *error);
+
+/* Waits for the last photograph, ends the thread and frees the writer. Errors: the first failure, if submit has not
+ * reported it. */
+weft_code weft_photograph_writer_finish(weft_photograph_writer *writer, weft_error *error);
+
+#endif

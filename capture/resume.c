@@ -1,0 +1,205 @@
+#include "capture/resume.h"
+
+#include "btf/atomic_file.h"
+#include "capture/file_crc.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <jansson.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+/* ---- One process at a time ---- */
+
+static weft_code lock_folder(const char *folder, int *lock, weft_error *error)
+{
+    char path[PATH_MAX];
+    snprintf(path, sizeof path, "%s/.lock", folder);
+    *lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (*lock < 0)
+        return weft_fail_errno(error, "open", path);
+    if (flock(*lock, LOCK_EX | LOCK_NB) == 0)
+        return WEFT_OK;
+    if (errno == EWOULDBLOCK)
+        return weft_fail(error, WEFT_SYSTEM, "another process takes photographs in session '%s'", folder);
+    return weft_fail_errno(error, "lock", path);
+}
+
+/* ---- New or known ---- */
+
+/* Whether a folder holds something that no capture has left there: hidden files are locks and temporary files. */
+static bool holds_foreign_files(const char *folder)
+{
+    DIR *listing = opendir(folder);
+    bool foreign = false;
+    for (struct dirent *entry; listing && (entry = readdir(listing));)
+        foreign = foreign || entry->d_name[0] != '.';
+    if (listing)
+        closedir(listing);
+    return foreign;
+}
+
+static weft_code create_or_open(const weft_session *wanted, weft_session *session, weft_error *error)
+{
+    char path[PATH_MAX];
+    snprintf(path, sizeof path, "%s/session.json", wanted->folder);
+    if (access(path, F_OK) != 0) {
+        if (holds_foreign_files(wanted->folder))
+            return weft_fail(error, WEFT_BAD_INPUT, "folder '%s' is neither empty nor a session", wanted->folder);
+        WEFT_TRY(weft_session_create(wanted, error));
+    }
+    /* Also a new session is read back, so that it is the same numbers that a later run will work with. */
+    return weft_session_open(wanted->folder, session, error);
+}
+
+/* ---- The same session? ---- */
+
+static bool nearly(double a, double b)
+{
+    return fabs(a - b) <= 1e-9 * fmax(1, fabs(b));
+}
+
+static bool same_angles(weft_angles a, weft_angles b)
+{
+    return nearly(a.theta_rad, b.theta_rad) && nearly(a.phi_rad, b.phi_rad);
+}
+
+/* The number of the first shot that differs, or -1. */
+static int first_other_shot(const weft_session *a, const weft_session *b)
+{
+    for (int i = 0; i < a->shot_count; i++) {
+        const weft_shot *p = &a->shot[i], *q = &b->shot[i];
+        if (!same_angles(p->light, q->light) || !same_angles(p->view, q->view) ||
+            !same_angles(p->light_driven, q->light_driven))
+            return i;
+    }
+    return -1;
+}
+
+/* Names a key of which two JSON objects hold different values, in `name`; false where there is none. */
+static bool find_difference(json_t *a, json_t *b, char *name, size_t size)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach(a, key, value)
+    {
+        json_t *other = json_object_get(b, key);
+        bool same = json_is_number(value) && json_is_number(other)
+                        ? nearly(json_number_value(value), json_number_value(other))
+                        : json_equal(value, other);
+        if (!same) {
+            snprintf(name, size, "%s", key);
+            return true;
+        }
+    }
+    return false;
+}
+
+static weft_code check_settings(const weft_session *wanted, const weft_session *found, weft_error *error)
+{
+    json_error_t ignored;
+    json_t *a = json_loads(wanted->rig_settings, 0, &ignored), *b = json_loads(found->rig_settings, 0, &ignored);
+    char name[64];
+    weft_code code = WEFT_OK;
+    if (!a || !b)
+        code = weft_fail(error, WEFT_BAD_INPUT, "session '%s': its rig settings are not JSON", wanted->folder);
+    else if (find_difference(a, b, name, sizeof name) || find_difference(b, a, name, sizeof name))
+        code = weft_fail(error, WEFT_BAD_INPUT,
+                         "session '%s' was begun with another '%s'; repeat its settings or choose another folder",
+                         wanted->folder, name);
+    json_decref(a);
+    json_decref(b);
+    return code;
+}
+
+static weft_code check_same(const weft_session *wanted, const weft_session *found, weft_error *error)
+{
+    if (strcmp(wanted->rig, found->rig) != 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "session '%s' was begun with the rig '%s', not '%s'", wanted->folder,
+                         found->rig, wanted->rig);
+    WEFT_TRY(check_settings(wanted, found, error));
+    if (wanted->shot_count != found->shot_count)
+        return weft_fail(error, WEFT_BAD_INPUT, "session '%s' was begun with a plan of %d shots, this one has %d",
+                         wanted->folder, found->shot_count, wanted->shot_count);
+    int shot = first_other_shot(wanted, found);
+    if (shot >= 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "session '%s' was begun with another plan: shot %d differs",
+                         wanted->folder, shot);
+    return WEFT_OK;
+}
+
+/* ---- Are the photographs there? ---- */
+
+static bool photograph_matches(const weft_session *session, int shot)
+{
+    char path[PATH_MAX];
+    uint64_t bytes;
+    uint32_t crc32;
+    weft_session_photograph_path(session, shot, path, sizeof path);
+    return weft_file_crc(path, &bytes, &crc32, NULL) == WEFT_OK && bytes == session->record[shot].bytes &&
+           crc32 == session->record[shot].crc32;
+}
+
+static void verify_photographs(weft_held_session *held, const weft_progress *progress)
+{
+    weft_session *session = &held->session;
+    int damaged = 0;
+    long done = 0;
+#pragma omp parallel for schedule(dynamic, 16) reduction(+ : damaged)
+    for (int shot = 0; shot < session->shot_count; shot++) {
+        if (!session->record[shot].taken)
+            continue;
+        if (!photograph_matches(session, shot)) {
+            session->record[shot].taken = false;
+            damaged++;
+        }
+#pragma omp critical
+        weft_progress_report(progress, "verifying photographs", ++done, session->shot_count);
+    }
+    held->damaged = damaged;
+}
+
+static int count_stays(const weft_session *session)
+{
+    int stays = 0;
+    for (int i = 0; i < session->shot_count; i++) {
+        if (session->record[i].taken && session->record[i].stay >= stays)
+            stays = session->record[i].stay + 1;
+    }
+    return stays;
+}
+
+static weft_code hold(const weft_session *wanted, const weft_progress *progress, weft_held_session *held,
+                      weft_error *error)
+{
+    WEFT_TRY(lock_folder(wanted->folder, &held->lock, error));
+    WEFT_TRY(create_or_open(wanted, &held->session, error));
+    WEFT_TRY(check_same(wanted, &held->session, error));
+    held->next_stay = count_stays(&held->session);
+    verify_photographs(held, progress);
+    return WEFT_OK;
+}
+
+weft_code weft_session_hold(const weft_session *wanted, const weft_progress *progress, weft_held_session *held,
+                            weft_error *error)
+{
+    *held = (weft_held_session){.lock = -1};
+    WEFT_TRY(weft_make_folder(wanted->folder, error));
+    weft_code code = hold(wanted, progress, held, error);
+    if (code != WEFT_OK)
+        weft_held_session_release(held);
+    return code;
+}
+
+void weft_held_session_release(weft_held_session *held)
+{
+    weft_session_free(&held->session);
+    if (held->lock >= 0)
+        close(held->lock);
+    held->lock = -1;
+}

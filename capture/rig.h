@@ -1,0 +1,40 @@
+/* The rig: a camera, a stage and a light, each behind a small interface of its own, so that a back end can be written
+ * and replaced device by device. The virtual rig (capture/rig_virtual.h) is one back end.
+ *
+ * Every call blocks until the device has done it. Errors: WEFT_SYSTEM with a message that names the device. No
+ * interface is thread-safe: the capture loop calls them from one thread. */
+#ifndef WEFT_CAPTURE_RIG_H
+#define WEFT_CAPTURE_RIG_H
+
+#include "btf/session.h"
+
+typedef struct weft_rig_camera {
+    void *device;
+    /* One photograph: raw samples [height][width][3] of the session's bits. `frame` numbers the exposures of a session
+     * (cameras stamp it into their files). *read_back_s receives the exposure time that the camera reports. */
+    weft_code (*expose)(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
+                        weft_error *error);
+} weft_rig_camera;
+
+typedef struct weft_rig_stage {
+    void *device;
+    /* Drives the camera axes. *moved receives whether they turned at all: if so, the photographs that follow belong to
+     * a new stay. The first call after opening homes the axes and always moves. */
+    weft_code (*move_camera)(void *device, weft_angles view, bool *moved, weft_error *error);
+    weft_code (*move_light)(void *device, weft_angles light, weft_error *error);
+} weft_rig_stage;
+
+typedef struct weft_rig_light {
+    void *device;
+    weft_code (*power)(void *device, bool on, weft_error *error);
+} weft_rig_light;
+
+typedef struct weft_rig {
+    weft_rig_camera camera;
+    weft_rig_stage stage;
+    weft_rig_light light;
+    void *back_end;
+    void (*close)(void *back_end);
+} weft_rig;
+
+#endif

@@ -1,0 +1,88 @@
+#include "capture/shooting.h"
+
+/* At most MAX_METERED exposures of a shot, each retried; frames are numbered FRAMES_PER_SHOT x shot + exposure. */
+enum { MAX_METERED = 8, FRAMES_PER_SHOT = 256 };
+
+weft_shooting weft_shooting_begin(weft_rig *rig, const weft_session *session, weft_exposure_limits limits, int retries,
+                                  int next_stay)
+{
+    return (weft_shooting){
+        .rig = rig, .session = session, .limits = limits, .retries = retries, .stay = -1, .next_stay = next_stay};
+}
+
+void weft_shooting_end(weft_shooting *shooting)
+{
+    weft_meter_free(&shooting->meter);
+}
+
+static weft_code drive(weft_shooting *shooting, const weft_shot *shot, weft_error *error)
+{
+    weft_rig_stage *stage = &shooting->rig->stage;
+    bool moved = false;
+    WEFT_TRY(stage->move_camera(stage->device, shot->view, &moved, error));
+    if (moved) {
+        shooting->stay = shooting->next_stay++;
+        weft_meter_free(&shooting->meter);
+        WEFT_TRY(weft_meter_make(shooting->session, shot->view, &shooting->meter, error));
+    }
+    return stage->move_light(stage->device, shot->light_driven, error);
+}
+
+/* The exposure of the last shot, corrected by the change of the light's cosine. */
+static double predict_exposure(weft_shooting *shooting, const weft_shot *shot)
+{
+    const double first_guess_s = 1.0 / 60, lowest_cosine = 0.02;
+    weft_real cosine = fmax(cos(shot->light_driven.theta_rad), lowest_cosine);
+    double exposure_s =
+        shooting->exposure_s > 0 ? shooting->exposure_s * shooting->light_cosine / cosine : first_guess_s / cosine;
+    shooting->light_cosine = cosine;
+    /* Up to the nearest third stop. */
+    return weft_exposure_in_thirds(exposure_s * exp2(1 / 6.0), shooting->limits);
+}
+
+/* One exposure, repeated where the camera does not deliver it. */
+static weft_code expose(weft_shooting *shooting, int shot, int *number, double exposure_s, uint16_t *samples,
+                        double *read_back_s, weft_error *error)
+{
+    weft_rig_camera *camera = &shooting->rig->camera;
+    weft_code code = WEFT_SYSTEM;
+    for (int attempt = 0; attempt <= shooting->retries; attempt++) {
+        uint64_t frame = (uint64_t)shot * FRAMES_PER_SHOT + (uint64_t)(*number)++;
+        shooting->exposures++;
+        code = camera->expose(camera->device, frame, exposure_s, samples, read_back_s, error);
+        if (code == WEFT_OK)
+            return WEFT_OK;
+        shooting->timeouts++;
+    }
+    return code;
+}
+
+static weft_code meter_and_expose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
+                                  weft_error *error)
+{
+    double exposure_s = predict_exposure(shooting, &shooting->session->shot[shot]);
+    int number = 0;
+    for (int metered = 0; metered < MAX_METERED; metered++) {
+        WEFT_TRY(expose(shooting, shot, &number, exposure_s, samples, read_back_s, error));
+        double level = weft_meter_read(&shooting->meter, shooting->session, samples);
+        double better_s = weft_exposure_after(exposure_s, level, shooting->limits);
+        shooting->exposure_s = exposure_s;
+        if (better_s == exposure_s)
+            break;
+        exposure_s = better_s;
+    }
+    return WEFT_OK;
+}
+
+weft_code weft_shooting_take(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
+                             weft_error *error)
+{
+    weft_rig_light *light = &shooting->rig->light;
+    WEFT_TRY(drive(shooting, &shooting->session->shot[shot], error));
+    WEFT_TRY(light->power(light->device, true, error));
+    double read_back_s = 0;
+    weft_code code = meter_and_expose(shooting, shot, samples, &read_back_s, error);
+    WEFT_TRY(light->power(light->device, false, error));
+    *record = (weft_shot_record){.stay = shooting->stay, .exposure_s = read_back_s};
+    return code;
+}

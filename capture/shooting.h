@@ -1,0 +1,31 @@
+/* One photograph: drive, meter, expose, until the exposure is right. Knows any rig, only through capture/rig.h. */
+#ifndef WEFT_CAPTURE_SHOOTING_H
+#define WEFT_CAPTURE_SHOOTING_H
+
+#include "capture/exposure.h"
+#include "capture/rig.h"
+
+typedef struct weft_shooting {
+    weft_rig *rig;
+    const weft_session *session;
+    weft_exposure_limits limits;
+    int retries;
+    int stay; /* of the last shot; -1 before the first */
+    int next_stay;
+    weft_meter meter;  /* of the view */
+    double exposure_s; /* of the last shot, 0 before the first */
+    weft_real light_cosine;
+    int exposures, timeouts; /* counted */
+} weft_shooting;
+
+/* The caller ends with weft_shooting_end. `next_stay` numbers the first stay. */
+weft_shooting weft_shooting_begin(weft_rig *rig, const weft_session *session, weft_exposure_limits limits, int retries,
+                                  int next_stay);
+void weft_shooting_end(weft_shooting *shooting);
+
+/* Takes shot `shot` of the session into `samples`; *record receives stay and exposure. Errors: those of the rig, once
+ * an exposure has failed `retries` + 1 times; WEFT_BAD_INPUT where the view shows nothing of the sample. */
+weft_code weft_shooting_take(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
+                             weft_error *error);
+
+#endif
