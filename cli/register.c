@@ -1,0 +1,138 @@
+#include "cli/command.h"
+#include "registration/registration.h"
+#include "registration/report_tables.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct register_command {
+    common_options common;
+    const char *session, *output, *report_folder;
+    int width, height;
+    bool allow_unfinished;
+} register_command;
+
+enum { KEY_REPORT = 0x2000, KEY_ALLOW_UNFINISHED, LARGEST_SIZE = 8192 };
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "NAME.btf.h5", 0, "The dataset to write", 0},
+    {"size", 's', "WxH", 0, "Texels of the opening (default: 64x64)", 0},
+    {"report", KEY_REPORT, "DIR", 0, "Write a report with pictures into this folder", 0},
+    {"allow-unfinished", KEY_ALLOW_UNFINISHED, 0, 0, "Register what there is of a session that is not finished", 0},
+    {0},
+};
+
+static void parse_size(const char *text, register_command *command, struct argp_state *state)
+{
+    int length = 0;
+    if (sscanf(text, "%dx%d%n", &command->width, &command->height, &length) != 2 || text[length] ||
+        command->width < 1 || command->height < 1 || command->width > LARGEST_SIZE || command->height > LARGEST_SIZE)
+        argp_error(state, "--size needs WIDTHxHEIGHT, such as 64x64, up to %d, not '%s'", LARGEST_SIZE, text);
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    register_command *command = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &command->common;
+        return 0;
+    case 'o':
+        command->output = argument;
+        return 0;
+    case 's':
+        parse_size(argument, command, state);
+        return 0;
+    case KEY_REPORT:
+        command->report_folder = argument;
+        return 0;
+    case KEY_ALLOW_UNFINISHED:
+        command->allow_unfinished = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (command->session)
+            argp_error(state, "one session at a time: '%s' is one too many", argument);
+        command->session = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!command->session || !command->output)
+            argp_error(state, "needs a session and -o NAME.btf.h5");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
+
+static const struct argp parser = {option_table,
+                                   parse_option,
+                                   "SESSION -o NAME.btf.h5",
+                                   "Example: weft register session/ -o cloth.btf.h5 --size 64x64 --report report/\n\n"
+                                   "Turns the photographs of a session into a dataset: finds where the camera stood "
+                                   "for every view, rectifies the photographs and calibrates them against the white "
+                                   "reference. What cannot be used is named and masked.",
+                                   children,
+                                   NULL,
+                                   NULL};
+
+static void say_faults(const register_command *command, const weft_session *session, const weft_registration *r)
+{
+    for (int stay = 0; stay < r->survey.stay_count; stay++) {
+        weft_angles view = r->survey.view[r->survey.stay[stay].view];
+        if (r->pose[stay].remark[0])
+            command_say(&command->common, "view %d (%.0f, %.0f degrees), stay %d: %s%s", r->survey.stay[stay].view,
+                        weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), r->survey.stay[stay].stay,
+                        r->pose[stay].source == WEFT_POSE_FAILED ? "masked: " : "kept the markers' pose: ",
+                        r->pose[stay].remark);
+    }
+    for (int shot = 0; shot < session->shot_count; shot++) {
+        if (r->fault[shot].reason[0])
+            command_say(&command->common, "masked: %s", r->fault[shot].reason);
+    }
+    if (r->estimated_whites)
+        command_say(&command->common,
+                    "%d photographs show no usable white reference; they use the light's power measured in the others",
+                    r->estimated_whites);
+}
+
+static void say_outcome(const register_command *command, const weft_session *session, const weft_registration *r)
+{
+    weft_ring_summary all = weft_ring_summarise(session, r, -1);
+    say_faults(command, session, r);
+    command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %d of %d stays registered",
+                command->output, r->settings.width, r->settings.height, r->image_count, session->shot_count,
+                r->survey.stay_count - r->failed_stays, r->survey.stay_count);
+    command_say(
+        &command->common,
+        "estimated standard error of a position: %.4f texels median, %.4f worst; %.3f %% of the samples saturated",
+        all.median_uncertainty, all.worst_uncertainty, 100 * all.saturated);
+    if (command->report_folder)
+        command_say(&command->common, "report: %s/index.html", command->report_folder);
+}
+
+int command_register(int argc, char **argv)
+{
+    register_command command = {.width = 64, .height = 64};
+    command_parse(&parser, argc, argv, &command, &command.common);
+    weft_progress progress = command_progress(&command.common);
+    weft_session session;
+    weft_registration registration;
+    weft_error error = {0};
+    weft_code code = weft_session_open(command.session, &session, &error);
+    if (code != WEFT_OK)
+        return command_exit("register", &command.common, code, &error);
+    weft_registration_settings settings = weft_registration_defaults(&session);
+    settings.width = command.width;
+    settings.height = command.height;
+    settings.allow_unfinished = command.allow_unfinished;
+    settings.report_folder = command.report_folder;
+    code = weft_register_session(&session, command.output, &settings, &progress, &registration, &error);
+    if (code == WEFT_OK) {
+        say_outcome(&command, &session, &registration);
+        weft_registration_free(&registration);
+    }
+    weft_session_free(&session);
+    return command_exit("register", &command.common, code, &error);
+}

@@ -1,0 +1,141 @@
+#include "registration/rectify.h"
+
+#include "registration/resample.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* One stay at work. */
+typedef struct job {
+    const weft_rectifier *rectifier;
+    const weft_photographs *photographs;
+    const weft_white *estimated;
+    weft_resampler resampler;
+    weft_reference_pixels reference;
+    int shown_shot;
+    float *shown;
+} job;
+
+/* Memory of one thread. */
+typedef struct bench {
+    uint16_t *samples;
+    float *texel;
+    weft_half *half;
+    uint8_t *mask;
+} bench;
+
+static size_t texel_count(const job *j)
+{
+    return (size_t)j->resampler.width * (size_t)j->resampler.height;
+}
+
+static bool bench_create(const job *j, bench *b)
+{
+    b->samples = malloc(weft_photograph_sample_count(j->rectifier->session) * sizeof *b->samples);
+    b->texel = malloc(texel_count(j) * 3 * sizeof *b->texel);
+    b->half = malloc(texel_count(j) * 3 * sizeof *b->half);
+    b->mask = malloc(texel_count(j));
+    return b->samples && b->texel && b->half && b->mask;
+}
+
+static void bench_free(bench *b)
+{
+    free(b->samples);
+    free(b->texel);
+    free(b->half);
+    free(b->mask);
+}
+
+static weft_exposure exposure_of(const weft_session *session, int shot)
+{
+    weft_vec3 direction = weft_direction_of_angles(session->shot[shot].light_driven);
+    return (weft_exposure){session->black_level, (1 << session->bits) - 1, session->record[shot].exposure_s,
+                           weft_scale(direction, session->light_distance_mm)};
+}
+
+static weft_code put(const job *j, int shot, bench *b, weft_error *error)
+{
+    size_t texels = texel_count(j), saturated = 0;
+    for (size_t i = 0; i < 3 * texels; i++)
+        b->half[i] = weft_half_of_float(b->texel[i]);
+    for (size_t i = 0; i < texels; i++)
+        saturated += b->mask[i] == WEFT_MASK_SATURATED;
+    j->rectifier->registration->saturated[shot] = (float)saturated / (float)texels;
+    if (shot == j->shown_shot)
+        memcpy(j->shown, b->texel, texels * 3 * sizeof *b->texel);
+    return weft_dataset_writer_put_image(j->rectifier->writer, shot, b->half, b->mask, error);
+}
+
+/* Rectifies photograph `index`; *done says whether it is in the dataset. */
+static weft_code rectify_photograph(const job *j, int index, bench *b, bool *done, weft_error *error)
+{
+    const weft_session *session = j->rectifier->session;
+    int shot = j->photographs->shot[index];
+    weft_white *white = &j->rectifier->registration->white[shot];
+    weft_exposure exposure = exposure_of(session, shot);
+    *done = false;
+    if (!j->photographs->usable[index] || white->patches > 0) /* the latter is in the dataset already */
+        return WEFT_OK;
+    const uint16_t *samples = weft_photographs_samples(j->photographs, index, b->samples);
+    if (!samples)
+        return WEFT_OK;
+    *white = weft_white_measure(j->rectifier->sight, &session->target, &j->reference, samples, &exposure);
+    if (white->patches == 0) {
+        if (!j->estimated)
+            return WEFT_OK;
+        *white = j->estimated[shot];
+    }
+    weft_resampler_apply(&j->resampler, samples, exposure.black_level, exposure.full_scale, b->texel, b->mask);
+    weft_reflectance_of_raw(white, &exposure, session->target.opening_mm, j->resampler.width, j->resampler.height,
+                            b->texel);
+    *done = true;
+    return put(j, shot, b, error);
+}
+
+static weft_code rectify_all(const job *j, int *used, weft_error *error)
+{
+    weft_code result = WEFT_OK;
+    int count = 0;
+#pragma omp parallel reduction(+ : count)
+    {
+        bench b;
+        weft_error own = {0};
+        weft_code code = bench_create(j, &b) ? WEFT_OK : weft_fail_memory(&own, "resampling", texel_count(j) * 19);
+#pragma omp for schedule(dynamic, 1)
+        for (int i = 0; i < j->photographs->count; i++) {
+            bool done = false;
+            if (code == WEFT_OK)
+                code = rectify_photograph(j, i, &b, &done, &own);
+            count += done;
+        }
+        bench_free(&b);
+        if (code != WEFT_OK) {
+#pragma omp critical(weft_rectify_failure)
+            {
+                result = code;
+                *error = own;
+            }
+        }
+    }
+    *used += count;
+    return result;
+}
+
+weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_photographs *photographs,
+                            const weft_white *estimated, int shown_shot, float *shown, weft_error *error)
+{
+    weft_registration *registration = rectifier->registration;
+    const weft_view_pose *pose = &registration->pose[stay];
+    const weft_target *target = &rectifier->session->target;
+    job j = {rectifier, photographs, estimated, {0}, {{0}, {0}, {{0, 0}}}, shown_shot, shown};
+    WEFT_TRY(weft_resampler_create(&rectifier->sight->camera, rectifier->sight->inverse_vignetting, &pose->homography,
+                                   target->opening_mm, registration->settings.width, registration->settings.height, 0,
+                                   &j.resampler, error));
+    weft_code code =
+        weft_reference_pixels_find(rectifier->sight, target, &pose->homography, pose->smear, &j.reference, error);
+    if (code == WEFT_OK)
+        code = rectify_all(&j, &registration->used[stay], error);
+    weft_reference_pixels_free(&j.reference);
+    weft_resampler_free(&j.resampler);
+    return code;
+}

@@ -1,0 +1,23 @@
+/* The photographs of a registered stay, turned into images of the dataset. */
+#ifndef WEFT_REGISTRATION_RECTIFY_H
+#define WEFT_REGISTRATION_RECTIFY_H
+
+#include "btf/dataset.h"
+#include "registration/registration.h"
+
+/* What the stays of a registration share. */
+typedef struct weft_rectifier {
+    const weft_session *session;
+    const weft_sight *sight;
+    weft_dataset_writer *writer;
+    weft_registration *registration;
+} weft_rectifier;
+
+/* Resamples and calibrates the usable photographs of stay `stay` (an index into the survey) under its pose and puts
+ * them into the dataset. Photographs without a measured white level are left out unless `estimated` gives them one.
+ * `shown_shot` (-1: none) is copied, as reflectance times cosine [height][width][3], to `shown`.
+ * Errors: WEFT_SYSTEM. Uses OpenMP. */
+weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_photographs *photographs,
+                            const weft_white *estimated, int shown_shot, float *shown, weft_error *error);
+
+#endif

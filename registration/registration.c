@@ -1,0 +1,305 @@
+#include "registration/registration.h"
+
+#include "registration/rectify.h"
+#include "registration/report.h"
+#include "registration/white_estimate.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static const size_t kept_bytes = (size_t)512 << 20;
+
+/* Everything at work. */
+typedef struct work {
+    weft_rectifier rectifier;
+    weft_sight sight;
+    const weft_progress *progress;
+    weft_smear smear;      /* of the last view that was refined: the lens is the same */
+    float *fitted, *shown; /* for the report; NULL where there is none */
+    long done;             /* photographs */
+} work;
+
+weft_registration_settings weft_registration_defaults(const weft_session *session)
+{
+    return (weft_registration_settings){64, 64, {session->target.opening_mm / 8, 0.8}, false, NULL};
+}
+
+void weft_registration_free(weft_registration *registration)
+{
+    weft_survey_free(&registration->survey);
+    free(registration->pose);
+    free(registration->used);
+    free(registration->fault);
+    free(registration->white);
+    free(registration->saturated);
+    *registration = (weft_registration){0};
+}
+
+double weft_registration_uncertainty_texels(const weft_session *session, const weft_registration *registration,
+                                            int stay)
+{
+    return registration->pose[stay].uncertainty_mm * registration->settings.width / session->target.opening_mm;
+}
+
+static weft_code allocate(const weft_session *session, weft_registration *registration, weft_error *error)
+{
+    size_t shots = (size_t)session->shot_count, stays = (size_t)registration->survey.stay_count;
+    registration->pose = calloc(stays, sizeof *registration->pose);
+    registration->used = calloc(stays, sizeof *registration->used);
+    registration->fault = calloc(shots, sizeof *registration->fault);
+    registration->white = calloc(shots, sizeof *registration->white);
+    registration->saturated = calloc(shots, sizeof *registration->saturated);
+    if (registration->pose && registration->used && registration->fault && registration->white &&
+        registration->saturated)
+        return WEFT_OK;
+    return weft_fail_memory(error, "a registration", shots * (sizeof(weft_fault) + sizeof(weft_white)));
+}
+
+static weft_code check_shots(const weft_session *session, weft_error *error)
+{
+    const double horizon_rad = weft_rad_of_deg(89.9);
+    for (int shot = 0; shot < session->shot_count; shot++) {
+        double light = session->shot[shot].light_driven.theta_rad, view = session->shot[shot].view.theta_rad;
+        if (!(fabs(light) < horizon_rad) || !(fabs(view) < horizon_rad))
+            return weft_fail(
+                error, WEFT_BAD_INPUT,
+                "shot %d of '%s' has its light %.1f and its view %.1f degrees from the normal; both must be "
+                "above the plate",
+                shot, session->folder, weft_deg_of_rad(light), weft_deg_of_rad(view));
+        double exposure_s = session->record[shot].exposure_s;
+        if (session->record[shot].taken && !(exposure_s > 0 && isfinite(exposure_s)))
+            return weft_fail(error, WEFT_BAD_INPUT, "the journal of '%s' gives shot %d an exposure of %g s",
+                             session->folder, shot, exposure_s);
+    }
+    return WEFT_OK;
+}
+
+static weft_code check_session(const weft_session *session, const weft_registration *registration, weft_error *error)
+{
+    int untaken = registration->survey.untaken;
+    if (untaken > 0 && !registration->settings.allow_unfinished)
+        return weft_fail(
+            error, WEFT_BAD_INPUT,
+            "'%s' is not finished: %d of %d photographs are not taken yet; run the same weft capture again, "
+            "or register what there is with --allow-unfinished",
+            session->folder, untaken, session->shot_count);
+    if (!(session->camera_distance_mm > 0) || !(session->light_distance_mm > 0) || !(session->target.opening_mm > 0))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': camera at %g mm, light at %g mm, opening of %g mm",
+                         session->folder, session->camera_distance_mm, session->light_distance_mm,
+                         session->target.opening_mm);
+    return check_shots(session, error);
+}
+
+static weft_code describe_dataset(const weft_session *session, const weft_registration *registration,
+                                  weft_dataset_layout *layout, weft_error *error)
+{
+    const weft_survey *survey = &registration->survey;
+    *layout = (weft_dataset_layout){.width = registration->settings.width,
+                                    .height = registration->settings.height,
+                                    .image_count = session->shot_count,
+                                    .view_count = survey->view_count,
+                                    .values = WEFT_REFLECTANCE_COSINE,
+                                    .distance = WEFT_FAR,
+                                    .texel_pitch_mm = session->target.opening_mm / registration->settings.width};
+    WEFT_TRY(weft_dataset_layout_allocate(layout, error));
+    for (int shot = 0; shot < session->shot_count; shot++) {
+        layout->light[shot] = weft_direction_of_angles(session->shot[shot].light_driven);
+        layout->view_of_image[shot] = survey->view_of_shot[shot];
+    }
+    for (int view = 0; view < survey->view_count; view++)
+        layout->view[view] = weft_direction_of_angles(survey->view[view]);
+    return WEFT_OK;
+}
+
+/* The usable photograph of a stay under the highest light: the one to look at. -1: none. */
+static int shot_to_show(const weft_session *session, const weft_photographs *photographs)
+{
+    int best = -1;
+    for (int i = 0; i < photographs->count; i++) {
+        int shot = photographs->shot[i];
+        if (photographs->usable[i] &&
+            (best < 0 || session->shot[shot].light_driven.theta_rad < session->shot[best].light_driven.theta_rad))
+            best = shot;
+    }
+    return best;
+}
+
+static weft_code find_and_rectify(work *w, int stay, const weft_photographs *photographs, weft_error *error)
+{
+    const weft_session *session = w->rectifier.session;
+    weft_registration *registration = w->rectifier.registration;
+    weft_view_pose *pose = &registration->pose[stay];
+    weft_pose promised_pose =
+        weft_pose_of_view(registration->survey.view[registration->survey.stay[stay].view], session->camera_distance_mm);
+    weft_homography promised = weft_homography_of_pose(&session->camera, &promised_pose);
+    WEFT_TRY(weft_find_pose(&w->sight, &session->target, photographs->average, &promised, w->smear,
+                            &registration->settings.limits, pose, w->fitted, error));
+    if (pose->source == WEFT_POSE_FAILED)
+        return WEFT_OK;
+    if (pose->source == WEFT_POSE_DRAWING)
+        w->smear = pose->smear;
+    int shown_shot = w->shown ? shot_to_show(session, photographs) : -1;
+    return weft_rectify_stay(&w->rectifier, stay, photographs, NULL, shown_shot, w->shown, error);
+}
+
+static weft_code register_stay(work *w, int stay, weft_error *error)
+{
+    weft_registration *registration = w->rectifier.registration;
+    weft_view_pose *pose = &registration->pose[stay];
+    weft_photographs photographs;
+    WEFT_TRY(weft_photographs_read(w->rectifier.session, &w->sight, &registration->survey.stay[stay], kept_bytes,
+                                   registration->fault, &photographs, error));
+    weft_code code = WEFT_OK;
+    if (photographs.usable_count > 0)
+        code = find_and_rectify(w, stay, &photographs, error);
+    else
+        snprintf(pose->remark, sizeof pose->remark, "none of its %d photographs can be used", photographs.count);
+    if (code == WEFT_OK && registration->settings.report_folder) {
+        weft_report_pictures pictures = {photographs.average, pose->source == WEFT_POSE_DRAWING ? w->fitted : NULL,
+                                         registration->used[stay] > 0 ? w->shown : NULL};
+        code = weft_report_write_pictures(registration, &w->sight, stay, &pictures, error);
+    }
+    w->done += photographs.count;
+    weft_photographs_free(&photographs);
+    return code;
+}
+
+/* Once more through the stays with photographs whose white level was not measured. */
+static weft_code rectify_estimated(work *w, weft_error *error)
+{
+    weft_registration *registration = w->rectifier.registration;
+    weft_white *estimated;
+    WEFT_TRY(weft_white_estimate(w->rectifier.session, registration, &estimated, error));
+    weft_code code = WEFT_OK;
+    for (int stay = 0; code == WEFT_OK && stay < registration->survey.stay_count; stay++) {
+        const weft_stay *one = &registration->survey.stay[stay];
+        weft_photographs photographs;
+        if (!weft_white_lacking(registration, stay))
+            continue;
+        code = weft_photographs_read(w->rectifier.session, &w->sight, one, kept_bytes, registration->fault,
+                                     &photographs, error);
+        if (code != WEFT_OK)
+            break;
+        code = weft_rectify_stay(&w->rectifier, stay, &photographs, estimated, -1, NULL, error);
+        weft_photographs_free(&photographs);
+    }
+    free(estimated);
+    return code;
+}
+
+static void count_outcome(const weft_session *session, weft_registration *registration)
+{
+    for (int stay = 0; stay < registration->survey.stay_count; stay++) {
+        registration->image_count += registration->used[stay];
+        registration->failed_stays += registration->pose[stay].source == WEFT_POSE_FAILED;
+    }
+    for (int shot = 0; shot < session->shot_count; shot++) {
+        const weft_white *white = &registration->white[shot];
+        registration->fault_count += registration->fault[shot].reason[0] != 0;
+        registration->estimated_whites += white->patches == 0 && white->level[1] > 0;
+    }
+}
+
+static weft_code check_outcome(const weft_session *session, const weft_registration *registration, weft_error *error)
+{
+    if (registration->image_count > 0)
+        return WEFT_OK;
+    const char *reason = registration->pose[0].remark;
+    for (int shot = 0; shot < session->shot_count && !*reason; shot++)
+        reason = registration->fault[shot].reason;
+    return weft_fail(error, WEFT_BAD_INPUT,
+                     "nothing in '%s' can be registered (%d photographs cannot be used, %d views "
+                     "failed): %s",
+                     session->folder, registration->fault_count, registration->failed_stays, reason);
+}
+
+static weft_code run(work *w, weft_error *error)
+{
+    weft_registration *registration = w->rectifier.registration;
+    const weft_session *session = w->rectifier.session;
+    long total = session->shot_count - registration->survey.untaken;
+    for (int stay = 0; stay < registration->survey.stay_count; stay++) {
+        weft_progress_report(w->progress, "registering views", w->done, total);
+        WEFT_TRY(register_stay(w, stay, error));
+    }
+    weft_progress_report(w->progress, "registering views", total, total);
+    WEFT_TRY(rectify_estimated(w, error));
+    count_outcome(session, registration);
+    return check_outcome(session, registration, error);
+}
+
+static weft_code prepare_pictures(work *w, weft_error *error)
+{
+    const weft_registration *registration = w->rectifier.registration;
+    size_t pixels = (size_t)w->sight.camera.width * (size_t)w->sight.camera.height;
+    size_t values = (size_t)registration->settings.width * (size_t)registration->settings.height * 3;
+    if (!registration->settings.report_folder)
+        return WEFT_OK;
+    w->fitted = malloc(pixels * sizeof *w->fitted);
+    w->shown = malloc(values * sizeof *w->shown);
+    if (!w->fitted || !w->shown)
+        return weft_fail_memory(error, "the report's pictures", (pixels + values) * sizeof(float));
+    return weft_report_prepare(registration->settings.report_folder, error);
+}
+
+/* Pixels per mm of the frontal view. */
+static double frontal_scale(const weft_session *session)
+{
+    return session->camera.fx / session->camera_distance_mm;
+}
+
+/* Writes dataset and report from a surveyed session. */
+static weft_code produce(const weft_session *session, const char *output, const weft_progress *progress,
+                         weft_registration *registration, weft_error *error)
+{
+    work w = {.rectifier = {session, &w.sight, NULL, registration}, .progress = progress};
+    weft_dataset_layout layout = {0};
+    char *provenance = NULL;
+    struct timespec start, end;
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    weft_code code = weft_sight_create(&session->camera, &session->target, frontal_scale(session), &w.sight, error);
+    if (code == WEFT_OK)
+        code = describe_dataset(session, registration, &layout, error);
+    if (code == WEFT_OK)
+        code = weft_dataset_writer_create(output, &layout, &w.rectifier.writer, error);
+    if (code == WEFT_OK)
+        code = prepare_pictures(&w, error);
+    if (code == WEFT_OK)
+        code = run(&w, error);
+    if (code == WEFT_OK) {
+        provenance = weft_registration_provenance(session, registration);
+        weft_dataset_writer *writer = w.rectifier.writer;
+        w.rectifier.writer = NULL;
+        code = weft_dataset_writer_finish(writer, provenance, error);
+    }
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    registration->seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    if (code == WEFT_OK && registration->settings.report_folder)
+        code = weft_report_write_page(session, registration, output, error);
+    free(provenance);
+    free(w.fitted);
+    free(w.shown);
+    weft_dataset_writer_abandon(w.rectifier.writer);
+    weft_dataset_layout_free(&layout);
+    weft_sight_free(&w.sight);
+    return code;
+}
+
+weft_code weft_register_session(const weft_session *session, const char *output,
+                                const weft_registration_settings *settings, const weft_progress *progress,
+                                weft_registration *registration, weft_error *error)
+{
+    *registration = (weft_registration){.settings = *settings};
+    weft_code code = weft_survey_make(session, &registration->survey, error);
+    if (code == WEFT_OK)
+        code = check_session(session, registration, error);
+    if (code == WEFT_OK)
+        code = allocate(session, registration, error);
+    if (code == WEFT_OK)
+        code = produce(session, output, progress, registration, error);
+    if (code != WEFT_OK)
+        weft_registration_free(registration);
+    return code;
+}

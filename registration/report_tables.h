@@ -1,0 +1,35 @@
+/* The tables of the quality report, and the numbers in them. */
+#ifndef WEFT_REGISTRATION_REPORT_TABLES_H
+#define WEFT_REGISTRATION_REPORT_TABLES_H
+
+#include "registration/registration.h"
+
+#include <stdio.h>
+
+/* The stays of one ring of views (as in ubo81: 0, 15 .. 75 degrees; the nearest counts). */
+typedef struct weft_ring_summary {
+    int stays, failed;
+    double median_uncertainty, worst_uncertainty; /* texels, over the stays that did not fail */
+    double median_correlation, worst_correlation;
+    double median_shift_mm, worst_shift_mm;
+    double saturated; /* fraction of the samples */
+} weft_ring_summary;
+
+enum { WEFT_RING_COUNT = 6 };
+
+/* ring in [0, WEFT_RING_COUNT), or -1 for all. Pure. */
+weft_ring_summary weft_ring_summarise(const weft_session *session, const weft_registration *registration, int ring);
+
+/* "markers + drawing" and the like. Static text. */
+const char *weft_pose_source_name(const weft_view_pose *pose);
+
+/* Text with the characters that mean something to HTML replaced. */
+void weft_write_escaped(FILE *page, const char *text);
+
+/* Sections of the page, each with its heading; nothing where there is nothing to say. */
+void weft_write_faults(FILE *page, const weft_session *session, const weft_registration *registration);
+void weft_write_rings(FILE *page, const weft_session *session, const weft_registration *registration);
+void weft_write_whites(FILE *page, const weft_session *session, const weft_registration *registration);
+void weft_write_stays(FILE *page, const weft_session *session, const weft_registration *registration);
+
+#endif

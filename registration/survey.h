@@ -1,0 +1,29 @@
+/* What a session holds, as registration needs it: its distinct views, and its photographs by stay. */
+#ifndef WEFT_REGISTRATION_SURVEY_H
+#define WEFT_REGISTRATION_SURVEY_H
+
+#include "btf/session.h"
+
+/* Photographs taken while the camera stood still. */
+typedef struct weft_stay {
+    int view; /* index into weft_survey.view */
+    int stay; /* of the session */
+    int count;
+    const int *shot; /* [count] in the order of the plan; owned by the survey */
+} weft_stay;
+
+typedef struct weft_survey {
+    int view_count;
+    weft_angles *view; /* [view_count] in the order of the plan */
+    int *view_of_shot; /* [shot_count] */
+    int stay_count;
+    weft_stay *stay; /* [stay_count] by view, then by stay */
+    int untaken;     /* planned shots that were not taken */
+    int *order;      /* shots taken, by stay: what weft_stay.shot points into */
+} weft_survey;
+
+/* The caller frees with weft_survey_free. Errors: WEFT_BAD_INPUT for a session without a photograph; WEFT_SYSTEM. */
+weft_code weft_survey_make(const weft_session *session, weft_survey *survey, weft_error *error);
+void weft_survey_free(weft_survey *survey);
+
+#endif
