@@ -22,17 +22,26 @@ static const weft_real gauss_middle = 0.417959183673469387755102040816327;
 typedef struct problem {
     integrand_function function;
     const void *context;
-    weft_real middle, half; /* of the interval in x */
-    weft_real tolerance;    /* absolute, per panel */
+    weft_real low, high;
+    weft_real tolerance; /* absolute, per panel */
 } problem;
 
 typedef struct estimate {
     weft_real value, error;
 } estimate;
 
+abscissa abscissa_at(weft_real low, weft_real high, weft_real theta)
+{
+    weft_real sine = sin(theta / 2), cosine = cos(theta / 2);
+    abscissa at = {.from_low = (high - low) * sine * sine, .to_high = (high - low) * cosine * cosine};
+    at.x = sine < cosine ? low + at.from_low : high - at.to_high;
+    return at;
+}
+
 static weft_real transformed(const problem *p, weft_real theta)
 {
-    return p->function(p->context, p->middle - p->half * cos(theta)) * sin(theta) * p->half;
+    abscissa at = abscissa_at(p->low, p->high, theta);
+    return p->function(p->context, &at) * sin(theta) * ((p->high - p->low) / 2);
 }
 
 static estimate gauss_kronrod(const problem *p, weft_real low, weft_real high)
@@ -65,7 +74,7 @@ static weft_real panel_edge(int panel)
 
 weft_real integrate(integrand_function function, const void *context, weft_real low, weft_real high)
 {
-    problem p = {.function = function, .context = context, .middle = (low + high) / 2, .half = (high - low) / 2};
+    problem p = {.function = function, .context = context, .low = low, .high = high};
     estimate first[FIRST_PANELS];
     weft_real total = 0;
     for (int i = 0; i < FIRST_PANELS; i++) {

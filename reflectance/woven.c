@@ -15,7 +15,8 @@ static weft_yarn_point dark_point(const weft_prepared_segment *prepared, weft_re
 {
     const weft_spine *spine = &prepared->spine;
     weft_real on_spine = weft_clamp(u, -spine->umax, spine->umax);
-    weft_real radius = spine_radius(&prepared->segment, spine, on_spine, sin(on_spine), cos(on_spine));
+    weft_real radius =
+        spine_radius(&prepared->segment, spine, spine->umax - fabs(on_spine), sin(on_spine), cos(on_spine));
     return (weft_yarn_point){.radius = radius, .phase = phase};
 }
 
@@ -114,7 +115,7 @@ static weft_real staple_texture(const weft_prepared_segment *prepared, weft_real
     if (!inside_band(x, centre, segment->highlight_width * segment->width, segment->width))
         return 0;
     weft_spine spine = spine_for(prepared, umax);
-    weft_real radius = spine_radius(segment, &spine, u, at.sin_u, at.cos_u);
+    weft_real radius = spine_radius(segment, &spine, umax - fabs(u), at.sin_u, at.cos_u);
     weft_real integrand = yarn_area(segment, radius, at.cos_v) * prepared->inverse_sin_psi *
                           (at.light_share * at.view_share) * prepared_phase(prepared, light, view);
     return 2 * umax * integrand / segment->highlight_width;
@@ -139,7 +140,7 @@ static weft_real filament_texture(const weft_prepared_segment *prepared, weft_re
     if (!faces_both(&at, light, view))
         return 0;
     weft_spine spine = spine_for(prepared, umax);
-    weft_real radius = spine_radius(segment, &spine, u, at.sin_u, at.cos_u);
+    weft_real radius = spine_radius(segment, &spine, umax - fabs(u), at.sin_u, at.cos_u);
     weft_real attenuation = at.light_share * at.view_share * at.cosine_sum * filament_fade(segment->delta, umax, u);
     weft_real integrand =
         yarn_area(segment, radius, at.cos_v) / across * attenuation * prepared_phase(prepared, light, view);

@@ -6,56 +6,119 @@ typedef struct interval {
     weft_real low, high;
 } interval;
 
+/* The variable of integration is t = u - origin. Where the highlight is narrower than the yarn, the origin is its
+ * middle u0, so that D does not cancel for small psi; else it is 0, so that u is exact for small umax. */
 typedef struct staple_problem {
     const weft_prepared_segment *prepared;
     weft_vec3 light, view, half;
     weft_real u0, across; /* H_y = across sin u0, H_z = across cos u0 */
+    bool from_u0;
+    interval range; /* of t: the whole yarn */
 } staple_problem;
 
-/* The integrand at u = u0 + x without its constant factors. Measured from u0, D does not cancel for small psi:
- * H_y cos u - H_z sin u = -across sin x. */
-static weft_real staple_integrand(const void *context, weft_real x)
+/* The mirroring point of the yarn at t; false where there is none. */
+static bool staple_at(const staple_problem *problem, weft_real t, mirror *at)
 {
-    const staple_problem *problem = context;
+    weft_real u = problem->from_u0 ? problem->u0 + t : t, x = problem->from_u0 ? t : t - problem->u0;
+    at->sin_u = sin(u);
+    at->cos_u = fmax(cos(u), 0);
+    return staple_mirror(problem->prepared->cot_psi, problem->half.x, -problem->across * sin(x),
+                         problem->across * cos(x), at);
+}
+
+/* One smooth part of a problem. */
+typedef struct staple_piece {
+    const staple_problem *problem;
+    interval t;
+} staple_piece;
+
+/* The integrand without its constant factors. */
+static weft_real staple_integrand(const void *context, const abscissa *where)
+{
+    const staple_piece *piece = context;
+    const staple_problem *problem = piece->problem;
     const weft_prepared_segment *prepared = problem->prepared;
-    weft_real u = weft_clamp(problem->u0 + x, -prepared->spine.umax, prepared->spine.umax);
-    mirror at = {.sin_u = sin(u), .cos_u = cos(u)};
-    weft_real along = -problem->across * sin(x), across = problem->across * cos(x);
-    if (!staple_mirror(prepared->cot_psi, problem->half.x, along, across, &at) ||
-        !faces_both(&at, problem->light, problem->view))
+    mirror at;
+    if (!staple_at(problem, where->x, &at) || !faces_both(&at, problem->light, problem->view))
         return 0;
-    weft_real radius = spine_radius(&prepared->segment, &prepared->spine, u, at.sin_u, at.cos_u);
+    weft_real from_low = piece->t.low - problem->range.low + where->from_low;
+    weft_real to_high = problem->range.high - piece->t.high + where->to_high;
+    weft_real radius = spine_radius(&prepared->segment, &prepared->spine, fmin(from_low, to_high), at.sin_u, at.cos_u);
     return yarn_area(&prepared->segment, radius, at.cos_v) * (at.light_share * at.view_share);
+}
+
+/* Whether both directions are seen from the mirroring point, wherever v is. */
+static bool staple_faces(const staple_problem *problem, weft_real t)
+{
+    mirror at;
+    return staple_at(problem, t, &at) && faces_both(&at, problem->light, problem->view);
+}
+
+/* Where staple_faces changes between two places. */
+static weft_real bisect_facing(const staple_problem *problem, weft_real faces, weft_real not )
+{
+    for (int i = 0; i < 60; i++) {
+        weft_real middle = (faces + not ) / 2;
+        *(staple_faces(problem, middle) ? &faces : &not ) = middle;
+    }
+    return faces;
+}
+
+static weft_real integrate_piece(const staple_problem *problem, weft_real low, weft_real high)
+{
+    staple_piece piece = {problem, {low, high}};
+    return integrate(staple_integrand, &piece, low, high);
+}
+
+/* Integral between two breaks, cut where the yarn turns away from one of the directions: there the integrand has a
+ * kink. */
+static weft_real integrate_between(const staple_problem *problem, weft_real low, weft_real high)
+{
+    enum { SAMPLES = 32 };
+    weft_real sum = 0, start = low, before = low;
+    bool faced = false;
+    for (int i = 0; i < SAMPLES; i++) {
+        weft_real theta = (weft_real)WEFT_PI * ((weft_real)i + (weft_real)0.5) / SAMPLES;
+        weft_real t = abscissa_at(low, high, theta).x;
+        bool faces = staple_faces(problem, t);
+        if (i > 0 && faces != faced) {
+            weft_real cut = faces ? bisect_facing(problem, t, before) : bisect_facing(problem, before, t);
+            sum += integrate_piece(problem, start, cut);
+            start = cut;
+        }
+        before = t;
+        faced = faces;
+    }
+    return sum + integrate_piece(problem, start, high);
 }
 
 enum { MAX_BREAKS = 16 };
 
-static void insert(weft_real *breaks, int *count, weft_real x, interval range)
+static void insert(weft_real *breaks, int *count, weft_real t, interval range)
 {
-    if (!(x > range.low && x < range.high))
+    if (!(t > range.low && t < range.high))
         return;
     int i = (*count)++;
-    for (; i > 0 && breaks[i - 1] > x; i--)
+    for (; i > 0 && breaks[i - 1] > t; i--)
         breaks[i] = breaks[i - 1];
-    breaks[i] = x;
+    breaks[i] = t;
 }
 
-/* Where the staple integrand begins, ends or jumps, as x = u - u0 in increasing order with both ends of `range`: |D| =
- * 1 where |sin x| = reach, |v| = pi/2 where x = +-psi, both also opposite; and the nearest approach to |D| = 1 at
- * +-pi/2. */
-static int staple_breaks(weft_real reach, weft_real psi, interval range, weft_real breaks[MAX_BREAKS])
+/* Where the staple integrand begins, ends or jumps, in increasing order with both ends of the yarn: |D| = 1 where
+ * |sin(u - u0)| = reach, |v| = pi/2 where u = u0 +- psi, both also half a turn away. */
+static int staple_breaks(const staple_problem *problem, weft_real reach, weft_real breaks[MAX_BREAKS])
 {
-    const weft_real pi = (weft_real)WEFT_PI;
+    weft_real u0 = problem->from_u0 ? 0 : problem->u0;
+    const weft_real edge[2] = {asin(fmin(reach, 1)), fabs(problem->prepared->segment.psi)};
     int count = 1;
-    breaks[0] = range.low;
-    const weft_real edge[2] = {asin(fmin(reach, 1)), psi};
+    breaks[0] = problem->range.low;
     for (int i = 0; i < 2; i++) {
         for (int turn = -1; turn <= 1; turn++) {
-            insert(breaks, &count, edge[i] + (weft_real)turn * pi, range);
-            insert(breaks, &count, -edge[i] + (weft_real)turn * pi, range);
+            insert(breaks, &count, u0 + edge[i] + (weft_real)turn * (weft_real)WEFT_PI, problem->range);
+            insert(breaks, &count, u0 - edge[i] + (weft_real)turn * (weft_real)WEFT_PI, problem->range);
         }
     }
-    breaks[count++] = range.high;
+    breaks[count++] = problem->range.high;
     return count;
 }
 
@@ -65,13 +128,18 @@ static weft_real staple_reflectance(const weft_prepared_segment *prepared, weft_
     staple_problem problem = {.prepared = prepared, .light = light, .view = view, .half = half};
     problem.u0 = atan2(half.y, half.z);
     problem.across = sqrt(half.y * half.y + half.z * half.z);
-    weft_real umax = prepared->spine.umax, psi = fabs(prepared->segment.psi);
-    weft_real reach = sin(psi) * weft_length(half) / problem.across;
+    weft_real umax = prepared->spine.umax;
+    weft_real reach = sin(fabs(prepared->segment.psi)) * weft_length(half) / problem.across;
+    problem.from_u0 = reach < prepared->spine.sin_umax;
+    weft_real origin = problem.from_u0 ? problem.u0 : 0;
+    problem.range = (interval){-umax - origin, umax - origin};
     weft_real breaks[MAX_BREAKS], sum = 0;
-    int count = staple_breaks(reach, psi, (interval){-umax - problem.u0, umax - problem.u0}, breaks);
-    for (int i = 0; i + 1 < count; i++)
-        if (fabs(sin((breaks[i] + breaks[i + 1]) / 2)) < reach)
-            sum += integrate(staple_integrand, &problem, breaks[i], breaks[i + 1]);
+    int count = staple_breaks(&problem, reach, breaks);
+    for (int i = 0; i + 1 < count; i++) {
+        weft_real x = (breaks[i] + breaks[i + 1]) / 2 + (origin - problem.u0);
+        if (fabs(sin(x)) < reach)
+            sum += integrate_between(&problem, breaks[i], breaks[i + 1]);
+    }
     return sum * prepared->inverse_sin_psi;
 }
 
@@ -81,9 +149,10 @@ typedef struct filament_problem {
     weft_real sin_u, cos_u, radius;
 } filament_problem;
 
-static weft_real filament_integrand(const void *context, weft_real v)
+static weft_real filament_integrand(const void *context, const abscissa *where)
 {
     const filament_problem *problem = context;
+    weft_real v = where->x;
     mirror at = {.sin_u = problem->sin_u, .cos_u = problem->cos_u, .sin_v = sin(v), .cos_v = cos(v)};
     if (!faces_both(&at, problem->light, problem->view))
         return 0;
@@ -109,7 +178,7 @@ static weft_real filament_reflectance(const weft_prepared_segment *prepared, wef
         return 0;
     filament_problem problem = {.light = light, .view = view, .segment = &prepared->segment, .sin_u = at.sin_u};
     problem.cos_u = at.cos_u;
-    problem.radius = spine_radius(&prepared->segment, spine, u, at.sin_u, at.cos_u);
+    problem.radius = spine_radius(&prepared->segment, spine, spine->umax - fabs(u), at.sin_u, at.cos_u);
     interval range = cut_to_visible(cut_to_visible((interval){-quarter, quarter}, &at, light), &at, view);
     if (!(range.low < range.high))
         return 0;

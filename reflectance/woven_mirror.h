@@ -67,8 +67,8 @@ static inline weft_real filament_mirror(weft_vec3 half, mirror *at)
     return across;
 }
 
-/* Radius of curvature at u; `u` is needed beside its sine and cosine where the difference to umax matters. */
-weft_real spine_radius(const weft_segment *segment, const weft_spine *spine, weft_real u, weft_real sin_u,
+/* Radius of curvature at u; `inside` = umax - |u| beside sine and cosine because it decides near the ends. */
+weft_real spine_radius(const weft_segment *segment, const weft_spine *spine, weft_real inside, weft_real sin_u,
                        weft_real cos_u);
 
 /* fc for x = -light . view. */

@@ -76,18 +76,17 @@ weft_spine weft_segment_spine(const weft_segment *segment, weft_real umax)
 
 /* e(u) of a hyperbola, (cos u - |shape| sin|u|) (cos u + |shape| sin|u|). The first factor cancels near umax as kappa
  * approaches -1; written with sin(umax - |u|) it is a sum of positive terms. */
-static weft_real hyperbola_factor(const weft_segment *segment, const weft_spine *spine, weft_real u, weft_real sin_u,
-                                  weft_real cos_u)
+static weft_real hyperbola_factor(const weft_segment *segment, const weft_spine *spine, weft_real inside,
+                                  weft_real sin_u, weft_real cos_u)
 {
-    weft_real inside = fmax(spine->umax - fabs(u), 0), sin_abs_u = fabs(sin_u);
-    weft_real end = (1 + segment->kappa) * (spine->sin_umax + spine->cos_umax);
+    weft_real sin_abs_u = fabs(sin_u), end = (1 + segment->kappa) * (spine->sin_umax + spine->cos_umax);
     return (sin(inside) + end * sin_abs_u) / spine->sin_umax * (cos_u - spine->shape * sin_abs_u);
 }
 
-weft_real spine_radius(const weft_segment *segment, const weft_spine *spine, weft_real u, weft_real sin_u,
+weft_real spine_radius(const weft_segment *segment, const weft_spine *spine, weft_real inside, weft_real sin_u,
                        weft_real cos_u)
 {
-    weft_real e = spine->shape < 0 ? hyperbola_factor(segment, spine, u, sin_u, cos_u)
+    weft_real e = spine->shape < 0 ? hyperbola_factor(segment, spine, fmax(inside, 0), sin_u, cos_u)
                                    : cos_u * cos_u + spine->shape * spine->shape * sin_u * sin_u;
     return spine->scale / (e * sqrt(e));
 }
@@ -97,7 +96,7 @@ weft_real weft_spine_radius(const weft_segment *segment, weft_real u)
     if (!weft_segment_admissible(segment) || !(fabs(u) <= segment->umax))
         return 0;
     weft_spine spine = weft_segment_spine(segment, segment->umax);
-    return spine_radius(segment, &spine, u, sin(u), cos(u));
+    return spine_radius(segment, &spine, spine.umax - fabs(u), sin(u), cos(u));
 }
 
 weft_prepared_segment weft_segment_prepare(const weft_segment *segment)

@@ -37,26 +37,56 @@ static void spine_radius_matches_every_row(void **state)
     vectors_close(&v);
 }
 
+enum { OUTPUTS = 9 };
+
+static const char *const output_column[OUTPUTS] = {"integrand", "solved", "nx", "ny", "nz", "R", "G", "fc", "A"};
+
+static void point_outputs(const weft_segment *segment, weft_real coordinate, direction_pair at, double out[OUTPUTS])
+{
+    weft_yarn_point point = weft_yarn_highlight(segment, coordinate, at.light, at.view);
+    const double value[OUTPUTS] = {point.integrand, point.solved,   point.normal.x, point.normal.y,   point.normal.z,
+                                   point.radius,    point.geometry, point.phase,    point.attenuation};
+    memcpy(out, value, sizeof value);
+}
+
+/* Another assignment of the bits of `sample` than that of the directions. */
+static weft_segment perturbed_segment(weft_segment segment, unsigned sample)
+{
+    const weft_real factor[2] = {(weft_real)(1 - VECTORS_AMOUNT), (weft_real)(1 + VECTORS_AMOUNT)};
+    segment.kappa *= factor[sample * 3 >> 1 & 1];
+    segment.umax *= factor[sample * 3 >> 2 & 1];
+    segment.psi *= factor[sample * 3 >> 3 & 1];
+    return segment;
+}
+
+static void check_point(reference_vectors *v, int row)
+{
+    weft_segment segment = segment_at(v, row);
+    weft_real coordinate = real_at(v, row, "coord");
+    direction_pair at = {vectors_direction(v, row, "wi"), vectors_direction(v, row, "wo")};
+    double out[OUTPUTS], other[OUTPUTS], change[OUTPUTS] = {0};
+    point_outputs(&segment, coordinate, at, out);
+    for (unsigned sample = 0; sample < VECTORS_SAMPLES; sample++) {
+        weft_segment near = perturbed_segment(segment, sample);
+        point_outputs(&near, coordinate, vectors_perturbed(at, sample, VECTORS_AMOUNT), other);
+        for (int i = 0; i < OUTPUTS; i++)
+            change[i] = fmax(change[i], fabs(other[i] - out[i]));
+    }
+    for (int i = 0; i < OUTPUTS; i++)
+        vectors_check_sensitive(v, row, output_column[i], out[i], change[i]);
+}
+
 static void highlight_point_matches_every_row(void **state)
 {
     (void)state;
     reference_vectors v = vectors_open("woven_point.csv", 492);
     for (int row = 0; row < v.csv.row_count; row++) {
         weft_segment segment = segment_at(&v, row);
-        weft_yarn_point point = weft_yarn_highlight(&segment, real_at(&v, row, "coord"),
-                                                    vectors_direction(&v, row, "wi"), vectors_direction(&v, row, "wo"));
-        vectors_check_within(&v, row, "active", point.active, 0);
-        vectors_check(&v, row, "integrand", point.integrand);
-        vectors_check(&v, row, "G", point.geometry);
-        vectors_check(&v, row, "fc", point.phase);
-        vectors_check(&v, row, "A", point.attenuation);
-        /* Angles and components of a unit vector: the tolerance is relative to 1, not to a value that may be near 0. */
-        double tolerance = vectors_tolerance(&v, row);
-        vectors_check_within(&v, row, "solved", point.solved, tolerance);
-        vectors_check_within(&v, row, "nx", point.normal.x, tolerance);
-        vectors_check_within(&v, row, "ny", point.normal.y, tolerance);
-        vectors_check_within(&v, row, "nz", point.normal.z, tolerance);
-        vectors_check(&v, row, "R", point.radius);
+        bool active = weft_yarn_highlight(&segment, real_at(&v, row, "coord"), vectors_direction(&v, row, "wi"),
+                                          vectors_direction(&v, row, "wo"))
+                          .active;
+        vectors_check_within(&v, row, "active", active, 0);
+        check_point(&v, row);
     }
     vectors_close(&v);
 }

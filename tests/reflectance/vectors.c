@@ -16,8 +16,8 @@ reference_vectors vectors_open(const char *name, int rows)
 
 void vectors_close(reference_vectors *vectors)
 {
-    print_message("%s: %d rows, %d failed, worst error %.3g of the allowed\n", vectors->csv.path,
-                  vectors->csv.row_count, vectors->failures, vectors->worst);
+    print_message("%s: %d rows, %d failed, worst error %.3g of the allowed, %d outputs needed their own condition\n",
+                  vectors->csv.path, vectors->csv.row_count, vectors->failures, vectors->worst, vectors->sensitive);
     int failures = vectors->failures;
     weft_csv_free(&vectors->csv);
     assert_int_equal(failures, 0);
@@ -53,12 +53,19 @@ weft_vec3 vectors_direction(const reference_vectors *vectors, int row, const cha
         snprintf(column, sizeof column, "%s%c", prefix, "xyz"[i]);
         value[i] = vectors_number(vectors, row, column);
     }
-    return weft_unit(weft_vec3_of((weft_real)value[0], (weft_real)value[1], (weft_real)value[2]));
+    double length = sqrt(value[0] * value[0] + value[1] * value[1] + value[2] * value[2]);
+    return weft_vec3_of((weft_real)(value[0] / length), (weft_real)(value[1] / length), (weft_real)(value[2] / length));
 }
 
-double vectors_tolerance(const reference_vectors *vectors, int row)
+/* 1, that of a product, where the file has no such column. */
+static double condition(const reference_vectors *vectors, int row)
 {
-    return 1e-6 + 20 * vectors_number(vectors, row, "cond") * (double)WEFT_REAL_EPSILON;
+    return weft_csv_column(&vectors->csv, "cond") < 0 ? 1 : vectors_number(vectors, row, "cond");
+}
+
+static double relative_tolerance(const reference_vectors *vectors, int row)
+{
+    return 1e-6 + 20 * condition(vectors, row) * (double)WEFT_REAL_EPSILON;
 }
 
 void vectors_check_within(reference_vectors *vectors, int row, const char *column, double actual, double tolerance)
@@ -76,5 +83,27 @@ void vectors_check_within(reference_vectors *vectors, int row, const char *colum
 void vectors_check(reference_vectors *vectors, int row, const char *column, double actual)
 {
     double expected = vectors_number(vectors, row, column);
-    vectors_check_within(vectors, row, column, actual, fabs(expected) * vectors_tolerance(vectors, row));
+    vectors_check_within(vectors, row, column, actual, fabs(expected) * relative_tolerance(vectors, row));
+}
+
+void vectors_check_sensitive(reference_vectors *vectors, int row, const char *column, double actual, double change)
+{
+    double expected = vectors_number(vectors, row, column);
+    double by_rule = fabs(expected) * relative_tolerance(vectors, row);
+    double sampled = 1e-6 * fabs(expected) + 20 * change * (double)WEFT_REAL_EPSILON / VECTORS_AMOUNT;
+    bool needed = fabs(actual - expected) > by_rule && fabs(actual - expected) <= sampled;
+    vectors->sensitive += needed;
+    vectors_check_within(vectors, row, column, actual, needed ? sampled : by_rule);
+}
+
+static weft_vec3 perturbed(weft_vec3 d, unsigned sample, double amount)
+{
+    const double factor[2] = {1 - amount, 1 + amount};
+    return weft_vec3_of((weft_real)(d.x * factor[sample & 1]), (weft_real)(d.y * factor[sample >> 1 & 1]),
+                        (weft_real)(d.z * factor[sample >> 2 & 1]));
+}
+
+direction_pair vectors_perturbed(direction_pair pair, unsigned sample, double amount)
+{
+    return (direction_pair){perturbed(pair.light, sample, amount), perturbed(pair.view, sample >> 3, amount)};
 }

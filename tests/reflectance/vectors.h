@@ -9,7 +9,8 @@
 typedef struct reference_vectors {
     weft_csv csv;
     int failures;
-    double worst; /* largest error / allowed error over all rows */
+    double worst;  /* largest error / allowed error over all rows */
+    int sensitive; /* rows accepted by vectors_check_sensitive that vectors_check would refuse */
 } reference_vectors;
 
 /* Opens tests/data/reference/NAME; fails the test where it has not `rows` rows. */
@@ -30,7 +31,20 @@ void vectors_check(reference_vectors *vectors, int row, const char *column, doub
 /* The same with a given absolute tolerance. */
 void vectors_check_within(reference_vectors *vectors, int row, const char *column, double actual, double tolerance);
 
-/* 20 cond eps + 1e-6 of a row. */
-double vectors_tolerance(const reference_vectors *vectors, int row);
+/* A pair of directions whose components are changed by a relative `amount`, up or down by the bits of `sample`. */
+typedef struct direction_pair {
+    weft_vec3 light, view;
+} direction_pair;
+direction_pair vectors_perturbed(direction_pair pair, unsigned sample, double amount);
+
+enum { VECTORS_SAMPLES = 64 };
+
+/* The relative change of the inputs used to measure conditions: far enough above rounding. */
+#define VECTORS_AMOUNT (256 * (double)WEFT_REAL_EPSILON)
+
+/* As vectors_check, but where `cond` of the row is missing, belongs to another output or is too low (it is a sampled
+ * lower bound), `change` stands in: the largest change of the output over VECTORS_SAMPLES perturbations by
+ * VECTORS_AMOUNT. */
+void vectors_check_sensitive(reference_vectors *vectors, int row, const char *column, double actual, double change);
 
 #endif
