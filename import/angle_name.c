@@ -35,7 +35,7 @@ bool weft_parse_angle_name(const char *name, weft_named_angles *angles)
     char *dot = strrchr(text, '.');
     if (dot)
         *dot = 0;
-    double angle_deg[ANGLE_COUNT];
+    double angle_deg[ANGLE_COUNT] = {0};
     bool found[ANGLE_COUNT] = {false};
     for (char *rest = text; rest;) {
         if (!parse_word(strsep(&rest, " _-"), angle_deg, found))

@@ -1,6 +1,6 @@
 /* A material measured against its dataset in one pass over the samples. */
-#ifndef WEFT_STUDY_SURVEY_H
-#define WEFT_STUDY_SURVEY_H
+#ifndef WEFT_STUDY_MEASUREMENT_H
+#define WEFT_STUDY_MEASUREMENT_H
 
 #include "btf/dataset.h"
 #include "btf/image.h"
@@ -18,8 +18,8 @@ typedef struct weft_image_pair {
     uint8_t *mask;                 /* [height][width] */
 } weft_image_pair;
 
-/* Freed with weft_survey_free. */
-typedef struct weft_survey {
+/* Freed with weft_measurement_free. */
+typedef struct weft_measurement {
     int pair_count;
     weft_image_pair *pair; /* [pair_count] */
     long texel_count;      /* texels whose samples were measured */
@@ -27,7 +27,7 @@ typedef struct weft_survey {
     weft_prediction_error by_view[WEFT_RING_COUNT],
         by_light[WEFT_RING_COUNT];                   /* rings of ubo81: theta nearest 0, 15, .. 75 degrees */
     long sample_count, missing, saturated, shadowed; /* texels times images, and how many of them are masked and why */
-} weft_survey;
+} weft_measurement;
 
 /* The prediction of a material (level 0) for a sample of the dataset, in the quantity of the dataset. `views`
  * triangulates the views of the material (NULL without a table). Pure. */
@@ -37,8 +37,8 @@ weft_rgb weft_predict_sample(const weft_material *material, const weft_triangula
 /* Measures the error over all texels, or over an even choice of them where the samples would be more than about two
  * million; makes the pairs of the given images [image_count]. The material must have the size of the dataset. Errors:
  * WEFT_BAD_INPUT for another size or a dataset that cannot be read. */
-weft_code weft_survey_make(weft_dataset *dataset, const weft_material *material, const int *image, int image_count,
-                           const weft_progress *progress, weft_survey *survey, weft_error *error);
-void weft_survey_free(weft_survey *survey);
+weft_code weft_measurement_make(weft_dataset *dataset, const weft_material *material, const int *image, int image_count,
+                                const weft_progress *progress, weft_measurement *measurement, weft_error *error);
+void weft_measurement_free(weft_measurement *measurement);
 
 #endif

@@ -1,4 +1,4 @@
-#include "study/survey.h"
+#include "study/measurement.h"
 
 #include "btf/direction.h"
 #include "reflectance/lafortune.h"
@@ -9,18 +9,18 @@
 static const long enough_samples = 2000000;
 
 /* What the pass over the rows carries along. */
-typedef struct survey_pass {
+typedef struct measuring {
     weft_dataset *dataset;
     const weft_dataset_layout *layout;
     const weft_material *material;
     weft_triangulation *views;
-    weft_survey *survey;
+    weft_measurement *measurement;
     weft_half *samples; /* [width][image_count][3] */
     uint8_t *mask;      /* [width][image_count] */
     long stride;        /* every stride-th texel is measured */
     weft_prediction *value;
     long value_count;
-} survey_pass;
+} measuring;
 
 weft_rgb weft_predict_sample(const weft_material *material, const weft_triangulation *views,
                              const weft_dataset_layout *layout, int image, int x, int y)
@@ -32,15 +32,15 @@ weft_rgb weft_predict_sample(const weft_material *material, const weft_triangula
     return (weft_rgb){cosine * value.r, cosine * value.g, cosine * value.b};
 }
 
-static void count_masks(const survey_pass *pass)
+static void count_masks(const measuring *pass)
 {
-    weft_survey *survey = pass->survey;
+    weft_measurement *measurement = pass->measurement;
     long count = (long)pass->layout->width * pass->layout->image_count;
-    survey->sample_count += count;
+    measurement->sample_count += count;
     for (long i = 0; i < count; i++) {
-        survey->missing += (pass->mask[i] & WEFT_MASK_MISSING) != 0;
-        survey->saturated += (pass->mask[i] & WEFT_MASK_SATURATED) != 0;
-        survey->shadowed += (pass->mask[i] & WEFT_MASK_SHADOWED) != 0;
+        measurement->missing += (pass->mask[i] & WEFT_MASK_MISSING) != 0;
+        measurement->saturated += (pass->mask[i] & WEFT_MASK_SATURATED) != 0;
+        measurement->shadowed += (pass->mask[i] & WEFT_MASK_SHADOWED) != 0;
     }
 }
 
@@ -51,14 +51,14 @@ static void store_rgb(weft_image *image, size_t texel, weft_rgb value)
     image->pixels[3 * texel + 2] = (float)value.b;
 }
 
-static weft_rgb sample_at(const survey_pass *pass, int x, int image)
+static weft_rgb sample_at(const measuring *pass, int x, int image)
 {
     const weft_half *half = pass->samples + 3 * ((size_t)x * (size_t)pass->layout->image_count + (size_t)image);
     return (weft_rgb){(double)weft_float_of_half(half[0]), (double)weft_float_of_half(half[1]),
                       (double)weft_float_of_half(half[2])};
 }
 
-static void fill_pair(const survey_pass *pass, weft_image_pair *pair, int y)
+static void fill_pair(const measuring *pass, weft_image_pair *pair, int y)
 {
     int width = pass->layout->width;
     for (int x = 0; x < width; x++) {
@@ -70,7 +70,7 @@ static void fill_pair(const survey_pass *pass, weft_image_pair *pair, int y)
     }
 }
 
-static void measure_sample(survey_pass *pass, int image, int x, int y)
+static void measure_sample(measuring *pass, int image, int x, int y)
 {
     const weft_dataset_layout *layout = pass->layout;
     weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
@@ -86,23 +86,23 @@ static void measure_sample(survey_pass *pass, int image, int x, int y)
             (weft_prediction){(float)prediction[c], (float)sample[c], view_ring, light_ring};
 }
 
-static void measure_texel(survey_pass *pass, int x, int y)
+static void measure_texel(measuring *pass, int x, int y)
 {
     for (int image = 0; image < pass->layout->image_count; image++) {
         if (pass->mask[(size_t)x * (size_t)pass->layout->image_count + (size_t)image] == 0)
             measure_sample(pass, image, x, y);
     }
-    pass->survey->texel_count++;
+    pass->measurement->texel_count++;
 }
 
-static weft_code read_rows(survey_pass *pass, const weft_progress *progress, weft_error *error)
+static weft_code read_rows(measuring *pass, const weft_progress *progress, weft_error *error)
 {
     const weft_dataset_layout *layout = pass->layout;
     for (int y = 0; y < layout->height; y++) {
         WEFT_TRY(weft_dataset_read_block(pass->dataset, 0, y, layout->width, 1, pass->samples, pass->mask, error));
         count_masks(pass);
-        for (int i = 0; i < pass->survey->pair_count; i++)
-            fill_pair(pass, &pass->survey->pair[i], y);
+        for (int i = 0; i < pass->measurement->pair_count; i++)
+            fill_pair(pass, &pass->measurement->pair[i], y);
         for (int x = 0; x < layout->width; x++) {
             if (((long)y * layout->width + x) % pass->stride == 0)
                 measure_texel(pass, x, y);
@@ -112,31 +112,32 @@ static weft_code read_rows(survey_pass *pass, const weft_progress *progress, wef
     return WEFT_OK;
 }
 
-static weft_code summarise(const survey_pass *pass, weft_error *error)
+static weft_code summarise(const measuring *pass, weft_error *error)
 {
-    weft_survey *survey = pass->survey;
+    weft_measurement *measurement = pass->measurement;
     const weft_prediction *value = pass->value;
     long count = pass->value_count;
-    WEFT_TRY(weft_prediction_error_of(value, count, (weft_prediction_choice){WEFT_CHOOSE_ALL, 0}, &survey->all, error));
+    WEFT_TRY(
+        weft_prediction_error_of(value, count, (weft_prediction_choice){WEFT_CHOOSE_ALL, 0}, &measurement->all, error));
     for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
         weft_prediction_choice view = {WEFT_CHOOSE_VIEW_RING, ring}, light = {WEFT_CHOOSE_LIGHT_RING, ring};
-        WEFT_TRY(weft_prediction_error_of(value, count, view, &survey->by_view[ring], error));
-        WEFT_TRY(weft_prediction_error_of(value, count, light, &survey->by_light[ring], error));
+        WEFT_TRY(weft_prediction_error_of(value, count, view, &measurement->by_view[ring], error));
+        WEFT_TRY(weft_prediction_error_of(value, count, light, &measurement->by_light[ring], error));
     }
     return WEFT_OK;
 }
 
-static weft_code create_pairs(survey_pass *pass, const int *image, int image_count, weft_error *error)
+static weft_code create_pairs(measuring *pass, const int *image, int image_count, weft_error *error)
 {
     const weft_dataset_layout *layout = pass->layout;
-    weft_survey *survey = pass->survey;
+    weft_measurement *measurement = pass->measurement;
     size_t texels = (size_t)layout->width * (size_t)layout->height;
-    survey->pair = calloc((size_t)image_count + 1, sizeof *survey->pair);
-    if (!survey->pair)
-        return weft_fail_memory(error, "pictures", (size_t)image_count * sizeof *survey->pair);
-    survey->pair_count = image_count;
+    measurement->pair = calloc((size_t)image_count + 1, sizeof *measurement->pair);
+    if (!measurement->pair)
+        return weft_fail_memory(error, "pictures", (size_t)image_count * sizeof *measurement->pair);
+    measurement->pair_count = image_count;
     for (int i = 0; i < image_count; i++) {
-        weft_image_pair *pair = &survey->pair[i];
+        weft_image_pair *pair = &measurement->pair[i];
         pair->image = image[i];
         WEFT_TRY(weft_image_create(layout->width, layout->height, &pair->sample, error));
         WEFT_TRY(weft_image_create(layout->width, layout->height, &pair->prediction, error));
@@ -154,7 +155,7 @@ static long choose_stride(const weft_dataset_layout *layout)
     return stride <= 1 ? 1 : stride | 1;
 }
 
-static weft_code allocate_pass(survey_pass *pass, weft_error *error)
+static weft_code allocate_pass(measuring *pass, weft_error *error)
 {
     const weft_dataset_layout *layout = pass->layout;
     size_t row = (size_t)layout->width * (size_t)layout->image_count;
@@ -180,13 +181,15 @@ static weft_code check_size(const weft_dataset *dataset, const weft_material *ma
     return WEFT_OK;
 }
 
-weft_code weft_survey_make(weft_dataset *dataset, const weft_material *material, const int *image, int image_count,
-                           const weft_progress *progress, weft_survey *survey, weft_error *error)
+weft_code weft_measurement_make(weft_dataset *dataset, const weft_material *material, const int *image, int image_count,
+                                const weft_progress *progress, weft_measurement *measurement, weft_error *error)
 {
-    *survey = (weft_survey){0};
+    *measurement = (weft_measurement){0};
     WEFT_TRY(check_size(dataset, material, error));
-    survey_pass pass = {
-        .dataset = dataset, .layout = weft_dataset_get_layout(dataset), .material = material, .survey = survey};
+    measuring pass = {.dataset = dataset,
+                      .layout = weft_dataset_get_layout(dataset),
+                      .material = material,
+                      .measurement = measurement};
     weft_code code = WEFT_OK;
     if (material->view_count > 0)
         code = weft_triangulation_build(material->view, material->view_count, &pass.views, error);
@@ -203,17 +206,17 @@ weft_code weft_survey_make(weft_dataset *dataset, const weft_material *material,
     free(pass.mask);
     free(pass.value);
     if (code != WEFT_OK)
-        weft_survey_free(survey);
+        weft_measurement_free(measurement);
     return code;
 }
 
-void weft_survey_free(weft_survey *survey)
+void weft_measurement_free(weft_measurement *measurement)
 {
-    for (int i = 0; i < survey->pair_count; i++) {
-        weft_image_free(&survey->pair[i].sample);
-        weft_image_free(&survey->pair[i].prediction);
-        free(survey->pair[i].mask);
+    for (int i = 0; i < measurement->pair_count; i++) {
+        weft_image_free(&measurement->pair[i].sample);
+        weft_image_free(&measurement->pair[i].prediction);
+        free(measurement->pair[i].mask);
     }
-    free(survey->pair);
-    *survey = (weft_survey){0};
+    free(measurement->pair);
+    *measurement = (weft_measurement){0};
 }

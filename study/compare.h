@@ -1,0 +1,34 @@
+/* Dataset, material and analytic cloth side by side: one HTML page (docs/compare.md). */
+#ifndef WEFT_STUDY_COMPARE_H
+#define WEFT_STUDY_COMPARE_H
+
+#include "btf/progress.h"
+#include "study/leave_one_out.h"
+#include "study/measurement.h"
+
+typedef struct weft_compare_options {
+    const char *dataset;  /* NAME.btf.h5 */
+    const char *material; /* NAME.weft, fitted to it */
+    const char *weave;    /* CLOTH.wv, or NULL */
+    const char *folder;   /* for the page and its pictures */
+} weft_compare_options;
+
+/* A dataset of fewer images than these is also fitted with each of them left out. */
+enum { WEFT_LEAVE_ONE_OUT_LIMIT = 30 };
+
+/* What was measured. Freed with weft_comparison_free. */
+typedef struct weft_comparison {
+    weft_measurement measurement;
+    weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
+    double dataset_bytes, half_float_bytes, material_bytes;
+    char no_scenes[WEFT_MESSAGE_SIZE]; /* why there are no pictures of the drape; empty if there are */
+} weft_comparison;
+
+/* Measures, renders, and writes folder/index.html with its pictures; the page appears when it is complete. Without
+ * OpenGL the page says that the pictures of the scenes are missing, and why. Errors: WEFT_BAD_INPUT for files that
+ * cannot be read or do not belong together; WEFT_SYSTEM from writing. */
+weft_code weft_compare(const weft_compare_options *options, const weft_progress *progress, weft_comparison *comparison,
+                       weft_error *error);
+void weft_comparison_free(weft_comparison *comparison);
+
+#endif

@@ -1,0 +1,93 @@
+#include "study/compare_page.h"
+
+#include <jansson.h>
+#include <math.h>
+
+static void print_levels(weft_page *page, const weft_material *material)
+{
+    fputs("<h2>Error of the material, level by level</h2>\n<p class=\"note\">Measured over all valid samples when the "
+          "file was written, decoded "
+          "as a player sees it.</p>\n<table><tr><th>texels</th><th>median relative</th><th>80th "
+          "percentile</th><th>RMSE</th>"
+          "<th>relative RMSE</th><th>PSNR</th></tr>\n",
+          page->html);
+    for (int i = 0; i < material->level_count; i++) {
+        const weft_material_level *level = &material->level[i];
+        const weft_material_error *e = &level->error;
+        fprintf(page->html,
+                "<tr><td>%d \u00d7 %d</td><td>%.2f %%</td><td>%.2f %%</td><td>%.4f</td><td>%.4f</td><td>%.1f "
+                "dB</td></tr>\n",
+                level->width, level->height, 100 * e->median_relative, 100 * e->percentile80_relative, e->rmse,
+                e->relative_rmse, e->psnr_db);
+    }
+    fputs("</table>\n", page->html);
+}
+
+static void print_error(weft_page *page, const char *name, const weft_prediction_error *e)
+{
+    if (e->count == 0)
+        return;
+    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.2f %%</td><td>%.4f</td></tr>\n", name, e->count,
+            100 * e->median_relative, e->relative_rmse);
+}
+
+static void print_rings(weft_page *page, const char *title, const weft_prediction_error ring[WEFT_RING_COUNT])
+{
+    fprintf(page->html, "<tr><th>%s</th><th></th><th></th><th></th></tr>\n", title);
+    for (int i = 0; i < WEFT_RING_COUNT; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "about %d\u00b0", 15 * i);
+        print_error(page, name, &ring[i]);
+    }
+}
+
+static void print_directions(weft_page *page, const weft_dataset_layout *layout, const weft_measurement *measurement)
+{
+    fputs("<h2>Error by direction</h2>\n", page->html);
+    fprintf(
+        page->html,
+        "<p class=\"note\">Level 0 against the dataset, measured for this page over %ld of %ld texels. Relative RMSE: "
+        "\u221a(mean (p \u2212 s)\u00b2 / mean s\u00b2). Median relative: of |p \u2212 s| / s, where s counts as at "
+        "least "
+        "1e-4 of the largest sample.</p>\n",
+        measurement->texel_count, (long)layout->width * layout->height);
+    fputs("<table><tr><th></th><th>values</th><th>median relative</th><th>relative RMSE</th></tr>\n", page->html);
+    print_error(page, "all", &measurement->all);
+    print_rings(page, "view from the normal", measurement->by_view);
+    print_rings(page, "light from the normal", measurement->by_light);
+    fputs("</table>\n", page->html);
+}
+
+static void print_sizes(weft_page *page, const weft_comparison *comparison)
+{
+    fputs("<h2>Size</h2>\n<table>\n", page->html);
+    weft_page_fact(page, "samples as half floats", "%.0f bytes", comparison->half_float_bytes);
+    weft_page_fact(page, "dataset on disk", "%.0f bytes", comparison->dataset_bytes);
+    weft_page_fact(page, "material", "%.0f bytes", comparison->material_bytes);
+    weft_page_fact(page, "half floats : material", "%.1f : 1",
+                   comparison->half_float_bytes / comparison->material_bytes);
+    weft_page_fact(page, "dataset : material", "%.1f : 1", comparison->dataset_bytes / comparison->material_bytes);
+    fputs("</table>\n", page->html);
+}
+
+static void print_masks(weft_page *page, const weft_measurement *measurement)
+{
+    double percent = 100 / fmax((double)measurement->sample_count, 1);
+    fputs("<h2>Masked samples</h2>\n<table>\n", page->html);
+    weft_page_fact(page, "samples (texels \u00d7 images)", "%ld", measurement->sample_count);
+    weft_page_fact(page, "missing", "%ld (%.2f %%)", measurement->missing, percent * (double)measurement->missing);
+    weft_page_fact(page, "saturated", "%ld (%.2f %%)", measurement->saturated,
+                   percent * (double)measurement->saturated);
+    weft_page_fact(page, "shadowed by the rig", "%ld (%.2f %%)", measurement->shadowed,
+                   percent * (double)measurement->shadowed);
+    fputs("</table>\n", page->html);
+}
+
+void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
+                       const weft_comparison *comparison)
+{
+    print_levels(page, material);
+    print_directions(page, layout, &comparison->measurement);
+    print_sizes(page, comparison);
+    print_masks(page, &comparison->measurement);
+}

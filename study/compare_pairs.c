@@ -1,0 +1,68 @@
+#include "study/compare_page.h"
+
+#include "study/picture.h"
+#include "study/representative.h"
+
+#include <stdio.h>
+
+/* Small textures are shown large enough to see their texels. */
+static int shown_width(const weft_image *image)
+{
+    int scale = 260 / image->width;
+    return scale < 1 ? 260 : scale * image->width;
+}
+
+static weft_code put_picture(weft_page *page, const char *name, const char *what, weft_image *picture,
+                             const char *caption, weft_error *error)
+{
+    char file[128];
+    snprintf(file, sizeof file, "%s-%s", name, what);
+    weft_code code = weft_page_picture(page, file, picture, shown_width(picture), caption, error);
+    weft_image_free(picture);
+    return code;
+}
+
+weft_code weft_page_pair(weft_page *page, const char *name, const weft_image_pair *pair, const char *caption,
+                         weft_error *error)
+{
+    double exposure = weft_picture_exposure(&pair->sample, pair->mask);
+    fputs("<h3>", page->html);
+    weft_page_text(page, caption);
+    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);
+    weft_image picture;
+    WEFT_TRY(weft_picture_encode(&pair->sample, pair->mask, exposure, &picture, error));
+    WEFT_TRY(put_picture(page, name, "sample", &picture, "photograph", error));
+    WEFT_TRY(weft_picture_encode(&pair->prediction, NULL, exposure, &picture, error));
+    WEFT_TRY(put_picture(page, name, "prediction", &picture, "prediction", error));
+    WEFT_TRY(weft_picture_difference(&pair->sample, &pair->prediction, pair->mask, exposure, &picture, error));
+    WEFT_TRY(put_picture(page, name, "difference", &picture, "prediction minus photograph", error));
+    fputs("</div>\n", page->html);
+    return WEFT_OK;
+}
+
+static void explain_pictures(weft_page *page)
+{
+    fputs("<p class=\"note\">Reflectance in linear light, brightened so that the 99th percentile of the photograph "
+          "comes to 0.9, shown "
+          "as sRGB. Difference: luminance under the same exposure, red where the prediction is brighter, blue where it "
+          "is "
+          "darker, full colour at 0.25. Grey: masked.</p>\n",
+          page->html);
+}
+
+weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, const weft_measurement *measurement,
+                          weft_error *error)
+{
+    fputs("<h2>Texels</h2>\n", page->html);
+    explain_pictures(page);
+    for (int i = 0; i < measurement->pair_count; i++) {
+        char name[32], caption[160];
+        weft_image_angles at = weft_image_angles_of(layout, measurement->pair[i].image);
+        snprintf(name, sizeof name, "texels-%d", i);
+        snprintf(caption, sizeof caption,
+                 "Image %d: view %.0f\u00b0 (azimuth %.0f\u00b0), light %.0f\u00b0 (azimuth %.0f\u00b0)",
+                 measurement->pair[i].image, at.theta_view_deg, at.phi_view_deg, at.theta_light_deg, at.phi_light_deg);
+        WEFT_TRY(weft_page_pair(page, name, &measurement->pair[i], caption, error));
+    }
+    return WEFT_OK;
+}

@@ -1,0 +1,31 @@
+/* Small datasets and materials with known contents. */
+#ifndef WEFT_TESTS_STUDY_FIXTURE_H
+#define WEFT_TESTS_STUDY_FIXTURE_H
+
+#include "btf/dataset.h"
+#include "btf/material.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+/* Reflectance (BRDF x pi) of a texel in a direction pair, whatever the test wants. */
+typedef weft_rgb (*fixture_reflectance)(int x, int y, weft_vec3 light, weft_vec3 view);
+
+/* The first `ring_count` rings of ubo81 for views and lights (1, 7, 19, ... directions), all pairs, reflectance times cosine. Texel (0, 0) of image 0 is
+ * masked as saturated where `mask_one`. */
+void fixture_far_dataset(const char *path, int width, int height, int ring_count, fixture_reflectance reflectance, int mask_one);
+
+/* A few images with near lights above a square of 64 mm; view and light coincide, as with a phone's flash. */
+void fixture_near_dataset(const char *path, int size, int image_count, fixture_reflectance reflectance);
+
+/* Diffuse material of one level with rho = value(x, y), no lobes and no table. */
+void fixture_diffuse_material(const char *path, int width, int height, weft_rgb (*value)(int x, int y));
+
+/* Fails the test with the message of the error. */
+void expect_ok(weft_code code, const weft_error *error);
+
+#endif
