@@ -18,14 +18,6 @@ static double now_s(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-static weft_shooting begin_shooting(const weft_capture_request *request, weft_rig *rig, const weft_session *session,
-                                    int next_stay)
-{
-    const weft_rig_settings *settings = &request->settings;
-    weft_exposure_limits limits = {settings->shortest_exposure_s, settings->longest_exposure_s};
-    return weft_shooting_begin(rig, session, limits, (int)settings->retries, next_stay);
-}
-
 /* ---- Before the first photograph ---- */
 
 static int count_missing(const weft_session *session)
@@ -119,7 +111,7 @@ static weft_code photograph(const weft_capture_request *request, const weft_capt
     weft_rig rig;
     WEFT_TRY(weft_rig_virtual_open(&setup->world, &session->target, &setup->cloth, held->next_stay, &rig, error));
     run r = {.session = session,
-             .shooting = begin_shooting(request, &rig, session, held->next_stay),
+             .shooting = weft_shooting_begin(&rig, session, &request->settings, held->next_stay),
              .stop = stop,
              .progress = progress,
              .summary = summary};
@@ -162,62 +154,6 @@ weft_code weft_capture_run(const weft_capture_request *request, const volatile s
         code = complete(request, &setup, &held, stop, progress, summary, error);
         weft_held_session_release(&held);
     }
-    weft_capture_setup_free(&setup);
-    return code;
-}
-
-/* ---- Rehearsal ---- */
-
-static void count_plan(const weft_session *session, weft_capture_rehearsal *rehearsal)
-{
-    rehearsal->shot_count = session->shot_count;
-    rehearsal->bytes = (uint64_t)session->shot_count * weft_photograph_bytes(session);
-    for (int i = 0; i < session->shot_count; i++) {
-        const weft_shot *shot = &session->shot[i], *before = i > 0 ? shot - 1 : NULL;
-        bool same_view =
-            before && shot->view.theta_rad == before->view.theta_rad && shot->view.phi_rad == before->view.phi_rad;
-        bool aside =
-            shot->light.theta_rad != shot->light_driven.theta_rad || shot->light.phi_rad != shot->light_driven.phi_rad;
-        rehearsal->view_count += !same_view;
-        rehearsal->driven_aside += aside;
-    }
-}
-
-static weft_code time_photograph(const weft_capture_request *request, const weft_capture_setup *setup,
-                                 weft_capture_rehearsal *rehearsal, weft_error *error)
-{
-    const weft_session *session = &setup->session;
-    size_t bytes = (size_t)session->camera.width * (size_t)session->camera.height * 3 * sizeof(uint16_t);
-    uint16_t *samples = malloc(bytes);
-    if (!samples)
-        return weft_fail_memory(error, "photograph", bytes);
-    weft_rig rig;
-    weft_code code = weft_rig_virtual_open(&setup->world, &session->target, &setup->cloth, 0, &rig, error);
-    if (code == WEFT_OK) {
-        weft_shooting shooting = begin_shooting(request, &rig, session, 0);
-        weft_shot_record record;
-        /* The first one prepares the view, which all its lights share. */
-        code = weft_shooting_take(&shooting, 0, samples, &record, error);
-        double start_s = now_s();
-        if (code == WEFT_OK)
-            code = weft_shooting_take(&shooting, 0, samples, &record, error);
-        rehearsal->seconds_per_photograph = now_s() - start_s;
-        weft_shooting_end(&shooting);
-        rig.close(rig.back_end);
-    }
-    free(samples);
-    return code;
-}
-
-weft_code weft_capture_rehearse(const weft_capture_request *request, weft_capture_rehearsal *rehearsal,
-                                weft_error *error)
-{
-    weft_capture_setup setup;
-    *rehearsal = (weft_capture_rehearsal){0};
-    WEFT_TRY(weft_capture_setup_make(request, &setup, error));
-    memcpy(rehearsal->warning, setup.warning, sizeof rehearsal->warning);
-    count_plan(&setup.session, rehearsal);
-    weft_code code = time_photograph(request, &setup, rehearsal, error);
     weft_capture_setup_free(&setup);
     return code;
 }

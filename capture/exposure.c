@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const double weft_opening_aim = 0.8, weft_white_aim = 0.85;
+const double weft_opening_aim = 0.8, weft_white_aim = 0.9;
 
 static const double percentile = 0.995;
 

@@ -18,7 +18,7 @@ typedef struct weft_rig_settings {
     /* Exposure. */
     double shortest_exposure_s, longest_exposure_s;
     double retries; /* of an exposure that the camera did not deliver */
-    /* The sensor of the virtual camera. */
+    /* The sensor of the virtual camera: pixels binned two by two, as cameras do for a reduced raw file. */
     double full_well_electrons;
     double read_noise_electrons;
     double sensitivity_electrons; /* per second, for radiance 1; the light gives irradiance 1 at the origin along its

@@ -3,11 +3,15 @@
 /* At most MAX_METERED exposures of a shot, each retried; frames are numbered FRAMES_PER_SHOT x shot + exposure. */
 enum { MAX_METERED = 8, FRAMES_PER_SHOT = 256 };
 
-weft_shooting weft_shooting_begin(weft_rig *rig, const weft_session *session, weft_exposure_limits limits, int retries,
+weft_shooting weft_shooting_begin(weft_rig *rig, const weft_session *session, const weft_rig_settings *settings,
                                   int next_stay)
 {
-    return (weft_shooting){
-        .rig = rig, .session = session, .limits = limits, .retries = retries, .stay = -1, .next_stay = next_stay};
+    return (weft_shooting){.rig = rig,
+                           .session = session,
+                           .limits = {settings->shortest_exposure_s, settings->longest_exposure_s},
+                           .retries = (int)settings->retries,
+                           .stay = -1,
+                           .next_stay = next_stay};
 }
 
 void weft_shooting_end(weft_shooting *shooting)

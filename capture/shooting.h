@@ -4,6 +4,7 @@
 
 #include "capture/exposure.h"
 #include "capture/rig.h"
+#include "capture/settings.h"
 
 typedef struct weft_shooting {
     weft_rig *rig;
@@ -18,8 +19,9 @@ typedef struct weft_shooting {
     int exposures, timeouts; /* counted */
 } weft_shooting;
 
-/* The caller ends with weft_shooting_end. `next_stay` numbers the first stay. */
-weft_shooting weft_shooting_begin(weft_rig *rig, const weft_session *session, weft_exposure_limits limits, int retries,
+/* `settings` give exposure limits and retries; `next_stay` numbers the first stay. Borrows rig and session. The caller
+ * ends with weft_shooting_end. */
+weft_shooting weft_shooting_begin(weft_rig *rig, const weft_session *session, const weft_rig_settings *settings,
                                   int next_stay);
 void weft_shooting_end(weft_shooting *shooting);
 
