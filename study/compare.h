@@ -5,11 +5,13 @@
 #include "btf/progress.h"
 #include "study/leave_one_out.h"
 #include "study/measurement.h"
+#include "study/scenes.h"
 
 typedef struct weft_compare_options {
     const char *dataset;  /* NAME.btf.h5 */
     const char *material; /* NAME.weft, fitted to it */
     const char *weave;    /* CLOTH.wv, or NULL */
+    int tiles_u, tiles_v; /* of the weave for one material; 0 = as many as the virtual rig would lay out */
     const char *folder;   /* for the page and its pictures */
 } weft_compare_options;
 
@@ -21,7 +23,7 @@ typedef struct weft_comparison {
     weft_measurement measurement;
     weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
     double dataset_bytes, half_float_bytes, material_bytes;
-    char no_scenes[WEFT_MESSAGE_SIZE]; /* why there are no pictures of the drape; empty if there are */
+    weft_scenes scenes;
 } weft_comparison;
 
 /* Measures, renders, and writes folder/index.html with its pictures; the page appears when it is complete. Without

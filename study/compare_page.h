@@ -9,6 +9,9 @@
 void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
                        const weft_comparison *comparison);
 
+/* Every scene in every mode, and the differences to the dataset. Errors: WEFT_SYSTEM from writing pictures. */
+weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_error *error);
+
 /* Sample, prediction and difference of every pair, flat. Errors: WEFT_SYSTEM from writing pictures. */
 weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, const weft_measurement *measurement,
                           weft_error *error);

@@ -53,7 +53,7 @@ static void explain_pictures(weft_page *page)
 weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, const weft_measurement *measurement,
                           weft_error *error)
 {
-    fputs("<h2>Texels</h2>\n", page->html);
+    fputs("<h2 id=\"texels\">Texels</h2>\n", page->html);
     explain_pictures(page);
     for (int i = 0; i < measurement->pair_count; i++) {
         char name[32], caption[160];

@@ -2,11 +2,13 @@
 
 #include "btf/direction.h"
 #include "reflectance/lafortune.h"
+#include "study/band.h"
 
 #include <stdlib.h>
 
 /* More samples than these do not change a median that is printed with three digits. */
 static const long enough_samples = 2000000;
+static const uint8_t no_ring = 0xff;
 
 /* What the pass over the rows carries along. */
 typedef struct measuring {
@@ -15,10 +17,11 @@ typedef struct measuring {
     const weft_material *material;
     weft_triangulation *views;
     weft_measurement *measurement;
-    weft_half *samples; /* [width][image_count][3] */
-    uint8_t *mask;      /* [width][image_count] */
-    long stride;        /* every stride-th texel is measured */
-    weft_prediction *value;
+    int band_height, band_y; /* the rows held now */
+    weft_half *samples;      /* [band_height][width][image_count][3] */
+    uint8_t *mask;           /* [band_height][width][image_count] */
+    long stride;             /* every stride-th texel is measured */
+    weft_prediction *value;  /* [texel_count][image_count][3] until the empty slots are dropped */
     long value_count;
 } measuring;
 
@@ -32,16 +35,23 @@ weft_rgb weft_predict_sample(const weft_material *material, const weft_triangula
     return (weft_rgb){cosine * value.r, cosine * value.g, cosine * value.b};
 }
 
-static void count_masks(const measuring *pass)
+static void count_masks(const measuring *pass, int rows)
 {
     weft_measurement *measurement = pass->measurement;
-    long count = (long)pass->layout->width * pass->layout->image_count;
+    long count = (long)rows * pass->layout->width * pass->layout->image_count;
     measurement->sample_count += count;
     for (long i = 0; i < count; i++) {
         measurement->missing += (pass->mask[i] & WEFT_MASK_MISSING) != 0;
         measurement->saturated += (pass->mask[i] & WEFT_MASK_SATURATED) != 0;
         measurement->shadowed += (pass->mask[i] & WEFT_MASK_SHADOWED) != 0;
     }
+}
+
+/* Index of a sample in the band of rows that is held. */
+static size_t index_of(const measuring *pass, int x, int y, int image)
+{
+    size_t texel = (size_t)(y - pass->band_y) * (size_t)pass->layout->width + (size_t)x;
+    return texel * (size_t)pass->layout->image_count + (size_t)image;
 }
 
 static void store_rgb(weft_image *image, size_t texel, weft_rgb value)
@@ -51,65 +61,81 @@ static void store_rgb(weft_image *image, size_t texel, weft_rgb value)
     image->pixels[3 * texel + 2] = (float)value.b;
 }
 
-static weft_rgb sample_at(const measuring *pass, int x, int image)
+static weft_rgb sample_at(const measuring *pass, int x, int y, int image)
 {
-    const weft_half *half = pass->samples + 3 * ((size_t)x * (size_t)pass->layout->image_count + (size_t)image);
+    const weft_half *half = pass->samples + 3 * index_of(pass, x, y, image);
     return (weft_rgb){(double)weft_float_of_half(half[0]), (double)weft_float_of_half(half[1]),
                       (double)weft_float_of_half(half[2])};
 }
 
 static void fill_pair(const measuring *pass, weft_image_pair *pair, int y)
 {
-    int width = pass->layout->width;
-    for (int x = 0; x < width; x++) {
-        size_t texel = (size_t)y * (size_t)width + (size_t)x;
-        pair->mask[texel] = pass->mask[(size_t)x * (size_t)pass->layout->image_count + (size_t)pair->image];
-        store_rgb(&pair->sample, texel, sample_at(pass, x, pair->image));
+    for (int x = 0; x < pass->layout->width; x++) {
+        size_t texel = (size_t)y * (size_t)pass->layout->width + (size_t)x;
+        pair->mask[texel] = pass->mask[index_of(pass, x, y, pair->image)];
+        store_rgb(&pair->sample, texel, sample_at(pass, x, y, pair->image));
         store_rgb(&pair->prediction, texel,
                   weft_predict_sample(pass->material, pass->views, pass->layout, pair->image, x, y));
     }
 }
 
-static void measure_sample(measuring *pass, int image, int x, int y)
+/* The three channels of a sample; `value` is untouched where it does not count. */
+static void measure_sample(const measuring *pass, int image, int x, int y, weft_prediction value[3])
 {
     const weft_dataset_layout *layout = pass->layout;
     weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
     weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
-    if (!(light.z > 0 && view.z > 0))
+    if (pass->mask[index_of(pass, x, y, image)] || !(light.z > 0 && view.z > 0))
         return;
-    weft_rgb p = weft_predict_sample(pass->material, pass->views, layout, image, x, y), s = sample_at(pass, x, image);
+    weft_rgb p = weft_predict_sample(pass->material, pass->views, layout, image, x, y);
+    weft_rgb s = sample_at(pass, x, y, image);
     uint8_t view_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(view).theta_rad);
     uint8_t light_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(light).theta_rad);
     const double prediction[3] = {p.r, p.g, p.b}, sample[3] = {s.r, s.g, s.b};
     for (int c = 0; c < 3; c++)
-        pass->value[pass->value_count++] =
-            (weft_prediction){(float)prediction[c], (float)sample[c], view_ring, light_ring};
+        value[c] = (weft_prediction){(float)prediction[c], (float)sample[c], view_ring, light_ring};
 }
 
-static void measure_texel(measuring *pass, int x, int y)
+/* Texels are measured in parallel, each into its own slots; slots without a sample stay marked. */
+static void measure_texel(const measuring *pass, long texel)
 {
-    for (int image = 0; image < pass->layout->image_count; image++) {
-        if (pass->mask[(size_t)x * (size_t)pass->layout->image_count + (size_t)image] == 0)
-            measure_sample(pass, image, x, y);
-    }
-    pass->measurement->texel_count++;
+    int images = pass->layout->image_count, x = (int)(texel % pass->layout->width),
+        y = (int)(texel / pass->layout->width);
+    weft_prediction *slot = pass->value + texel / pass->stride * 3 * images;
+    for (int image = 0; image < images; image++)
+        measure_sample(pass, image, x, y, slot + 3 * image);
 }
 
-static weft_code read_rows(measuring *pass, const weft_progress *progress, weft_error *error)
+static weft_code read_bands(measuring *pass, const weft_progress *progress, weft_error *error)
 {
     const weft_dataset_layout *layout = pass->layout;
-    for (int y = 0; y < layout->height; y++) {
-        WEFT_TRY(weft_dataset_read_block(pass->dataset, 0, y, layout->width, 1, pass->samples, pass->mask, error));
-        count_masks(pass);
-        for (int i = 0; i < pass->measurement->pair_count; i++)
-            fill_pair(pass, &pass->measurement->pair[i], y);
-        for (int x = 0; x < layout->width; x++) {
-            if (((long)y * layout->width + x) % pass->stride == 0)
-                measure_texel(pass, x, y);
+    for (pass->band_y = 0; pass->band_y < layout->height; pass->band_y += pass->band_height) {
+        int left = layout->height - pass->band_y, rows = pass->band_height < left ? pass->band_height : left;
+        WEFT_TRY(weft_dataset_read_block(pass->dataset, 0, pass->band_y, layout->width, rows, pass->samples, pass->mask,
+                                         error));
+        count_masks(pass, rows);
+        for (int y = pass->band_y; y < pass->band_y + rows; y++) {
+            for (int i = 0; i < pass->measurement->pair_count; i++)
+                fill_pair(pass, &pass->measurement->pair[i], y);
         }
-        weft_progress_report(progress, "measuring the material", y + 1, layout->height);
+        long first = (long)pass->band_y * layout->width, end = first + (long)rows * layout->width;
+        first = (first + pass->stride - 1) / pass->stride * pass->stride;
+#pragma omp parallel for schedule(dynamic, 1)
+        for (long texel = first; texel < end; texel += pass->stride)
+            measure_texel(pass, texel);
+        weft_progress_report(progress, "measuring the material", pass->band_y + rows, layout->height);
     }
     return WEFT_OK;
+}
+
+static void drop_empty_slots(measuring *pass)
+{
+    long kept = 0;
+    for (long i = 0; i < pass->value_count; i++) {
+        if (pass->value[i].view_ring != no_ring)
+            pass->value[kept++] = pass->value[i];
+    }
+    pass->value_count = kept;
 }
 
 static weft_code summarise(const measuring *pass, weft_error *error)
@@ -155,18 +181,21 @@ static long choose_stride(const weft_dataset_layout *layout)
     return stride <= 1 ? 1 : stride | 1;
 }
 
-static weft_code allocate_pass(measuring *pass, weft_error *error)
+static weft_code allocate(measuring *pass, weft_error *error)
 {
     const weft_dataset_layout *layout = pass->layout;
-    size_t row = (size_t)layout->width * (size_t)layout->image_count;
+    pass->band_height = weft_band_height(layout);
     pass->stride = choose_stride(layout);
-    size_t measured = (size_t)(((long)layout->width * layout->height + pass->stride - 1) / pass->stride);
-    size_t values = 3 * measured * (size_t)layout->image_count;
-    pass->samples = malloc(3 * row * sizeof *pass->samples);
-    pass->mask = malloc(row);
-    pass->value = malloc(values * sizeof *pass->value);
+    size_t band = (size_t)pass->band_height * (size_t)layout->width * (size_t)layout->image_count;
+    pass->measurement->texel_count = ((long)layout->width * layout->height + pass->stride - 1) / pass->stride;
+    pass->value_count = 3 * pass->measurement->texel_count * layout->image_count;
+    pass->samples = malloc(3 * band * sizeof *pass->samples);
+    pass->mask = malloc(band);
+    pass->value = malloc((size_t)pass->value_count * sizeof *pass->value);
     if (!pass->samples || !pass->mask || !pass->value)
-        return weft_fail_memory(error, "samples", values * sizeof *pass->value + 7 * row);
+        return weft_fail_memory(error, "samples", (size_t)pass->value_count * sizeof *pass->value + 7 * band);
+    for (long i = 0; i < pass->value_count; i++)
+        pass->value[i].view_ring = no_ring;
     return WEFT_OK;
 }
 
@@ -196,11 +225,13 @@ weft_code weft_measurement_make(weft_dataset *dataset, const weft_material *mate
     if (code == WEFT_OK)
         code = create_pairs(&pass, image, image_count, error);
     if (code == WEFT_OK)
-        code = allocate_pass(&pass, error);
+        code = allocate(&pass, error);
     if (code == WEFT_OK)
-        code = read_rows(&pass, progress, error);
-    if (code == WEFT_OK)
+        code = read_bands(&pass, progress, error);
+    if (code == WEFT_OK) {
+        drop_empty_slots(&pass);
         code = summarise(&pass, error);
+    }
     weft_triangulation_free(pass.views);
     free(pass.samples);
     free(pass.mask);

@@ -1,6 +1,7 @@
 #include "study/raw_btf.h"
 
 #include "btf/triangulation.h"
+#include "study/band.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -242,26 +243,34 @@ weft_code weft_raw_btf_sample(weft_raw_btf *raw, weft_real u, weft_real v, weft_
 
 /* ---- Mean of all texels ---- */
 
-static void add_texel(const weft_raw_btf *raw, double *sum, long *count)
+static void add_texel(int image_count, const weft_half *samples, const uint8_t *mask, double *sum, long *count)
 {
-    for (int i = 0; i < raw->layout->image_count; i++) {
-        if (raw->mask[i])
+    for (int i = 0; i < image_count; i++) {
+        if (mask[i])
             continue;
         for (int c = 0; c < 3; c++)
-            sum[3 * i + c] += (double)weft_float_of_half(raw->samples[3 * i + c]);
+            sum[3 * i + c] += (double)weft_float_of_half(samples[3 * i + c]);
         count[i]++;
     }
 }
 
 static weft_code sum_texels(weft_raw_btf *raw, double *sum, long *count, weft_error *error)
 {
-    for (int y = 0; y < raw->layout->height; y++) {
-        for (int x = 0; x < raw->layout->width; x++) {
-            WEFT_TRY(weft_dataset_read_block(raw->dataset, x, y, 1, 1, raw->samples, raw->mask, error));
-            add_texel(raw, sum, count);
-        }
+    const weft_dataset_layout *layout = raw->layout;
+    int band = weft_band_height(layout);
+    size_t images = (size_t)layout->image_count, most = (size_t)band * (size_t)layout->width * images;
+    weft_half *samples = malloc(3 * most * sizeof *samples);
+    uint8_t *mask = malloc(most);
+    weft_code code = samples && mask ? WEFT_OK : weft_fail_memory(error, "rows of texels", 7 * most);
+    for (int y = 0; y < layout->height && code == WEFT_OK; y += band) {
+        int rows = band < layout->height - y ? band : layout->height - y;
+        code = weft_dataset_read_block(raw->dataset, 0, y, layout->width, rows, samples, mask, error);
+        for (size_t t = 0; code == WEFT_OK && t < (size_t)rows * (size_t)layout->width; t++)
+            add_texel(layout->image_count, samples + 3 * t * images, mask + t * images, sum, count);
     }
-    return WEFT_OK;
+    free(samples);
+    free(mask);
+    return code;
 }
 
 static weft_code read_mean(weft_raw_btf *raw, weft_error *error)

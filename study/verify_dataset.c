@@ -1,5 +1,7 @@
 #include "study/verify.h"
 
+#include "study/band.h"
+
 #include <stdlib.h>
 
 /* What the mask says, in samples of a texel in an image. */
@@ -17,30 +19,39 @@ static void count_masks(const uint8_t *mask, size_t count, mask_counts *counts)
     }
 }
 
-static weft_code check_opacity(weft_dataset *dataset, int y, float *opacity, weft_error *error)
+static weft_code check_opacity(weft_dataset *dataset, int y, int height, float *opacity, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    WEFT_TRY(weft_dataset_read_opacity(dataset, y, 1, opacity, error));
-    size_t views = (size_t)layout->view_count, count = (size_t)layout->width * views;
+    WEFT_TRY(weft_dataset_read_opacity(dataset, y, height, opacity, error));
+    size_t views = (size_t)layout->view_count, width = (size_t)layout->width, count = (size_t)height * width * views;
     for (size_t i = 0; i < count; i++) {
         if (!(opacity[i] >= 0 && opacity[i] <= 1))
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': opacity %g at texel (%zu, %d), view %zu",
-                             weft_dataset_path(dataset), (double)opacity[i], i / views, y, i % views);
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': opacity %g at texel (%zu, %zu), view %zu",
+                             weft_dataset_path(dataset), (double)opacity[i], i / views % width,
+                             (size_t)y + i / views / width, i % views);
     }
     return WEFT_OK;
 }
 
-/* Samples are checked by the reader; a row of texels is small enough to hold and large enough to stream well. */
-static weft_code read_rows(weft_dataset *dataset, weft_half *samples, uint8_t *mask, float *opacity,
-                           const weft_progress *progress, mask_counts *counts, weft_error *error)
+/* Room for one band of texels. */
+typedef struct band {
+    int height;
+    weft_half *samples;
+    uint8_t *mask;
+    float *opacity;
+} band;
+
+/* Samples are checked by the reader. */
+static weft_code read_bands(weft_dataset *dataset, const band *b, const weft_progress *progress, mask_counts *counts,
+                            weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    size_t row = (size_t)layout->width * (size_t)layout->image_count;
-    for (int y = 0; y < layout->height; y++) {
-        WEFT_TRY(weft_dataset_read_block(dataset, 0, y, layout->width, 1, samples, mask, error));
-        WEFT_TRY(check_opacity(dataset, y, opacity, error));
-        count_masks(mask, row, counts);
-        weft_progress_report(progress, "checking samples", y + 1, layout->height);
+    for (int y = 0; y < layout->height; y += b->height) {
+        int height = b->height < layout->height - y ? b->height : layout->height - y;
+        WEFT_TRY(weft_dataset_read_block(dataset, 0, y, layout->width, height, b->samples, b->mask, error));
+        WEFT_TRY(check_opacity(dataset, y, height, b->opacity, error));
+        count_masks(b->mask, (size_t)height * (size_t)layout->width * (size_t)layout->image_count, counts);
+        weft_progress_report(progress, "checking samples", y + height, layout->height);
     }
     return WEFT_OK;
 }
@@ -49,19 +60,20 @@ weft_code weft_verify_dataset(weft_dataset *dataset, const weft_progress *progre
                               weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    size_t row = (size_t)layout->width * (size_t)layout->image_count;
-    weft_half *samples = malloc(3 * row * sizeof *samples);
-    uint8_t *mask = malloc(row);
-    float *opacity = malloc((size_t)layout->width * (size_t)layout->view_count * sizeof *opacity);
+    band b = {.height = weft_band_height(layout)};
+    size_t texels = (size_t)b.height * (size_t)layout->width, images = (size_t)layout->image_count;
+    b.samples = malloc(3 * texels * images * sizeof *b.samples);
+    b.mask = malloc(texels * images);
+    b.opacity = malloc(texels * (size_t)layout->view_count * sizeof *b.opacity);
     mask_counts counts = {0};
     weft_code code = WEFT_OK;
-    if (!samples || !mask || !opacity)
-        code = weft_fail_memory(error, "row of texels", 7 * row);
+    if (!b.samples || !b.mask || !b.opacity)
+        code = weft_fail_memory(error, "rows of texels", 7 * texels * images);
     else
-        code = read_rows(dataset, samples, mask, opacity, progress, &counts, error);
-    free(samples);
-    free(mask);
-    free(opacity);
+        code = read_bands(dataset, &b, progress, &counts, error);
+    free(b.samples);
+    free(b.mask);
+    free(b.opacity);
     json_t *verified = json_pack("{s:I, s:I, s:I, s:I}", "valid_samples", (json_int_t)counts.valid, "missing",
                                  (json_int_t)counts.missing, "saturated", (json_int_t)counts.saturated, "shadowed",
                                  (json_int_t)counts.shadowed);

@@ -1,0 +1,71 @@
+#include "study/compare_page.h"
+
+#include "study/picture.h"
+
+#include <stdio.h>
+
+/* Encodes, writes and frees one picture of a row. */
+static weft_code put_picture(weft_page *page, int scene, const char *name, weft_image *picture, const char *caption,
+                             weft_error *error)
+{
+    char file[64];
+    snprintf(file, sizeof file, "scene-%d-%s", scene, name);
+    weft_code code = weft_page_picture(page, file, picture, picture->width * 3 / 4, caption, error);
+    weft_image_free(picture);
+    return code;
+}
+
+static weft_code put_difference(weft_page *page, int index, const weft_scene_pictures *scene, weft_mode mode,
+                                double exposure, weft_error *error)
+{
+    char name[64], caption[64];
+    snprintf(name, sizeof name, "%s-minus-raw", weft_mode_name(mode));
+    snprintf(caption, sizeof caption, "%s minus raw", weft_mode_name(mode));
+    weft_image picture;
+    WEFT_TRY(weft_picture_difference(&scene->picture[WEFT_MODE_RAW], &scene->picture[mode], NULL, exposure, &picture,
+                                     error));
+    return put_picture(page, index, name, &picture, caption, error);
+}
+
+static weft_code put_scene(weft_page *page, int index, const weft_scenes *scenes, weft_error *error)
+{
+    const weft_scene_pictures *scene = &scenes->scene[index];
+    double exposure = weft_picture_exposure(&scene->picture[WEFT_MODE_RAW], NULL);
+    fputs("<h3>", page->html);
+    weft_page_text(page, scene->caption);
+    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);
+    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
+        if (!scenes->has[mode])
+            continue;
+        weft_image picture;
+        const char *name = weft_mode_name((weft_mode)mode);
+        WEFT_TRY(weft_picture_encode(&scene->picture[mode], NULL, exposure, &picture, error));
+        WEFT_TRY(put_picture(page, index, name, &picture, name, error));
+    }
+    WEFT_TRY(put_difference(page, index, scene, WEFT_MODE_COMPRESSED, exposure, error));
+    if (scenes->has[WEFT_MODE_ANALYTIC])
+        WEFT_TRY(put_difference(page, index, scene, WEFT_MODE_ANALYTIC, exposure, error));
+    fputs("</div>\n", page->html);
+    return WEFT_OK;
+}
+
+weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_error *error)
+{
+    fputs("<h2>Scenes</h2>\n", page->html);
+    if (!scenes->drawn) {
+        fputs("<p>There are no pictures of scenes: ", page->html);
+        weft_page_text(page, scenes->why_not);
+        fputs("</p>\n", page->html);
+        return WEFT_OK;
+    }
+    fputs("<p class=\"note\">Raw: the dataset, interpolated. Compressed: the material. ", page->html);
+    if (scenes->has[WEFT_MODE_ANALYTIC])
+        fputs("Analytic: the weave without its noise. ", page->html);
+    if (scenes->skipped_levels > 0)
+        fprintf(page->html, "The dataset did not fit into graphics memory: its finest %d levels are left out. ",
+                scenes->skipped_levels);
+    fputs("Differences: see <a href=\"#texels\">Texels</a>.</p>\n", page->html);
+    for (int i = 0; i < WEFT_SCENE_COUNT; i++)
+        WEFT_TRY(put_scene(page, i, scenes, error));
+    return WEFT_OK;
+}
