@@ -1,0 +1,57 @@
+/* The images of a dataset in the order in which a fit wants them: bundled by view, so that T(v) is one number a bundle,
+ * and padded to whole vectors. Samples of a texel are gathered into this order once and then read many times. */
+#ifndef WEFT_COMPRESS_BUNDLE_H
+#define WEFT_COMPRESS_BUNDLE_H
+
+#include "btf/dataset.h"
+#include "btf/status.h"
+
+enum { WEFT_LANES = 16 }; /* every bundle starts at a multiple of this many samples */
+
+/* Owned by the caller. The order depends on the directions alone, not on the order of the images. Inside a bundle the
+ * lights are shuffled evenly, so that its first lanes alone are a fair coarse sample. */
+typedef struct weft_bundle {
+    int view_count, lane_count, image_count;
+    int *first_lane; /* [view_count + 1], multiples of WEFT_LANES */
+    int *coarse_end; /* [view_count]: lanes first_lane[v] .. coarse_end[v] hold about a quarter of the lights */
+    int32_t *image;  /* [lane_count] the image whose sample stands here, -1 in the padding */
+    weft_vec3 *view; /* [view_count] unit, in the frame of the surface */
+    float *light[3]; /* [lane_count] unit, in the frame of the surface; 0 in the padding */
+} weft_bundle;
+
+/* Bundles the images of a layout; those with held_out[image] != 0 are left out (held_out may be NULL). Directions are
+ * set for far datasets; for near ones call weft_bundle_aim. Errors: WEFT_SYSTEM. */
+weft_code weft_bundle_create(const weft_dataset_layout *layout, const uint8_t *held_out, weft_bundle *bundle,
+                             weft_error *error);
+void weft_bundle_free(weft_bundle *bundle);
+
+/* Directions as seen from the point (x_mm, y_mm) of the material, for near datasets; no effect on far ones. */
+void weft_bundle_aim(weft_bundle *bundle, const weft_dataset_layout *layout, double x_mm, double y_mm);
+
+/* Place in mm, origin at the centre of the material, of the centre of the texels [x0, x1) x [y0, y1). Pure. */
+void weft_bundle_place(const weft_dataset_layout *layout, int x0, int y0, int x1, int y1, double *x_mm, double *y_mm);
+
+enum { WEFT_CHANNELS = 3, WEFT_GREY = 3 };
+
+/* The samples of one texel in the order of a bundle, scaled by the root of their weights and by one factor for the
+ * whole texel that brings their mean square to 1. Arrays are [lane_count]; rows of zero weight are 0. */
+typedef struct weft_samples {
+    int lane_count;
+    float *cosine;                    /* root of the weight times l_z */
+    float *value[WEFT_CHANNELS + 1];  /* root of the weight times the sample / scale: r, g, b and their mean */
+    double energy[WEFT_CHANNELS + 1]; /* sum of squares of value */
+    double scale;                     /* multiply by it to return to the units of the dataset */
+    double weight;                    /* sum of the weights */
+    int valid_count;                  /* samples of positive weight */
+} weft_samples;
+
+weft_code weft_samples_create(const weft_bundle *bundle, weft_samples *samples, weft_error *error);
+void weft_samples_free(weft_samples *samples);
+
+/* Gathers sums of samples over a group of texels: sum [image_count][3], count [image_count] valid texels among
+ * `group_size`. Value = mean over the valid ones, weight = their share; lights at or below the horizon get weight 0.
+ * Samples without the cosine (WEFT_REFLECTANCE) are multiplied by it. Returns nothing; not-finite sums get weight 0. */
+void weft_samples_gather(const weft_bundle *bundle, weft_values values, const float *sum, const float *count,
+                         int group_size, weft_samples *samples);
+
+#endif
