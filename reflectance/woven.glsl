@@ -71,7 +71,7 @@ bool staple_mirror(float cot_psi, float half_x, float along, float across, inout
     if (!(abs(projected) < norm))
         return false;
     float cosine = projected / norm;
-    float sine = sqrt((1.0 - cosine) * (1.0 + cosine));
+    float sine = sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0));
     at.sin_v = (half_x * sine - across * cosine) / norm;
     at.cos_v = (half_x * cosine + across * sine) / norm;
     return true;

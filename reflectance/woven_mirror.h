@@ -35,8 +35,9 @@ static inline bool faces_both(mirror *at, weft_vec3 light, weft_vec3 view)
     at->cosine_sum = c1 + c2;
     if (!(c1 > 0 && c2 > 0 && at->cosine_sum > (weft_real)MIN_COSINE_SUM))
         return false;
-    at->light_share = c1 / at->cosine_sum;
-    at->view_share = c2 / at->cosine_sum;
+    weft_real inverse_sum = 1 / at->cosine_sum;
+    at->light_share = c1 * inverse_sum;
+    at->view_share = c2 * inverse_sum;
     return true;
 }
 
@@ -49,10 +50,11 @@ static inline bool staple_mirror(weft_real cot_psi, weft_real half_x, weft_real 
     weft_real projected = cot_psi * along;
     if (!(fabs(projected) < norm))
         return false;
-    weft_real cosine = projected / norm;
-    weft_real sine = sqrt((1 - cosine) * (1 + cosine));
-    at->sin_v = (half_x * sine - across * cosine) / norm;
-    at->cos_v = (half_x * cosine + across * sine) / norm;
+    weft_real inverse_norm = 1 / norm;
+    weft_real cosine = projected * inverse_norm;
+    weft_real sine = sqrt(fmax((1 - cosine) * (1 + cosine), 0));
+    at->sin_v = (half_x * sine - across * cosine) * inverse_norm;
+    at->cos_v = (half_x * cosine + across * sine) * inverse_norm;
     return true;
 }
 

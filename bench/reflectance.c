@@ -1,0 +1,156 @@
+/* Evaluations per second on one core of the functions that the stages call most. Usage: bench_reflectance [WEAVE.wv
+ * ...] */
+#include "btf/direction.h"
+#include "reflectance/lafortune.h"
+#include "reflectance/weave.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum { SAMPLES = 1 << 14, ROUNDS = 64 };
+
+typedef struct sample {
+    weft_weave_point point;
+    weft_real U, V;
+    weft_vec3 light, view;
+} sample;
+
+/* Of this thread, so that a busy machine does not count. */
+static double now_s(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* Linear congruential, upper bits (Knuth's MMIX constants): enough to spread samples. */
+static weft_real random_unit(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (weft_real)(*state >> 11) / (weft_real)9007199254740992.0;
+}
+
+/* The places of cameras and lights of a capture: theta up to 75 degrees. */
+static weft_vec3 random_direction(uint64_t *state)
+{
+    weft_angles angles = {weft_rad_of_deg(75) * sqrt(random_unit(state)), 2 * (weft_real)WEFT_PI * random_unit(state)};
+    return weft_direction_of_angles(angles);
+}
+
+static sample *make_samples(const weft_weave *weave, uint64_t noise_seed)
+{
+    uint64_t state = 1;
+    sample *samples = malloc(SAMPLES * sizeof *samples);
+    for (int i = 0; samples && i < SAMPLES; i++) {
+        sample *s = &samples[i];
+        *s = (sample){.U = 16 * random_unit(&state), .V = 16 * random_unit(&state)};
+        s->light = random_direction(&state);
+        s->view = random_direction(&state);
+        s->point = weft_weave_locate(weave, s->U, s->V, noise_seed);
+    }
+    return samples;
+}
+
+/* Keeps results alive. */
+static volatile weft_real sink;
+
+static double specular_rate(const weft_weave *weave, const sample *samples, double *lit)
+{
+    weft_real sum = 0;
+    long positive = 0;
+    double start = now_s();
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int i = 0; i < SAMPLES; i++) {
+            weft_real value = weft_weave_specular(weave, &samples[i].point, samples[i].light, samples[i].view);
+            positive += value > 0;
+            sum += value;
+        }
+    }
+    double seconds = now_s() - start;
+    sink = sum;
+    *lit = (double)positive / ((double)ROUNDS * SAMPLES);
+    return (double)ROUNDS * SAMPLES / seconds;
+}
+
+static double locate_rate(const weft_weave *weave, const sample *samples, uint64_t noise_seed)
+{
+    weft_real sum = 0;
+    double start = now_s();
+    for (int round = 0; round < ROUNDS; round++)
+        for (int i = 0; i < SAMPLES; i++)
+            sum += weft_weave_locate(weave, samples[i].U, samples[i].V, noise_seed).x;
+    sink = sum;
+    return (double)ROUNDS * SAMPLES / (now_s() - start);
+}
+
+static double mean_rate(const weft_weave *weave, const sample *samples)
+{
+    enum { FEW = 64 };
+    weft_real sum = 0;
+    double start = now_s();
+    for (int i = 0; i < FEW; i++)
+        sum += weft_weave_mean_specular(weave, samples[i].light, samples[i].view);
+    sink = sum;
+    return FEW / (now_s() - start);
+}
+
+static int bench_weave(const char *path)
+{
+    weft_weave weave;
+    weft_error error = {0};
+    double start = now_s(), lit, lit_noisy;
+    if (weft_weave_read(path, NULL, 0, &weave, NULL, &error) != WEFT_OK) {
+        fprintf(stderr, "%s\n", error.message);
+        return 1;
+    }
+    double load_s = now_s() - start;
+    sample *plain = make_samples(&weave, 0), *noisy = make_samples(&weave, 1);
+    if (!plain || !noisy)
+        return 1;
+    double plain_rate = specular_rate(&weave, plain, &lit), noisy_rate = specular_rate(&weave, noisy, &lit_noisy);
+    printf("%-24s load %5.3f s (this thread)   texture %6.2f M/s (%2.0f %% lit)   with noise %6.2f M/s (%2.0f %% lit)   "
+           "locate %6.1f M/s   with noise %6.1f M/s   tile mean %6.0f /s\n",
+           weave.name, load_s, plain_rate / 1e6, 100 * lit, noisy_rate / 1e6, 100 * lit_noisy,
+           locate_rate(&weave, plain, 0) / 1e6, locate_rate(&weave, plain, 1) / 1e6, mean_rate(&weave, plain));
+    free(plain);
+    free(noisy);
+    weft_weave_free(&weave);
+    return 0;
+}
+
+static void bench_lobes(void)
+{
+    uint64_t state = 1;
+    const weft_lobe lobes[2] = {{-1, -1, 1, 20}, {-0.6, -0.7, 0.9, 3.5}};
+    static weft_vec3 light[SAMPLES], view[SAMPLES];
+    for (int i = 0; i < SAMPLES; i++) {
+        light[i] = random_direction(&state);
+        view[i] = random_direction(&state);
+    }
+    weft_real sum = 0;
+    double start = now_s();
+    for (int round = 0; round < ROUNDS; round++)
+        for (int i = 0; i < SAMPLES; i++)
+            sum += weft_lafortune((weft_real)0.1, lobes, 2, light[i], view[i]);
+    double seconds = now_s() - start;
+    sink = sum;
+    printf("Lafortune, 2 lobes, 1 channel: %.2f M/s\n", (double)ROUNDS * SAMPLES / seconds / 1e6);
+}
+
+int main(int argc, char **argv)
+{
+    static const char *const assets[] = {"cotton_denim",   "cotton_twill",  "polyester_lining",
+                                         "silk_charmeuse", "silk_shantung", "wool_gabardine"};
+    int failures = 0;
+    bench_lobes();
+    for (int i = 1; i < argc; i++)
+        failures += bench_weave(argv[i]);
+    for (size_t i = 0; argc == 1 && i < sizeof assets / sizeof *assets; i++) {
+        char path[1024];
+        snprintf(path, sizeof path, "%s/weaves/%s.wv", WEFT_ASSETS, assets[i]);
+        failures += bench_weave(path);
+    }
+    return failures > 0;
+}
