@@ -1,0 +1,89 @@
+#include "cli/scene_options.h"
+
+#include "player/context.h"
+
+typedef struct render_command {
+    scene_options scene;
+    const char *output;
+    int samples;
+} render_command;
+
+enum { KEY_SAMPLES = 0x4000 };
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "OUT.png|OUT.exr", 0, "Write the picture here: .png as sRGB, .exr linear", 0},
+    {"samples", KEY_SAMPLES, "N", 0, "Draw N x N frames within each pixel (default: 3)", 0},
+    {0},
+};
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    render_command *command = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &command->scene;
+        return 0;
+    case 'o':
+        command->output = argument;
+        return 0;
+    case KEY_SAMPLES:
+        command->samples = parse_count("samples", argument, 1, 64, state);
+        return 0;
+    case ARGP_KEY_END:
+        if (!command->output)
+            argp_error(state, "needs -o OUT.png");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{&scene_argp, 0, NULL, 1}, {0}};
+
+static const struct argp parser = {
+    option_table,
+    parse_option,
+    "[NAME.weft] -o OUT.png",
+    "Example: weft render silk.weft --raw silk.btf.h5 --weave silk.wv --mode split -o silk.png\n\n"
+    "Draws a material under one light, without a window.",
+    children,
+    NULL,
+    NULL};
+
+static weft_code draw(render_command *command, weft_player *player, weft_error *error)
+{
+    scene_options *scene = &command->scene;
+    weft_progress progress = command_progress(&scene->common);
+    weft_image image = {0};
+    WEFT_TRY(scene_load(scene, player, error));
+    WEFT_TRY(weft_player_picture(player, &scene->scene, scene->width, scene->height, command->samples, &progress,
+                                 &image, error));
+    weft_code code = scene_write_image(command->output, &image, error);
+    weft_image_free(&image);
+    return code;
+}
+
+static weft_code render(render_command *command, weft_error *error)
+{
+    weft_headless *headless = NULL;
+    weft_player *player = NULL;
+    WEFT_TRY(weft_headless_create(WEFT_GL_CORE, &headless, error));
+    weft_code code = weft_player_create(&player, error);
+    if (code == WEFT_OK)
+        code = draw(command, player, error);
+    if (code == WEFT_OK)
+        command_say(&command->scene.common, "%s: %d x %d, drawn by %s", command->output, command->scene.width,
+                    command->scene.height, weft_gl_renderer());
+    weft_player_free(player);
+    weft_headless_free(headless);
+    return code;
+}
+
+int command_render(int argc, char **argv)
+{
+    render_command command = {.samples = 3};
+    command_parse(&parser, argc, argv, &command, &command.scene.common);
+    weft_error error = {0};
+    weft_code code = render(&command, &error);
+    return command_exit("render", &command.scene.common, code, &error);
+}

@@ -1,0 +1,41 @@
+/* What `weft render` and `weft play` have in common: the scene on the command line, and how it is loaded. */
+#ifndef WEFT_CLI_SCENE_OPTIONS_H
+#define WEFT_CLI_SCENE_OPTIONS_H
+
+#include "cli/command.h"
+#include "player/player.h"
+
+typedef struct scene_options {
+    common_options common;
+    const char *material, *dataset, *weave, *mesh;
+    const char *mode; /* NULL: what is there */
+    double tiles[2];  /* of the weave across the material; 0 = as the virtual rig lays it out */
+    double repeat;    /* 0 = by the mesh */
+    int width, height;
+    weft_scene scene;
+} scene_options;
+
+/* Options of the scene, an argp child whose input is a scene_options. */
+extern const struct argp scene_argp;
+
+/* To be called from ARGP_KEY_INIT: defaults. */
+void scene_options_init(scene_options *options);
+
+/* "X,Y" or "X,Y,Z" as `count` finite numbers; wrong usage does not return. */
+void parse_numbers(const char *option, const char *text, int count, double *numbers, struct argp_state *state);
+
+/* A whole number in low..high; wrong usage does not return. */
+int parse_count(const char *option, const char *text, int low, int high, struct argp_state *state);
+
+/* "WxH" in pixels; wrong usage does not return. */
+void parse_size(const char *text, int *width, int *height, struct argp_state *state);
+
+/* Loads the mesh and every model that is named into the player, and chooses the panes. Notes are told to the user.
+ * Errors: those of reading. */
+weft_code scene_load(scene_options *options, weft_player *player, weft_error *error);
+
+/* Writes a linear image: .exr as it is, other formats as sRGB (the image is then coded in place). Errors: WEFT_SYSTEM.
+ */
+weft_code scene_write_image(const char *path, weft_image *image, weft_error *error);
+
+#endif

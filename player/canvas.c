@@ -1,0 +1,131 @@
+#include "player/canvas.h"
+
+#include "player/shaders.h"
+
+#include <stdlib.h>
+
+static const weft_texture_format float_format = {GL_RGBA32F, GL_RGBA, GL_FLOAT};
+
+static weft_code check_framebuffer(weft_error *error)
+{
+    GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        return weft_fail(error, WEFT_SYSTEM, "this graphics driver does not draw into float textures (0x%x)", status);
+    return weft_gl_check("making a canvas", error);
+}
+
+static weft_code create_frame(weft_canvas *c, weft_error *error)
+{
+    WEFT_TRY(weft_gl_texture(float_format, c->width, c->height, 0, NULL, &c->frame, error));
+    glGenRenderbuffers(1, &c->depth);
+    glBindRenderbuffer(GL_RENDERBUFFER, c->depth);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, c->width, c->height);
+    glGenFramebuffers(1, &c->frame_buffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, c->frame_buffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, c->frame, 0);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, c->depth);
+    return check_framebuffer(error);
+}
+
+static weft_code create_sum(weft_canvas *c, weft_error *error)
+{
+    WEFT_TRY(weft_gl_texture(float_format, c->width, c->height, 0, NULL, &c->sum, error));
+    glGenFramebuffers(1, &c->sum_buffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, c->sum_buffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, c->sum, 0);
+    return check_framebuffer(error);
+}
+
+weft_code weft_canvas_create(int width, int height, weft_canvas *c, weft_error *error)
+{
+    const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
+    const char *const add[] = {weft_glsl_add_frag, NULL}, *const present[] = {weft_glsl_present_frag, NULL};
+    *c = (weft_canvas){.width = width, .height = height};
+    glGenVertexArrays(1, &c->vertex_array);
+    WEFT_TRY(create_frame(c, error));
+    WEFT_TRY(create_sum(c, error));
+    WEFT_TRY(weft_gl_program("add", vertex, add, &c->add_program, error));
+    WEFT_TRY(weft_gl_program("present", vertex, present, &c->present_program, error));
+    weft_canvas_clear(c);
+    return WEFT_OK;
+}
+
+void weft_canvas_free(weft_canvas *c)
+{
+    glDeleteFramebuffers(1, &c->frame_buffer);
+    glDeleteFramebuffers(1, &c->sum_buffer);
+    glDeleteRenderbuffers(1, &c->depth);
+    glDeleteTextures(1, &c->frame);
+    glDeleteTextures(1, &c->sum);
+    glDeleteVertexArrays(1, &c->vertex_array);
+    glDeleteProgram(c->add_program);
+    glDeleteProgram(c->present_program);
+    *c = (weft_canvas){0};
+}
+
+void weft_canvas_clear(weft_canvas *c)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, c->sum_buffer);
+    glDisable(GL_SCISSOR_TEST);
+    glClearColor(0, 0, 0, 0);
+    glClear(GL_COLOR_BUFFER_BIT);
+    c->frame_count = 0;
+}
+
+void weft_canvas_begin_frame(weft_canvas *c)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, c->frame_buffer);
+    glViewport(0, 0, c->width, c->height);
+}
+
+static void draw_over_everything(const weft_canvas *c, GLuint program, const char *sampler, GLuint texture)
+{
+    glViewport(0, 0, c->width, c->height);
+    glDisable(GL_DEPTH_TEST);
+    glUseProgram(program);
+    glBindVertexArray(c->vertex_array);
+    weft_gl_bind(program, sampler, 0, GL_TEXTURE_2D, texture);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+void weft_canvas_end_frame(weft_canvas *c)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, c->sum_buffer);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+    draw_over_everything(c, c->add_program, "frame", c->frame);
+    glDisable(GL_BLEND);
+    c->frame_count++;
+}
+
+void weft_canvas_present(const weft_canvas *c)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glDisable(GL_BLEND);
+    draw_over_everything(c, c->present_program, "sum", c->sum);
+}
+
+weft_code weft_canvas_read(const weft_canvas *c, weft_image *image, weft_error *error)
+{
+    size_t row = (size_t)c->width * 4;
+    float *rgba = malloc(row * (size_t)c->height * sizeof *rgba);
+    if (!rgba)
+        return weft_fail_memory(error, "picture", row * (size_t)c->height * sizeof *rgba);
+    glBindFramebuffer(GL_FRAMEBUFFER, c->sum_buffer);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, c->width, c->height, GL_RGBA, GL_FLOAT, rgba);
+    weft_code code = weft_gl_check("reading the picture", error);
+    if (code == WEFT_OK)
+        code = weft_image_create(c->width, c->height, image, error);
+    for (int y = 0; code == WEFT_OK && y < c->height; y++) {
+        const float *source = rgba + (size_t)(c->height - 1 - y) * row;
+        for (int x = 0; x < c->width; x++) {
+            for (int i = 0; i < 3; i++)
+                image->pixels[3 * ((size_t)y * (size_t)c->width + (size_t)x) + (size_t)i] =
+                    source[4 * x + i] / (float)c->frame_count;
+        }
+    }
+    free(rgba);
+    return code;
+}

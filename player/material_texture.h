@@ -1,0 +1,29 @@
+/* A compressed material on the GPU (shader: player/shaders/compressed.glsl). */
+#ifndef WEFT_PLAYER_MATERIAL_TEXTURE_H
+#define WEFT_PLAYER_MATERIAL_TEXTURE_H
+
+#include "btf/material.h"
+#include "player/direction_texture.h"
+#include "player/mip_layout.h"
+
+#include <stdbool.h>
+
+typedef struct weft_material_texture {
+    GLuint frame, diffuse, lobe, table;
+    weft_direction_texture directions;
+    weft_mip_layout layout;
+    int lobe_count;
+    bool has_table;
+    int table_columns; /* views side by side in a layer */
+} weft_material_texture;
+
+/* Uploads all levels as they are. Errors: WEFT_SYSTEM where the driver's textures are too small; WEFT_BAD_INPUT for
+ * views that cannot be triangulated. The caller frees with weft_material_texture_free, also on failure. */
+weft_code weft_material_texture_upload(const weft_material *material, weft_material_texture *texture,
+                                       weft_error *error);
+void weft_material_texture_free(weft_material_texture *texture);
+
+/* Sets the uniforms of compressed.glsl; `program` is in use. */
+void weft_material_texture_bind(const weft_material_texture *texture, GLuint program);
+
+#endif

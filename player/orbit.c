@@ -1,0 +1,45 @@
+#include "player/orbit.h"
+
+static const double field_of_view_rad = 30 * WEFT_PI / 180;
+
+weft_orbit_axes weft_orbit_axes_of(const weft_orbit *orbit)
+{
+    double sa = sin(orbit->azimuth_rad), ca = cos(orbit->azimuth_rad);
+    double se = sin(orbit->elevation_rad), ce = cos(orbit->elevation_rad);
+    return (weft_orbit_axes){
+        .right = {-sa, ca, 0},
+        .up = {-se * ca, -se * sa, ce},
+        .backward = {ce * ca, ce * sa, se},
+    };
+}
+
+weft_vec3 weft_orbit_eye(const weft_orbit *orbit, weft_vec3 centre, double radius)
+{
+    return weft_add(centre, weft_scale(weft_orbit_axes_of(orbit).backward, orbit->distance * radius));
+}
+
+/* One clip coordinate: the distance from the eye along `axis`, plus a constant. */
+static void set_row(float matrix[16], int row, weft_vec3 axis, weft_vec3 eye, double constant)
+{
+    matrix[row] = (float)axis.x;
+    matrix[4 + row] = (float)axis.y;
+    matrix[8 + row] = (float)axis.z;
+    matrix[12 + row] = (float)(constant - weft_dot(axis, eye));
+}
+
+void weft_orbit_clip_of_world(const weft_orbit *orbit, weft_vec3 centre, double radius, double aspect, double shift_x,
+                              double shift_y, float matrix[16])
+{
+    weft_orbit_axes axes = weft_orbit_axes_of(orbit);
+    weft_vec3 eye = weft_orbit_eye(orbit, centre, radius), forward = weft_scale(axes.backward, -1);
+    double focal = 1 / tan(field_of_view_rad / 2);
+    double focal_x = aspect > 1 ? focal / aspect : focal, focal_y = aspect > 1 ? focal : focal * aspect;
+    double nearest = fmax(orbit->distance - 1.1, 0.02) * radius, farthest = (orbit->distance + 1.1) * radius;
+    double depth = (farthest + nearest) / (farthest - nearest);
+    double offset = -2 * farthest * nearest / (farthest - nearest);
+    /* A shift is a multiple of w, and w is the forward distance. */
+    set_row(matrix, 0, weft_add(weft_scale(axes.right, focal_x), weft_scale(forward, 2 * shift_x)), eye, 0);
+    set_row(matrix, 1, weft_add(weft_scale(axes.up, focal_y), weft_scale(forward, 2 * shift_y)), eye, 0);
+    set_row(matrix, 2, weft_scale(forward, depth), eye, offset);
+    set_row(matrix, 3, forward, eye, 0);
+}

@@ -1,0 +1,28 @@
+/* A camera that circles round a centre. The world has z up. Pure. */
+#ifndef WEFT_PLAYER_ORBIT_H
+#define WEFT_PLAYER_ORBIT_H
+
+#include "btf/vector.h"
+
+/* distance in radii of what is looked at (1 touches its bounding sphere). azimuth from x toward y; elevation from the
+ * horizon, up to 90 degrees, where the azimuth still says which way is up in the picture: away from it. */
+typedef struct weft_orbit {
+    double azimuth_rad, elevation_rad, distance;
+} weft_orbit;
+
+/* Right, up and backward (toward the eye) of the picture, unit. */
+typedef struct weft_orbit_axes {
+    weft_vec3 right, up, backward;
+} weft_orbit_axes;
+
+weft_orbit_axes weft_orbit_axes_of(const weft_orbit *orbit);
+
+/* Place of the eye around a bounding sphere. */
+weft_vec3 weft_orbit_eye(const weft_orbit *orbit, weft_vec3 centre, double radius);
+
+/* OpenGL's clip_of_world, column-major, for a picture of the given aspect (width / height); the smaller side spans 30
+ * degrees. shift_x, shift_y move the picture, in units of its width and height. */
+void weft_orbit_clip_of_world(const weft_orbit *orbit, weft_vec3 centre, double radius, double aspect, double shift_x,
+                              double shift_y, float matrix[16]);
+
+#endif

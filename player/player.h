@@ -1,0 +1,93 @@
+/* The player: one mesh under one light, with the measured samples, the compressed material and the analytic cloth on
+ * it.
+ *
+ * Light is directional and its irradiance is pi on a surface that faces it, so that the picture shows reflectance:
+ * radiance = BRDF x pi x cos(theta_light) x exposure. All functions need the OpenGL context that was current at
+ * creation. */
+#ifndef WEFT_PLAYER_PLAYER_H
+#define WEFT_PLAYER_PLAYER_H
+
+#include "btf/dataset.h"
+#include "btf/direction.h"
+#include "btf/image.h"
+#include "btf/material.h"
+#include "btf/progress.h"
+#include "player/canvas.h"
+#include "player/mesh.h"
+#include "player/orbit.h"
+#include "reflectance/weave.h"
+
+#include <stdbool.h>
+
+typedef enum weft_mode { WEFT_MODE_RAW, WEFT_MODE_COMPRESSED, WEFT_MODE_ANALYTIC, WEFT_MODE_COUNT } weft_mode;
+
+/* "raw", "compressed", "analytic". Pure. */
+const char *weft_mode_name(weft_mode mode);
+
+/* Which mip level is shown: the one that fits the pixel's footprint, the finest everywhere, or a given one. */
+typedef enum weft_level_choice { WEFT_LEVEL_AUTO, WEFT_LEVEL_NONE, WEFT_LEVEL_FIXED } weft_level_choice;
+
+typedef struct weft_scene {
+    weft_orbit orbit;
+    weft_angles light; /* of the world, theta from its z */
+    double exposure;
+    double repeat; /* materials for one unit of the mesh's texture coordinates */
+    weft_level_choice level_choice;
+    double level;   /* with WEFT_LEVEL_FIXED; may be fractional */
+    int pane_count; /* side by side */
+    weft_mode pane[WEFT_MODE_COUNT];
+    bool labels;      /* the name of its mode in each pane */
+    const char *help; /* text over the picture, or NULL; borrowed */
+} weft_scene;
+
+/* A light from the upper left, the drape seen from above its rim, four materials across it, compressed. */
+weft_scene weft_scene_default(void);
+
+typedef struct weft_player weft_player;
+
+/* The caller frees with weft_player_free. Errors: WEFT_SYSTEM. */
+weft_code weft_player_create(weft_player **result, weft_error *error);
+void weft_player_free(weft_player *player);
+
+/* What is shown; each may be set again. Nothing of the arguments is kept. Errors: WEFT_SYSTEM, WEFT_BAD_INPUT. */
+weft_code weft_player_set_mesh(weft_player *player, const weft_mesh *mesh, weft_error *error);
+weft_code weft_player_set_material(weft_player *player, const weft_material *material, weft_error *error);
+/* *skipped_levels receives the number of finest levels that did not fit (0 where all did). */
+weft_code weft_player_set_dataset(weft_player *player, weft_dataset *dataset, const weft_progress *progress,
+                                  int *skipped_levels, weft_error *error);
+/* tiles_u, tiles_v: tiles of the weave for one material. */
+weft_code weft_player_set_weave(weft_player *player, const weft_weave *weave, double tiles_u, double tiles_v,
+                                weft_error *error);
+
+bool weft_player_has(const weft_player *player, weft_mode mode);
+
+/* How one frame samples its pixels: shift of the picture in pixels, and what is added to the level of detail. */
+typedef struct weft_sampling {
+    double shift_x, shift_y, level_bias;
+} weft_sampling;
+
+/* Draws into the current framebuffer, width x height pixels. Every pane's mode must be there, and a mesh.
+ * Errors: WEFT_BAD_USAGE where not; WEFT_SYSTEM. */
+weft_code weft_player_draw(weft_player *player, const weft_scene *scene, int width, int height, weft_sampling sampling,
+                           weft_error *error);
+
+/* The picture as the mean of samples x samples frames on a grid within each pixel; linear. The caller frees `image`.
+ * Errors: those of weft_player_draw; WEFT_BAD_USAGE for a size or number of samples out of range. */
+weft_code weft_player_picture(weft_player *player, const weft_scene *scene, int width, int height, int samples,
+                              const weft_progress *progress, weft_image *image, weft_error *error);
+
+/* ---- What the shaders saw, for the evaluators in C ---- */
+
+/* One pixel, in the frame of the surface (weft_material_sample and its like take these as they are). */
+typedef struct weft_surface_sample {
+    float light[3], level;
+    float view[3], covered; /* 1 on the mesh, 0 beside it */
+    float u, v;
+} weft_surface_sample;
+
+/* The inputs of the reflectance of `mode` for the scene's first frame, one pane: sample [height][width], row 0 at the
+ * top. The caller frees *sample. Errors: those of weft_player_draw. */
+weft_code weft_player_read_surface(weft_player *player, const weft_scene *scene, weft_mode mode, int width, int height,
+                                   weft_surface_sample **sample, weft_error *error);
+
+#endif

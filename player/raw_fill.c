@@ -1,0 +1,202 @@
+#include "player/raw_fill.h"
+
+#include <stdlib.h>
+
+/* Below this cosine of the light a sample says little about the reflectance and much about the noise. */
+static const float smallest_cosine = 0.05f;
+
+static const size_t block_bytes = (size_t)64 << 20;
+
+static int rows_of_block(const weft_dataset_layout *layout)
+{
+    size_t row = (size_t)layout->width * (size_t)layout->image_count * 7;
+    size_t rows = block_bytes / row;
+    return rows < 1 ? 1 : rows > 16 ? 16 : (int)rows;
+}
+
+static void mark_usable(const uint8_t *mask, size_t texels, weft_raw_images *images)
+{
+    for (size_t t = 0; t < texels; t++) {
+        for (int i = 0; i < images->image_count; i++)
+            images->usable[i] |= mask[t * (size_t)images->image_count + (size_t)i] == 0;
+    }
+}
+
+static weft_code read_masks(weft_dataset *dataset, weft_raw_images *images, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    int rows = rows_of_block(layout);
+    size_t row_size = (size_t)layout->width * (size_t)layout->image_count;
+    uint8_t *mask = malloc(row_size * (size_t)rows);
+    if (!mask)
+        return weft_fail_memory(error, "masks", row_size * (size_t)rows);
+    weft_code code = WEFT_OK;
+    for (int y = 0; code == WEFT_OK && y < layout->height; y += rows) {
+        int count = y + rows <= layout->height ? rows : layout->height - y;
+        code = weft_dataset_read_block(dataset, 0, y, layout->width, count, NULL, mask, error);
+        if (code == WEFT_OK)
+            mark_usable(mask, (size_t)layout->width * (size_t)count, images);
+    }
+    free(mask);
+    return code;
+}
+
+static weft_code allocate(const weft_dataset_layout *layout, weft_raw_images *images, weft_error *error)
+{
+    size_t count = (size_t)layout->image_count;
+    *images = (weft_raw_images){.image_count = layout->image_count, .view_count = layout->view_count};
+    images->usable = calloc(count, sizeof *images->usable);
+    images->order = calloc(count, sizeof *images->order);
+    images->first_of_view = calloc((size_t)layout->view_count + 1, sizeof *images->first_of_view);
+    images->direction = calloc(count, sizeof *images->direction);
+    if (images->usable && images->order && images->first_of_view && images->direction)
+        return WEFT_OK;
+    return weft_fail_memory(error, "images", count * sizeof *images->direction);
+}
+
+/* Counting sort of the usable images by view. */
+static void sort_by_view(const weft_dataset_layout *layout, weft_raw_images *images)
+{
+    int *first = images->first_of_view;
+    for (int i = 0; i < images->image_count; i++)
+        first[layout->view_of_image[i] + 1] += images->usable[i];
+    for (int v = 0; v < images->view_count; v++)
+        first[v + 1] += first[v];
+    /* Filling moves every start to the next one; moving them back restores them. */
+    for (int i = 0; i < images->image_count; i++) {
+        if (images->usable[i])
+            images->order[first[layout->view_of_image[i]]++] = i;
+    }
+    for (int v = images->view_count; v > 0; v--)
+        first[v] = first[v - 1];
+    first[0] = 0;
+}
+
+weft_code weft_raw_images_find(weft_dataset *dataset, weft_raw_images *images, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    WEFT_TRY(allocate(layout, images, error));
+    WEFT_TRY(read_masks(dataset, images, error));
+    for (int i = 0; i < images->image_count; i++)
+        images->direction[i] = weft_dataset_light_direction(layout, i, layout->width / 2, layout->height / 2);
+    sort_by_view(layout, images);
+    if (images->first_of_view[images->view_count] == 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(dataset));
+    return WEFT_OK;
+}
+
+void weft_raw_images_free(weft_raw_images *images)
+{
+    free(images->usable);
+    free(images->order);
+    free(images->first_of_view);
+    free(images->direction);
+    *images = (weft_raw_images){0};
+}
+
+/* ---- Directions ---- */
+
+static weft_code add_views(const weft_raw_images *images, const weft_dataset_layout *layout, weft_vec3 *direction,
+                           int *label, weft_direction_map *map, weft_error *error)
+{
+    int count = 0;
+    for (int v = 0; v < images->view_count; v++) {
+        if (images->first_of_view[v] == images->first_of_view[v + 1])
+            continue;
+        direction[count] = weft_dataset_view_direction(layout, v, layout->width / 2, layout->height / 2);
+        label[count] = count + 1;
+        count++;
+    }
+    return weft_direction_map_add(map, direction, label, count, error);
+}
+
+static weft_code add_lights(const weft_raw_images *images, int view, weft_vec3 *direction, int *label,
+                            weft_direction_map *map, weft_error *error)
+{
+    int count = 0;
+    for (int k = images->first_of_view[view]; k < images->first_of_view[view + 1]; k++) {
+        direction[count] = images->direction[images->order[k]];
+        label[count++] = images->order[k];
+    }
+    return count > 0 ? weft_direction_map_add(map, direction, label, count, error) : WEFT_OK;
+}
+
+weft_code weft_raw_images_map(const weft_raw_images *images, const weft_dataset_layout *layout, weft_direction_map *map,
+                              weft_error *error)
+{
+    size_t largest = (size_t)images->image_count + (size_t)images->view_count;
+    weft_vec3 *direction = calloc(largest, sizeof *direction);
+    int *label = calloc(largest, sizeof *label);
+    weft_code code = WEFT_OK;
+    if (!direction || !label)
+        code = weft_fail_memory(error, "directions", largest * sizeof *direction);
+    if (code == WEFT_OK)
+        code = add_views(images, layout, direction, label, map, error);
+    for (int v = 0; code == WEFT_OK && v < images->view_count; v++)
+        code = add_lights(images, v, direction, label, map, error);
+    free(direction);
+    free(label);
+    return code;
+}
+
+/* ---- Samples ---- */
+
+static float reflectance_scale(const weft_dataset_layout *layout, int image, int x, int y)
+{
+    if (layout->values == WEFT_REFLECTANCE)
+        return 1;
+    float cosine = (float)weft_dataset_light_direction(layout, image, x, y).z;
+    return 1 / (cosine > smallest_cosine ? cosine : smallest_cosine);
+}
+
+/* The valid image of a view whose light is nearest to that of `image`; -1: none. */
+static int nearest_valid(const weft_raw_images *images, int view, int image, const uint8_t *mask)
+{
+    int nearest = -1;
+    weft_real best = -2;
+    for (int k = images->first_of_view[view]; k < images->first_of_view[view + 1]; k++) {
+        int candidate = images->order[k];
+        weft_real cosine = weft_dot(images->direction[candidate], images->direction[image]);
+        if (mask[candidate] == 0 && cosine > best) {
+            best = cosine;
+            nearest = candidate;
+        }
+    }
+    return nearest;
+}
+
+static void mean_of_valid(int count, const uint8_t *mask, const float *value, float mean[3])
+{
+    double sum[3] = {0, 0, 0};
+    long valid = 0;
+    for (int i = 0; i < count; i++) {
+        for (int c = 0; mask[i] == 0 && c < 3; c++)
+            sum[c] += (double)value[3 * i + c];
+        valid += mask[i] == 0;
+    }
+    for (int c = 0; c < 3; c++)
+        mean[c] = valid > 0 ? (float)(sum[c] / (double)valid) : 0;
+}
+
+void weft_raw_texel_fill(const weft_raw_images *images, const weft_dataset_layout *layout, int x, int y,
+                         const weft_half *sample, const uint8_t *mask, float *value)
+{
+    int count = images->image_count, invalid = 0;
+    for (int i = 0; i < count; i++) {
+        float scale = mask[i] == 0 ? reflectance_scale(layout, i, x, y) : 0;
+        for (int c = 0; c < 3; c++)
+            value[3 * i + c] = mask[i] == 0 ? scale * weft_float_of_half(sample[3 * i + c]) : 0;
+        invalid += mask[i] != 0;
+    }
+    if (invalid == 0)
+        return;
+    float mean[3];
+    mean_of_valid(count, mask, value, mean);
+    for (int i = 0; i < count; i++) {
+        if (mask[i] == 0)
+            continue;
+        int source = nearest_valid(images, layout->view_of_image[i], i, mask);
+        for (int c = 0; c < 3; c++)
+            value[3 * i + c] = source < 0 ? mean[c] : value[3 * source + c];
+    }
+}

@@ -1,0 +1,36 @@
+// Analytic cloth: the woven texture where a pixel resolves the yarns, the mean of the tile where it does not.
+// C twins: weft_weave_brdf and weft_weave_mean_brdf (tabulated, see player/weave_texture.h).
+uniform sampler2D weave_table;
+uniform sampler2D weave_mean; // column: light, row: view; BRDF in 1/sr
+uniform vec2 weave_tiles;     // for one material
+
+// log2 of the footprint in cells where the texture begins to fade, and where the mean is all there is.
+const float FADE_BEGIN = -1.0;
+const float FADE_END = 1.0;
+
+vec3 mean_brdf(vec3 light, vec3 view)
+{
+    Corners lights = find_corners(0, light);
+    Corners views = find_corners(0, view);
+    vec3 sum = vec3(0.0);
+    for (int v = 0; v < 3; v++) {
+        for (int l = 0; l < 3; l++) {
+            float weight = views.weight[v] * lights.weight[l];
+            sum += weight * texelFetch(weave_mean, ivec2(lights.label[l], views.label[v]), 0).rgb;
+        }
+    }
+    return sum;
+}
+
+vec4 reflectance(SurfacePoint point)
+{
+    float fade = clamp((point.level - FADE_BEGIN) / (FADE_END - FADE_BEGIN), 0.0, 1.0);
+    vec3 brdf = vec3(0.0);
+    if (point.light.z > 0.0 && fade > 0.0)
+        brdf = fade * mean_brdf(point.light, point.view);
+    if (fade < 1.0) {
+        WeavePoint place = weave_locate(weave_table, point.coordinate * weave_tiles, uvec2(0u));
+        brdf += (1.0 - fade) * weave_brdf(weave_table, place, point.light, point.view);
+    }
+    return vec4(brdf * WOVEN_PI, 1.0);
+}

@@ -1,0 +1,77 @@
+// Barycentric lookup in a spherical triangulation by walking from simplex to simplex.
+// C twin: weft_triangulation_lookup; the layout of the textures is player/direction_map.h.
+uniform sampler2D direction_simplex;
+uniform isampler2D direction_cell;
+
+const int DIRECTION_GRID = 32;
+const int DIRECTION_SETS_PER_ROW = 64;
+const int DIRECTION_SIMPLICES_PER_ROW = 256;
+const int DIRECTION_MAX_STEPS = 48;
+
+struct Corners {
+    ivec3 label;
+    vec3 weight; // >= 0, sum 1
+};
+
+vec4 simplex_entry(int simplex, int column)
+{
+    int row = simplex / DIRECTION_SIMPLICES_PER_ROW;
+    return texelFetch(direction_simplex, ivec2(4 * (simplex - row * DIRECTION_SIMPLICES_PER_ROW) + column, row), 0);
+}
+
+int first_simplex(int set, vec3 direction)
+{
+    vec2 flat_position = direction.xy / (abs(direction.x) + abs(direction.y) + max(direction.z, 0.0));
+    vec2 square = 0.5 + 0.5 * vec2(flat_position.x + flat_position.y, flat_position.x - flat_position.y);
+    ivec2 cell = clamp(ivec2(square * float(DIRECTION_GRID)), 0, DIRECTION_GRID - 1);
+    int row = set / DIRECTION_SETS_PER_ROW;
+    ivec2 map = ivec2(set - row * DIRECTION_SETS_PER_ROW, row) * DIRECTION_GRID;
+    return texelFetch(direction_cell, map + cell, 0).r;
+}
+
+// Coefficients of the query on the corners of a triangle, up to a common factor; where to go when one is negative.
+int step_from_triangle(vec3 query, vec3 a, vec3 b, vec3 c, vec3 next, out vec3 weight)
+{
+    weight = vec3(dot(query, cross(b, c)), dot(query, cross(c, a)), dot(query, cross(a, b)));
+    float smallest = min(weight.x, min(weight.y, weight.z));
+    if (smallest >= 0.0)
+        return -1;
+    return int(smallest == weight.x ? next.x : smallest == weight.y ? next.y : next.z);
+}
+
+// The same for the foot of the query on an arc.
+int step_from_arc(vec3 query, vec3 a, vec3 b, vec3 next, out vec3 weight)
+{
+    vec3 pole = cross(a, b);
+    weight = vec3(dot(cross(query, b), pole), dot(cross(a, query), pole), 0.0);
+    if (weight.x < 0.0)
+        return int(next.y);
+    if (weight.y < 0.0)
+        return int(next.x);
+    return dot(query, pole) > 0.0 ? int(next.z) : -1;
+}
+
+Corners find_corners(int set, vec3 query)
+{
+    int simplex = first_simplex(set, query);
+    int previous = -1;
+    vec4 a, b, c;
+    vec3 weight;
+    for (int i = 0; i < DIRECTION_MAX_STEPS; i++) {
+        a = simplex_entry(simplex, 0);
+        b = simplex_entry(simplex, 1);
+        c = simplex_entry(simplex, 2);
+        vec4 next = simplex_entry(simplex, 3);
+        int target = next.w > 0.5 ? step_from_arc(query, a.xyz, b.xyz, next.xyz, weight)
+                                  : step_from_triangle(query, a.xyz, b.xyz, c.xyz, next.xyz, weight);
+        // Sent back: the query lies on the border of the two, within rounding.
+        if (target < 0 || target == previous)
+            break;
+        previous = simplex;
+        simplex = target;
+    }
+    weight = max(weight, vec3(0.0));
+    float sum = weight.x + weight.y + weight.z;
+    weight = sum > 0.0 ? weight / sum : vec3(1.0, 0.0, 0.0);
+    return Corners(ivec3(int(a.w), int(b.w), int(c.w)), weight);
+}

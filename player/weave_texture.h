@@ -1,0 +1,29 @@
+/* Analytic cloth on the GPU (shader: player/shaders/analytic.glsl). */
+#ifndef WEFT_PLAYER_WEAVE_TEXTURE_H
+#define WEFT_PLAYER_WEAVE_TEXTURE_H
+
+#include "btf/direction.h"
+#include "player/direction_texture.h"
+#include "reflectance/weave.h"
+
+/* Where a pixel covers less than half a cell the woven texture is evaluated, where it covers more than two the mean of
+ * the tile, in between a blend by the logarithm of the footprint. The mean is tabulated for ubo81 lights and views. */
+typedef struct weft_weave_texture {
+    GLuint table, mean;
+    weft_direction_texture directions;
+    double tiles[2]; /* for one material */
+} weft_weave_texture;
+
+/* tiles_u, tiles_v: tiles of the weave for one material. Errors: WEFT_BAD_USAGE for a number of tiles that is not
+ * positive, WEFT_SYSTEM. The caller frees with weft_weave_texture_free, also on failure. */
+weft_code weft_weave_texture_upload(const weft_weave *weave, double tiles_u, double tiles_v,
+                                    weft_weave_texture *texture, weft_error *error);
+void weft_weave_texture_free(weft_weave_texture *texture);
+
+/* Sets the uniforms of analytic.glsl; `program` is in use. */
+void weft_weave_texture_bind(const weft_weave_texture *texture, GLuint program);
+
+/* The mean of the tile as the shader has it: BRDF in 1/sr for each view and light of ubo81. Pure. */
+void weft_weave_mean_tabulate(const weft_weave *weave, weft_rgb mean[WEFT_UBO81_COUNT][WEFT_UBO81_COUNT]);
+
+#endif
