@@ -8,11 +8,11 @@
 #include "study/scenes.h"
 
 typedef struct weft_compare_options {
-    const char *dataset;  /* NAME.btf.h5 */
-    const char *material; /* NAME.weft, fitted to it */
-    const char *weave;    /* CLOTH.wv, or NULL */
-    int tiles_u, tiles_v; /* of the weave for one material; 0 = as many as the virtual rig would lay out */
-    const char *folder;   /* for the page and its pictures */
+    const char *dataset;     /* NAME.btf.h5 */
+    const char *material;    /* NAME.weft, fitted to it */
+    const char *weave;       /* CLOTH.wv, or NULL */
+    double tiles_u, tiles_v; /* of the weave for one material; 0 = as many as the virtual rig would lay out */
+    const char *folder;      /* for the page and its pictures */
 } weft_compare_options;
 
 /* A dataset of fewer images than these is also fitted with each of them left out. */

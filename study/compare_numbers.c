@@ -2,6 +2,40 @@
 
 #include <jansson.h>
 #include <math.h>
+#include <stdarg.h>
+
+static void print_tile(weft_page *page, const char *label, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void print_tile(weft_page *page, const char *label, const char *format, ...)
+{
+    fputs("<div><b>", page->html);
+    va_list arguments;
+    va_start(arguments, format);
+    vfprintf(page->html, format, arguments);
+    va_end(arguments);
+    fprintf(page->html, "</b>%s</div>\n", label);
+}
+
+void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison)
+{
+    const weft_prediction_error *all = &comparison->measurement.all;
+    fprintf(page->html, "<p>%d \u00d7 %d texels of %.4g mm, %d images from %d views; lights and cameras %s.</p>\n",
+            layout->width, layout->height, layout->texel_pitch_mm, layout->image_count, layout->view_count,
+            layout->distance == WEFT_NEAR ? "near, their directions differ from texel to texel" : "far away");
+    fputs("<div class=\"tiles\">\n", page->html);
+    print_tile(page, "half floats : material", "%.1f : 1", comparison->half_float_bytes / comparison->material_bytes);
+    print_tile(page, "relative RMSE, level 0", "%.4f", all->relative_rmse);
+    print_tile(page, "median relative error, level 0", "%.2f %%", 100 * all->median_relative);
+    if (comparison->left_out.count > 0) {
+        print_tile(page, "relative RMSE, photographs left out", "%.4f", comparison->left_out.mean_relative_rmse);
+        print_tile(page, "median relative error, photographs left out", "%.4f",
+                   comparison->left_out.mean_median_relative);
+    }
+    if (comparison->scenes.drawn)
+        print_tile(page, "a frame of the material", "%.1f ms", comparison->scenes.frame_ms[WEFT_MODE_COMPRESSED]);
+    fputs("</div>\n", page->html);
+}
 
 static void print_levels(weft_page *page, const weft_material *material)
 {
@@ -70,6 +104,27 @@ static void print_sizes(weft_page *page, const weft_comparison *comparison)
     fputs("</table>\n", page->html);
 }
 
+static void print_times(weft_page *page, const weft_material *material, const weft_scenes *scenes)
+{
+    fputs("<h2>Time</h2>\n<table>\n", page->html);
+    json_t *metadata = json_loads(material->metadata, 0, NULL);
+    const json_t *seconds = json_object_get(metadata, "seconds");
+    if (json_is_number(seconds))
+        weft_page_fact(page, "fitting and packing", "%.1f s", json_number_value(seconds));
+    json_decref(metadata);
+    for (int mode = 0; scenes->drawn && mode < WEFT_MODE_COUNT; mode++) {
+        if (scenes->has[mode])
+            weft_page_fact(page, weft_mode_name((weft_mode)mode), "%.2f ms a frame", scenes->frame_ms[mode]);
+    }
+    fputs("</table>\n", page->html);
+    if (scenes->drawn) {
+        fprintf(page->html, "<p class=\"note\">Frames of %d \u00d7 %d pixels of the first scene, drawn by ",
+                scenes->width, scenes->height);
+        weft_page_text(page, scenes->renderer);
+        fputs(".</p>\n", page->html);
+    }
+}
+
 static void print_masks(weft_page *page, const weft_measurement *measurement)
 {
     double percent = 100 / fmax((double)measurement->sample_count, 1);
@@ -89,5 +144,6 @@ void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const
     print_levels(page, material);
     print_directions(page, layout, &comparison->measurement);
     print_sizes(page, comparison);
+    print_times(page, material, &comparison->scenes);
     print_masks(page, &comparison->measurement);
 }

@@ -5,6 +5,9 @@
 #include "study/compare.h"
 #include "study/page.h"
 
+/* The few numbers that matter most, and what the dataset is. */
+void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison);
+
 /* Error of the levels as stored, error over all and by ring as measured, sizes, times, masks. */
 void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
                        const weft_comparison *comparison);

@@ -8,7 +8,7 @@
 static weft_code put_picture(weft_page *page, int scene, const char *name, weft_image *picture, const char *caption,
                              weft_error *error)
 {
-    char file[64];
+    char file[96];
     snprintf(file, sizeof file, "scene-%d-%s", scene, name);
     weft_code code = weft_page_picture(page, file, picture, picture->width * 3 / 4, caption, error);
     weft_image_free(picture);

@@ -14,8 +14,8 @@ typedef struct weft_left_out {
 
 /* Freed with weft_leave_one_out_free. */
 typedef struct weft_leave_one_out {
-    int count;
-    weft_left_out *photograph;                       /* [count]; images without any valid sample have none */
+    int count, capacity;
+    weft_left_out *photograph; /* [capacity], the first `count` in use: those with any valid sample */
     double mean_relative_rmse, mean_median_relative; /* of the photographs */
     double seconds;                                  /* of all fits together */
 } weft_leave_one_out;

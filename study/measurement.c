@@ -1,7 +1,6 @@
 #include "study/measurement.h"
 
 #include "btf/direction.h"
-#include "reflectance/lafortune.h"
 #include "study/band.h"
 
 #include <stdlib.h>
@@ -25,16 +24,6 @@ typedef struct measuring {
     long value_count;
 } measuring;
 
-weft_rgb weft_predict_sample(const weft_material *material, const weft_triangulation *views,
-                             const weft_dataset_layout *layout, int image, int x, int y)
-{
-    weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
-    weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
-    weft_rgba value = weft_material_texel(material, views, 0, x, y, light, view);
-    double cosine = layout->values == WEFT_REFLECTANCE_COSINE ? light.z : 1;
-    return (weft_rgb){cosine * value.r, cosine * value.g, cosine * value.b};
-}
-
 static void count_masks(const measuring *pass, int rows)
 {
     weft_measurement *measurement = pass->measurement;
@@ -54,29 +43,11 @@ static size_t index_of(const measuring *pass, int x, int y, int image)
     return texel * (size_t)pass->layout->image_count + (size_t)image;
 }
 
-static void store_rgb(weft_image *image, size_t texel, weft_rgb value)
-{
-    image->pixels[3 * texel] = (float)value.r;
-    image->pixels[3 * texel + 1] = (float)value.g;
-    image->pixels[3 * texel + 2] = (float)value.b;
-}
-
 static weft_rgb sample_at(const measuring *pass, int x, int y, int image)
 {
     const weft_half *half = pass->samples + 3 * index_of(pass, x, y, image);
     return (weft_rgb){(double)weft_float_of_half(half[0]), (double)weft_float_of_half(half[1]),
                       (double)weft_float_of_half(half[2])};
-}
-
-static void fill_pair(const measuring *pass, weft_image_pair *pair, int y)
-{
-    for (int x = 0; x < pass->layout->width; x++) {
-        size_t texel = (size_t)y * (size_t)pass->layout->width + (size_t)x;
-        pair->mask[texel] = pass->mask[index_of(pass, x, y, pair->image)];
-        store_rgb(&pair->sample, texel, sample_at(pass, x, y, pair->image));
-        store_rgb(&pair->prediction, texel,
-                  weft_predict_sample(pass->material, pass->views, pass->layout, pair->image, x, y));
-    }
 }
 
 /* The three channels of a sample; `value` is untouched where it does not count. */
@@ -114,10 +85,9 @@ static weft_code read_bands(measuring *pass, const weft_progress *progress, weft
         WEFT_TRY(weft_dataset_read_block(pass->dataset, 0, pass->band_y, layout->width, rows, pass->samples, pass->mask,
                                          error));
         count_masks(pass, rows);
-        for (int y = pass->band_y; y < pass->band_y + rows; y++) {
-            for (int i = 0; i < pass->measurement->pair_count; i++)
-                fill_pair(pass, &pass->measurement->pair[i], y);
-        }
+        for (int i = 0; i < pass->measurement->pair_count; i++)
+            weft_image_pair_fill(&pass->measurement->pair[i], layout, pass->material, pass->views, pass->band_y, rows,
+                                 pass->samples, pass->mask);
         long first = (long)pass->band_y * layout->width, end = first + (long)rows * layout->width;
         first = (first + pass->stride - 1) / pass->stride * pass->stride;
 #pragma omp parallel for schedule(dynamic, 1)
@@ -155,22 +125,13 @@ static weft_code summarise(const measuring *pass, weft_error *error)
 
 static weft_code create_pairs(measuring *pass, const int *image, int image_count, weft_error *error)
 {
-    const weft_dataset_layout *layout = pass->layout;
     weft_measurement *measurement = pass->measurement;
-    size_t texels = (size_t)layout->width * (size_t)layout->height;
     measurement->pair = calloc((size_t)image_count + 1, sizeof *measurement->pair);
     if (!measurement->pair)
         return weft_fail_memory(error, "pictures", (size_t)image_count * sizeof *measurement->pair);
     measurement->pair_count = image_count;
-    for (int i = 0; i < image_count; i++) {
-        weft_image_pair *pair = &measurement->pair[i];
-        pair->image = image[i];
-        WEFT_TRY(weft_image_create(layout->width, layout->height, &pair->sample, error));
-        WEFT_TRY(weft_image_create(layout->width, layout->height, &pair->prediction, error));
-        pair->mask = calloc(texels, 1);
-        if (!pair->mask)
-            return weft_fail_memory(error, "mask", texels);
-    }
+    for (int i = 0; i < image_count; i++)
+        WEFT_TRY(weft_image_pair_create(pass->layout, image[i], &measurement->pair[i], error));
     return WEFT_OK;
 }
 
@@ -243,11 +204,8 @@ weft_code weft_measurement_make(weft_dataset *dataset, const weft_material *mate
 
 void weft_measurement_free(weft_measurement *measurement)
 {
-    for (int i = 0; i < measurement->pair_count; i++) {
-        weft_image_free(&measurement->pair[i].sample);
-        weft_image_free(&measurement->pair[i].prediction);
-        free(measurement->pair[i].mask);
-    }
+    for (int i = 0; i < measurement->pair_count; i++)
+        weft_image_pair_free(&measurement->pair[i]);
     free(measurement->pair);
     *measurement = (weft_measurement){0};
 }

@@ -3,20 +3,11 @@
 #define WEFT_STUDY_MEASUREMENT_H
 
 #include "btf/dataset.h"
-#include "btf/image.h"
 #include "btf/material.h"
 #include "btf/progress.h"
-#include "btf/triangulation.h"
-#include "study/prediction_error.h"
+#include "study/image_pair.h"
 
 enum { WEFT_RING_COUNT = 6 };
-
-/* One image of the dataset and what the material makes of it. */
-typedef struct weft_image_pair {
-    int image;
-    weft_image sample, prediction; /* in the quantity of the dataset */
-    uint8_t *mask;                 /* [height][width] */
-} weft_image_pair;
 
 /* Freed with weft_measurement_free. */
 typedef struct weft_measurement {
@@ -28,11 +19,6 @@ typedef struct weft_measurement {
         by_light[WEFT_RING_COUNT];                   /* rings of ubo81: theta nearest 0, 15, .. 75 degrees */
     long sample_count, missing, saturated, shadowed; /* texels times images, and how many of them are masked and why */
 } weft_measurement;
-
-/* The prediction of a material (level 0) for a sample of the dataset, in the quantity of the dataset. `views`
- * triangulates the views of the material (NULL without a table). Pure. */
-weft_rgb weft_predict_sample(const weft_material *material, const weft_triangulation *views,
-                             const weft_dataset_layout *layout, int image, int x, int y);
 
 /* Measures the error over all texels, or over an even choice of them where the samples would be more than about two
  * million; makes the pairs of the given images [image_count]. The material must have the size of the dataset. Errors:

@@ -14,6 +14,9 @@ static const char *const style =
     "table{border-collapse:collapse;margin:.6em 0}td,th{padding:.2em .9em .2em 0;text-align:right;vertical-align:top;"
     "font-variant-numeric:tabular-nums}td:first-child,th:first-child{text-align:left}th{font-weight:600;border-bottom:"
     "1px solid #ccc}"
+    ".tiles{display:flex;flex-wrap:wrap;gap:12px}.tiles div{border:1px solid #ccc;border-radius:6px;padding:.5em "
+    ".9em;background:#fff;"
+    "font-size:.85em;color:#555}.tiles b{display:block;font-size:1.7em;color:#1c1c1c}"
     ".row{display:flex;flex-wrap:wrap;gap:12px}figure{margin:0}figcaption{font-size:.85em;color:#555;max-width:420px}"
     "img{display:block;image-rendering:pixelated;background:#ddd;max-width:100%}p.note{color:#555;font-size:.92em}";
 

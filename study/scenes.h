@@ -33,7 +33,7 @@ typedef struct weft_scenes_request {
     weft_dataset *dataset;
     const weft_material *material;
     const char *weave;
-    int tiles_u, tiles_v; /* of the weave for one material; 0 = as many as the virtual rig would lay out */
+    double tiles_u, tiles_v; /* of the weave for one material; 0 = as many as the virtual rig would lay out */
 } weft_scenes_request;
 
 /* Draws without a window. Having no OpenGL is not an error. Errors: WEFT_BAD_INPUT from reading dataset or weave;

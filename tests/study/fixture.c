@@ -11,8 +11,8 @@ void expect_ok(weft_code code, const weft_error *error)
         fail_msg("%s", error->message);
 }
 
-static void put_image(weft_dataset_writer *writer, const weft_dataset_layout *layout, int image, fixture_reflectance reflectance,
-                      int masked)
+static void put_image(weft_dataset_writer *writer, const weft_dataset_layout *layout, int image,
+                      fixture_reflectance reflectance, int masked)
 {
     size_t texels = (size_t)layout->width * (size_t)layout->height;
     weft_half *samples = malloc(3 * texels * sizeof *samples);
@@ -45,7 +45,8 @@ static void write_dataset(const char *path, weft_dataset_layout *layout, fixture
     weft_dataset_layout_free(layout);
 }
 
-void fixture_far_dataset(const char *path, int width, int height, int ring_count, fixture_reflectance reflectance, int mask_one)
+void fixture_far_dataset(const char *path, int width, int height, int ring_count, fixture_reflectance reflectance,
+                         int mask_one)
 {
     static const int directions_within[] = {0, 1, 7, 19, 37, 57, 81};
     int count = directions_within[ring_count];

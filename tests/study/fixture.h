@@ -15,9 +15,10 @@
 /* Reflectance (BRDF x pi) of a texel in a direction pair, whatever the test wants. */
 typedef weft_rgb (*fixture_reflectance)(int x, int y, weft_vec3 light, weft_vec3 view);
 
-/* The first `ring_count` rings of ubo81 for views and lights (1, 7, 19, ... directions), all pairs, reflectance times cosine. Texel (0, 0) of image 0 is
- * masked as saturated where `mask_one`. */
-void fixture_far_dataset(const char *path, int width, int height, int ring_count, fixture_reflectance reflectance, int mask_one);
+/* The first `ring_count` rings of ubo81 for views and lights (1, 7, 19, ... directions), all pairs, reflectance times
+ * cosine. Texel (0, 0) of image 0 is masked as saturated where `mask_one`. */
+void fixture_far_dataset(const char *path, int width, int height, int ring_count, fixture_reflectance reflectance,
+                         int mask_one);
 
 /* A few images with near lights above a square of 64 mm; view and light coincide, as with a phone's flash. */
 void fixture_near_dataset(const char *path, int size, int image_count, fixture_reflectance reflectance);

@@ -53,7 +53,8 @@ static void at_measured_directions_the_samples_come_back(void **state)
     fixture_far_dataset(path, 3, 2, 3, shiny, 0);
     opened o = open_raw();
     for (int i = 0; i < 19; i += 3) {
-        weft_vec3 light = weft_direction_of_angles(weft_ubo81_angles(i)), view = weft_direction_of_angles(weft_ubo81_angles(18 - i));
+        weft_vec3 light = weft_direction_of_angles(weft_ubo81_angles(i)),
+                  view = weft_direction_of_angles(weft_ubo81_angles(18 - i));
         weft_rgb brdf, expected = shiny(0, 0, light, view);
         expect_ok(weft_raw_btf_sample(o.raw, 0.5, 0.25, light, view, &brdf, NULL), &(weft_error){0});
         assert_float_equal(brdf.r * WEFT_PI, expected.r, 1e-3);
@@ -70,8 +71,9 @@ static void a_diffuse_texel_is_constant_between_directions(void **state)
     opened o = open_raw();
     for (int i = 0; i < 20; i++) {
         weft_rgb brdf;
-        expect_ok(weft_raw_btf_sample(o.raw, 0.5, 0.75, direction(1.7 * i, 13 * i), direction(29 - i, 41 * i), &brdf, NULL),
-                  &(weft_error){0});
+        expect_ok(
+            weft_raw_btf_sample(o.raw, 0.5, 0.75, direction(1.7 * i, 13 * i), direction(29 - i, 41 * i), &brdf, NULL),
+            &(weft_error){0});
         assert_float_equal(brdf.r * WEFT_PI, 0.6, 1e-3);
         assert_float_equal(brdf.b * WEFT_PI, 0.1, 1e-3);
     }

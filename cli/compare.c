@@ -1,0 +1,106 @@
+#include "study/compare.h"
+#include "cli/command.h"
+#include "cli/scene_options.h"
+
+#include <stdio.h>
+
+typedef struct compare_command {
+    common_options common;
+    weft_compare_options options;
+} compare_command;
+
+enum { KEY_TILES = 0x2000 };
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "REPORT/", 0, "The folder for the page and its pictures", 0},
+    {"weave", 'w', "CLOTH.wv", 0, "Draw this analytic cloth beside them", 0},
+    {"tiles", KEY_TILES, "X,Y", 0, "Tiles of the weave across the material (default: as the virtual rig lays it)", 0},
+    {0},
+};
+
+static void parse_tiles(const char *argument, weft_compare_options *options, struct argp_state *state)
+{
+    double tiles[2];
+    parse_numbers("tiles", argument, 2, tiles, state);
+    if (!(tiles[0] > 0) || !(tiles[1] > 0))
+        argp_error(state, "--tiles needs two positive numbers, not '%s'", argument);
+    options->tiles_u = tiles[0];
+    options->tiles_v = tiles[1];
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    compare_command *command = state->input;
+    weft_compare_options *options = &command->options;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &command->common;
+        return 0;
+    case 'o':
+        options->folder = argument;
+        return 0;
+    case 'w':
+        options->weave = argument;
+        return 0;
+    case KEY_TILES:
+        parse_tiles(argument, options, state);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (state->arg_num > 1)
+            argp_error(state, "a dataset and a material: '%s' is one too many", argument);
+        *(state->arg_num == 0 ? &options->dataset : &options->material) = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->material || !options->folder)
+            argp_error(state, "needs a dataset, a material and -o REPORT/");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
+
+static const struct argp parser = {
+    option_table,
+    parse_option,
+    "NAME.btf.h5 NAME.weft -o REPORT/",
+    "Example: weft compare silk.btf.h5 silk.weft --weave silk.wv -o report/\n\n"
+    "Writes one HTML page: dataset, material and analytic cloth side by side, their differences, the errors by level "
+    "and direction, sizes and times. "
+    "A dataset of fewer than 30 images is also fitted with each image left out, to see how well the others predict it.",
+    children,
+    NULL,
+    NULL};
+
+static void say_numbers(const compare_command *command, const weft_comparison *comparison)
+{
+    const common_options *common = &command->common;
+    const weft_prediction_error *all = &comparison->measurement.all;
+    command_say(common, "level 0: relative RMSE %.4f, median relative error %.2f %%", all->relative_rmse,
+                100 * all->median_relative);
+    command_say(common, "size: %.0f bytes, 1:%.1f of the half floats", comparison->material_bytes,
+                comparison->half_float_bytes / comparison->material_bytes);
+    if (comparison->left_out.count > 0)
+        command_say(common, "leave one out: relative RMSE %.4f, median relative error %.4f (means of %d photographs)",
+                    comparison->left_out.mean_relative_rmse, comparison->left_out.mean_median_relative,
+                    comparison->left_out.count);
+    if (!comparison->scenes.drawn)
+        command_say(common, "no pictures of scenes: %s", comparison->scenes.why_not);
+    command_say(common, "page: %s/index.html", command->options.folder);
+}
+
+int command_compare(int argc, char **argv)
+{
+    compare_command command = {0};
+    command_parse(&parser, argc, argv, &command, &command.common);
+    weft_progress progress = command_progress(&command.common);
+    weft_comparison comparison;
+    weft_error error = {0};
+    weft_code code = weft_compare(&command.options, &progress, &comparison, &error);
+    if (code == WEFT_OK) {
+        say_numbers(&command, &comparison);
+        weft_comparison_free(&comparison);
+    }
+    return command_exit("compare", &command.common, code, &error);
+}
