@@ -52,7 +52,9 @@ weft_code weft_material_create(int width, int height, int lobe_count, int view_c
                                weft_material *material, weft_error *error);
 void weft_material_free(weft_material *material);
 
-/* Writes atomically. Errors: WEFT_SYSTEM. */
+/* Writes atomically. Errors: WEFT_BAD_USAGE for contents that could not be read back (not finite, negative diffuse
+ * terms or exponents, views that are no unit vectors of the upper hemisphere, metadata that is no JSON object),
+ * WEFT_SYSTEM. */
 weft_code weft_material_write(const char *path, const weft_material *material, weft_error *error);
 
 /* Reads and checks all of a file: every size against the file before anything is allocated, every checksum.

@@ -101,7 +101,8 @@ static weft_code add_section(file_image *file, weft_section_kind kind, int level
                          weft_section_type[kind], level, fault);
     size_t offset = aligned(file->size), bound = ZSTD_compressBound(size);
     unsigned char *stored = file->bytes + offset;
-    size_t packed = kind == WEFT_SECTION_META ? 0 : compress_section(stored, bound, bytes, size);
+    bool is_texels = kind >= WEFT_SECTION_FRAM && kind <= WEFT_SECTION_TABL;
+    size_t packed = is_texels ? compress_section(stored, bound, bytes, size) : 0;
     size_t stored_size = packed > 0 ? packed : size;
     if (packed == 0)
         memcpy(stored, bytes, size);
@@ -190,8 +191,11 @@ static weft_code fill(file_image *file, const weft_material *material, weft_erro
     return WEFT_OK;
 }
 
-static weft_code check_metadata(const char *path, const weft_material *material, weft_error *error)
+static weft_code check_header(const char *path, const weft_material *material, weft_error *error)
 {
+    if (!(material->texel_pitch_mm > 0) || !isfinite(material->texel_pitch_mm))
+        return weft_fail(error, WEFT_BAD_USAGE, "cannot write '%s': texel pitch is %g mm", path,
+                         material->texel_pitch_mm);
     if (strlen(material->metadata) > WEFT_FORMAT_MAX_METADATA)
         return weft_fail(error, WEFT_BAD_USAGE, "cannot write '%s': metadata has %zu bytes, at most %d are allowed",
                          path, strlen(material->metadata), WEFT_FORMAT_MAX_METADATA);
@@ -204,7 +208,7 @@ static weft_code check_metadata(const char *path, const weft_material *material,
 
 weft_code weft_material_write(const char *path, const weft_material *material, weft_error *error)
 {
-    WEFT_TRY(check_metadata(path, material, error));
+    WEFT_TRY(check_header(path, material, error));
     file_image file = {.path = path};
     weft_code code = fill(&file, material, error);
     if (code == WEFT_OK)

@@ -1,0 +1,42 @@
+#include "btf/dataset.h"
+#include "tests/btf/fuzz.h"
+#include "tests/support/tiny_dataset.h"
+
+#include <stdlib.h>
+
+void fuzz_write_seed(const char *path)
+{
+    weft_dataset_layout layout = tiny_layout(4, 3, 3, 2);
+    if (tiny_dataset_write(path, &layout, tiny_distinct, NULL) != WEFT_OK)
+        abort();
+    weft_dataset_layout_free(&layout);
+}
+
+static void read_all(weft_dataset *dataset)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    size_t samples = (size_t)layout->width * (size_t)layout->image_count;
+    weft_half *half = malloc(samples * 3 * sizeof *half);
+    uint8_t *mask = malloc(samples);
+    float *opacity = malloc((size_t)layout->width * (size_t)layout->view_count * sizeof *opacity);
+    for (int y = 0; half && mask && opacity && y < layout->height; y++) {
+        weft_dataset_read_block(dataset, 0, y, layout->width, 1, half, mask, NULL);
+        weft_dataset_read_opacity(dataset, y, 1, opacity, NULL);
+    }
+    free(half);
+    free(mask);
+    free(opacity);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+    weft_dataset *dataset;
+    weft_error error = {0};
+    weft_code code = weft_dataset_open(fuzz_file(bytes, size), &dataset, &error);
+    if (code != WEFT_OK && (error.code != code || !error.message[0]))
+        abort();
+    if (code == WEFT_OK)
+        read_all(dataset);
+    weft_dataset_close(dataset);
+    return 0;
+}

@@ -1,0 +1,63 @@
+"""Reads a .weft file with nothing but docs/weft-format.md and Python's standard library: checks the container and decodes
+one texel of every section that is stored without a codec (codec 1 needs a Zstandard decoder; its checksum is checked)."""
+
+import json
+import math
+import struct
+import sys
+import zlib
+
+
+def read_header(data):
+    assert data[:8] == bytes.fromhex("89574546540D0A1A"), "magic"
+    names = "version sections size width height levels lobes views reserved pitch reserved2 checksum".split()
+    header = dict(zip(names, struct.unpack("<IIQIIIIIIdII", data[8:64])))
+    table_end = 64 + 40 * header["sections"]
+    assert header["version"] == 1 and header["size"] == len(data), "size"
+    assert zlib.crc32(data[64:table_end], zlib.crc32(data[:60])) == header["checksum"], "checksum of the header"
+    return header, table_end
+
+
+def read_sections(data, header, end):
+    sections = {}
+    for i in range(header["sections"]):
+        kind, level, codec, checksum, offset, stored, decoded = struct.unpack_from("<4sIIIQQQ", data, 64 + 40 * i)
+        assert offset % 64 == 0 and 0 <= offset - end < 64 and not any(data[end:offset]), "place of " + kind.decode()
+        body = data[offset : offset + stored]
+        assert zlib.crc32(body) == checksum, "checksum of " + kind.decode()
+        sections[kind.decode().strip(), level] = (body if codec == 0 else None, decoded)
+        end = offset + stored
+    assert end == len(data), "end"
+    return sections
+
+
+def expected_size(kind, header, texels):
+    lobes, views = header["lobes"], header["views"]
+    return {"FRAM": 6, "RHO": 8, "LOBE": 24 * lobes, "TABL": 4 * views}[kind] * texels
+
+
+def texel_of(kind, body):
+    if kind == "FRAM":
+        x, y, azimuth = (code / 32767 for code in struct.unpack_from("<3h", body))
+        return {"normal": (x, y, math.sqrt(max(0, 1 - x * x - y * y))), "azimuth_rad": math.pi * azimuth}
+    if kind == "TABL":
+        return {"T": tuple((code / 255) ** 2 for code in body[:3]), "opacity": body[3] / 255}
+    return struct.unpack_from("<4e", body)
+
+
+def main(path):
+    data = open(path, "rb").read()
+    header, table_end = read_header(data)
+    sections = read_sections(data, header, table_end)
+    print(header, json.loads(sections["META", 0][0]))
+    width, height = header["width"], header["height"]
+    for level in range(header["levels"]):
+        for kind in ["FRAM", "RHO"] + ["LOBE"] * (header["lobes"] > 0) + ["TABL"] * (header["views"] > 0):
+            body, decoded = sections[kind, level]
+            assert decoded == expected_size(kind, header, width * height), kind
+            print(level, kind, texel_of(kind, body) if body else "compressed")
+        print(level, "ERRO", struct.unpack("<5d", sections["ERRO", level][0]))
+        width, height = (width + 1) // 2, (height + 1) // 2
+
+
+main(sys.argv[1])
