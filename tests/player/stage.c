@@ -1,0 +1,214 @@
+#include "stage.h"
+
+#include "btf/colour.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+void expect_ok(weft_code code, const weft_error *error)
+{
+    if (code != WEFT_OK)
+        fail_msg("%s", error->message);
+}
+
+int stage_open(void **state)
+{
+    weft_error error = {0};
+    stage *s = calloc(1, sizeof *s);
+    if (weft_headless_create(WEFT_GL_CORE, &s->headless, &error) != WEFT_OK) {
+        printf("skipped: %s\n", error.message);
+        exit(77);
+    }
+    expect_ok(weft_player_create(&s->player, &error), &error);
+    weft_mesh mesh;
+    expect_ok(weft_mesh_drape(&mesh, &error), &error);
+    expect_ok(weft_player_set_mesh(s->player, &mesh, &error), &error);
+    weft_mesh_free(&mesh);
+    *state = s;
+    return 0;
+}
+
+int stage_close(void **state)
+{
+    stage *s = *state;
+    weft_player_free(s->player);
+    weft_headless_free(s->headless);
+    free(s);
+    return 0;
+}
+
+double stage_uniform(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-53;
+}
+
+/* ---- Materials ---- */
+
+static void set_half(weft_half *to, double value)
+{
+    *to = weft_half_of_float((float)value);
+}
+
+static void set_stripe_texel(weft_material *m, int k, int x, int y, uint64_t *random)
+{
+    weft_material_level *level = &m->level[k];
+    size_t texels = (size_t)level->width * (size_t)level->height, at = (size_t)y * (size_t)level->width + (size_t)x;
+    double slope = 0.4 * sin(2 * WEFT_PI * (x + 0.5) / level->width * 3), twist = 2 * stage_uniform(random) - 1;
+    weft_frame frame = weft_frame_of_normal(weft_unit(weft_vec3_of(slope, 0.2 * twist, 1)), twist);
+    weft_frame_encode(&frame, level->frame + 3 * at);
+    for (int c = 0; c < 3; c++) {
+        set_half(&level->diffuse[4 * at + (size_t)c], 0.05 + 0.3 * stage_uniform(random));
+        for (int lobe = 0; lobe < m->lobe_count; lobe++) {
+            weft_half *code = level->lobe + 4 * ((size_t)(3 * lobe + c) * texels + at);
+            double exponent = lobe == 0 ? 2 + 10 * stage_uniform(random) : 30 + 60 * stage_uniform(random);
+            double size = 0.9 + 0.1 * stage_uniform(random);
+            set_half(&code[0], -size);
+            set_half(&code[1], -size * (0.7 + 0.3 * stage_uniform(random)));
+            set_half(&code[2], size);
+            set_half(&code[3], exponent);
+        }
+    }
+    for (int view = 0; view < m->view_count; view++) {
+        uint8_t *code = level->table + 4 * ((size_t)view * texels + at);
+        for (int c = 0; c < 3; c++)
+            code[c] = (uint8_t)(140 + 115 * stage_uniform(random));
+        code[3] = stage_uniform(random) < 0.02 ? 128 : 255;
+    }
+}
+
+void stage_material(int width, int height, int lobes, int views, weft_material *material)
+{
+    weft_error error = {0};
+    uint64_t random = 7;
+    expect_ok(weft_material_create(width, height, lobes, views, true, material, &error), &error);
+    material->texel_pitch_mm = 0.5;
+    for (int v = 0; v < views; v++)
+        material->view[v] = weft_direction_of_angles(weft_ubo81_angles(v));
+    for (int k = 0; k < material->level_count; k++) {
+        for (int y = 0; y < material->level[k].height; y++) {
+            for (int x = 0; x < material->level[k].width; x++)
+                set_stripe_texel(material, k, x, y, &random);
+        }
+    }
+}
+
+/* `share` of the texel is bright. Amplitudes are means; a lobe of amplitude A is stored with C = A^(1/N) c. */
+static void set_checker_texel(weft_material_level *level, size_t at, double share)
+{
+    const double exponent = 12, dark[2] = {0.02, 0.05}, bright[2] = {0.6, 1.4};
+    size_t texels = (size_t)level->width * (size_t)level->height;
+    weft_frame frame = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
+    weft_frame_encode(&frame, level->frame + 3 * at);
+    double scale = pow(dark[1] + share * (bright[1] - dark[1]), 1 / exponent);
+    for (int c = 0; c < 3; c++) {
+        set_half(&level->diffuse[4 * at + (size_t)c], dark[0] + share * (bright[0] - dark[0]));
+        weft_half *code = level->lobe + 4 * ((size_t)c * texels + at);
+        set_half(&code[0], -scale);
+        set_half(&code[1], -scale);
+        set_half(&code[2], scale);
+        set_half(&code[3], exponent);
+    }
+}
+
+void stage_checker(int size, weft_material *material)
+{
+    weft_error error = {0};
+    expect_ok(weft_material_create(size, size, 1, 0, true, material, &error), &error);
+    material->texel_pitch_mm = 0.5;
+    for (int k = 0; k < material->level_count; k++) {
+        weft_material_level *level = &material->level[k];
+        for (int i = 0; i < level->width * level->height; i++)
+            set_checker_texel(level, (size_t)i, k > 0 ? 0.5 : (i / level->width + i % level->width) % 2);
+    }
+}
+
+/* ---- Datasets ---- */
+
+static double stage_sample(const weft_dataset_layout *layout, int image, int x, int y, int channel)
+{
+    weft_vec3 l = layout->light[image], v = layout->view[layout->view_of_image[image]];
+    double texture = 0.3 + 0.2 * sin(x * 1.3 + channel) * cos(y * 0.9 + 0.5 * channel);
+    double gloss = fmax(0, l.z * v.z - l.x * v.x - l.y * v.y);
+    double brdf_pi = texture * (1 + 0.3 * v.x) + 0.4 * pow(gloss, 6);
+    return layout->values == WEFT_REFLECTANCE_COSINE ? brdf_pi * l.z : brdf_pi;
+}
+
+static weft_code put_image(weft_dataset_writer *writer, const weft_dataset_layout *layout, int image, bool holes,
+                           weft_half *samples, uint8_t *mask, weft_error *error)
+{
+    for (int i = 0; i < layout->width * layout->height; i++) {
+        for (int c = 0; c < 3; c++)
+            set_half(&samples[3 * i + c], stage_sample(layout, image, i % layout->width, i / layout->width, c));
+        mask[i] = holes && (image * 31 + i) % 11 == 0 ? WEFT_MASK_SATURATED : 0;
+        if (mask[i])
+            set_half(&samples[3 * i], NAN);
+    }
+    return weft_dataset_writer_put_image(writer, image, samples, mask, error);
+}
+
+void stage_dataset(const char *path, int size, int views, int lights, weft_values values, bool holes)
+{
+    weft_error error = {0};
+    weft_dataset_layout layout = {.width = size,
+                                  .height = size,
+                                  .image_count = views * lights,
+                                  .view_count = views,
+                                  .values = values,
+                                  .texel_pitch_mm = 0.5};
+    expect_ok(weft_dataset_layout_allocate(&layout, &error), &error);
+    for (int i = 0; i < views * lights; i++) {
+        layout.light[i] = weft_direction_of_angles(weft_ubo81_angles(i % lights));
+        layout.view[i / lights] = weft_direction_of_angles(weft_ubo81_angles(i / lights));
+        layout.view_of_image[i] = i / lights;
+    }
+    weft_half *samples = calloc((size_t)size * (size_t)size, 3 * sizeof *samples);
+    uint8_t *mask = calloc((size_t)size * (size_t)size, 1);
+    weft_dataset_writer *writer;
+    expect_ok(weft_dataset_writer_create(path, &layout, &writer, &error), &error);
+    for (int i = 0; i < layout.image_count; i++)
+        expect_ok(put_image(writer, &layout, i, holes, samples, mask, &error), &error);
+    expect_ok(weft_dataset_writer_finish(writer, NULL, &error), &error);
+    free(samples);
+    free(mask);
+    weft_dataset_layout_free(&layout);
+}
+
+/* ---- Comparison ---- */
+
+static double displayed(double linear)
+{
+    return round(255 * (double)weft_srgb_of_linear((float)fmin(fmax(linear, 0), 1)));
+}
+
+stage_difference stage_compare(weft_player *player, weft_scene scene, weft_mode mode, int width, int height,
+                               stage_evaluator *evaluate, void *context)
+{
+    weft_error error = {0};
+    weft_image image;
+    weft_surface_sample *sample;
+    scene.pane_count = 1;
+    scene.pane[0] = mode;
+    expect_ok(weft_player_picture(player, &scene, width, height, 1, NULL, &image, &error), &error);
+    expect_ok(weft_player_read_surface(player, &scene, mode, width, height, &sample, &error), &error);
+    stage_difference difference = {0};
+    for (int i = 0; i < width * height; i++) {
+        if (sample[i].covered == 0)
+            continue;
+        weft_rgba value = evaluate(context, &sample[i]);
+        if (value.a < 0.999)
+            continue;
+        const double expected[3] = {value.r, value.g, value.b};
+        for (int c = 0; c < 3; c++) {
+            double error_255 = displayed((double)image.pixels[3 * i + c]) - displayed(scene.exposure * expected[c]);
+            difference.rmse += error_255 * error_255;
+            difference.largest = fmax(difference.largest, fabs(error_255));
+        }
+        difference.pixels++;
+    }
+    difference.rmse = sqrt(difference.rmse / (3.0 * (double)difference.pixels));
+    free(sample);
+    weft_image_free(&image);
+    return difference;
+}

@@ -1,0 +1,223 @@
+/* The shaders draw what the evaluators in C compute from the same surface points. Floors: RMSE below 1/255, largest
+ * difference below 4/255, of 8-bit sRGB values. */
+#include "stage.h"
+
+#include "player/weave_texture.h"
+#include "reflectance/lafortune.h"
+#include "study/raw_btf.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { WIDTH = 320, HEIGHT = 240 };
+
+static weft_vec3 vector(const float v[3])
+{
+    return weft_vec3_of((weft_real)v[0], (weft_real)v[1], (weft_real)v[2]);
+}
+
+static weft_rgba lit(weft_rgb brdf_pi, weft_vec3 light, double opacity)
+{
+    double cosine = fmax(light.z, 0);
+    return (weft_rgba){brdf_pi.r * cosine, brdf_pi.g * cosine, brdf_pi.b * cosine, opacity};
+}
+
+static void expect_small(const char *what, stage_difference difference)
+{
+    printf("%s: RMSE %.4f/255, largest %g/255 over %ld pixels\n", what, difference.rmse, difference.largest,
+           difference.pixels);
+    assert_true(difference.pixels > WIDTH * HEIGHT / 5);
+    assert_true(difference.rmse < 1);
+    assert_true(difference.largest < 4);
+}
+
+/* ---- Compressed ---- */
+
+typedef struct material_model {
+    weft_material material;
+    weft_triangulation *views;
+} material_model;
+
+static weft_rgba evaluate_material(void *context, const weft_surface_sample *at)
+{
+    material_model *model = context;
+    /* Opacity does not depend on the light, but the evaluator has none for a light below the horizon. */
+    weft_vec3 light = vector(at->light), above = light.z > 0 ? light : weft_vec3_of(0, 0, 1);
+    weft_rgba value = weft_material_sample(&model->material, model->views, (weft_real)at->level, (weft_real)at->u,
+                                           (weft_real)at->v, above, vector(at->view));
+    return lit((weft_rgb){value.r, value.g, value.b}, light, value.a);
+}
+
+static void compare_material(void **state, const char *what, int lobes, int views, weft_scene scene)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    material_model model = {0};
+    stage_material(20, 13, lobes, views, &model.material);
+    if (views > 0)
+        expect_ok(weft_triangulation_build(model.material.view, views, &model.views, &error), &error);
+    expect_ok(weft_player_set_material(s->player, &model.material, &error), &error);
+    expect_small(what, stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_material, &model));
+    weft_triangulation_free(model.views);
+    weft_material_free(&model.material);
+}
+
+static void compressed_equals_c_with_two_lobes_and_81_views(void **state)
+{
+    compare_material(state, "2 lobes, 81 views", 2, 81, weft_scene_default());
+}
+
+static void compressed_equals_c_between_levels(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    scene.repeat = 37;
+    compare_material(state, "minified", 2, 81, scene);
+    scene.level_choice = WEFT_LEVEL_FIXED;
+    scene.level = 1.37;
+    compare_material(state, "level 1.37", 2, 81, scene);
+}
+
+static void compressed_equals_c_under_grazing_light_from_behind(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    scene.light = (weft_angles){weft_rad_of_deg(85), weft_rad_of_deg(100)};
+    scene.exposure = 3;
+    compare_material(state, "grazing", 3, 37, scene);
+}
+
+static void compressed_equals_c_without_lobes_or_table(void **state)
+{
+    compare_material(state, "no lobes, no table", 0, 0, weft_scene_default());
+    compare_material(state, "1 lobe, 1 view", 1, 1, weft_scene_default());
+    compare_material(state, "1 lobe, 2 views", 1, 2, weft_scene_default());
+}
+
+/* ---- Raw ---- */
+
+static weft_rgba evaluate_raw(void *context, const weft_surface_sample *at)
+{
+    weft_rgb brdf = {0};
+    weft_error error = {0};
+    weft_vec3 light = vector(at->light);
+    expect_ok(weft_raw_btf_sample(context, (weft_real)at->u, (weft_real)at->v, light, vector(at->view), &brdf, &error),
+              &error);
+    return lit((weft_rgb){brdf.r * WEFT_PI, brdf.g * WEFT_PI, brdf.b * WEFT_PI}, light, 1);
+}
+
+static void compare_raw(void **state, const char *what, int views, int lights, weft_values values)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    const char *path = "test_shaders.btf.h5";
+    weft_dataset *dataset;
+    weft_raw_btf *raw;
+    int skipped;
+    stage_dataset(path, 8, views, lights, values, false);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    expect_ok(weft_raw_btf_create(dataset, &raw, &error), &error);
+    expect_ok(weft_player_set_dataset(s->player, dataset, NULL, &skipped, &error), &error);
+    weft_scene scene = weft_scene_default();
+    scene.level_choice = WEFT_LEVEL_NONE;
+    expect_small(what, stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, raw));
+    weft_raw_btf_free(raw);
+    weft_dataset_close(dataset);
+    unlink(path);
+}
+
+static void raw_equals_c_interpolation_in_views_and_lights(void **state)
+{
+    compare_raw(state, "raw 81 x 81", 81, 81, WEFT_REFLECTANCE_COSINE);
+    compare_raw(state, "raw 19 x 37 without cosine", 19, 37, WEFT_REFLECTANCE);
+}
+
+/* ---- Analytic ---- */
+
+typedef struct cloth_model {
+    weft_weave weave;
+    weft_triangulation *directions;
+    weft_rgb mean[WEFT_UBO81_COUNT][WEFT_UBO81_COUNT];
+    double tiles;
+} cloth_model;
+
+static weft_rgb mean_brdf(const cloth_model *model, weft_vec3 light, weft_vec3 view)
+{
+    weft_rgb sum = {0};
+    weft_barycentric l = weft_triangulation_lookup(model->directions, light);
+    weft_barycentric v = weft_triangulation_lookup(model->directions, view);
+    for (int i = 0; i < 9; i++) {
+        if (l.index[i % 3] < 0 || v.index[i / 3] < 0)
+            continue;
+        weft_rgb value = model->mean[v.index[i / 3]][l.index[i % 3]];
+        double weight = l.weight[i % 3] * v.weight[i / 3];
+        sum.r += weight * value.r;
+        sum.g += weight * value.g;
+        sum.b += weight * value.b;
+    }
+    return sum;
+}
+
+static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)
+{
+    cloth_model *model = context;
+    weft_vec3 light = vector(at->light), view = vector(at->view);
+    if (!(light.z > 0))
+        return (weft_rgba){0, 0, 0, 1};
+    double fade = fmin(fmax(((double)at->level + 1) / 2, 0), 1);
+    weft_weave_point place =
+        weft_weave_locate(&model->weave, (weft_real)at->u * model->tiles, (weft_real)at->v * model->tiles, 0);
+    weft_rgb near = weft_weave_brdf(&model->weave, &place, light, view), far = mean_brdf(model, light, view);
+    return lit((weft_rgb){WEFT_PI * (near.r + fade * (far.r - near.r)), WEFT_PI * (near.g + fade * (far.g - near.g)),
+                          WEFT_PI * (near.b + fade * (far.b - near.b))},
+               light, 1);
+}
+
+static void compare_weave(void **state, const char *name, double repeat)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    char path[512], warning[WEFT_MESSAGE_SIZE];
+    cloth_model *model = calloc(1, sizeof *model);
+    weft_vec3 direction[WEFT_UBO81_COUNT];
+    for (int i = 0; i < WEFT_UBO81_COUNT; i++)
+        direction[i] = weft_direction_of_angles(weft_ubo81_angles(i));
+    snprintf(path, sizeof path, "%s/weaves/%s.wv", WEFT_ASSETS, name);
+    expect_ok(weft_weave_read(path, NULL, 0, &model->weave, warning, &error), &error);
+    expect_ok(weft_triangulation_build(direction, WEFT_UBO81_COUNT, &model->directions, &error), &error);
+    weft_weave_mean_tabulate(&model->weave, model->mean);
+    model->tiles = 2;
+    expect_ok(weft_player_set_weave(s->player, &model->weave, 2, 2, &error), &error);
+    weft_scene scene = weft_scene_default();
+    scene.repeat = repeat;
+    expect_small(name, stage_compare(s->player, scene, WEFT_MODE_ANALYTIC, WIDTH, HEIGHT, evaluate_cloth, model));
+    weft_triangulation_free(model->directions);
+    weft_weave_free(&model->weave);
+    free(model);
+}
+
+static void analytic_equals_c_for_staple_and_filament_yarns(void **state)
+{
+    compare_weave(state, "cotton_denim", 4);
+    compare_weave(state, "silk_charmeuse", 2);
+}
+
+static void analytic_equals_c_where_the_texture_fades_to_the_mean(void **state)
+{
+    compare_weave(state, "wool_gabardine", 15);
+    compare_weave(state, "polyester_lining", 60);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(compressed_equals_c_with_two_lobes_and_81_views),
+        cmocka_unit_test(compressed_equals_c_between_levels),
+        cmocka_unit_test(compressed_equals_c_under_grazing_light_from_behind),
+        cmocka_unit_test(compressed_equals_c_without_lobes_or_table),
+        cmocka_unit_test(raw_equals_c_interpolation_in_views_and_lights),
+        cmocka_unit_test(analytic_equals_c_for_staple_and_filament_yarns),
+        cmocka_unit_test(analytic_equals_c_where_the_texture_fades_to_the_mean),
+    };
+    return cmocka_run_group_tests(tests, stage_open, stage_close);
+}
