@@ -60,7 +60,9 @@ static estimate gauss_kronrod(const problem *p, weft_real low, weft_real high)
 
 static weft_real refine(const problem *p, weft_real low, weft_real high, estimate whole, int depth)
 {
-    if (!(whole.error > p->tolerance) || depth == MAX_DEPTH)
+    /* A panel cannot know itself better than its own rounding, whatever the first estimate of the whole was. */
+    weft_real enough = fmax(p->tolerance, 8 * (weft_real)WEFT_REAL_EPSILON * fabs(whole.value));
+    if (!(whole.error > enough) || depth == MAX_DEPTH)
         return whole.value;
     weft_real centre = (low + high) / 2;
     return refine(p, low, centre, gauss_kronrod(p, low, centre), depth + 1) +

@@ -21,8 +21,8 @@ typedef struct weft_segment {
 
 /* Beyond these a segment counts as inadmissible: they keep every value finite in single precision. */
 #define WEFT_SEGMENT_MIN_UMAX 1e-7
-#define WEFT_SEGMENT_MIN_HIGHLIGHT_WIDTH 1e-6
-#define WEFT_SEGMENT_MAX_PARAMETER 1e6
+#define WEFT_SEGMENT_MIN_HIGHLIGHT_WIDTH 1e-4
+#define WEFT_SEGMENT_MAX_PARAMETER 1e4
 
 /* Whether such a segment exists. Every function below returns 0 for one that does not. */
 bool weft_segment_admissible(const weft_segment *segment);

@@ -104,14 +104,16 @@ static void insert(weft_real *breaks, int *count, weft_real t, interval range)
     breaks[i] = t;
 }
 
-/* Where the staple integrand begins, ends or jumps, in increasing order with both ends of the yarn: |D| = 1 where
- * |sin(u - u0)| = reach, |v| = pi/2 where u = u0 +- psi, both also half a turn away. */
+/* Where the staple integrand begins, ends, jumps or peaks, in increasing order with both ends of the yarn: |D| = 1
+ * where |sin(u - u0)| = reach, |v| = pi/2 where u = u0 +- psi, both also half a turn away; the vertex of the spine, u =
+ * 0. */
 static int staple_breaks(const staple_problem *problem, weft_real reach, weft_real breaks[MAX_BREAKS])
 {
     weft_real u0 = problem->from_u0 ? 0 : problem->u0;
     const weft_real edge[2] = {asin(fmin(reach, 1)), fabs(problem->prepared->segment.psi)};
     int count = 1;
     breaks[0] = problem->range.low;
+    insert(breaks, &count, u0 - problem->u0, problem->range);
     for (int i = 0; i < 2; i++) {
         for (int turn = -1; turn <= 1; turn++) {
             insert(breaks, &count, u0 + edge[i] + (weft_real)turn * (weft_real)WEFT_PI, problem->range);

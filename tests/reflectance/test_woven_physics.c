@@ -1,0 +1,289 @@
+/* What must hold for any yarn segment. Built twice: in double, and in single precision. */
+#include "reflectance/woven.h"
+#include "tests/btf/cmocka_all.h"
+#include "tests/reflectance/random.h"
+
+/* Rounding of the integral, relative to the value. */
+static const double same = (WEFT_REAL_EPSILON < 1e-9) ? 1e-12 : 2e-5;
+
+static weft_segment random_segment(uint64_t *state, bool staple)
+{
+    weft_segment s = {.alpha = random_between(state, 0, 0.1),
+                      .beta = random_between(state, 0, 6),
+                      .delta = random_between(state, 0, 1),
+                      .umax = random_between(state, 0.1, 1.3),
+                      .kappa = random_between(state, -0.9, 1),
+                      .width = 1,
+                      .length = random_between(state, 1.05, 6),
+                      .highlight_width = random_between(state, 0.1, 1)};
+    s.psi = staple ? random_between(state, 0.1, 1.2) * (random_bits(state) & 1 ? 1 : -1) : 0;
+    return s;
+}
+
+static weft_vec3 mirrored(weft_vec3 d)
+{
+    return weft_vec3_of(-d.x, d.y, d.z);
+}
+
+/* Single precision moves the ends of the highlight by rounding; its absolute error is then that of a typical value. */
+static void assert_same(weft_real a, weft_real b)
+{
+    double floor_value = WEFT_REAL_EPSILON < 1e-9 ? 1e-30 : 1e-6;
+    assert_true(fabs((double)a - (double)b) <= same * fmax(fabs((double)a), fabs((double)b)) + floor_value);
+}
+
+static void reflectance_is_reciprocal(void **state)
+{
+    (void)state;
+    uint64_t random = 1;
+    for (int i = 0; i < 4000; i++) {
+        weft_segment s = random_segment(&random, i % 2);
+        weft_vec3 light = random_direction(&random), view = random_direction(&random);
+        assert_same(weft_segment_reflectance(&s, light, view), weft_segment_reflectance(&s, view, light));
+    }
+}
+
+static void reflectance_keeps_mirror_symmetry(void **state)
+{
+    (void)state;
+    uint64_t random = 2;
+    for (int i = 0; i < 4000; i++) {
+        weft_segment s = random_segment(&random, i % 2), other = s;
+        weft_vec3 light = random_direction(&random), view = random_direction(&random);
+        other.psi = -s.psi;
+        assert_same(weft_segment_reflectance(&s, light, view),
+                    weft_segment_reflectance(&other, mirrored(light), mirrored(view)));
+    }
+}
+
+static void texture_keeps_mirror_symmetry(void **state)
+{
+    (void)state;
+    uint64_t random = 3;
+    int lit = 0;
+    for (int i = 0; i < 20000; i++) {
+        weft_segment s = random_segment(&random, i % 2), other = s;
+        weft_vec3 light = random_direction(&random), view = random_direction(&random);
+        weft_real x = random_between(&random, -0.5, 0.5), y = random_between(&random, -0.5, 0.5) * s.length;
+        other.psi = -s.psi;
+        weft_real a = weft_segment_texture(&s, x, y, light, view);
+        weft_real b = weft_segment_texture(&other, -x, y, mirrored(light), mirrored(view));
+        lit += a > 0;
+        /* Within rounding of the edge of the band either side is right. */
+        if (a > 0 && b > 0)
+            assert_true(fabs((double)a - (double)b) <= 1e3 * (double)WEFT_REAL_EPSILON * (double)a * 100);
+        else if (WEFT_REAL_EPSILON < 1e-9)
+            assert_true(a == b);
+    }
+    assert_true(lit > 1000);
+}
+
+static weft_real centred(int index, int count)
+{
+    return ((weft_real)index + (weft_real)0.5) / (weft_real)count - (weft_real)0.5;
+}
+
+/* Midpoint rule with many steps along the highlight and few across. Across there is a band of constant value, of which
+ * the rule counts points: its width is a whole number of steps, so the count does not depend on where the band lies. */
+static double texture_mean(const weft_segment *s, weft_vec3 light, weft_vec3 view)
+{
+    enum { ALONG = 32768, ACROSS = 12 };
+    double sum = 0;
+    for (int i = 0; i < ALONG; i++) {
+        for (int j = 0; j < ACROSS; j++) {
+            weft_real along = centred(i, ALONG), across = centred(j, ACROSS);
+            weft_real x = s->width * (s->psi != 0 ? across : along), y = s->length * (s->psi != 0 ? along : across);
+            sum += weft_segment_texture(s, x, y, light, view);
+        }
+    }
+    return sum / ALONG / ACROSS;
+}
+
+static void mean_of_the_texture_is_the_reflectance(void **state)
+{
+    (void)state;
+    const weft_real width[] = {(weft_real)0.25, (weft_real)0.5, 1};
+    const weft_vec3 light = weft_unit(weft_vec3_of((weft_real)0.1, (weft_real)-0.2, 1));
+    uint64_t random = 5;
+    double worst = 0;
+    for (int i = 0, used = 0; used < 24; i++) {
+        weft_segment s = random_segment(&random, i % 2);
+        weft_vec3 view = random_direction(&random);
+        s.highlight_width = width[i % 3];
+        double expected = weft_segment_reflectance(&s, light, view);
+        if (!(expected > 1e-4))
+            continue;
+        worst = fmax(worst, fabs(texture_mean(&s, light, view) / expected - 1));
+        used++;
+    }
+    print_message("texture mean against reflectance: worst %.2g\n", worst);
+    assert_true(worst < 5e-4);
+}
+
+static void small_twist_tends_to_the_filament(void **state)
+{
+    (void)state;
+    const weft_vec3 light = weft_unit(weft_vec3_of((weft_real)0.2, (weft_real)0.1, 1));
+    const weft_vec3 view = weft_unit(weft_vec3_of((weft_real)-0.3, (weft_real)0.25, 1));
+    weft_segment s = {.alpha = (weft_real)0.02,
+                      .beta = 3,
+                      .umax = (weft_real)0.7,
+                      .kappa = (weft_real)-0.3,
+                      .width = 1,
+                      .length = 3,
+                      .highlight_width = 1};
+    double filament = weft_segment_reflectance(&s, light, view);
+    for (double psi = 1e-2; psi > 1e-16; psi /= 10) {
+        s.psi = (weft_real)psi;
+        assert_true(fabs(weft_segment_reflectance(&s, light, view) / filament - 1) < 2 * psi + same * 10);
+    }
+}
+
+/* Picks a value at or near one of the places where formulas break. */
+static weft_real pick(uint64_t *state, const double *values, int count)
+{
+    return (weft_real)values[random_bits(state) % (unsigned)count];
+}
+
+#define PICK(state, ...)                                                                                               \
+    pick(state, (const double[]){__VA_ARGS__}, (int)(sizeof((const double[]){__VA_ARGS__}) / sizeof(double)))
+
+static weft_segment extreme_segment(uint64_t *state)
+{
+    return (weft_segment){
+        .alpha = PICK(state, 0, 0.02, 1e4, 1e6),
+        .beta = PICK(state, 0, 1e-9, 3, -5, 88, 700, 1e4, -1e4, 1e30),
+        .delta = PICK(state, 0, 1e-9, 0.5, 1),
+        .psi = PICK(state, 0, 1e-30, 1e-16, 1e-9, -1e-9, 1e-4, 0.5, -0.5, 1.5, 1.570796, -1.5707),
+        .umax = PICK(state, 0, 1e-9, 1e-7, 1e-5, 1e-3, 0.3, 1, 1.5, 1.5707963, 1.57079633, 2),
+        .kappa = PICK(state, -2, -1, -0.99999999, -0.999999, -0.999, -0.5, 0, 1, 1e4, 1e6, -0.2310, -0.4998),
+        .width = PICK(state, 0, 1e-30, 1e-3, 1, 2, 1e4, 1e6),
+        .length = PICK(state, 0, 1e-30, 1e-3, 1, 1.0000001, 2, 9, 1e4, 1e6),
+        .highlight_width = PICK(state, 0, 1e-6, 1e-4, 0.5, 1)};
+}
+
+static weft_vec3 extreme_direction(uint64_t *state, const weft_vec3 *other)
+{
+    weft_vec3 d = random_direction(state);
+    switch (random_bits(state) % 8) {
+    case 0:
+        return weft_unit(weft_vec3_of(d.x, d.y, (weft_real)1e-30));
+    case 1:
+        return weft_unit(weft_vec3_of(d.x, d.y, (weft_real)1e-7));
+    case 2:
+        return weft_vec3_of(-other->x, -other->y, other->z);
+    case 3:
+        return weft_vec3_of(-other->x, -other->y, -other->z);
+    case 4:
+        return *other;
+    case 5:
+        return weft_unit(weft_vec3_of(1, 0, PICK(state, 0, 1e-38, 1e-9, 1e-3)));
+    case 6:
+        return weft_unit(weft_vec3_of(0, PICK(state, -1, 0, 1), PICK(state, 0, 1e-9, 1)));
+    default:
+        return d;
+    }
+}
+
+static void assert_sane(weft_real value)
+{
+    assert_true(isfinite(value) && value >= 0);
+}
+
+static void extreme_point_and_texture_values_are_finite(void **state)
+{
+    (void)state;
+    uint64_t random = 7;
+    for (int i = 0; i < 1500000; i++) {
+        weft_segment s = extreme_segment(&random);
+        weft_vec3 light = extreme_direction(&random, &(weft_vec3){0, 0, 1}), view = extreme_direction(&random, &light);
+        weft_real share = PICK(&random, -0.5, -0.499, 0, 1e-9, 0.2, 0.5);
+        weft_real x = s.width * share, y = s.length * PICK(&random, -0.5, -0.4999999, 0, 1e-9, 0.3, 0.5);
+        assert_sane(weft_segment_texture(&s, x, y, light, view));
+        weft_yarn_point point = weft_yarn_highlight(&s, (s.psi != 0 ? 2 * s.umax : 3) * share, light, view);
+        assert_sane(point.integrand);
+        assert_sane(point.geometry);
+        assert_sane(point.radius);
+        assert_sane(point.phase);
+        assert_sane(point.attenuation);
+    }
+}
+
+static void extreme_reflectances_are_finite(void **state)
+{
+    (void)state;
+    uint64_t random = 8;
+    for (int i = 0; i < 30000; i++) {
+        weft_segment s = extreme_segment(&random);
+        weft_vec3 light = extreme_direction(&random, &(weft_vec3){0, 0, 1}), view = extreme_direction(&random, &light);
+        assert_sane(weft_segment_reflectance(&s, light, view));
+    }
+}
+
+static void directions_that_are_no_directions_give_no_light(void **state)
+{
+    (void)state;
+    weft_segment s = {.psi = (weft_real)0.4, .umax = (weft_real)0.5, .width = 1, .length = 2, .highlight_width = 1};
+    const weft_real bad[] = {(weft_real)NAN, (weft_real)INFINITY, (weft_real)-INFINITY};
+    const weft_vec3 up = {0, 0, 1};
+    for (int i = 0; i < 3; i++) {
+        const weft_vec3 odd[] = {{bad[i], 0, 1}, {0, bad[i], 1}, {0, 0, bad[i]}};
+        for (int k = 0; k < 3; k++) {
+            assert_true(!(weft_segment_texture(&s, 0, 0, odd[k], up) > 0));
+            assert_true(!(weft_segment_texture(&s, 0, 0, up, odd[k]) > 0));
+        }
+    }
+}
+
+static void inadmissible_segments_reflect_nothing(void **state)
+{
+    (void)state;
+    const weft_segment good = {.umax = (weft_real)0.5, .width = 1, .length = 2, .highlight_width = 1};
+    const weft_vec3 up = {0, 0, 1};
+    weft_segment bad[8];
+    for (int i = 0; i < 8; i++)
+        bad[i] = good;
+    bad[0].umax = 0;
+    bad[1].umax = 2;
+    bad[2].kappa = -1;
+    bad[3].width = 5;
+    bad[4].psi = (weft_real)1.6;
+    bad[5].delta = (weft_real)1.5;
+    bad[6].highlight_width = 0;
+    bad[7].beta = (weft_real)NAN;
+    assert_true(weft_segment_admissible(&good) && weft_segment_reflectance(&good, up, up) > 0);
+    for (int i = 0; i < 8; i++) {
+        assert_false(weft_segment_admissible(&bad[i]));
+        assert_true(weft_segment_reflectance(&bad[i], up, up) == 0);
+        assert_true(weft_segment_texture(&bad[i], 0, 0, up, up) == 0);
+    }
+}
+
+static void phase_function_integrates_over_a_circle_to_one_plus_alpha(void **state)
+{
+    (void)state;
+    const weft_real betas[] = {0, 2, -4, 19, 21, 200};
+    for (int i = 0; i < 6; i++) {
+        double sum = 0;
+        for (int k = 0; k < 4096; k++)
+            sum += weft_phase_function((weft_real)0.05, betas[i], cos(2 * (weft_real)WEFT_PI * (weft_real)k / 4096));
+        assert_true(fabs(sum * 2 * (double)WEFT_PI / 4096 - (1 + 0.05 * 2 * (double)WEFT_PI)) < 1e5 * same);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reflectance_is_reciprocal),
+        cmocka_unit_test(reflectance_keeps_mirror_symmetry),
+        cmocka_unit_test(texture_keeps_mirror_symmetry),
+        cmocka_unit_test(mean_of_the_texture_is_the_reflectance),
+        cmocka_unit_test(small_twist_tends_to_the_filament),
+        cmocka_unit_test(extreme_point_and_texture_values_are_finite),
+        cmocka_unit_test(extreme_reflectances_are_finite),
+        cmocka_unit_test(directions_that_are_no_directions_give_no_light),
+        cmocka_unit_test(inadmissible_segments_reflect_nothing),
+        cmocka_unit_test(phase_function_integrates_over_a_circle_to_one_plus_alpha),
+    };
+    return cmocka_run_group_tests_name("woven physics", tests, NULL, NULL);
+}
