@@ -70,7 +70,8 @@ const char *weft_dataset_path(const weft_dataset *dataset);
 /* Reads the block of texels [x, x + width) x [y, y + height):
  * samples [height][width][image_count][3], mask [height][width][image_count]; either may be NULL.
  * Not thread-safe (HDF5 is not): one reader at a time.
- * Errors: WEFT_BAD_INPUT for a truncated file, or where a sample that the mask calls valid is NaN or infinite. */
+ * Masked samples that are not finite are given as 0. Errors: WEFT_BAD_INPUT for a truncated file, or where a sample
+ * that the mask calls valid is NaN or infinite; WEFT_BAD_USAGE for a block outside the material. */
 weft_code weft_dataset_read_block(weft_dataset *dataset, int x, int y, int width, int height, weft_half *samples,
                                   uint8_t *mask, weft_error *error);
 
@@ -89,7 +90,8 @@ typedef struct weft_dataset_writer weft_dataset_writer;
 weft_code weft_dataset_writer_create(const char *path, const weft_dataset_layout *layout, weft_dataset_writer **result,
                                      weft_error *error);
 
-/* samples [height][width][3], mask [height][width] (NULL: all valid). Thread-safe for distinct images. */
+/* samples [height][width][3], mask [height][width] (NULL: all valid); masked samples are stored as 0. Thread-safe for
+ * distinct images. Errors: WEFT_BAD_INPUT for a valid sample that is not finite, WEFT_SYSTEM. */
 weft_code weft_dataset_writer_put_image(weft_dataset_writer *writer, int image, const weft_half *samples,
                                         const uint8_t *mask, weft_error *error);
 

@@ -15,6 +15,14 @@ enum { WEFT_DATASET_VERSION = 1 };
 extern const char *const weft_values_name[2];   /* by weft_values */
 extern const char *const weft_distance_name[2]; /* by weft_distance */
 
+/* An open dataset. */
+struct weft_dataset {
+    char *path;
+    uint64_t file_size;
+    weft_dataset_layout layout;
+    hid_t file, half, samples, mask, opacity; /* opacity is invalid where the file has none */
+};
+
 /* Keeps HDF5 from printing its error stack. */
 void weft_hdf5_quiet(void);
 

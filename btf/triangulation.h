@@ -17,7 +17,8 @@ typedef struct weft_barycentric {
 } weft_barycentric;
 
 /* Triangulates `count` directions (unit, any order; repeated ones are merged with the first).
- * One direction gives a constant, two an arc. The caller owns *result and frees it with
+ * "Repeated" is closer than 1e-5 rad. One direction gives a constant, two an arc, any number on one great circle (to
+ * 1e-6) a chain of arcs. The caller owns *result and frees it with
  * weft_triangulation_free. Errors: WEFT_BAD_INPUT for count < 1, a direction that is not finite
  * or is zero; WEFT_SYSTEM for memory. */
 weft_code weft_triangulation_build(const weft_vec3 *direction, int count, weft_triangulation **result,
