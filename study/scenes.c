@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <time.h>
 
-enum { PICTURE_SIZE = 400, PICTURE_SAMPLES = 4, PLANE_REPEATS = 1 };
+enum { PICTURE_SIZE = 400, PICTURE_SAMPLES = 3, PLANE_REPEATS = 1 };
 
 typedef struct setting {
     const char *mesh, *caption;
@@ -15,8 +15,8 @@ typedef struct setting {
 } setting;
 
 static const setting settings[WEFT_SCENE_COUNT] = {
-    {"drape", "Drape, light from the upper left", 40, 135, 0, 0},
-    {"drape", "Drape, light from the side", 70, 20, 0, 0},
+    {"drape", "Drape, light from the upper left", 40, -130, 0, 0},
+    {"drape", "Drape, light low from the right", 65, -10, 0, 0},
     {"plane", "Plane seen at 60\u00b0 from its normal, light at 45\u00b0 opposite", 45, 90, -90, 30},
 };
 
@@ -55,7 +55,7 @@ static weft_code draw(weft_player *player, const weft_scene *scene, int samples,
 static weft_code time_frame(weft_player *player, const weft_scene *scene, double *frame_ms, weft_error *error)
 {
     double few_ms = 0, many_ms = 0;
-    const int few = 2, many = 2 * PICTURE_SAMPLES;
+    const int few = 1, many = PICTURE_SAMPLES;
     weft_image picture;
     WEFT_TRY(draw(player, scene, few, &picture, &few_ms, error));
     weft_image_free(&picture);

@@ -1,0 +1,134 @@
+/* eval, info, verify and import as a user runs them. */
+#include "btf/image.h"
+#include "btf/material.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+/* Runs weft with arguments for a shell; its two outputs go to `said`. Returns the exit code. */
+static int run(const char *arguments, char said[8192])
+{
+    char command[1024];
+    snprintf(command, sizeof command, WEFT_PROGRAM " %s 2>&1", arguments);
+    FILE *pipe = popen(command, "r");
+    assert_non_null(pipe);
+    size_t size = fread(said, 1, 8191, pipe);
+    said[size] = 0;
+    int status = pclose(pipe);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static void expect(const char *arguments, int code, const char *what)
+{
+    char said[8192];
+    assert_int_equal(run(arguments, said), code);
+    if (!strstr(said, what))
+        fail_msg("weft %s said '%s', not '%s'", arguments, said, what);
+}
+
+static void write_text(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void write_material(const char *path)
+{
+    weft_material material;
+    assert_int_equal(weft_material_create(2, 2, 0, 0, 1, &material, NULL), WEFT_OK);
+    material.texel_pitch_mm = 1;
+    for (int level = 0; level < material.level_count; level++) {
+        for (int i = 0; i < material.level[level].width * material.level[level].height * 4; i++)
+            material.level[level].diffuse[i] = i % 4 < 3 ? weft_half_of_float(0.5f) : 0;
+    }
+    assert_int_equal(weft_material_write(path, &material, NULL), WEFT_OK);
+    weft_material_free(&material);
+}
+
+static void eval_appends_the_brdf_to_every_row(void **state)
+{
+    (void)state;
+    write_material("file.weft");
+    write_text("file.csv", "lx,ly,lz,vx,vy,vz\n0,0,1,0,0,1\n0,0,-1,0,0,1\n");
+    expect("eval file.weft --at file.csv --quiet", 0,
+           "lx,ly,lz,vx,vy,vz,r,g,b\n0,0,1,0,0,1,0.159154943,0.159154943,0.159154943\n");
+    expect("eval file.weft --at file.csv --quiet -o file-out.csv", 0, "");
+    assert_int_equal(access("file-out.csv", R_OK), 0);
+}
+
+static void eval_names_what_is_wrong(void **state)
+{
+    (void)state;
+    write_material("file.weft");
+    write_text("file.csv", "lx,ly,lz\n0,0,1\n");
+    expect("eval file.weft --at file.csv", 1, "file.csv' has no column 'vx'");
+    expect("eval file.weft --at none.csv", 1, "none.csv");
+    expect("eval none.weft --at file.csv", 1, "none.weft");
+    expect("eval file.weft", 2, "--at");
+    expect("eval --help", 0, "Example: weft eval");
+}
+
+static void info_and_verify_speak_of_the_file(void **state)
+{
+    (void)state;
+    write_material("file.weft");
+    expect("info file.weft", 0, "texels: 2 x 2");
+    expect("verify file.weft", 0, "sound");
+    expect("info file.weft --json", 0, "\"event\":\"info\"");
+    expect("info", 2, "needs a file");
+}
+
+static void verify_refuses_a_material_cut_anywhere(void **state)
+{
+    (void)state;
+    write_material("file.weft");
+    struct stat status;
+    assert_int_equal(stat("file.weft", &status), 0);
+    for (long cut = 0; cut < status.st_size; cut += 1 + status.st_size / 16) {
+        write_material("file.weft");
+        assert_int_equal(truncate("file.weft", cut), 0);
+        expect("verify file.weft", 1, "weft verify: ");
+    }
+}
+
+static void import_leaves_nothing_when_a_photograph_is_bad(void **state)
+{
+    (void)state;
+    mkdir("file-photographs", 0777);
+    write_text("file-photographs/tl000_pl000_tv000_pv000.png", "not an image");
+    expect("import file-photographs -o file-out.btf.h5", 1, "tl000_pl000_tv000_pv000.png");
+    assert_int_not_equal(access("file-out.btf.h5", F_OK), 0);
+    weft_image image;
+    assert_int_equal(weft_image_create(2, 2, &image, NULL), WEFT_OK);
+    assert_int_equal(weft_image_write("file-photographs/tl000_pl000_tv000_pv000.png", &image, NULL, NULL), WEFT_OK);
+    weft_image_free(&image);
+    expect("import file-photographs -o file-out.btf.h5", 0, "2 x 2 texels, 1 images from 1 views");
+    expect("import file-photographs -o file-out.btf.h5 --size x", 2, "--size");
+    expect("import file-photographs", 2, "-o");
+    expect("verify file-out.btf.h5", 0, "valid_samples: 4");
+    unlink("file-out.btf.h5");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(eval_appends_the_brdf_to_every_row),
+        cmocka_unit_test(eval_names_what_is_wrong),
+        cmocka_unit_test(info_and_verify_speak_of_the_file),
+        cmocka_unit_test(verify_refuses_a_material_cut_anywhere),
+        cmocka_unit_test(import_leaves_nothing_when_a_photograph_is_bad),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
