@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -118,6 +119,8 @@ weft_code write_photograph(const char *path, int width, int height, int bits, co
     spec.attribute("oiio:ColorSpace", "linear");
     spec.attribute("compression", "none");
     spec.attribute("tiff:RowsPerStrip", height);
+    /* Else the library writes the time of day, and the same photograph never has the same bytes twice. */
+    spec.attribute("DateTime", "0000:00:00 00:00:00");
     /* OpenImageIO packs the high bits of 16-bit samples. */
     std::vector<uint16_t> shifted(size_t(width) * size_t(height) * 3);
     for (size_t i = 0; i < shifted.size(); i++)
@@ -125,6 +128,12 @@ weft_code write_photograph(const char *path, int width, int height, int bits, co
     std::string why;
     if (!write_output(path, spec, OIIO::TypeDesc::UINT16, shifted.data(), &why))
         return weft_fail(error, WEFT_SYSTEM, "cannot write photograph '%s': %s", path, first_line(why).c_str());
+    /* The library keeps silent where the disk is full. */
+    uintmax_t needed = (uintmax_t(width) * 3 * uintmax_t(bits) + 7) / 8 * uintmax_t(height);
+    uintmax_t written = std::filesystem::file_size(path);
+    if (written < needed)
+        return weft_fail(error, WEFT_SYSTEM, "cannot write photograph '%s': %ju of at least %ju bytes were written",
+                         path, written, needed);
     return WEFT_OK;
 }
 
