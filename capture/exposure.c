@@ -111,6 +111,6 @@ double weft_exposure_after(double exposure_s, double level, weft_exposure_limits
         return exposure_s;
     /* A clipped reading says only that the exposure is far too long; a black one that it is far too short. */
     double clipped = 0.99 / fmax(weft_opening_aim, weft_white_aim);
-    double factor = level >= clipped ? 0.25 : 1 / fmax(level, 1 / 64.0);
+    double factor = level >= clipped ? 0.125 : 1 / fmax(level, 1 / 64.0);
     return weft_exposure_in_thirds(exposure_s * factor, limits);
 }

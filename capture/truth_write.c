@@ -136,28 +136,52 @@ static bool write_arrays(hid_t file, const truth *t)
            write_array(file, "reflectance", H5T_NATIVE_FLOAT, 4, reflectance, t->reflectance);
 }
 
-static bool write_hdf5(const char *path, const weft_camera *camera, double opening_mm, const truth *t)
+static bool fill_file(hid_t file, const weft_camera *camera, double opening_mm, const truth *t)
 {
-    hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    if (file < 0)
-        return false;
-    bool written =
-        write_camera(file, camera) && write_numbers(file, "opening_mm", 1, &opening_mm) && write_arrays(file, t);
-    return H5Fclose(file) >= 0 && written;
+    return write_camera(file, camera) && write_numbers(file, "opening_mm", 1, &opening_mm) && write_arrays(file, t) &&
+           H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
+}
+
+/* The bytes of an open file that lives in memory; NULL where there is none to get. */
+static void *take_image(hid_t file, size_t *size)
+{
+    ssize_t bytes = H5Fget_file_image(file, NULL, 0);
+    void *image = bytes > 0 ? malloc((size_t)bytes) : NULL;
+    if (image && H5Fget_file_image(file, image, (size_t)bytes) != bytes) {
+        free(image);
+        return NULL;
+    }
+    *size = image ? (size_t)bytes : 0;
+    return image;
+}
+
+/* The whole file as bytes, which the caller frees. It is made in memory because HDF5 cannot close a file that a full
+ * disk has cut, and crashes over it when the program ends. */
+static void *make_image(const weft_camera *camera, double opening_mm, const truth *t, size_t *size)
+{
+    const size_t increment = 1 << 20;
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_fapl_core(access, increment, false);
+    hid_t file = H5Fcreate("truth", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+    H5Pclose(access);
+    void *image = NULL;
+    if (file >= 0) {
+        image = fill_file(file, camera, opening_mm, t) ? take_image(file, size) : NULL;
+        H5Fclose(file);
+    }
+    return image;
 }
 
 static weft_code write_file(const char *path, const weft_camera *camera, double opening_mm, const truth *t,
                             weft_error *error)
 {
-    weft_atomic_file file;
-    WEFT_TRY(weft_atomic_file_begin(path, &file, error));
-    /* HDF5 would print its own account of a failure. */
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    if (!write_hdf5(file.temporary_path, camera, opening_mm, t)) {
-        weft_atomic_file_abandon(&file);
-        return weft_fail(error, WEFT_SYSTEM, "cannot write ground truth '%s'", path);
-    }
-    return weft_atomic_file_commit(&file, error);
+    size_t size = 0;
+    void *image = make_image(camera, opening_mm, t, &size);
+    if (!image)
+        return weft_fail_memory(error, path, (size_t)t->image_count * (size_t)t->size * (size_t)t->size * 12);
+    weft_code code = weft_write_file(path, image, size, error);
+    free(image);
+    return code;
 }
 
 /* FOLDER.truth.h5, whether or not the folder was written with a slash behind it. */

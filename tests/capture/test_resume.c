@@ -1,0 +1,160 @@
+#include "tests/btf/cmocka_all.h"
+#include "tests/btf/scratch_folder.h"
+#include "tests/capture/small_session.h"
+
+#include <limits.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* Runs in processes of their own: what kill -9 leaves behind is then all that the next run knows. (The parent starts no
+ * OpenMP thread, for those would not survive fork.) */
+static pid_t start_run(void)
+{
+    weft_capture_request request = small_session_request();
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        weft_capture_summary summary;
+        weft_error error = {0};
+        weft_code code = weft_capture_run(&request, NULL, NULL, &summary, &error);
+        if (code != WEFT_OK)
+            fprintf(stderr, "%s\n", error.message);
+        _exit((int)code);
+    }
+    return child;
+}
+
+static void complete_run(void)
+{
+    int status;
+    assert_int_equal(waitpid(start_run(), &status, 0) > 0, 1);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+/* Waits until the journal has `lines` lines, then for some microseconds, and kills. Whether the run was still going. */
+static bool kill_run(pid_t child, int lines, useconds_t delay_us)
+{
+    int status;
+    while (small_session_journal_lines("session") < lines && waitpid(child, &status, WNOHANG) == 0)
+        usleep(200);
+    usleep(delay_us);
+    if (kill(child, SIGKILL) != 0)
+        return false;
+    return waitpid(child, &status, 0) > 0 && WIFSIGNALED(status);
+}
+
+static void remove_session(void)
+{
+    assert_int_equal(system("rm -rf session session.truth.h5 .session.truth.*"), 0);
+}
+
+static void a_session_killed_at_any_moment_loses_and_repeats_nothing(void **state)
+{
+    (void)state;
+    srand(20240607);
+    int kills = 0;
+    for (int round = 0; round < 3; round++) {
+        for (int attempt = 0; attempt < 60; attempt++) {
+            int before = small_session_journal_lines("session");
+            if (before >= SMALL_SHOTS)
+                break;
+            pid_t child = start_run();
+            kills += kill_run(child, before + rand() % 3, (useconds_t)(rand() % 3000));
+            assert_true(small_session_journal_lines("session") >= before);
+        }
+        complete_run();
+        small_session_assert_whole("session");
+        remove_session();
+    }
+    assert_true(kills >= 9);
+}
+
+static void a_run_killed_before_its_first_photograph_starts_again(void **state)
+{
+    (void)state;
+    kill_run(start_run(), 0, 1000);
+    complete_run();
+    small_session_assert_whole("session");
+    remove_session();
+}
+
+static void a_journal_line_cut_in_the_middle_is_written_again(void **state)
+{
+    (void)state;
+    complete_run();
+    size_t size;
+    char *journal = (char *)scratch_load("session/journal.jsonl", &size);
+    scratch_store("session/journal.jsonl", journal, size - 20);
+    free(journal);
+    complete_run();
+    small_session_assert_whole("session");
+    remove_session();
+}
+
+/* Applies a disturbance to the photograph of shot 12, runs again, and checks that its photograph is whole. */
+static void assert_retaken(void (*disturb)(const char *path))
+{
+    complete_run();
+    weft_session session;
+    char path[PATH_MAX];
+    assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
+    weft_session_photograph_path(&session, 12, path, sizeof path);
+    disturb(path);
+    uint32_t untouched = session.record[11].crc32;
+    int stay = session.record[12].stay;
+    weft_session_free(&session);
+    complete_run();
+    assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
+    assert_int_equal(session.record[11].crc32, untouched);
+    /* The axes were homed again, so the photograph is of a new stay. */
+    assert_int_not_equal(session.record[12].stay, stay);
+    assert_int_equal(small_session_journal_lines("session"), SMALL_SHOTS + 1);
+    size_t size;
+    unsigned char *bytes = scratch_load(path, &size);
+    assert_int_equal(size, session.record[12].bytes);
+    free(bytes);
+    weft_session_free(&session);
+    remove_session();
+}
+
+static void delete_photograph(const char *path)
+{
+    assert_int_equal(unlink(path), 0);
+}
+
+static void truncate_photograph(const char *path)
+{
+    assert_int_equal(truncate(path, 1000), 0);
+}
+
+static void change_a_byte(const char *path)
+{
+    size_t size;
+    unsigned char *bytes = scratch_load(path, &size);
+    bytes[size / 2] ^= 0x10;
+    scratch_store(path, bytes, size);
+    free(bytes);
+}
+
+static void photographs_that_do_not_match_the_journal_are_taken_again(void **state)
+{
+    (void)state;
+    assert_retaken(delete_photograph);
+    assert_retaken(truncate_photograph);
+    assert_retaken(change_a_byte);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_session_killed_at_any_moment_loses_and_repeats_nothing),
+        cmocka_unit_test(a_run_killed_before_its_first_photograph_starts_again),
+        cmocka_unit_test(a_journal_line_cut_in_the_middle_is_written_again),
+        cmocka_unit_test(photographs_that_do_not_match_the_journal_are_taken_again),
+    };
+    return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
+}
