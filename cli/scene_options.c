@@ -33,7 +33,7 @@ static const struct argp_option option_table[] = {
     {"repeat", KEY_REPEAT, "N", 0, "Materials across one unit of the mesh (default: 4; 1 for the plane)", 2},
     {"light", KEY_LIGHT, "THETA,PHI", 0, "Direction to the light, degrees from up and around it (default: 40,-130)", 2},
     {"camera", KEY_CAMERA, "AZIMUTH,ELEVATION,DISTANCE", 0,
-     "Place of the camera in degrees and radii of the mesh (default: -70,28,3.4)", 2},
+     "Place of the camera in degrees and radii of the mesh (default: -70,28,3.6)", 2},
     {"level", KEY_LEVEL, "auto|none|N", 0, "Mip level: by the pixel's footprint, finest, or this one", 2},
     {"exposure", KEY_EXPOSURE, "X", 0, "Brightness; 1 shows reflectance", 2},
     {"size", KEY_SIZE, "WxH", 0, "Size of the picture in pixels (default: 960x540)", 2},

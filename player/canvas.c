@@ -52,6 +52,7 @@ weft_code weft_canvas_create(int width, int height, weft_canvas *c, weft_error *
 
 void weft_canvas_free(weft_canvas *c)
 {
+    glUseProgram(0); /* a program in use would outlive its deletion */
     glDeleteFramebuffers(1, &c->frame_buffer);
     glDeleteFramebuffers(1, &c->sum_buffer);
     glDeleteRenderbuffers(1, &c->depth);

@@ -15,7 +15,7 @@ const char *weft_mode_name(weft_mode mode)
 weft_scene weft_scene_default(void)
 {
     return (weft_scene){
-        .orbit = {weft_rad_of_deg(-70), weft_rad_of_deg(28), 3.4},
+        .orbit = {weft_rad_of_deg(-70), weft_rad_of_deg(28), 3.6},
         .light = {weft_rad_of_deg(40), weft_rad_of_deg(-130)},
         .exposure = 1,
         .repeat = 4,
@@ -79,6 +79,7 @@ void weft_player_free(weft_player *p)
 {
     if (!p)
         return;
+    glUseProgram(0); /* a program in use would outlive its deletion */
     free_mesh(p);
     weft_raw_texture_free(&p->raw);
     weft_material_texture_free(&p->material);

@@ -1,0 +1,172 @@
+/* What OpenGL must not notice: programs that only one profile takes, objects left behind, errors passed over. */
+#include "stage.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static weft_headless *open_context(weft_gl_profile profile)
+{
+    weft_headless *headless;
+    weft_error error = {0};
+    if (weft_headless_create(profile, &headless, &error) != WEFT_OK) {
+        printf("skipped: %s\n", error.message);
+        exit(77);
+    }
+    return headless;
+}
+
+static void every_shader_compiles_for_opengl_es_too(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_headless *headless = open_context(WEFT_GL_ES);
+    weft_player *player;
+    weft_canvas canvas;
+    assert_false(epoxy_is_desktop_gl());
+    expect_ok(weft_player_create(&player, &error), &error);
+    expect_ok(weft_canvas_create(16, 16, &canvas, &error), &error);
+    weft_canvas_free(&canvas);
+    weft_player_free(player);
+    weft_headless_free(headless);
+}
+
+static void expect_no_objects(void)
+{
+    for (GLuint name = 1; name < 4096; name++) {
+        assert_false(glIsTexture(name));
+        assert_false(glIsBuffer(name));
+        assert_false(glIsProgram(name));
+        assert_false(glIsShader(name));
+        assert_false(glIsVertexArray(name));
+        assert_false(glIsFramebuffer(name));
+        assert_false(glIsRenderbuffer(name));
+    }
+}
+
+static void set_everything(weft_player *player, const char *dataset_path)
+{
+    weft_error error = {0};
+    weft_mesh mesh;
+    weft_material material;
+    weft_dataset *dataset;
+    int skipped;
+    expect_ok(weft_mesh_plane(&mesh, &error), &error);
+    expect_ok(weft_player_set_mesh(player, &mesh, &error), &error);
+    weft_mesh_free(&mesh);
+    stage_material(8, 8, 1, 7, &material);
+    expect_ok(weft_player_set_material(player, &material, &error), &error);
+    weft_material_free(&material);
+    expect_ok(weft_dataset_open(dataset_path, &dataset, &error), &error);
+    expect_ok(weft_player_set_dataset(player, dataset, NULL, &skipped, &error), &error);
+    weft_dataset_close(dataset);
+}
+
+static void nothing_stays_behind_when_a_player_is_freed(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    const char *path = "test_context.btf.h5";
+    weft_headless *headless = open_context(WEFT_GL_CORE);
+    weft_player *player;
+    weft_image image;
+    weft_surface_sample *surface;
+    weft_scene scene = weft_scene_default();
+    scene.pane_count = 2;
+    scene.pane[1] = WEFT_MODE_RAW;
+    scene.help = "help";
+    stage_dataset(path, 4, 7, 7, WEFT_REFLECTANCE_COSINE, true);
+    expect_ok(weft_player_create(&player, &error), &error);
+    for (int i = 0; i < 2; i++)
+        set_everything(player, path);
+    expect_ok(weft_player_picture(player, &scene, 64, 48, 2, NULL, &image, &error), &error);
+    expect_ok(weft_player_read_surface(player, &scene, WEFT_MODE_RAW, 64, 48, &surface, &error), &error);
+    free(surface);
+    weft_image_free(&image);
+    weft_player_free(player);
+    expect_no_objects();
+    assert_int_equal(glGetError(), GL_NO_ERROR);
+    weft_headless_free(headless);
+    unlink(path);
+}
+
+static void an_opengl_error_comes_back_with_what_was_done(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_headless *headless = open_context(WEFT_GL_CORE);
+    glEnable(0xffff);
+    assert_int_equal(weft_gl_check("testing", &error), WEFT_SYSTEM);
+    assert_string_equal(error.message, "OpenGL: invalid enum while testing");
+    assert_int_equal(weft_gl_check("testing", &error), WEFT_OK);
+    weft_headless_free(headless);
+}
+
+static void a_shader_that_does_not_compile_is_an_error_with_the_reason(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    GLuint program = 1;
+    const char *const bad[] = {"void main() { nonsense }\n", NULL};
+    weft_headless *headless = open_context(WEFT_GL_CORE);
+    assert_int_equal(weft_gl_program("test", bad, bad, &program, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "vertex shader of 'test' does not compile: "));
+    assert_int_equal(program, 0);
+    expect_no_objects();
+    weft_headless_free(headless);
+}
+
+static void drawing_without_a_mesh_or_a_model_is_bad_usage(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_headless *headless = open_context(WEFT_GL_CORE);
+    weft_player *player;
+    weft_image image;
+    weft_mesh mesh;
+    weft_scene scene = weft_scene_default();
+    expect_ok(weft_player_create(&player, &error), &error);
+    assert_int_equal(weft_player_picture(player, &scene, 8, 8, 1, NULL, &image, &error), WEFT_BAD_USAGE);
+    assert_non_null(strstr(error.message, "mesh"));
+    expect_ok(weft_mesh_plane(&mesh, &error), &error);
+    expect_ok(weft_player_set_mesh(player, &mesh, &error), &error);
+    weft_mesh_free(&mesh);
+    assert_int_equal(weft_player_picture(player, &scene, 8, 8, 1, NULL, &image, &error), WEFT_BAD_USAGE);
+    assert_non_null(strstr(error.message, "'compressed' needs a material"));
+    assert_int_equal(weft_player_picture(player, &scene, 0, 8, 1, NULL, &image, &error), WEFT_BAD_USAGE);
+    assert_int_equal(weft_player_picture(player, &scene, 8, 8, 65, NULL, &image, &error), WEFT_BAD_USAGE);
+    weft_player_free(player);
+    weft_headless_free(headless);
+}
+
+static void without_egl_devices_the_cause_is_said(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_headless *headless;
+    /* No driver can be loaded from here. */
+    setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent", 1);
+    weft_code code = weft_headless_create(WEFT_GL_CORE, &headless, &error);
+    unsetenv("__EGL_VENDOR_LIBRARY_DIRS");
+    assert_int_equal(code, WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "no OpenGL 3.3 without a display"));
+    assert_null(headless);
+}
+
+int main(int argc, char **argv)
+{
+    /* Vendors are looked up once in a process: this one test runs in its own. */
+    if (argc > 1 && strcmp(argv[1], "--without-drivers") == 0) {
+        const struct CMUnitTest tests[] = {cmocka_unit_test(without_egl_devices_the_cause_is_said)};
+        return cmocka_run_group_tests(tests, NULL, NULL);
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_shader_compiles_for_opengl_es_too),
+        cmocka_unit_test(nothing_stays_behind_when_a_player_is_freed),
+        cmocka_unit_test(an_opengl_error_comes_back_with_what_was_done),
+        cmocka_unit_test(a_shader_that_does_not_compile_is_an_error_with_the_reason),
+        cmocka_unit_test(drawing_without_a_mesh_or_a_model_is_bad_usage),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
