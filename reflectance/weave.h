@@ -15,6 +15,7 @@ typedef struct weft_yarn {
     bool admissible; /* false: no highlight, its diffuse term stays */
     /* Derived when the weave is read: */
     weft_prepared_segment prepared;
+    int alike;                    /* index of the first yarn with the same segment and type: the same f_s */
     weft_real min_umax, max_umax; /* where the inclination noise keeps umax, rad */
     weft_real cell_fraction;      /* F: cells of the pattern with this yarn / all cells */
     weft_real area_weight;        /* aw: (warp_area + weft_area) / area of this kind of yarn; 0 where that area is 0 */

@@ -32,6 +32,23 @@ static void derive_yarn(const weft_weave *weave, weft_yarn *yarn)
         derive_umax_range(yarn);
 }
 
+static bool same_segment(const weft_segment *a, const weft_segment *b)
+{
+    return a->alpha == b->alpha && a->beta == b->beta && a->delta == b->delta && a->psi == b->psi &&
+           a->umax == b->umax && a->kappa == b->kappa && a->width == b->width && a->length == b->length &&
+           a->highlight_width == b->highlight_width;
+}
+
+/* A weave has few kinds of segments, however many yarns. */
+static int first_alike(const weft_yarn *yarn, int index)
+{
+    for (int i = 0; i < index; i++)
+        if (yarn[i].alike == i && yarn[i].warp == yarn[index].warp &&
+            same_segment(&yarn[i].segment, &yarn[index].segment))
+            return i;
+    return index;
+}
+
 /* Appends to a line, cutting it where it is full. */
 static void append_yarn(char line[WEFT_MESSAGE_SIZE], const weft_segment *segment, int id)
 {
@@ -56,8 +73,10 @@ static void warn(const weft_weave *weave, const char *path, char warning[WEFT_ME
 void weave_derive(weft_weave *weave, const char *path, char warning[WEFT_MESSAGE_SIZE])
 {
     int cells = weave->tile_width * weave->tile_height;
-    for (int i = 0; i < weave->yarn_count; i++)
+    for (int i = 0; i < weave->yarn_count; i++) {
         derive_yarn(weave, &weave->yarn[i]);
+        weave->yarn[i].alike = first_alike(weave->yarn, i);
+    }
     for (int cell = 0; cell < cells; cell++)
         weave->yarn[weave->pattern[cell]].cell_fraction += 1 / (weft_real)cells;
     if (warning)

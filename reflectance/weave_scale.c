@@ -58,28 +58,21 @@ static double mean_reflectance(const weft_prepared_segment *prepared, int blocks
     return sum / ((double)blocks * BLOCK_POINTS);
 }
 
-static bool same_segment(const weft_segment *a, const weft_segment *b)
-{
-    return a->alpha == b->alpha && a->beta == b->beta && a->delta == b->delta && a->psi == b->psi &&
-           a->umax == b->umax && a->kappa == b->kappa && a->width == b->width && a->length == b->length &&
-           a->highlight_width == b->highlight_width;
-}
-
-/* Merges equal segments: a weave has few kinds, however many yarns. Warp and weft need not be told apart, because
- * turning the frame leaves the integral over both hemispheres as it is. */
+/* Merges yarns that are alike. Turning the frame of a weft leaves the integral over both hemispheres as it is. */
 static int collect_kinds(const weft_weave *weave, kind_of_yarn *kind)
 {
     int count = 0;
     for (int i = 0; i < weave->yarn_count; i++) {
         const weft_yarn *yarn = &weave->yarn[i];
         double share = (double)yarn->cell_fraction * yarn->area_weight;
+        const weft_prepared_segment *prepared = &weave->yarn[yarn->alike].prepared;
         if (!yarn->admissible || !(share > 0))
             continue;
         int k = 0;
-        while (k < count && !same_segment(&kind[k].prepared->segment, &yarn->segment))
+        while (k < count && kind[k].prepared != prepared)
             k++;
         if (k == count)
-            kind[count++] = (kind_of_yarn){&yarn->prepared, 0};
+            kind[count++] = (kind_of_yarn){prepared, 0};
         kind[k].share += share;
     }
     return count;
