@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+enum { EDGES, EXCLUDED }; /* columns of the summed-area tables */
+
 enum { largest_side = 4096, cell_samples = 4 };
 
 static const double border_cells = 8;
@@ -60,8 +62,8 @@ static void mark_cells(const weft_target *target, weft_drawing *drawing)
     for (int row = 0; row < drawing->side; row++) {
         for (int column = 0; column < drawing->side; column++) {
             size_t at = ((size_t)row + 1) * stride + (size_t)column + 1;
-            drawing->edges[at] = varies_around(drawing, row, column);
-            drawing->excluded[at] = is_excluded(target, centre_mm(drawing, column), centre_mm(drawing, row));
+            drawing->sums[at][EDGES] = varies_around(drawing, row, column);
+            drawing->sums[at][EXCLUDED] = is_excluded(target, centre_mm(drawing, column), centre_mm(drawing, row));
         }
     }
 }
@@ -72,21 +74,23 @@ static void smooth_edges(const weft_target *target, weft_drawing *drawing)
 #pragma omp parallel for schedule(dynamic, 16)
     for (int row = 0; row < drawing->side; row++) {
         for (int column = 0; column < drawing->side; column++) {
-            if (drawing->edges[((size_t)row + 1) * stride + (size_t)column + 1])
+            if (drawing->sums[((size_t)row + 1) * stride + (size_t)column + 1][EDGES])
                 drawing->reflectance[(size_t)row * (size_t)drawing->side + (size_t)column] =
                     area_average(target, centre_mm(drawing, column), centre_mm(drawing, row), drawing->cell_mm);
         }
     }
 }
 
-static void integrate(uint32_t *table, int side)
+static void integrate(uint32_t (*table)[2], int side)
 {
     size_t stride = (size_t)side + 1;
     for (size_t row = 1; row < stride; row++) {
-        uint32_t sum = 0;
+        uint32_t sum[2] = {0, 0};
         for (size_t column = 1; column < stride; column++) {
-            sum += table[row * stride + column];
-            table[row * stride + column] = table[(row - 1) * stride + column] + sum;
+            for (int which = 0; which < 2; which++) {
+                sum[which] += table[row * stride + column][which];
+                table[row * stride + column][which] = table[(row - 1) * stride + column][which] + sum[which];
+            }
         }
     }
 }
@@ -105,33 +109,23 @@ weft_code weft_drawing_create(const weft_target *target, double cell_mm, weft_dr
     size_t cells = (size_t)drawing->side * (size_t)drawing->side;
     size_t corners = ((size_t)drawing->side + 1) * ((size_t)drawing->side + 1);
     drawing->reflectance = malloc(cells * sizeof *drawing->reflectance);
-    drawing->edges = calloc(corners, sizeof *drawing->edges);
-    drawing->excluded = calloc(corners, sizeof *drawing->excluded);
-    if (!drawing->reflectance || !drawing->edges || !drawing->excluded) {
+    drawing->sums = calloc(corners, sizeof *drawing->sums);
+    if (!drawing->reflectance || !drawing->sums) {
         weft_drawing_free(drawing);
         return weft_fail_memory(error, "the drawing of the target", cells * 12);
     }
     draw_centres(target, drawing);
     mark_cells(target, drawing);
     smooth_edges(target, drawing);
-    integrate(drawing->edges, drawing->side);
-    integrate(drawing->excluded, drawing->side);
+    integrate(drawing->sums, drawing->side);
     return WEFT_OK;
 }
 
 void weft_drawing_free(weft_drawing *drawing)
 {
     free(drawing->reflectance);
-    free(drawing->edges);
-    free(drawing->excluded);
+    free(drawing->sums);
     *drawing = (weft_drawing){0};
-}
-
-static uint32_t sum_of(const uint32_t *table, int side, int x0, int y0, int x1, int y1)
-{
-    size_t stride = (size_t)side + 1;
-    return table[(size_t)y1 * stride + (size_t)x1] - table[(size_t)y0 * stride + (size_t)x1] -
-           table[(size_t)y1 * stride + (size_t)x0] + table[(size_t)y0 * stride + (size_t)x0];
 }
 
 weft_drawing_content weft_drawing_content_of(const weft_drawing *drawing, weft_rectangle rectangle)
@@ -139,9 +133,13 @@ weft_drawing_content weft_drawing_content_of(const weft_drawing *drawing, weft_r
     double low = -drawing->half_mm + drawing->cell_mm, high = drawing->half_mm - drawing->cell_mm;
     if (!(rectangle.x0 > low && rectangle.y0 > low && rectangle.x1 < high && rectangle.y1 < high))
         return (weft_drawing_content){true, false};
-    double inverse = 1 / drawing->cell_mm, half = drawing->half_mm;
-    int x0 = (int)((rectangle.x0 + half) * inverse), x1 = (int)((rectangle.x1 + half) * inverse) + 1;
-    int y0 = (int)((rectangle.y0 + half) * inverse), y1 = (int)((rectangle.y1 + half) * inverse) + 1;
-    return (weft_drawing_content){sum_of(drawing->excluded, drawing->side, x0, y0, x1, y1) > 0,
-                                  sum_of(drawing->edges, drawing->side, x0, y0, x1, y1) == 0};
+    double cells = 1 / drawing->cell_mm, half = drawing->half_mm;
+    int x0 = (int)((rectangle.x0 + half) * cells), x1 = (int)((rectangle.x1 + half) * cells) + 1;
+    int y0 = (int)((rectangle.y0 + half) * cells), y1 = (int)((rectangle.y1 + half) * cells) + 1;
+    const uint32_t(*top)[2] = (const uint32_t(*)[2])drawing->sums + (long)y0 * (drawing->side + 1);
+    const uint32_t(*bottom)[2] = (const uint32_t(*)[2])drawing->sums + (long)y1 * (drawing->side + 1);
+    uint32_t count[2];
+    for (int which = 0; which < 2; which++)
+        count[which] = bottom[x1][which] - top[x1][which] - bottom[x0][which] + top[x0][which];
+    return (weft_drawing_content){count[EXCLUDED] > 0, count[EXCLUDED] == 0 && count[EDGES] == 0};
 }

@@ -7,8 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A photograph counts as black when fewer than this fraction of its pixels exceed this fraction of full scale. */
-static const double lit_fraction = 0.005, lit_level = 0.02;
+/* A photograph counts as black when fewer than this fraction of its pixels exceed this fraction of full scale. A glint
+ * on the sample may leave the rest of a photograph quite dark. */
+static const double lit_fraction = 0.0003, lit_level = 0.02;
 
 /* Sums over the photographs, in integers, so that their order does not matter. */
 typedef struct sums {

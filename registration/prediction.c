@@ -75,34 +75,36 @@ void weft_prediction_free(weft_prediction *prediction)
  * the four-dimensional additive recurrence of Roberts (2018): even in every projection, so that no direction of an
  * edge is preferred. */
 typedef struct smear_pattern {
-    float at[smear_samples][4];
+    float square_x[smear_samples], square_y[smear_samples], disc_x[smear_samples], disc_y[smear_samples];
 } smear_pattern;
+
+static void remove_mean(float *value)
+{
+    float mean = 0;
+    for (int i = 0; i < smear_samples; i++)
+        mean += value[i] / smear_samples;
+    for (int i = 0; i < smear_samples; i++)
+        value[i] -= mean;
+}
 
 static smear_pattern place_samples(void)
 {
-    smear_pattern pattern;
-    float(*sample)[4] = pattern.at;
     const double phi4 = 1.1673039782614187; /* root of x^5 = x + 1 */
-    double step[4], power = 1;
-    for (int axis = 0; axis < 4; axis++)
-        step[axis] = power /= phi4;
+    smear_pattern pattern;
     for (int i = 0; i < smear_samples; i++) {
-        double u[4];
+        double u[4], step = 1;
         for (int axis = 0; axis < 4; axis++)
-            u[axis] = fmod(0.5 + (i + 1) * step[axis], 1);
+            u[axis] = fmod(0.5 + (i + 1) * (step /= phi4), 1);
         double radius = 2 * sqrt(u[2]), azimuth = 2 * WEFT_PI * u[3];
-        sample[i][0] = (float)(u[0] - 0.5);
-        sample[i][1] = (float)(u[1] - 0.5);
-        sample[i][2] = (float)(radius * cos(azimuth));
-        sample[i][3] = (float)(radius * sin(azimuth));
+        pattern.square_x[i] = (float)(u[0] - 0.5);
+        pattern.square_y[i] = (float)(u[1] - 0.5);
+        pattern.disc_x[i] = (float)(radius * cos(azimuth));
+        pattern.disc_y[i] = (float)(radius * sin(azimuth));
     }
-    for (int axis = 0; axis < 4; axis++) {
-        float mean = 0;
-        for (int i = 0; i < smear_samples; i++)
-            mean += sample[i][axis] / smear_samples;
-        for (int i = 0; i < smear_samples; i++)
-            sample[i][axis] -= mean;
-    }
+    remove_mean(pattern.square_x);
+    remove_mean(pattern.square_y);
+    remove_mean(pattern.disc_x);
+    remove_mean(pattern.disc_y);
     return pattern;
 }
 
@@ -140,16 +142,21 @@ static weft_rectangle reach_of(const footprint *print, double pixels)
     return (weft_rectangle){print->x - x, print->y - y, print->x + x, print->y + y};
 }
 
-static float average_over(const weft_drawing *drawing, const footprint *print, float deviation,
-                          const smear_pattern *pattern)
+/* The footprint must lie inside the raster: what is not excluded does. */
+WEFT_HOT static float average_over(const weft_drawing *drawing, const footprint *print, float deviation,
+                                   const smear_pattern *pattern)
 {
-    float sum = 0;
+    float cells = 1 / (float)drawing->cell_mm, half = (float)drawing->half_mm, seen[smear_samples];
+    float x0 = (print->x + half) * cells - 0.5f, y0 = (print->y + half) * cells - 0.5f;
+    float xu = print->dx[0] * cells, xv = print->dy[0] * cells, yu = print->dx[1] * cells, yv = print->dy[1] * cells;
     for (int i = 0; i < smear_samples; i++) {
-        const float *sample = pattern->at[i];
-        float u = sample[0] + deviation * sample[2], v = sample[1] + deviation * sample[3];
-        sum += weft_drawing_at(drawing, print->x + u * print->dx[0] + v * print->dy[0],
-                               print->y + u * print->dx[1] + v * print->dy[1]);
+        float u = pattern->square_x[i] + deviation * pattern->disc_x[i];
+        float v = pattern->square_y[i] + deviation * pattern->disc_y[i];
+        seen[i] = weft_drawing_between(drawing, x0 + u * xu + v * xv, y0 + u * yu + v * yv);
     }
+    float sum = 0;
+    for (int i = 0; i < smear_samples; i++)
+        sum += seen[i];
     return sum / smear_samples;
 }
 
@@ -159,15 +166,16 @@ static void predict_pixel(const weft_sight *sight, const footprint *print, const
     /* The last row of the homography is the distance along the camera's axis, up to a factor. */
     double z = (homography->m[2][0] * print->x + homography->m[2][1] * print->y) / homography->m[2][2] + 1;
     double focus = z > 0 ? (1 - 1 / z) * (1 - 1 / z) : 0;
-    double deviation = sqrt(fmax(0, smear.constant + smear.depth * focus));
-    double reach = 0.5 + 2 * deviation;
-    weft_drawing_content near = weft_drawing_content_of(&sight->drawing, reach_of(print, reach));
+    double deviation = sqrt(fmax(0, smear.constant + smear.depth * focus)), reach = 0.5 + 2 * deviation;
+    weft_drawing_content around = weft_drawing_content_of(&sight->drawing, reach_of(print, reach + neighbour_reach));
     prediction->focus[at] = (float)focus;
-    prediction->reflectance[at] = near.uniform ? weft_drawing_at(&sight->drawing, print->x, print->y)
-                                               : average_over(&sight->drawing, print, (float)deviation, pattern);
-    prediction->compared[at] =
-        z > 0 && !near.excluded &&
-        !weft_drawing_content_of(&sight->drawing, reach_of(print, reach + neighbour_reach)).excluded;
+    prediction->compared[at] = z > 0 && !around.excluded;
+    /* A pixel that is not compared itself may be the neighbour of one that is. */
+    if (around.excluded)
+        around = weft_drawing_content_of(&sight->drawing, reach_of(print, reach));
+    prediction->reflectance[at] = around.uniform || around.excluded
+                                      ? weft_drawing_at(&sight->drawing, print->x, print->y)
+                                      : average_over(&sight->drawing, print, (float)deviation, pattern);
 }
 
 void weft_predict(const weft_sight *sight, const weft_homography *homography, weft_smear smear,

@@ -121,6 +121,19 @@ static weft_code rectify_all(const job *j, int *used, weft_error *error)
     return result;
 }
 
+/* Two standard deviations of the lens's smear at the corner of the opening where it is widest, pixels. */
+static double smear_reach(const weft_view_pose *pose, double opening_mm)
+{
+    const double *last = pose->homography.m[2];
+    double widest = 0;
+    for (int corner = 0; corner < 4; corner++) {
+        double x = opening_mm * (corner % 2 - 0.5), y = opening_mm * (corner / 2 - 0.5);
+        double z = (last[0] * x + last[1] * y) / last[2] + 1;
+        widest = fmax(widest, pose->smear.constant + pose->smear.depth * (1 - 1 / z) * (1 - 1 / z));
+    }
+    return 2 * sqrt(widest);
+}
+
 weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_photographs *photographs,
                             const weft_white *estimated, int shown_shot, float *shown, weft_error *error)
 {
@@ -128,8 +141,9 @@ weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const wef
     const weft_view_pose *pose = &registration->pose[stay];
     const weft_target *target = &rectifier->session->target;
     job j = {rectifier, photographs, estimated, {0}, {{0}, {0}, {{0, 0}}}, shown_shot, shown};
-    WEFT_TRY(weft_resampler_create(&rectifier->sight->camera, rectifier->sight->inverse_vignetting, &pose->homography,
-                                   target->opening_mm, registration->settings.width, registration->settings.height, 0,
+    weft_resampling resampling = {&rectifier->sight->camera, rectifier->sight->inverse_vignetting, pose->homography,
+                                  target->opening_mm, smear_reach(pose, target->opening_mm)};
+    WEFT_TRY(weft_resampler_create(&resampling, registration->settings.width, registration->settings.height,
                                    &j.resampler, error));
     weft_code code =
         weft_reference_pixels_find(rectifier->sight, target, &pose->homography, pose->smear, &j.reference, error);

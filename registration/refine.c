@@ -20,10 +20,11 @@ enum {
     unknown_count = 17,
     unknown_count_blurred = smear_at,
     strip_count = 32, /* fixed, so that sums do not depend on the number of threads */
+    smear_steps = 4,  /* the smear creeps for long in a direction that hardly matters; then it is held */
     iteration_limit = 15
 };
 
-static const double settled_px = 0.002, largest_step_px = 3, robust_reach = 3;
+static const double settled_px = 0.005, held_stiffness = 1e12, largest_step_px = 3, robust_reach = 6;
 
 typedef struct comparison {
     const weft_sight *sight;
@@ -159,16 +160,17 @@ static void equation_at(const comparison *c, int x, int y, double row[WEFT_UNKNO
     *residual = c->photograph[at] - gain * t[0] - c->stray;
 }
 
-/* Geman & McClure's weight: what the drawing does not explain (a hair, a hand, a stain) hardly counts. */
+/* Cauchy's weight: what the drawing does not explain (a hair, a hand, a stain) hardly counts. */
 static double robust_weight(double residual, double deviation)
 {
     if (deviation <= 0)
         return 1;
-    double t = residual / (robust_reach * deviation), w = 1 / (1 + t * t);
-    return w * w;
+    double t = residual / (robust_reach * deviation);
+    return 1 / (1 + t * t);
 }
 
-static void gather_strip(const comparison *c, int first, int end, weft_normal_equations *equations, double *deviation)
+WEFT_HOT static void gather_strip(const comparison *c, int first, int end, weft_normal_equations *equations,
+                                  double *deviation)
 {
     double row[WEFT_UNKNOWNS_LIMIT] = {0};
     for (int y = first; y < end; y++) {
@@ -271,12 +273,13 @@ static void hold_smear(comparison *c)
 }
 
 /* Standard error of positions in the opening, mm RMS, from the factored equations. */
-static double uncertainty_mm(const comparison *c, int count, double variance, const weft_homography *homography)
+static double uncertainty_mm(const weft_sight *sight, const weft_normal_equations *factored, int count, double variance,
+                             const weft_homography *homography)
 {
-    const weft_camera *camera = &c->sight->camera;
+    const weft_camera *camera = &sight->camera;
     weft_homography inverse = weft_homography_inverse(homography);
     enum { grid = 5 };
-    double sum = 0, half = c->sight->opening_mm / 2;
+    double sum = 0, half = sight->opening_mm / 2;
     for (int i = 0; i < grid * grid; i++) {
         double px = half * (2 * (i % grid + 0.5) / grid - 1), py = half * (2 * (i / grid + 0.5) / grid - 1);
         weft_pixel at = weft_homography_apply(homography, px, py);
@@ -290,8 +293,8 @@ static double uncertainty_mm(const comparison *c, int count, double variance, co
             row[0][k] = (right.x - left.x) * du[k] + (below.x - above.x) * dv[k];
             row[1][k] = (right.y - left.y) * du[k] + (below.y - above.y) * dv[k];
         }
-        sum += weft_normal_equations_variance(&c->equations, count, row[0]) +
-               weft_normal_equations_variance(&c->equations, count, row[1]);
+        sum += weft_normal_equations_variance(factored, count, row[0]) +
+               weft_normal_equations_variance(factored, count, row[1]);
     }
     return sqrt(variance * sum / (grid * grid));
 }
@@ -319,18 +322,42 @@ static double correlate(const comparison *c, float *fitted)
     return spread > 0 ? covariance / sqrt(spread) : 0;
 }
 
+/* Solves for a step; a smear that would become negative is held (an active set, at most two constraints), and so are
+ * both where `hold_both`. False where the equations have no solution. `factored` receives what the uncertainty is
+ * computed from. */
+static bool solve(const comparison *c, weft_smear smear, bool hold_both, int count, double *solution,
+                  weft_normal_equations *factored)
+{
+    bool held[2] = {hold_both, hold_both};
+    const double current[2] = {smear.constant, smear.depth};
+    for (bool again = true; again;) {
+        again = false;
+        *factored = c->equations;
+        for (int k = 0; k < 2; k++)
+            factored->matrix[smear_at + k][smear_at + k] *= held[k] ? held_stiffness : 1;
+        if (!weft_normal_equations_factor(factored, count))
+            return false;
+        weft_normal_equations_solve(factored, count, solution);
+        for (int k = 0; k < 2 && count == unknown_count; k++) {
+            if (!held[k] && current[k] <= 0 && solution[smear_at + k] < 0)
+                held[k] = again = true;
+        }
+    }
+    return true;
+}
+
 /* One step. False where the equations have no solution. */
-static bool step(comparison *c, weft_refinement *refinement, double *motion)
+static bool step(comparison *c, weft_refinement *refinement, bool hold_smear_now, double *motion)
 {
     int count = c->blur_px > 0 ? unknown_count_blurred : unknown_count;
-    double solution[WEFT_UNKNOWNS_LIMIT];
+    double solution[WEFT_UNKNOWNS_LIMIT] = {0};
+    weft_normal_equations factored;
     hold_smear(c);
-    if (!weft_normal_equations_factor(&c->equations, count))
+    if (!solve(c, refinement->smear, hold_smear_now, count, solution, &factored))
         return false;
-    weft_normal_equations_solve(&c->equations, count, solution);
     double freedom = fmax(1, c->equations.weights - count);
     double variance = c->deviation * c->deviation * fmax(1, c->equations.weights) / freedom;
-    refinement->uncertainty_mm = uncertainty_mm(c, count, variance, &refinement->homography);
+    refinement->uncertainty_mm = uncertainty_mm(c->sight, &factored, count, variance, &refinement->homography);
     *motion = apply_step(c, solution, refinement);
     return isfinite(*motion);
 }
@@ -344,7 +371,7 @@ static weft_code iterate(comparison *c, const float *photograph, weft_refinement
             guess_lighting(c);
         WEFT_TRY(gather(c, error));
         refinement->iterations = i + 1;
-        if (!step(c, refinement, &motion))
+        if (!step(c, refinement, i >= smear_steps, &motion))
             return WEFT_OK;
         /* The second step is the first one with robust weights. */
         refinement->converged = i > 0 && motion < settled_px * fmax(1, 10 * c->blur_px);

@@ -11,7 +11,7 @@
 typedef struct weft_refinement {
     weft_homography homography; /* plate mm to undistorted pixels */
     weft_smear smear;
-    bool converged; /* the last step moved the plate by less than 0.002 pixel */
+    bool converged; /* the last step moved the plate by less than 0.005 pixel */
     int iterations;
     double correlation;    /* of the photograph with the prediction under the fitted lighting, -1..1 */
     double uncertainty_mm; /* standard error of positions in the opening, RMS, from the residual */

@@ -1,6 +1,6 @@
 /* From raw pixels to texels in one step: every texel is a weighted sum of raw pixels, with weights that hold the
- * projective warp, the lens distortion, the average over the texel's square, the pixel's own square taken out again,
- * and the vignetting. Made once for a pose, applied to all photographs that share it. */
+ * projective warp, the lens distortion, the average over the texel's square and the vignetting. Made once for a pose,
+ * applied to all photographs that share it. */
 #ifndef WEFT_REGISTRATION_RESAMPLE_H
 #define WEFT_REGISTRATION_RESAMPLE_H
 
@@ -18,15 +18,22 @@ typedef struct weft_resampler {
     float *sum;     /* [height x width] of the weights, to take the black level away */
 } weft_resampler;
 
-/* Weights for the photographs of `camera` under `homography` (plate mm to undistorted pixels). Every texel is averaged
- * over points at most a pixel apart, at least 3 x 3; the photograph is interpolated between pixels by the cubic of
- * Catmull & Rom (1974), which reproduces polynomials of second degree, after the smear of the pixel's square (variance
- * 1/12 an axis) is undone to second order: f = p - laplacian(p) / 24. `extra_variance` (pixels^2 an axis) is undone
- * likewise. `inverse_vignetting` [height][width] of the photograph; NULL: none. The caller frees with
- * weft_resampler_free. Errors: WEFT_BAD_INPUT for a size that is not positive; WEFT_SYSTEM. */
-weft_code weft_resampler_create(const weft_camera *camera, const float *inverse_vignetting,
-                                const weft_homography *homography, double opening_mm, int width, int height,
-                                double extra_variance, weft_resampler *resampler, weft_error *error);
+/* What a photograph is resampled under. */
+typedef struct weft_resampling {
+    const weft_camera *camera;
+    const float *inverse_vignetting; /* [camera height][width]; NULL: none */
+    weft_homography homography;      /* plate mm to undistorted pixels */
+    double opening_mm;
+    double smear_px; /* reach of the lens's smear beyond a pixel's own square */
+} weft_resampling;
+
+/* Weights by area, as in conservative remapping (Jones 1999): a pixel counts as much of a texel as its square covers of
+ * the texel's quadrangle in the photograph, computed exactly. A pixel is itself an average over its square, so nothing
+ * is interpolated, no weight is negative and none rings at a glint. Texels nearer to the frame than a pixel and the
+ * smear reach are moved inward by what is missing, so that the bright print does not leak into them. The caller frees
+ * with weft_resampler_free. Errors: WEFT_BAD_INPUT for a size that is not positive; WEFT_SYSTEM. */
+weft_code weft_resampler_create(const weft_resampling *resampling, int width, int height, weft_resampler *resampler,
+                                weft_error *error);
 void weft_resampler_free(weft_resampler *resampler);
 
 /* Resamples one photograph ([height][width][3] raw values) into texel [height][width][3] = weighted sum of (raw -
