@@ -47,6 +47,8 @@ static int by_direction(const void *a, const void *b)
 weft_code weft_collection_sort_far(weft_collection *collection, const char *folder, weft_error *error)
 {
     weft_photograph *photograph = collection->photograph;
+    if (collection->count == 0)
+        return WEFT_OK;
     qsort(photograph, (size_t)collection->count, sizeof *photograph, by_view_then_light);
     for (int i = 1; i < collection->count; i++) {
         if (by_view_then_light(&photograph[i - 1], &photograph[i]) == 0)

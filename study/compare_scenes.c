@@ -61,6 +61,9 @@ weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_erro
     fputs("<p class=\"note\">Raw: the dataset, interpolated. Compressed: the material. ", page->html);
     if (scenes->has[WEFT_MODE_ANALYTIC])
         fputs("Analytic: the weave without its noise. ", page->html);
+    if (scenes->near_lights)
+        fputs("Its lights are near: it is drawn with their directions at its centre, so its borders do not meet. ",
+              page->html);
     if (scenes->skipped_levels > 0)
         fprintf(page->html, "The dataset did not fit into graphics memory: its finest %d levels are left out. ",
                 scenes->skipped_levels);

@@ -121,6 +121,7 @@ static weft_code draw_all(weft_player *player, const weft_scenes_request *reques
                           weft_scenes *scenes, weft_error *error)
 {
     scenes->width = scenes->height = PICTURE_SIZE;
+    scenes->near_lights = weft_dataset_get_layout(request->dataset)->distance == WEFT_NEAR;
     snprintf(scenes->renderer, sizeof scenes->renderer, "%s", weft_gl_renderer());
     WEFT_TRY(set_models(player, request, progress, scenes, error));
     for (int i = 0; i < WEFT_SCENE_COUNT; i++) {

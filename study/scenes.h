@@ -23,6 +23,7 @@ typedef struct weft_scenes {
     char renderer[128]; /* name of the OpenGL driver's renderer */
     bool has[WEFT_MODE_COUNT];
     int width, height;                /* of the pictures, pixels */
+    bool near_lights;                 /* the dataset is then drawn with the directions of its centre */
     int skipped_levels;               /* finest levels of the dataset that did not fit into graphics memory */
     double frame_ms[WEFT_MODE_COUNT]; /* of the first scene */
     weft_scene_pictures scene[WEFT_SCENE_COUNT];
