@@ -1,0 +1,134 @@
+#include "../btf/cmocka_all.h"
+#include "player/interaction.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <string.h>
+
+static weft_interaction fresh(void)
+{
+    return (weft_interaction){
+        .scene = weft_scene_default(), .width = 800, .height = 400, .available = {true, true, false}};
+}
+
+static void drag(weft_interaction *i, int button, bool shift, double x, double y)
+{
+    weft_interaction_press(i, button, true, shift, 100, 100);
+    weft_interaction_move(i, 100 + x, 100 + y);
+    weft_interaction_press(i, button, false, shift, 100 + x, 100 + y);
+}
+
+static void a_left_drag_across_half_the_window_turns_half_way_round(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    double before = i.scene.orbit.azimuth_rad;
+    weft_angles light = i.scene.light;
+    drag(&i, GLFW_MOUSE_BUTTON_LEFT, false, 400, 0);
+    assert_float_equal(fabs(i.scene.orbit.azimuth_rad - before), WEFT_PI, 1e-9);
+    assert_float_equal(i.scene.light.phi_rad, light.phi_rad, 0);
+    assert_true(i.changed);
+}
+
+static void a_right_or_shifted_drag_moves_only_the_light(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_orbit orbit = i.scene.orbit;
+    double theta_rad = i.scene.light.theta_rad;
+    drag(&i, GLFW_MOUSE_BUTTON_RIGHT, false, 0, 40);
+    assert_float_equal(i.scene.light.theta_rad - theta_rad, WEFT_PI / 10, 1e-9);
+    drag(&i, GLFW_MOUSE_BUTTON_LEFT, true, 0, -40);
+    assert_float_equal(i.scene.light.theta_rad, theta_rad, 1e-9);
+    weft_interaction_key(&i, GLFW_KEY_L);
+    drag(&i, GLFW_MOUSE_BUTTON_LEFT, false, 0, 40);
+    assert_true(i.scene.light.theta_rad > theta_rad);
+    assert_memory_equal(&orbit, &i.scene.orbit, sizeof orbit);
+}
+
+static void a_move_without_a_button_changes_nothing(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    drag(&i, GLFW_MOUSE_BUTTON_LEFT, false, 10, 10);
+    i.changed = false;
+    weft_scene scene = i.scene;
+    weft_interaction_move(&i, 700, 300);
+    assert_memory_equal(&scene, &i.scene, sizeof scene);
+    assert_false(i.changed);
+}
+
+static void camera_and_light_stop_at_their_ends(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    drag(&i, GLFW_MOUSE_BUTTON_LEFT, false, 0, 5000);
+    assert_true(i.scene.orbit.elevation_rad < WEFT_PI / 2);
+    drag(&i, GLFW_MOUSE_BUTTON_RIGHT, false, 0, -5000);
+    assert_float_equal(i.scene.light.theta_rad, 0, 0);
+    weft_interaction_scroll(&i, 1000);
+    assert_true(i.scene.orbit.distance > 1);
+    weft_interaction_scroll(&i, -1000);
+    assert_true(i.scene.orbit.distance < 100);
+}
+
+static void mode_keys_show_what_is_there_and_ignore_what_is_not(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_interaction_key(&i, GLFW_KEY_1);
+    assert_int_equal(i.scene.pane[0], WEFT_MODE_RAW);
+    weft_interaction_key(&i, GLFW_KEY_3);
+    assert_int_equal(i.scene.pane[0], WEFT_MODE_RAW);
+    weft_interaction_key(&i, GLFW_KEY_S);
+    assert_int_equal(i.scene.pane_count, 2);
+    weft_interaction_key(&i, GLFW_KEY_2);
+    assert_int_equal(i.scene.pane_count, 1);
+    assert_int_equal(i.scene.pane[0], WEFT_MODE_COMPRESSED);
+}
+
+static void keys_toggle_and_undo_themselves(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    double exposure = i.scene.exposure;
+    weft_interaction_key(&i, GLFW_KEY_M);
+    assert_int_equal(i.scene.level_choice, WEFT_LEVEL_NONE);
+    weft_interaction_key(&i, GLFW_KEY_M);
+    assert_int_equal(i.scene.level_choice, WEFT_LEVEL_AUTO);
+    weft_interaction_key(&i, GLFW_KEY_RIGHT_BRACKET);
+    assert_true(i.scene.exposure > exposure);
+    weft_interaction_key(&i, GLFW_KEY_LEFT_BRACKET);
+    assert_float_equal(i.scene.exposure, exposure, 1e-12);
+    weft_interaction_key(&i, GLFW_KEY_H);
+    assert_non_null(strstr(i.scene.help, "light"));
+    weft_interaction_key(&i, GLFW_KEY_H);
+    assert_null(i.scene.help);
+}
+
+static void other_keys_are_wishes_for_the_caller(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_interaction_key(&i, GLFW_KEY_F12);
+    weft_interaction_key(&i, GLFW_KEY_O);
+    weft_interaction_key(&i, GLFW_KEY_ESCAPE);
+    assert_true(i.wants_screenshot);
+    assert_string_equal(i.wants_mesh, "sphere");
+    assert_true(i.wants_quit);
+    assert_false(i.changed);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_left_drag_across_half_the_window_turns_half_way_round),
+        cmocka_unit_test(a_right_or_shifted_drag_moves_only_the_light),
+        cmocka_unit_test(a_move_without_a_button_changes_nothing),
+        cmocka_unit_test(camera_and_light_stop_at_their_ends),
+        cmocka_unit_test(mode_keys_show_what_is_there_and_ignore_what_is_not),
+        cmocka_unit_test(keys_toggle_and_undo_themselves),
+        cmocka_unit_test(other_keys_are_wishes_for_the_caller),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

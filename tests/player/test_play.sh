@@ -1,0 +1,78 @@
+#!/bin/sh
+# `weft play` in a real window on a virtual display: every drag and key must change the picture.
+# Usage: test_play.sh WEFT TEST_RENDER WEAVES
+set -eu
+
+weft=$1 make=$2 weaves=$3
+for tool in xvfb-run xdotool cmp; do
+    if ! command -v "$tool" >/dev/null; then
+        echo "skipped: $tool is not installed"
+        exit 77
+    fi
+done
+
+if [ "${4-}" != inside ]; then
+    rm -rf play && "$make" --make play
+    "$weft" play --help | grep -q '^Example: weft play' || { "$weft" play --help; exit 1; }
+    # No window can be opened twice by accident: the counted run ends by itself.
+    xvfb-run -a -s "-screen 0 800x600x24" "$weft" play play/cloth.weft --size 160x120 --frames 5 | grep "5 frames"
+    exec timeout 120 xvfb-run -a -s "-screen 0 800x600x24" "$0" "$weft" "$make" "$weaves" inside
+fi
+
+cd play
+"$weft" play cloth.weft --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 320x240 &
+player=$!
+trap 'kill $player 2>/dev/null || true' EXIT
+window=$(xdotool search --sync --onlyvisible --name '^Weft' | head -n 1)
+xdotool windowfocus "$window"
+
+shots=0
+shoot() { # WHAT: takes a screenshot that must differ from the one before
+    sleep 0.4
+    xdotool key F12
+    last=$(printf 'weft-%03d.png' "$shots")
+    shots=$((shots + 1))
+    next=$(printf 'weft-%03d.png' "$shots")
+    for _ in $(seq 100); do
+        [ -s "$next" ] && break
+        sleep 0.1
+    done
+    [ -s "$next" ] || { echo "no screenshot after: $1"; exit 1; }
+    if [ "$shots" -gt 1 ] && cmp -s "$last" "$next"; then
+        echo "nothing changed: $1"
+        exit 1
+    fi
+}
+
+drag() { # BUTTON DX DY
+    xdotool mousemove --window "$window" 160 120
+    sleep 0.1
+    xdotool mousedown "$1"
+    sleep 0.1
+    xdotool mousemove_relative -- "$2" "$3"
+    sleep 0.1
+    xdotool mouseup "$1"
+}
+
+shoot "start"
+drag 1 40 10
+shoot "left drag"
+drag 3 60 20
+shoot "right drag"
+xdotool click 4
+shoot "wheel"
+for key in 1 3 s 2 m bracketright o h; do
+    xdotool key $key
+    shoot "key $key"
+done
+xdotool getwindowname "$window" | grep -q 'ms/frame' || { echo "no time in the title"; exit 1; }
+xdotool windowsize "$window" 400 300
+shoot "resize"
+xdotool key q
+for _ in $(seq 100); do
+    kill -0 $player 2>/dev/null || break
+    sleep 0.1
+done
+trap - EXIT
+wait $player
+echo "$shots screenshots, all different from the one before"

@@ -1,0 +1,182 @@
+/* `weft render` from end to end, as a user runs it. With --make FOLDER: writes the files it works on and leaves. */
+#include "stage.h"
+
+#include "btf/atomic_file.h"
+#include "btf/colour.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static void make_files(const char *folder)
+{
+    char path[512];
+    weft_error error = {0};
+    weft_material material;
+    expect_ok(weft_make_folder(folder, &error), &error);
+    stage_material(24, 24, 2, 81, &material);
+    snprintf(path, sizeof path, "%s/cloth.weft", folder);
+    expect_ok(weft_material_write(path, &material, &error), &error);
+    weft_material_free(&material);
+    snprintf(path, sizeof path, "%s/cloth.btf.h5", folder);
+    stage_dataset(path, 12, 19, 19, WEFT_REFLECTANCE_COSINE, true);
+}
+
+static int enter_folder(void **state)
+{
+    (void)state;
+    make_files("render");
+    return chdir("render");
+}
+
+/* Exit code of a shell command; $WEFT is the program. Its stderr goes to the file "said". */
+static int run(const char *command)
+{
+    char line[2048];
+    snprintf(line, sizeof line, "%s 2>said", command);
+    setenv("WEFT", WEFT_PROGRAM, 1);
+    setenv("WEAVES", WEFT_ASSETS "/weaves", 1);
+    int status = system(line);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static void expect_said(const char *part)
+{
+    char *text;
+    size_t size;
+    weft_error error = {0};
+    expect_ok(weft_read_file("said", 1 << 20, &text, &size, &error), &error);
+    if (!strstr(text, part))
+        fail_msg("expected '%s' in: %s", part, text);
+    free(text);
+}
+
+static weft_image read_picture(const char *path, int width, int height)
+{
+    weft_image image;
+    weft_error error = {0};
+    expect_ok(weft_image_read(path, &image, NULL, &error), &error);
+    assert_int_equal(image.width, width);
+    assert_int_equal(image.height, height);
+    return image;
+}
+
+/* Variance of the luminance in the middle of a picture: a drawn cloth has some, a background has none. */
+static double contrast(const weft_image *image, int left, int right)
+{
+    double sum = 0, squares = 0;
+    long count = 0;
+    for (int y = image->height / 3; y < image->height * 2 / 3; y++) {
+        for (int x = left; x < right; x++) {
+            double value = (double)image->pixels[3 * (y * image->width + x) + 1];
+            sum += value;
+            squares += value * value;
+            count++;
+        }
+    }
+    return squares / (double)count - sum / (double)count * (sum / (double)count);
+}
+
+static void three_panes_show_three_different_pictures(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$WEFT render cloth.weft --raw cloth.btf.h5 --weave $WEAVES/cotton_denim.wv --mode split "
+                         "--size 240x100 --samples 1 --quiet -o split.png"),
+                     0);
+    weft_image image = read_picture("split.png", 240, 100);
+    for (int pane = 0; pane < 3; pane++)
+        assert_true(contrast(&image, 80 * pane + 25, 80 * pane + 55) > 1e-3);
+    double difference = 0;
+    for (int y = 0; y < 100; y++) {
+        for (int x = 0; x < 80; x++) {
+            const float *row = image.pixels + 720 * y;
+            difference += (row[3 * x] != row[3 * (x + 80)]) + (row[3 * (x + 80)] != row[3 * (x + 160)]);
+        }
+    }
+    assert_true(difference > 1000);
+    weft_image_free(&image);
+}
+
+static void exr_holds_the_linear_values_of_the_png(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$WEFT render cloth.weft --mesh plane --camera=-90,90,3 --light 0,0 --exposure 0.5 "
+                         "--size 64x64 --samples 2 --quiet -o plane.exr"),
+                     0);
+    assert_int_equal(run("$WEFT render cloth.weft --mesh plane --camera=-90,90,3 --light 0,0 --exposure 0.5 "
+                         "--size 64x64 --samples 2 --quiet -o plane.png"),
+                     0);
+    weft_image linear = read_picture("plane.exr", 64, 64), coded = read_picture("plane.png", 64, 64);
+    for (int i = 0; i < 3 * 64 * 64; i++) {
+        double expected = fmin((double)weft_srgb_of_linear(linear.pixels[i]), 1);
+        assert_float_equal((double)coded.pixels[i], expected, 0.006);
+    }
+    weft_image_free(&linear);
+    weft_image_free(&coded);
+}
+
+static void wrong_usage_is_exit_code_2(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$WEFT render -o a.png"), WEFT_BAD_USAGE);
+    expect_said("needs a material");
+    assert_int_equal(run("$WEFT render cloth.weft"), WEFT_BAD_USAGE);
+    expect_said("-o");
+    assert_int_equal(run("$WEFT render cloth.weft --mode raw -o a.png"), WEFT_BAD_USAGE);
+    expect_said("--raw NAME.btf.h5");
+    assert_int_equal(run("$WEFT render cloth.weft --size 10 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --size 99999x10 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --light nan,0 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --camera 0,91,3 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --samples 65 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --repeat 0 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_not_equal(access("a.png", F_OK), 0);
+}
+
+static void bad_files_are_exit_code_1_and_leave_no_picture(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$WEFT render none.weft -o a.png"), WEFT_BAD_INPUT);
+    expect_said("none.weft");
+    assert_int_equal(run("head -c 5000 cloth.weft > cut.weft; $WEFT render cut.weft -o a.png"), WEFT_BAD_INPUT);
+    expect_said("cut.weft");
+    assert_int_equal(run("$WEFT render cloth.weft --raw cloth.weft -o a.png"), WEFT_BAD_INPUT);
+    assert_int_equal(run("$WEFT render cloth.weft --mesh none.obj -o a.png"), WEFT_BAD_INPUT);
+    expect_said("none.obj");
+    assert_int_equal(run("printf 'v 1 1 1\\nvt 0 0\\nf 1/1 1/1 1/1\\n' > dot.obj; "
+                         "$WEFT render cloth.weft --mesh dot.obj -o a.png"),
+                     WEFT_BAD_INPUT);
+    expect_said("cannot be looked at");
+    assert_int_not_equal(access("a.png", F_OK), 0);
+}
+
+static void a_failing_system_is_exit_code_3_and_leaves_no_picture(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$WEFT render cloth.weft --size 16x16 -o nowhere/a.png"), WEFT_SYSTEM);
+    assert_int_equal(run("(ulimit -f 1; $WEFT render cloth.weft --size 200x200 --samples 1 -o a.exr)"), WEFT_SYSTEM);
+    assert_int_equal(run("__EGL_VENDOR_LIBRARY_DIRS=/nonexistent $WEFT render cloth.weft -o a.png"), WEFT_SYSTEM);
+    expect_said("without a display");
+    assert_int_equal(run("DISPLAY= WAYLAND_DISPLAY= $WEFT play cloth.weft"), WEFT_SYSTEM);
+    expect_said("cannot open a display");
+    assert_int_equal(run("ls | grep -q '^a\\.\\|\\.a\\.\\|tmp'"), 1);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 3 && strcmp(argv[1], "--make") == 0) {
+        make_files(argv[2]);
+        return 0;
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(three_panes_show_three_different_pictures),
+        cmocka_unit_test(exr_holds_the_linear_values_of_the_png),
+        cmocka_unit_test(wrong_usage_is_exit_code_2),
+        cmocka_unit_test(bad_files_are_exit_code_1_and_leave_no_picture),
+        cmocka_unit_test(a_failing_system_is_exit_code_3_and_leaves_no_picture),
+    };
+    return cmocka_run_group_tests(tests, enter_folder, NULL);
+}
