@@ -211,6 +211,22 @@ static void a_flipped_bit_anywhere_is_noticed(void **state)
     free(bytes);
 }
 
+static void bytes_that_belong_to_no_section_are_refused(void **state)
+{
+    (void)state;
+    size_t size;
+    unsigned char *bytes = scratch_load(path, &size);
+    bytes[size] = 0;
+    weft_bytes_put_u64(bytes + 16, size + 1);
+    weft_bytes_repair(bytes, size + 1, false);
+    assert_bytes_refused(bytes, size + 1, "1 bytes follow");
+    weft_bytes_put_u64(bytes + 16, size);
+    weft_bytes_repair(bytes, size, false);
+    bytes[weft_bytes_u64(weft_bytes_entry(bytes, 0) + ENTRY_OFFSET) - 1] = 1;
+    assert_bytes_refused(bytes, size, "bytes before it are not zero");
+    free(bytes);
+}
+
 typedef struct header_edit {
     int offset;
     uint32_t value;
@@ -468,6 +484,7 @@ int main(void)
         cmocka_unit_test(a_file_cut_anywhere_is_refused),
         cmocka_unit_test(a_file_cut_at_a_section_boundary_is_refused_though_its_header_agrees),
         cmocka_unit_test(a_flipped_bit_anywhere_is_noticed),
+        cmocka_unit_test(bytes_that_belong_to_no_section_are_refused),
         cmocka_unit_test(impossible_headers_are_refused_with_right_checksums),
         cmocka_unit_test(impossible_sections_are_refused_with_right_checksums),
         cmocka_unit_test(a_decompression_bomb_is_refused_before_it_is_allocated),
