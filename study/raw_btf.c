@@ -1,94 +1,24 @@
 #include "study/raw_btf.h"
 
-#include "btf/triangulation.h"
 #include "study/band.h"
+#include "study/raw_directions.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
-
-/* Where the images of a dataset were lit and seen from, as a place of the material sees it. */
-typedef struct directions {
-    weft_triangulation *views;
-    weft_triangulation *
-        *lights; /* [view_count] of the images of a view, in the order of image_of_view; NULL for a view without any */
-} directions;
 
 struct weft_raw_btf {
     weft_dataset *dataset;
     const weft_dataset_layout *layout;
-    int *first_image;   /* [view_count + 1] into image_of_view */
-    int *image_of_view; /* [image_count] images sorted by view */
-    directions centre;  /* everywhere in a far dataset */
-    weft_half *samples; /* [image_count][3] of a texel */
-    uint8_t *mask;      /* [image_count] of a texel */
-    float *mean;        /* [image_count][3]; NULL until asked for */
-    uint8_t *mean_mask; /* [image_count] */
+    weft_view_order order;
+    weft_raw_directions centre; /* everywhere in a far dataset */
+    weft_half *samples;         /* [image_count][3] of a texel */
+    uint8_t *mask;              /* [image_count] of a texel */
+    float *mean;                /* [image_count][3]; NULL until asked for */
+    uint8_t *mean_mask;         /* [image_count] */
 };
 
-/* ---- Directions ---- */
-
-static void directions_free(directions *d, int view_count)
-{
-    weft_triangulation_free(d->views);
-    for (int v = 0; d->lights && v < view_count; v++)
-        weft_triangulation_free(d->lights[v]);
-    free(d->lights);
-    *d = (directions){0};
-}
-
-static weft_code triangulate_lights(const weft_raw_btf *raw, int x, int y, weft_vec3 *scratch, directions *d,
-                                    weft_error *error)
-{
-    for (int v = 0; v < raw->layout->view_count; v++) {
-        int count = raw->first_image[v + 1] - raw->first_image[v];
-        for (int i = 0; i < count; i++)
-            scratch[i] = weft_dataset_light_direction(raw->layout, raw->image_of_view[raw->first_image[v] + i], x, y);
-        if (count > 0)
-            WEFT_TRY(weft_triangulation_build(scratch, count, &d->lights[v], error));
-    }
-    return WEFT_OK;
-}
-
-/* As texel (x, y) sees them. */
-static weft_code directions_create(const weft_raw_btf *raw, int x, int y, directions *d, weft_error *error)
-{
-    const weft_dataset_layout *layout = raw->layout;
-    size_t most = (size_t)(layout->image_count > layout->view_count ? layout->image_count : layout->view_count);
-    *d = (directions){.lights = calloc((size_t)layout->view_count, sizeof(weft_triangulation *))};
-    weft_vec3 *scratch = malloc(most * sizeof *scratch);
-    weft_code code = WEFT_OK;
-    if (!d->lights || !scratch)
-        code = weft_fail_memory(error, "directions", most * sizeof *scratch);
-    if (code == WEFT_OK) {
-        for (int v = 0; v < layout->view_count; v++)
-            scratch[v] = weft_dataset_view_direction(layout, v, x, y);
-        code = weft_triangulation_build(scratch, layout->view_count, &d->views, error);
-    }
-    if (code == WEFT_OK)
-        code = triangulate_lights(raw, x, y, scratch, d, error);
-    free(scratch);
-    if (code != WEFT_OK)
-        directions_free(d, layout->view_count);
-    return code;
-}
-
 /* ---- Life ---- */
-
-static void sort_images_by_view(weft_raw_btf *raw)
-{
-    const weft_dataset_layout *layout = raw->layout;
-    for (int i = 0; i < layout->image_count; i++)
-        raw->first_image[layout->view_of_image[i] + 1]++;
-    for (int v = 0; v < layout->view_count; v++)
-        raw->first_image[v + 1] += raw->first_image[v];
-    /* Filling moves every start to the next one; going backwards and decrementing the ends instead keeps them. */
-    for (int i = layout->image_count - 1; i >= 0; i--)
-        raw->image_of_view[--raw->first_image[layout->view_of_image[i] + 1]] = i;
-    memmove(raw->first_image, raw->first_image + 1, (size_t)layout->view_count * sizeof *raw->first_image);
-    raw->first_image[layout->view_count] = layout->image_count;
-}
 
 weft_code weft_raw_btf_create(weft_dataset *dataset, weft_raw_btf **result, weft_error *error)
 {
@@ -97,18 +27,17 @@ weft_code weft_raw_btf_create(weft_dataset *dataset, weft_raw_btf **result, weft
         return weft_fail_memory(error, "dataset", sizeof *raw);
     raw->dataset = dataset;
     raw->layout = weft_dataset_get_layout(dataset);
-    size_t images = (size_t)raw->layout->image_count, views = (size_t)raw->layout->view_count;
-    raw->first_image = calloc(views + 1, sizeof *raw->first_image);
-    raw->image_of_view = malloc(images * sizeof *raw->image_of_view);
+    size_t images = (size_t)raw->layout->image_count;
     raw->samples = malloc(3 * images * sizeof *raw->samples);
     raw->mask = malloc(images);
     weft_code code = WEFT_OK;
-    if (!raw->first_image || !raw->image_of_view || !raw->samples || !raw->mask)
-        code = weft_fail_memory(error, "dataset", images * 16);
-    if (code == WEFT_OK) {
-        sort_images_by_view(raw);
-        code = directions_create(raw, raw->layout->width / 2, raw->layout->height / 2, &raw->centre, error);
-    }
+    if (!raw->samples || !raw->mask)
+        code = weft_fail_memory(error, "texel", images * 7);
+    if (code == WEFT_OK)
+        code = weft_view_order_create(raw->layout, &raw->order, error);
+    if (code == WEFT_OK)
+        code = weft_raw_directions_create(raw->layout, &raw->order, raw->layout->width / 2, raw->layout->height / 2,
+                                          &raw->centre, error);
     if (code != WEFT_OK)
         weft_raw_btf_free(raw);
     else
@@ -120,9 +49,8 @@ void weft_raw_btf_free(weft_raw_btf *raw)
 {
     if (!raw)
         return;
-    directions_free(&raw->centre, raw->layout->view_count);
-    free(raw->first_image);
-    free(raw->image_of_view);
+    weft_raw_directions_free(&raw->centre);
+    weft_view_order_free(&raw->order);
     free(raw->samples);
     free(raw->mask);
     free(raw->mean);
@@ -173,15 +101,15 @@ static void add_image(const weft_raw_btf *raw, const place *at, int image, doubl
     blend_add(b, weight, value);
 }
 
-static void interpolate(const weft_raw_btf *raw, const directions *d, const place *at, weft_vec3 light, weft_vec3 view,
-                        blend *b)
+static void interpolate(const weft_raw_btf *raw, const weft_raw_directions *d, const place *at, weft_vec3 light,
+                        weft_vec3 view, blend *b)
 {
     weft_barycentric views = weft_triangulation_lookup(d->views, view);
     for (int i = 0; i < 3; i++) {
         if (views.index[i] < 0 || !d->lights[views.index[i]])
             continue;
         weft_barycentric lights = weft_triangulation_lookup(d->lights[views.index[i]], light);
-        const int *image = raw->image_of_view + raw->first_image[views.index[i]];
+        const int *image = raw->order.image + raw->order.first[views.index[i]];
         for (int k = 0; k < 3; k++) {
             if (lights.index[k] >= 0)
                 add_image(raw, at, image[lights.index[k]], views.weight[i] * lights.weight[k], b);
@@ -198,10 +126,10 @@ static weft_code sample_texel(weft_raw_btf *raw, int x, int y, weft_vec3 light, 
     if (raw->layout->distance == WEFT_FAR) {
         interpolate(raw, &raw->centre, &at, light, view, &b);
     } else {
-        directions near;
-        WEFT_TRY(directions_create(raw, x, y, &near, error));
+        weft_raw_directions near;
+        WEFT_TRY(weft_raw_directions_create(raw->layout, &raw->order, x, y, &near, error));
         interpolate(raw, &near, &at, light, view, &b);
-        directions_free(&near, raw->layout->view_count);
+        weft_raw_directions_free(&near);
     }
     *brdf = blend_brdf(&b);
     return WEFT_OK;
