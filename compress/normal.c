@@ -264,6 +264,28 @@ void weft_trial_solve_linear(const weft_bundle *bundle, bool with_table, const d
     trial->residual = residual_at(bundle, trial, with_table, &linear, trial->table);
 }
 
+void weft_trial_solve_given_table(const weft_bundle *bundle, const double *table, const double *low, const double *high,
+                                  weft_trial *trial)
+{
+    int n = trial->fit.lobe_count + 1;
+    double h[WEFT_LINEAR_MAX * WEFT_LINEAR_MAX] = {0}, g[WEFT_LINEAR_MAX] = {0}, trace = 0;
+    for (int view = 0; view < bundle->view_count; view++) {
+        const weft_linear_view *linear = &trial->linear[view];
+        for (int j = 0; j < n; j++) {
+            g[j] += table[view] * linear->error[j];
+            for (int k = 0; k < n; k++)
+                h[j * n + k] += table[view] * table[view] * linear->gram[j][k];
+        }
+    }
+    for (int j = 0; j < n; j++)
+        trace += h[j * n + j];
+    for (int j = 0; j < n; j++)
+        h[j * n + j] += 1e-9 * h[j * n + j] + 1e-14 * trace + 1e-300;
+    weft_linear solution = linear_of_fit(&trial->fit);
+    if (weft_solve_box(n, h, g, low, high, solution.x))
+        linear_to_fit(&solution, &trial->fit);
+}
+
 /* ---- All parameters ---- */
 
 /* The derivative of f by one parameter: `weight` over the columns [first, end). */

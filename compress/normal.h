@@ -60,6 +60,10 @@ void weft_trial_digest(const weft_bundle *bundle, bool with_table, weft_trial *t
  * `least` [lobe_count]. Needs no samples. */
 void weft_trial_solve_linear(const weft_bundle *bundle, bool with_table, const double *least, weft_trial *trial);
 
+/* The same with T given: pass_table of the trial must be 0. `low` and `high` bound rho and the amplitudes. */
+void weft_trial_solve_given_table(const weft_bundle *bundle, const double *table, const double *low, const double *high,
+                                  weft_trial *trial);
+
 /* Matrix and gradient at trial->fit. */
 void weft_normal_of_trial(const weft_bundle *bundle, bool with_table, bool rotate, const weft_trial *trial,
                           weft_normal *normal);

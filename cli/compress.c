@@ -1,0 +1,189 @@
+#include "compress/compress.h"
+#include "cli/command.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+typedef struct compress_command {
+    common_options common;
+    const char *input, *output;
+    weft_compress_options options;
+} compress_command;
+
+enum { KEY_LOBES = 0x2000, KEY_TABLE, KEY_LEVELS, KEY_MAX_EXPONENT };
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "NAME.weft", 0, "The material to write", 0},
+    {"lobes", KEY_LOBES, "0..3", 0, "Lafortune lobes a texel and channel, at most (default: 2)", 0},
+    {"table", KEY_TABLE, "on|off", 0, "View table T, where the samples can carry it (default: on)", 0},
+    {"levels", KEY_LEVELS, "on|off", 0, "Mip levels (default: on)", 0},
+    {"max-exponent", KEY_MAX_EXPONENT, "N", 0,
+     "Largest exponent of a lobe (default: 512; retro-reflective tape needs thousands)", 0},
+    {0},
+};
+
+static double number_argument(const char *text, const char *option, double low, double high, struct argp_state *state)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end || !(value >= low && value <= high))
+        argp_error(state, "%s needs a number from %g to %g, not '%s'", option, low, high, text);
+    return value;
+}
+
+static int lobes_argument(const char *text, struct argp_state *state)
+{
+    if (strlen(text) != 1 || text[0] < '0' || text[0] > '3')
+        argp_error(state, "--lobes needs 0, 1, 2 or 3, not '%s'", text);
+    return text[0] - '0';
+}
+
+static bool switch_argument(const char *text, const char *option, struct argp_state *state)
+{
+    if (strcmp(text, "on") != 0 && strcmp(text, "off") != 0)
+        argp_error(state, "%s is on or off, not '%s'", option, text);
+    return strcmp(text, "on") == 0;
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    compress_command *command = state->input;
+    weft_compress_options *options = &command->options;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &command->common;
+        return 0;
+    case 'o':
+        command->output = argument;
+        return 0;
+    case KEY_LOBES:
+        options->lobe_count = lobes_argument(argument, state);
+        return 0;
+    case KEY_TABLE:
+        options->table = switch_argument(argument, "--table", state);
+        return 0;
+    case KEY_LEVELS:
+        options->levels = switch_argument(argument, "--levels", state);
+        return 0;
+    case KEY_MAX_EXPONENT:
+        options->max_exponent = number_argument(argument, "--max-exponent", 1, 60000, state);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (command->input)
+            argp_error(state, "one dataset at a time: '%s' is one too many", argument);
+        command->input = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!command->input || !command->output)
+            argp_error(state, "needs NAME.btf.h5 and -o NAME.weft");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
+
+static const struct argp parser = {option_table,
+                                   parse_option,
+                                   "NAME.btf.h5 -o NAME.weft",
+                                   "Example: weft compress cloth.btf.h5 -o cloth.weft --lobes 2\n\n"
+                                   "Fits Lafortune lobes with a view table to every texel of every mip level of a "
+                                   "dataset, and measures what the result leaves. With too few images for that, "
+                                   "fits what they can carry and says so.",
+                                   children,
+                                   NULL,
+                                   NULL};
+
+static void say_model(const compress_command *command, const weft_dataset_layout *layout,
+                      const weft_compress_report *report)
+{
+    const common_options *common = &command->common;
+    const char *table = report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "";
+    command_say(common, "%d x %d texels, %d images, %d lobes%s", layout->width, layout->height, layout->image_count,
+                report->lobe_count, table);
+    if (report->model == WEFT_COMPRESS_SPARSE)
+        command_say(common,
+                    "%d images cannot carry lobes in every texel: exponents and normals are shared with the "
+                    "neighbours, only amplitudes are the texel's own",
+                    layout->image_count);
+    else if (report->lobe_count < command->options.lobe_count ||
+             (command->options.table && report->model != WEFT_COMPRESS_TABLE))
+        command_say(common, "%s: fitted %d lobes without a table",
+                    layout->distance == WEFT_NEAR ? "near cameras or too few images" : "too few images",
+                    report->lobe_count);
+    command_say(common, "masked: %.2f %% of the samples; %ld of %ld texels without any",
+                100.0 * (double)report->masked_count / (double)report->sample_count, report->empty_texel_count,
+                report->texel_count);
+    command_say(common, "frames turned: %.1f %% of the texels; cold starts: %.1f %%",
+                100.0 * (double)report->turned_frame_count / (double)report->texel_count,
+                100.0 * (double)report->cold_start_count / (double)report->texel_count);
+}
+
+static void say_errors(const common_options *common, const weft_material *material)
+{
+    command_say(common, "level       texels   median rel.  80 %% rel.  RMSE       rel. RMSE  PSNR dB");
+    for (int k = 0; k < material->level_count; k++) {
+        const weft_material_level *level = &material->level[k];
+        const weft_material_error *error = &level->error;
+        command_say(common, "%5d  %5d x %-5d  %10.4f  %9.4f  %9.3e  %9.4f  %7.2f", k, level->width, level->height,
+                    error->median_relative, error->percentile80_relative, error->rmse, error->relative_rmse,
+                    error->psnr_db);
+        char event[320];
+        snprintf(event, sizeof event,
+                 "{\"event\":\"level\",\"level\":%d,\"width\":%d,\"height\":%d,\"median_relative\":%.6g,"
+                 "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%.6g}",
+                 k, level->width, level->height, error->median_relative, error->percentile80_relative, error->rmse,
+                 error->relative_rmse, error->psnr_db);
+        command_event(common, event);
+    }
+}
+
+static double file_bytes(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 ? (double)status.st_size : 0;
+}
+
+static void say_sizes(const compress_command *command, const weft_dataset_layout *layout,
+                      const weft_compress_report *report)
+{
+    double samples = 6.0 * layout->width * layout->height * layout->image_count;
+    double material = file_bytes(command->output);
+    command_say(&command->common, "%s: %.2f MB, 1:%.0f of the samples as half floats (%.1f MB; the file has %.1f MB)",
+                command->output, material * 1e-6, material > 0 ? samples / material : 0, samples * 1e-6,
+                file_bytes(command->input) * 1e-6);
+    command_say(&command->common, "fitted in %.1f s", report->seconds);
+}
+
+static weft_code compress_dataset(const compress_command *command, weft_dataset *dataset, weft_error *error)
+{
+    weft_progress progress = command_progress(&command->common);
+    weft_material material;
+    weft_compress_report report;
+    WEFT_TRY(weft_compress(dataset, &command->options, &progress, &material, &report, error));
+    weft_code code = weft_material_write(command->output, &material, error);
+    if (code == WEFT_OK) {
+        const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+        say_model(command, layout, &report);
+        say_errors(&command->common, &material);
+        say_sizes(command, layout, &report);
+    }
+    weft_material_free(&material);
+    return code;
+}
+
+int command_compress(int argc, char **argv)
+{
+    compress_command command = {.options = weft_compress_default_options()};
+    command_parse(&parser, argc, argv, &command, &command.common);
+    weft_error error = {0};
+    weft_dataset *dataset = NULL;
+    weft_code code = weft_dataset_open(command.input, &dataset, &error);
+    if (code == WEFT_OK)
+        code = compress_dataset(&command, dataset, &error);
+    weft_dataset_close(dataset);
+    return command_exit("compress", &command.common, code, &error);
+}

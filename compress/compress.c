@@ -1,0 +1,209 @@
+#include "compress/compress.h"
+
+#include "compress/dense.h"
+#include "compress/sparse_material.h"
+
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { SAMPLES_PER_PARAMETER = 4 };
+
+static const char *const model_name[3] = {"lobes and view table", "lobes", "sparse"};
+
+weft_compress_options weft_compress_default_options(void)
+{
+    return (weft_compress_options){.lobe_count = 2, .table = true, .levels = true, .max_exponent = 512};
+}
+
+static int used_images(const weft_dataset_layout *layout, const uint8_t *held_out)
+{
+    int count = 0;
+    for (int image = 0; image < layout->image_count; image++)
+        count += !(held_out && held_out[image]);
+    return count;
+}
+
+static weft_code check_options(const weft_dataset *dataset, const weft_compress_options *options, weft_error *error)
+{
+    if (options->lobe_count < 0 || options->lobe_count > WEFT_MATERIAL_MAX_LOBES)
+        return weft_fail(error, WEFT_BAD_USAGE, "%d lobes asked for, must be 0 to %d", options->lobe_count,
+                         WEFT_MATERIAL_MAX_LOBES);
+    if (!(options->max_exponent >= 1 && options->max_exponent <= 60000))
+        return weft_fail(error, WEFT_BAD_USAGE, "largest exponent is %g, must be 1 to 60000", options->max_exponent);
+    if (used_images(weft_dataset_get_layout(dataset), options->held_out) == 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s': every image is held out", weft_dataset_path(dataset));
+    return WEFT_OK;
+}
+
+/* What so many samples a texel can carry. T belongs to fixed directions, so that near cameras have none. */
+static void plan(const weft_dataset_layout *layout, const weft_compress_options *options, weft_compress_report *report)
+{
+    int images = used_images(layout, options->held_out);
+    int lobes = 1 + 4 * options->lobe_count;
+    bool table = options->table && layout->distance == WEFT_FAR && layout->view_count <= WEFT_MATERIAL_MAX_VIEWS;
+    report->lobe_count = options->lobe_count;
+    report->model = WEFT_COMPRESS_SPARSE;
+    if (table && images >= SAMPLES_PER_PARAMETER * (lobes + layout->view_count)) {
+        report->model = WEFT_COMPRESS_TABLE;
+    } else if (images >= SAMPLES_PER_PARAMETER * lobes) {
+        report->model = WEFT_COMPRESS_LOBES;
+    } else if (images >= SAMPLES_PER_PARAMETER * (1 + 4)) {
+        report->model = WEFT_COMPRESS_LOBES;
+        report->lobe_count = (images / SAMPLES_PER_PARAMETER - 1) / 4;
+    } else if (options->lobe_count > 1) {
+        report->lobe_count = 1;
+    }
+}
+
+static weft_code create_material(const weft_dataset_layout *layout, const weft_compress_options *options,
+                                 const weft_compress_report *report, weft_material *material, weft_error *error)
+{
+    int views = report->model == WEFT_COMPRESS_TABLE ? layout->view_count : 0;
+    WEFT_TRY(weft_material_create(layout->width, layout->height, report->lobe_count, views, options->levels, material,
+                                  error));
+    material->texel_pitch_mm = layout->texel_pitch_mm;
+    for (int view = 0; view < views; view++)
+        material->view[view] = weft_unit(layout->view[view]);
+    return WEFT_OK;
+}
+
+/* ---- Opacity ---- */
+
+static weft_code store_opacity(weft_dataset *dataset, weft_material *material, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    size_t width = (size_t)layout->width, views = (size_t)layout->view_count, texels = width * (size_t)layout->height;
+    float *row = malloc(width * views * sizeof *row);
+    weft_code code = row ? WEFT_OK : weft_fail_memory(error, "opacity of a row", width * views * sizeof *row);
+    for (int y = 0; code == WEFT_OK && y < layout->height; y++) {
+        code = weft_dataset_read_opacity(dataset, y, 1, row, error);
+        for (size_t i = 0; code == WEFT_OK && i < width * views; i++) {
+            size_t texel = (size_t)y * width + i / views;
+            float alpha = row[i] < 0 ? 0 : row[i] > 1 ? 1 : row[i];
+            material->level[0].table[((i % views) * texels + texel) * 4 + 3] = (uint8_t)(255 * alpha + 0.5f);
+        }
+    }
+    free(row);
+    return code;
+}
+
+/* Opacity of a group of texels is the mean of theirs. */
+static void halve_opacity(const weft_material_level *from, weft_material_level *to, int view_count)
+{
+    size_t from_texels = (size_t)from->width * (size_t)from->height, to_texels = (size_t)to->width * (size_t)to->height;
+    for (size_t view = 0; view < (size_t)view_count; view++) {
+        for (int y = 0; y < to->height; y++) {
+            for (int x = 0; x < to->width; x++) {
+                int sum = 0, count = 0;
+                for (int row = 2 * y; row < 2 * y + 2 && row < from->height; row++) {
+                    for (int column = 2 * x; column < 2 * x + 2 && column < from->width; column++, count++)
+                        sum += from->table[(view * from_texels + (size_t)(row * from->width + column)) * 4 + 3];
+                }
+                to->table[(view * to_texels + (size_t)(y * to->width + x)) * 4 + 3] =
+                    (uint8_t)((sum + count / 2) / count);
+            }
+        }
+    }
+}
+
+static weft_code fill_opacity(weft_dataset *dataset, weft_material *material, weft_error *error)
+{
+    if (material->view_count == 0)
+        return WEFT_OK;
+    WEFT_TRY(store_opacity(dataset, material, error));
+    for (int level = 1; level < material->level_count; level++)
+        halve_opacity(&material->level[level - 1], &material->level[level], material->view_count);
+    return WEFT_OK;
+}
+
+/* ---- Metadata ---- */
+
+static json_t *describe_fit(const weft_compress_options *options, const weft_compress_report *report,
+                            const weft_sparse_setting *setting)
+{
+    double texels = (double)(report->texel_count > 0 ? report->texel_count : 1);
+    json_t *fit = json_pack(
+        "{s:s, s:i, s:f, s:I, s:I, s:I, s:I, s:f, s:f}", "model", model_name[report->model], "lobes",
+        report->lobe_count, "largest_exponent", options->max_exponent, "samples", (json_int_t)report->sample_count,
+        "masked_samples", (json_int_t)report->masked_count, "texels", (json_int_t)report->texel_count, "empty_texels",
+        (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,
+        "cold_starts", (double)report->cold_start_count / texels);
+    if (fit && report->model == WEFT_COMPRESS_SPARSE) {
+        json_object_set_new(fit, "largest_exponent", json_real(setting->largest_exponent));
+        json_object_set_new(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
+    }
+    return fit;
+}
+
+/* {"provenance": of the dataset, "fit": what was done}. No time of day and no duration, so that equal input gives equal
+ * bytes. */
+static weft_code write_metadata(const weft_dataset_layout *layout, const weft_compress_options *options,
+                                const weft_compress_report *report, const weft_sparse_setting *setting,
+                                weft_material *material, weft_error *error)
+{
+    json_t *provenance = json_loads(layout->provenance, 0, NULL);
+    json_t *fit = describe_fit(options, report, setting);
+    json_t *object = json_pack("{s:o*, s:o*}", "provenance", provenance, "fit", fit);
+    char *text = object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
+    json_decref(object);
+    if (!text)
+        return weft_fail_memory(error, "metadata of the material", 0);
+    free(material->metadata);
+    material->metadata = text;
+    return WEFT_OK;
+}
+
+/* ---- The whole ---- */
+
+static weft_code fit_material(weft_dataset *dataset, const weft_compress_options *options,
+                              const weft_progress *progress, weft_material *material, weft_compress_report *report,
+                              weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    weft_texel_counts counts;
+    weft_sparse_setting setting = {0};
+    if (report->model == WEFT_COMPRESS_SPARSE) {
+        WEFT_TRY(weft_sparse_material_fit(dataset, options->held_out, progress, material, &setting, &counts,
+                                          &report->masked_count, error));
+    } else {
+        weft_texel_source source = {
+            .layout = layout, .held_out = options->held_out, .options = weft_fit_default_options()};
+        source.options.lobe_count = report->lobe_count;
+        source.options.table = report->model == WEFT_COMPRESS_TABLE;
+        source.options.max_exponent = options->max_exponent;
+        WEFT_TRY(weft_dense_fit(dataset, &source, progress, material, &counts, &report->masked_count, error));
+    }
+    report->texel_count = counts.texels;
+    report->empty_texel_count = counts.empty;
+    report->turned_frame_count = counts.turned;
+    report->cold_start_count = counts.cold;
+    report->sample_count = (long)layout->width * layout->height * used_images(layout, options->held_out);
+    WEFT_TRY(fill_opacity(dataset, material, error));
+    return write_metadata(layout, options, report, &setting, material, error);
+}
+
+static double seconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *options, const weft_progress *progress,
+                        weft_material *material, weft_compress_report *report, weft_error *error)
+{
+    weft_compress_report own = {0};
+    double began = seconds_now();
+    WEFT_TRY(check_options(dataset, options, error));
+    plan(weft_dataset_get_layout(dataset), options, &own);
+    WEFT_TRY(create_material(weft_dataset_get_layout(dataset), options, &own, material, error));
+    weft_code code = fit_material(dataset, options, progress, material, &own, error);
+    if (code != WEFT_OK)
+        weft_material_free(material);
+    own.seconds = seconds_now() - began;
+    if (report)
+        *report = own;
+    return code;
+}

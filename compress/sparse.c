@@ -1,0 +1,364 @@
+#include "compress/sparse.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SLOPES = 5,     /* in each direction, SLOPE_STEP apart, around 0 */
+    EXPONENTS = 12, /* 4 .. 181, half an octave apart */
+    CANDIDATES = SLOPES * SLOPES * EXPONENTS,
+    MAX_SETTINGS = 32,
+    CROSS_VALIDATION_SIDE = 128
+};
+
+#define SLOPE_STEP 0.08f
+#define DARK_SHARE 0.2f       /* of the mean sample: below it errors count absolutely, above it relatively */
+#define AMPLITUDE_PRIOR 2e-4f /* an amplitude of 70 times rho is as unlikely as an error of the size of the sample */
+
+typedef struct candidate {
+    float slope_x, slope_y, exponent;
+} candidate;
+
+static candidate candidate_of_index(int index)
+{
+    int slope = index / EXPONENTS;
+    return (candidate){.slope_x = SLOPE_STEP * (float)(slope % SLOPES - SLOPES / 2),
+                       .slope_y = SLOPE_STEP * (float)(slope / SLOPES - SLOPES / 2),
+                       .exponent = 4 * exp2f(0.5f * (float)(index % EXPONENTS))};
+}
+
+static double penalty(const weft_sparse_setting *setting, candidate shape)
+{
+    double square = (double)(shape.slope_x * shape.slope_x + shape.slope_y * shape.slope_y);
+    if ((double)shape.exponent > setting->largest_exponent * 1.01)
+        return INFINITY;
+    return square > 0 ? 1 + setting->stiffness * square : 1;
+}
+
+static float dot(const float *a, const float *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* l_z max(0, l'.diag(-1, -1, 1).v')^N, which is l_z (2 (n.l)(n.v) - l.v)^N. */
+static float lobe_value(candidate shape, const float *light, const float *view)
+{
+    float scale = 1 / sqrtf(1 + shape.slope_x * shape.slope_x + shape.slope_y * shape.slope_y);
+    float normal[3] = {shape.slope_x * scale, shape.slope_y * scale, scale};
+    float base = 2 * dot(normal, light) * dot(normal, view) - dot(light, view);
+    return base > 0 ? light[2] * powf(base, shape.exponent) : 0;
+}
+
+float weft_sparse_value(const weft_sparse_texel *texel, const float light[3], const float view[3], int channel)
+{
+    candidate shape = {texel->slope_x, texel->slope_y, texel->exponent};
+    return light[2] * texel->diffuse[channel] + texel->amplitude[channel] * lobe_value(shape, light, view);
+}
+
+/* Weighted products of the columns c (diffuse), g (lobe) and r (samples). */
+typedef struct products {
+    float cc, gg, cg, cr, gr, rr;
+} products;
+
+static void add_product(products *sums, float weight, float c, float g, float r)
+{
+    sums->cc += weight * c * c;
+    sums->gg += weight * g * g;
+    sums->cg += weight * c * g;
+    sums->cr += weight * c * r;
+    sums->gr += weight * g * r;
+    sums->rr += weight * r * r;
+}
+
+/* Non-negative least squares for rho and A; returns the squared error. */
+static float solve_products(const products *sums, float *diffuse, float *amplitude)
+{
+    float cc = sums->cc * 1.001f, gg = sums->gg * 1.001f + AMPLITUDE_PRIOR * sums->cc;
+    float determinant = cc * gg - sums->cg * sums->cg;
+    *diffuse = *amplitude = 0;
+    if (!(cc > 0) || !(determinant > 0))
+        return sums->rr;
+    float d = (gg * sums->cr - sums->cg * sums->gr) / determinant;
+    float a = (cc * sums->gr - sums->cg * sums->cr) / determinant;
+    if (d < 0 || a < 0) {
+        bool diffuse_alone = a < 0;
+        d = diffuse_alone ? fmaxf(sums->cr / cc, 0) : 0;
+        a = diffuse_alone ? 0 : fmaxf(sums->gr / gg, 0);
+    }
+    *diffuse = d;
+    *amplitude = a;
+    float error =
+        sums->rr - 2 * (d * sums->cr + a * sums->gr) + d * d * sums->cc + a * a * sums->gg + 2 * d * a * sums->cg;
+    return error > 0 ? error : 0;
+}
+
+/* ---- One run over a field, with one image left out or none (-1) ---- */
+
+typedef struct search {
+    const weft_sparse_field *field;
+    int left_out;
+    float *weight; /* [texel][image] of the relative error */
+    float *grey;   /* [texel][image] */
+    float *error;  /* [texel] of one candidate, then pooled */
+    float *pooled; /* [texel] */
+    int setting_count;
+    const weft_sparse_setting *setting;
+    float *least;    /* [setting][texel] */
+    int16_t *choice; /* [setting][texel] */
+} search;
+
+static int texel_count(const weft_sparse_field *field)
+{
+    return field->width * field->height;
+}
+
+static weft_code allocate_search(search *run, weft_error *error)
+{
+    size_t texels = (size_t)texel_count(run->field), samples = texels * (size_t)run->field->image_count;
+    size_t choices = texels * (size_t)run->setting_count;
+    run->weight = malloc(samples * sizeof(float));
+    run->grey = malloc(samples * sizeof(float));
+    run->error = malloc(texels * sizeof(float));
+    run->pooled = malloc(texels * sizeof(float));
+    run->least = malloc(choices * sizeof(float));
+    run->choice = calloc(choices, sizeof *run->choice);
+    if (run->weight && run->grey && run->error && run->pooled && run->least && run->choice)
+        return WEFT_OK;
+    return weft_fail_memory(error, "neighbourhood search", (samples + 2 * choices) * sizeof(float));
+}
+
+static void free_search(search *run)
+{
+    free(run->weight);
+    free(run->grey);
+    free(run->error);
+    free(run->pooled);
+    free(run->least);
+    free(run->choice);
+}
+
+static void weigh_samples(search *run)
+{
+    const weft_sparse_field *field = run->field;
+    size_t images = (size_t)field->image_count, samples = (size_t)texel_count(field) * images;
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < samples; i++) {
+        run->grey[i] = (field->value[3 * i] + field->value[3 * i + 1] + field->value[3 * i + 2]) / 3;
+        sum += (double)(field->weight[i] * run->grey[i]);
+        count += (double)field->weight[i];
+    }
+    float dark = sum > 0 ? DARK_SHARE * (float)(sum / count) : 1;
+    for (size_t i = 0; i < samples; i++) {
+        float size = fmaxf(run->grey[i], 0) + dark;
+        run->weight[i] = (int)(i % images) == run->left_out ? 0 : field->weight[i] / (size * size);
+    }
+}
+
+static float candidate_error(const search *run, size_t texel, candidate shape)
+{
+    size_t images = (size_t)run->field->image_count;
+    products sums = {0};
+    for (size_t i = texel * images; i < (texel + 1) * images; i++) {
+        if (run->weight[i] > 0)
+            add_product(&sums, run->weight[i], run->field->light[3 * i + 2],
+                        lobe_value(shape, run->field->light + 3 * i, run->field->view + 3 * i), run->grey[i]);
+    }
+    float diffuse, amplitude;
+    return solve_products(&sums, &diffuse, &amplitude);
+}
+
+/* Running mean of `count` values `stride` apart over windows of 2 radius + 1, cut off at the ends. */
+static void mean_line(const float *from, float *to, int count, size_t stride, int radius)
+{
+    double sum = 0;
+    int first = 0, end = 0;
+    for (int i = 0; i < count; i++) {
+        for (; end < count && end <= i + radius; end++)
+            sum += (double)from[(size_t)end * stride];
+        for (; first < i - radius; first++)
+            sum -= (double)from[(size_t)first * stride];
+        to[(size_t)i * stride] = (float)(sum / (end - first));
+    }
+}
+
+/* Three box means each way are a Gaussian of a fortieth of the width, within which a finish rarely changes. */
+static void pool_errors(search *run)
+{
+    int width = run->field->width, height = run->field->height;
+    double sigma = fmin(fmax(width, height) / 42.0, 12);
+    int radius = (int)lround((sqrt(4 * sigma * sigma + 1) - 1) / 2);
+    for (int round = 0; radius > 0 && round < 3; round++) {
+#pragma omp parallel for
+        for (int y = 0; y < height; y++)
+            mean_line(run->error + (size_t)y * (size_t)width, run->pooled + (size_t)y * (size_t)width, width, 1,
+                      radius);
+#pragma omp parallel for
+        for (int x = 0; x < width; x++)
+            mean_line(run->pooled + x, run->error + x, height, (size_t)width, radius);
+    }
+}
+
+static void try_candidate(search *run, int index)
+{
+    candidate shape = candidate_of_index(index);
+    double cost[MAX_SETTINGS];
+    bool wanted = false;
+    for (int s = 0; s < run->setting_count; s++) {
+        cost[s] = penalty(&run->setting[s], shape);
+        wanted = wanted || isfinite(cost[s]);
+    }
+    if (!wanted)
+        return;
+    int texels = texel_count(run->field);
+#pragma omp parallel for schedule(static)
+    for (int texel = 0; texel < texels; texel++)
+        run->error[texel] = candidate_error(run, (size_t)texel, shape);
+    pool_errors(run);
+    for (int s = 0; s < run->setting_count; s++) {
+        float *least = run->least + (size_t)s * (size_t)texels;
+        int16_t *choice = run->choice + (size_t)s * (size_t)texels;
+        for (int texel = 0; isfinite(cost[s]) && texel < texels; texel++) {
+            float error = run->error[texel] * (float)cost[s];
+            if (error < least[texel]) {
+                least[texel] = error;
+                choice[texel] = (int16_t)index;
+            }
+        }
+    }
+}
+
+static void search_shapes(search *run)
+{
+    size_t choices = (size_t)texel_count(run->field) * (size_t)run->setting_count;
+    for (size_t i = 0; i < choices; i++)
+        run->least[i] = INFINITY;
+    weigh_samples(run);
+    for (int index = 0; index < CANDIDATES; index++)
+        try_candidate(run, index);
+}
+
+/* The texel's own rho and amplitudes for the shape chosen under a setting. */
+static weft_sparse_texel fit_texel(const search *run, int setting, size_t texel)
+{
+    const weft_sparse_field *field = run->field;
+    size_t images = (size_t)field->image_count;
+    bool lobe = run->setting[setting].largest_exponent > 0;
+    candidate shape =
+        lobe ? candidate_of_index(run->choice[(size_t)setting * (size_t)texel_count(field) + texel]) : (candidate){0};
+    products sums[3] = {{0}};
+    for (size_t i = texel * images; i < (texel + 1) * images; i++) {
+        if (!(run->weight[i] > 0))
+            continue;
+        float g = lobe ? lobe_value(shape, field->light + 3 * i, field->view + 3 * i) : 0;
+        for (size_t k = 0; k < 3; k++)
+            add_product(&sums[k], run->weight[i], field->light[3 * i + 2], g, field->value[3 * i + k]);
+    }
+    weft_sparse_texel result = {.slope_x = shape.slope_x, .slope_y = shape.slope_y, .exponent = shape.exponent};
+    for (int k = 0; k < 3; k++)
+        solve_products(&sums[k], &result.diffuse[k], &result.amplitude[k]);
+    return result;
+}
+
+weft_code weft_sparse_fit(const weft_sparse_field *field, const weft_sparse_setting *setting, weft_sparse_texel *result,
+                          weft_error *error)
+{
+    search run = {.field = field, .left_out = -1, .setting_count = 1, .setting = setting};
+    weft_code code = allocate_search(&run, error);
+    if (code == WEFT_OK) {
+        search_shapes(&run);
+        for (int texel = 0; texel < texel_count(field); texel++)
+            result[texel] = fit_texel(&run, 0, (size_t)texel);
+    }
+    free_search(&run);
+    return code;
+}
+
+/* ---- Cross-validation ---- */
+
+static int compare_floats(const void *left, const void *right)
+{
+    const float *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+/* Relative RMSE plus median relative error of the left-out image; `relative` [texel * 3] is scratch. */
+static double prediction_error(const search *run, int setting, float *relative)
+{
+    const weft_sparse_field *field = run->field;
+    double square = 0, square_error = 0;
+    size_t count = 0;
+    for (size_t texel = 0; texel < (size_t)texel_count(field); texel++) {
+        size_t at = texel * (size_t)field->image_count + (size_t)run->left_out;
+        if (!(field->weight[at] > 0.5f))
+            continue;
+        weft_sparse_texel fit = fit_texel(run, setting, texel);
+        for (int k = 0; k < 3; k++) {
+            float sample = field->value[3 * at + (size_t)k];
+            float error = weft_sparse_value(&fit, field->light + 3 * at, field->view + 3 * at, k) - sample;
+            square += (double)(sample * sample);
+            square_error += (double)(error * error);
+            relative[count++] = fabsf(error) / fmaxf(sample, 1e-6f);
+        }
+    }
+    if (count == 0 || !(square > 0))
+        return 0;
+    qsort(relative, count, sizeof *relative, compare_floats);
+    return sqrt(square_error / square) + (double)relative[count / 2];
+}
+
+static int list_settings(weft_sparse_setting *setting)
+{
+    const double stiffness[3] = {INFINITY, 80, 20};
+    int count = 0;
+    setting[count++] = (weft_sparse_setting){.largest_exponent = 0, .stiffness = INFINITY};
+    for (int i = 0; i < 3; i++) {
+        for (int e = 3; e < EXPONENTS; e++)
+            setting[count++] = (weft_sparse_setting){.largest_exponent = 4 * exp2(0.5 * e), .stiffness = stiffness[i]};
+    }
+    return count;
+}
+
+static weft_code cross_validate(const weft_sparse_field *field, weft_sparse_setting *best, weft_error *error)
+{
+    weft_sparse_setting setting[MAX_SETTINGS];
+    double score[MAX_SETTINGS] = {0};
+    search run = {.field = field, .setting = setting, .setting_count = list_settings(setting)};
+    float *relative = malloc(3 * (size_t)texel_count(field) * sizeof *relative);
+    weft_code code = relative ? allocate_search(&run, error) : weft_fail_memory(error, "cross-validation", 0);
+    for (int fold = 0; code == WEFT_OK && fold < field->image_count; fold++) {
+        run.left_out = fold;
+        search_shapes(&run);
+        for (int s = 0; s < run.setting_count; s++)
+            score[s] += prediction_error(&run, s, relative);
+    }
+    int chosen = 0;
+    for (int s = 1; s < run.setting_count; s++)
+        chosen = score[s] < score[chosen] ? s : chosen;
+    *best = setting[chosen];
+    free_search(&run);
+    free(relative);
+    return code;
+}
+
+weft_code weft_sparse_choose(const weft_sparse_field *field, bool lobes, weft_sparse_setting *setting,
+                             weft_error *error)
+{
+    *setting = (weft_sparse_setting){.largest_exponent = 0, .stiffness = INFINITY};
+    if (!lobes || field->image_count < 4)
+        return WEFT_OK;
+    weft_sparse_field small = *field, next;
+    weft_code code = WEFT_OK;
+    while (code == WEFT_OK && (small.width > CROSS_VALIDATION_SIDE || small.height > CROSS_VALIDATION_SIDE)) {
+        code = weft_sparse_field_halve(&small, &next, error);
+        if (small.light != field->light)
+            weft_sparse_field_free(&small);
+        if (code == WEFT_OK)
+            small = next;
+    }
+    if (code == WEFT_OK)
+        code = cross_validate(&small, setting, error);
+    if (small.light && small.light != field->light)
+        weft_sparse_field_free(&small);
+    return code;
+}

@@ -1,0 +1,48 @@
+/* One texel of the material: frame, lobes and T of its three channels, packed, and measured against its samples. */
+#ifndef WEFT_COMPRESS_TEXEL_H
+#define WEFT_COMPRESS_TEXEL_H
+
+#include "compress/fit.h"
+#include "compress/measure.h"
+#include "compress/pack.h"
+
+/* What a thread needs for that; rows of texels go through it from left to right, each starting from its neighbour. */
+typedef struct weft_texel_fitter weft_texel_fitter;
+
+/* Where the samples are and what they mean. */
+typedef struct weft_texel_source {
+    const weft_dataset_layout *layout;
+    const uint8_t *held_out;
+    weft_fit_options options;
+} weft_texel_source;
+
+/* What happened to the texels of a row. */
+typedef struct weft_texel_counts {
+    long texels, empty, turned, cold;
+    weft_error_sums sums;
+} weft_texel_counts;
+
+/* `source` must outlive the fitter. Errors: WEFT_SYSTEM. */
+weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_fitter **result, weft_error *error);
+void weft_texel_fitter_free(weft_texel_fitter *fitter);
+
+/* Histogram of the errors of all texels so far; the caller merges it away. */
+weft_error_tally *weft_texel_fitter_tally(weft_texel_fitter *fitter);
+
+/* Forgets the left neighbour. */
+void weft_texel_fitter_begin_row(weft_texel_fitter *fitter);
+
+/* Fits texel (x, y) of a level from the sums of samples over its group of texels (see weft_samples_gather) and writes
+ * it into the material. Thread-safe for distinct texels and fitters. */
+void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int level, int x, int y, const float *sum,
+                    const float *count, weft_texel_counts *counts);
+
+/* Number of texels of level 0 in the group of texel (x, y) of a level: 4^level inside, fewer at the right and lower
+ * border. Its extent goes to x0..y1. Pure. */
+int weft_texel_group(const weft_dataset_layout *layout, int level, int x, int y, int extent[4]);
+
+/* Stores one packed channel. `code` [view_count] or NULL. */
+void weft_texel_store(weft_material *material, int level, int x, int y, int channel, const weft_packed *packed,
+                      const uint8_t *code);
+
+#endif

@@ -1,0 +1,156 @@
+#include "compress/workspace.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static bool create_trial(int view_count, weft_trial *trial)
+{
+    size_t views = (size_t)view_count;
+    trial->pass_table = calloc(views, sizeof *trial->pass_table);
+    trial->table = calloc(views, sizeof *trial->table);
+    trial->linear = calloc(views, sizeof *trial->linear);
+    trial->sums = calloc(views * WEFT_GRAM_STRIDE * WEFT_GRAM_STRIDE, sizeof *trial->sums);
+    return trial->pass_table && trial->table && trial->linear && trial->sums;
+}
+
+static void free_trial(weft_trial *trial)
+{
+    free(trial->pass_table);
+    free(trial->table);
+    free(trial->linear);
+    free(trial->sums);
+}
+
+weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspace **result, weft_error *error)
+{
+    weft_fit_workspace *workspace = calloc(1, sizeof *workspace);
+    *result = NULL;
+    if (!workspace)
+        return weft_fail_memory(error, "workspace of a fit", sizeof *workspace);
+    size_t views = (size_t)bundle->view_count;
+    workspace->table = calloc(3 * views, sizeof *workspace->table);
+    workspace->model = aligned_alloc(64, ((size_t)bundle->lane_count + WEFT_LANES) * sizeof *workspace->model);
+    bool complete = create_trial(bundle->view_count, &workspace->trial[0]);
+    complete =
+        create_trial(bundle->view_count, &workspace->trial[1]) && complete && workspace->table && workspace->model;
+    if (!complete) {
+        weft_fit_workspace_free(workspace);
+        return weft_fail_memory(error, "workspace of a fit", views * 2048);
+    }
+    for (int i = 0; i < 2; i++)
+        workspace->scratch[i] = workspace->table + (size_t)(1 + i) * views;
+    *result = workspace;
+    return WEFT_OK;
+}
+
+void weft_fit_workspace_free(weft_fit_workspace *workspace)
+{
+    if (!workspace)
+        return;
+    free_trial(&workspace->trial[0]);
+    free_trial(&workspace->trial[1]);
+    free(workspace->table);
+    free(workspace->model);
+    free(workspace);
+}
+
+double *weft_fit_scratch(weft_fit_workspace *workspace, int index)
+{
+    return workspace->scratch[index];
+}
+
+void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                         const weft_fit_options *options, const double *table, weft_trial *trial)
+{
+    for (int view = 0; view < bundle->view_count; view++)
+        trial->pass_table[view] = table ? (float)table[view] : 0.0f;
+    if (!options->table) {
+        for (int view = 0; view < bundle->view_count; view++)
+            trial->pass_table[view] = 1;
+    }
+    weft_gram_point point = weft_gram_point_of_fit(&trial->fit);
+    /* The digest must use the very numbers of the pass. */
+    trial->fit.diffuse = (double)point.diffuse;
+    for (int i = 0; i < point.lobe_count; i++)
+        trial->fit.lobe[i].amplitude = (double)point.amplitude[i];
+    weft_gram_accumulate(bundle, samples->cosine, samples->value[channel], &point, trial->pass_table, options->coarse,
+                         trial->sums);
+    weft_trial_digest(bundle, options->table, trial);
+    trial->fit.passes += 1;
+}
+
+void weft_workspace_take_table(const weft_bundle *bundle, const weft_fit_options *options, const weft_trial *trial,
+                               double *table)
+{
+    double sum = 0;
+    int seen = 0;
+    for (int view = 0; view < bundle->view_count; view++) {
+        if (trial->linear[view].gram[0][0] > 0) {
+            sum += trial->table[view];
+            seen++;
+        }
+    }
+    for (int view = 0; view < bundle->view_count; view++) {
+        double unseen = seen ? sum / seen : 1, learnt = trial->table[view];
+        table[view] = !options->table ? 1 : trial->linear[view].gram[0][0] > 0 ? learnt : unseen;
+    }
+}
+
+bool weft_workspace_finish_empty(const weft_bundle *bundle, const weft_samples *samples, int channel, weft_fit *fit,
+                                 double *table)
+{
+    if (samples->energy[channel] > 0 && samples->valid_count > 0)
+        return false;
+    *fit = (weft_fit){.lobe_count = fit->lobe_count, .frame = fit->frame};
+    for (int i = 0; i < fit->lobe_count; i++)
+        fit->lobe[i] = (weft_fit_lobe){.c = {0, 0, 1}};
+    for (int view = 0; view < bundle->view_count; view++)
+        table[view] = 1;
+    return true;
+}
+
+/* A lobe may lose nine tenths of its strength in one pass, not more: it could not come back. */
+static void least_amplitudes(const weft_fit *fit, double *least)
+{
+    for (int i = 0; i < fit->lobe_count; i++)
+        least[i] = 0.1 * fit->lobe[i].amplitude;
+}
+
+/* Amplitudes of a start: the best for T = 1, then with T eliminated. A vanished lobe keeps enough to be moved. */
+static void solve_start(const weft_bundle *bundle, const weft_fit_options *options, weft_trial *trial)
+{
+    double least[WEFT_GRAM_LOBES] = {0}, strength[WEFT_LINEAR_MAX] = {0}, energy = 0;
+    for (int view = 0; view < bundle->view_count; view++) {
+        energy += trial->linear[view].square;
+        for (int j = 0; j <= trial->fit.lobe_count; j++)
+            strength[j] += trial->linear[view].gram[j][j];
+    }
+    for (int i = 0; i < trial->fit.lobe_count; i++)
+        least[i] = strength[1 + i] > 1e-6 * strength[0] ? 0.02 * sqrt(energy / strength[1 + i]) : 0;
+    trial->fit.diffuse = strength[0] > 0 ? 0.5 * sqrt(energy / strength[0]) : 0;
+    for (int i = 0; i < trial->fit.lobe_count; i++)
+        trial->fit.lobe[i].amplitude = least[i];
+    trial->residual = INFINITY;
+    weft_trial_solve_linear(bundle, false, least, trial);
+    trial->residual = INFINITY;
+    weft_trial_solve_linear(bundle, options->table, least, trial);
+}
+
+void weft_workspace_begin_cold(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                               const weft_fit_options *options, weft_trial *trial)
+{
+    trial->fit.diffuse = 0;
+    for (int i = 0; i < trial->fit.lobe_count; i++)
+        trial->fit.lobe[i].amplitude = 0;
+    weft_workspace_pass(bundle, samples, channel, options, NULL, trial);
+    solve_start(bundle, options, trial);
+}
+
+void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                               const weft_fit_options *options, const double *table, weft_trial *trial)
+{
+    double least[WEFT_GRAM_LOBES] = {0};
+    least_amplitudes(&trial->fit, least);
+    weft_workspace_pass(bundle, samples, channel, options, table, trial);
+    weft_trial_solve_linear(bundle, options->table, least, trial);
+}

@@ -1,0 +1,39 @@
+/* The memory of a thread that fits, and the pass over the samples that everything is made of. */
+#ifndef WEFT_COMPRESS_WORKSPACE_H
+#define WEFT_COMPRESS_WORKSPACE_H
+
+#include "compress/normal.h"
+
+struct weft_fit_workspace {
+    weft_trial trial[2]; /* the point reached, and the one being tried */
+    double *table;       /* [view_count] of the best start so far */
+    double *scratch[2];  /* [view_count] */
+    float *model;        /* [lane_count] */
+};
+
+/* One pass at trial->fit with T = `table` in e (NULL: 0; without options->table: 1). Fills sums, linear parts, T,
+ * residual. */
+void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                         const weft_fit_options *options, const double *table, weft_trial *trial);
+
+/* T of the trial, with the mean of the others in views where nothing was learnt. */
+void weft_workspace_take_table(const weft_bundle *bundle, const weft_fit_options *options, const weft_trial *trial,
+                               double *table);
+
+/* Starts from shapes alone: amplitudes for T = 1, then with T eliminated. */
+void weft_workspace_begin_cold(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                               const weft_fit_options *options, weft_trial *trial);
+
+/* Starts from a fit that is nearly right: its T keeps the sums free of cancellation. */
+void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                               const weft_fit_options *options, const double *table, weft_trial *trial);
+
+/* Damped Gauss-Newton steps from workspace->trial[0], which holds the result. */
+void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                           const weft_fit_options *options, weft_fit_workspace *workspace, double damping);
+
+/* True where there is nothing to fit, black or no samples at all; `fit` is then black and T = 1. */
+bool weft_workspace_finish_empty(const weft_bundle *bundle, const weft_samples *samples, int channel, weft_fit *fit,
+                                 double *table);
+
+#endif
