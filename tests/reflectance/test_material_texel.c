@@ -1,0 +1,158 @@
+/* A material decoded and evaluated: the reference of the player's shader. */
+#include "btf/direction.h"
+#include "reflectance/lafortune.h"
+#include "tests/btf/cmocka_all.h"
+
+enum { WIDTH = 5, HEIGHT = 3, LOBES = 2, VIEWS = 7 };
+
+static const weft_vec3 light = {0.36, 0.48, 0.8}, view = {-0.48, 0.36, 0.8};
+
+typedef struct model {
+    weft_material material;
+    weft_triangulation *views;
+} model;
+
+static void fill_level(weft_material_level *level, int number)
+{
+    int texels = level->width * level->height;
+    for (int t = 0; t < texels; t++) {
+        weft_frame frame = weft_frame_of_normal(weft_unit(weft_vec3_of(0.02 * t, -0.1, 1)), 0.3 * t);
+        weft_frame_encode(&frame, level->frame + 3 * t);
+        for (int c = 0; c < 3; c++) {
+            level->diffuse[4 * t + c] = weft_half_of_float((float)(0.1 * (c + 1) + 0.01 * t + 0.05 * number));
+            for (int lobe = 0; lobe < LOBES; lobe++) {
+                weft_half *code = level->lobe + 4 * ((size_t)((3 * lobe + c) * texels) + (size_t)t);
+                const float value[4] = {-0.75f - 0.05f * (float)lobe, -0.5f, 0.75f + 0.0625f * (float)c,
+                                        2 + 4 * (float)lobe + (float)t};
+                for (int i = 0; i < 4; i++)
+                    code[i] = weft_half_of_float(value[i]);
+            }
+        }
+        for (int v = 0; v < VIEWS; v++)
+            for (int i = 0; i < 4; i++)
+                level->table[4 * (v * texels + t) + i] = (uint8_t)(40 + 11 * v + 7 * t + 23 * i + number);
+    }
+}
+
+static int make_model(void **state)
+{
+    static model m;
+    weft_error error = {0};
+    assert_int_equal(weft_material_create(WIDTH, HEIGHT, LOBES, VIEWS, 1, &m.material, &error), WEFT_OK);
+    for (int i = 0; i < m.material.level_count; i++)
+        fill_level(&m.material.level[i], i);
+    for (int i = 0; i < VIEWS; i++)
+        m.material.view[i] = weft_direction_of_angles(weft_ubo81_angles(i));
+    assert_int_equal(weft_triangulation_build(m.material.view, VIEWS, &m.views, &error), WEFT_OK);
+    *state = &m;
+    return 0;
+}
+
+static int free_model(void **state)
+{
+    model *m = *state;
+    weft_triangulation_free(m->views);
+    weft_material_free(&m->material);
+    return 0;
+}
+
+static void assert_near(double a, double b)
+{
+    assert_true(fabs(a - b) <= 1e-12 * fmax(fabs(a), 1));
+}
+
+static void assert_same_colour(weft_rgba a, weft_rgba b)
+{
+    assert_near(a.r, b.r);
+    assert_near(a.g, b.g);
+    assert_near(a.b, b.b);
+    assert_near(a.a, b.a);
+}
+
+static weft_rgba texel(const model *m, int level, int x, int y)
+{
+    return weft_material_texel(&m->material, m->views, level, x, y, light, view);
+}
+
+/* Equations 1 and 2 written out for the green channel of one texel. */
+static void texel_is_the_equation_of_its_codes(void **state)
+{
+    const model *m = *state;
+    int x = 3, y = 1, t = y * WIDTH + x;
+    const weft_material_level *level = &m->material.level[0];
+    weft_frame frame = weft_frame_decode(level->frame + 3 * t);
+    double l[3] = {weft_dot(light, frame.tangent), weft_dot(light, frame.bitangent), weft_dot(light, frame.normal)};
+    double v[3] = {weft_dot(view, frame.tangent), weft_dot(view, frame.bitangent), weft_dot(view, frame.normal)};
+    double sum = weft_float_of_half(level->diffuse[4 * t + 1]);
+    for (int lobe = 0; lobe < LOBES; lobe++) {
+        const weft_half *code = level->lobe + 4 * ((3 * lobe + 1) * WIDTH * HEIGHT + t);
+        double a = 0;
+        for (int i = 0; i < 3; i++)
+            a += weft_float_of_half(code[i]) * l[i] * v[i];
+        sum += pow(fmax(a, 0), weft_float_of_half(code[3]));
+    }
+    weft_barycentric corner = weft_triangulation_lookup(m->views, view);
+    double table = 0, opacity = 0;
+    for (int i = 0; i < 3 && corner.index[i] >= 0; i++) {
+        const uint8_t *code = level->table + 4 * (corner.index[i] * WIDTH * HEIGHT + t);
+        table += corner.weight[i] * (code[1] / 255.0) * (code[1] / 255.0);
+        opacity += corner.weight[i] * code[3] / 255.0;
+    }
+    assert_near(texel(m, 0, x, y).g, sum * table);
+    assert_near(texel(m, 0, x, y).a, opacity);
+}
+
+static void below_the_horizon_there_is_nothing(void **state)
+{
+    const model *m = *state;
+    const weft_vec3 below = {0.6, 0, -0.8};
+    assert_same_colour(weft_material_texel(&m->material, m->views, 0, 0, 0, below, view), (weft_rgba){0});
+    assert_same_colour(weft_material_sample(&m->material, m->views, 0, 0, 0, light, below), (weft_rgba){0});
+    assert_same_colour(weft_material_sample(&m->material, m->views, 0, (weft_real)NAN, 0, light, view), (weft_rgba){0});
+}
+
+static weft_rgba sample(const model *m, double level, double u, double v)
+{
+    return weft_material_sample(&m->material, m->views, level, u, v, light, view);
+}
+
+static void sample_at_a_texel_centre_is_the_texel(void **state)
+{
+    const model *m = *state;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            assert_same_colour(sample(m, 0, (x + 0.5) / WIDTH, 1 - (y + 0.5) / HEIGHT), texel(m, 0, x, y));
+}
+
+static void sample_is_bilinear_and_repeats(void **state)
+{
+    const model *m = *state;
+    /* Half way across the right and the top edge. */
+    double u = 0, v = 1;
+    weft_rgba a = texel(m, 0, 0, 0), b = texel(m, 0, WIDTH - 1, 0), c = texel(m, 0, 0, HEIGHT - 1),
+              d = texel(m, 0, WIDTH - 1, HEIGHT - 1);
+    weft_rgba mean = {(a.r + b.r + c.r + d.r) / 4, (a.g + b.g + c.g + d.g) / 4, (a.b + b.b + c.b + d.b) / 4,
+                      (a.a + b.a + c.a + d.a) / 4};
+    assert_same_colour(sample(m, 0, u, v), mean);
+    assert_same_colour(sample(m, 0, u - 4, v + 3), mean);
+}
+
+static void levels_are_mixed_and_clamped(void **state)
+{
+    const model *m = *state;
+    weft_rgba fine = sample(m, 0, 0.3, 0.4), coarse = sample(m, 1, 0.3, 0.4), between = sample(m, 0.25, 0.3, 0.4);
+    assert_near(between.r, fine.r + 0.25 * (coarse.r - fine.r));
+    int last = m->material.level_count - 1;
+    assert_same_colour(sample(m, 100, 0.3, 0.4), texel(m, last, 0, 0));
+    assert_same_colour(sample(m, -1, 0.3, 0.4), fine);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(texel_is_the_equation_of_its_codes),    cmocka_unit_test(below_the_horizon_there_is_nothing),
+        cmocka_unit_test(sample_at_a_texel_centre_is_the_texel), cmocka_unit_test(sample_is_bilinear_and_repeats),
+        cmocka_unit_test(levels_are_mixed_and_clamped),
+    };
+    return cmocka_run_group_tests_name("material texel", tests, make_model, free_model);
+}
