@@ -57,7 +57,7 @@ static void a_session_killed_at_any_moment_loses_and_repeats_nothing(void **stat
     (void)state;
     srand(20240607);
     int kills = 0;
-    for (int round = 0; round < 3; round++) {
+    for (int round = 0; round < 2; round++) {
         for (int attempt = 0; attempt < 60; attempt++) {
             int before = small_session_journal_lines("session");
             if (before >= SMALL_SHOTS)
