@@ -2,6 +2,7 @@
 #include "reflectance/weave.h"
 #include "tests/reflectance/vectors.h"
 
+#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -60,6 +61,20 @@ static void scale_is_the_reference_s(void **state)
         vectors_check_within(&v, row, "n_yarns", weave->yarn_count, 0);
     }
     vectors_close(&v);
+}
+
+static void scale_does_not_depend_on_the_number_of_threads(void **state)
+{
+    fabrics *all = *state;
+    int usual = omp_get_max_threads();
+    for (int i = 0; i < 2; i++) {
+        weft_real s = all->weave[i].specular_scale;
+        omp_set_num_threads(1);
+        assert_true(weft_weave_specular_scale(&all->weave[i]) == s);
+        omp_set_num_threads(5);
+        assert_true(weft_weave_specular_scale(&all->weave[i]) == s);
+    }
+    omp_set_num_threads(usual);
 }
 
 /* The other vectors use exactly the printed s. */
@@ -142,6 +157,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scale_is_the_reference_s),
+        cmocka_unit_test(scale_does_not_depend_on_the_number_of_threads),
         cmocka_unit_test_setup(texture_of_the_tile_matches_every_row, use_printed_scale),
         cmocka_unit_test_setup(mean_of_the_tile_matches_every_row, use_printed_scale),
     };
