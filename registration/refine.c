@@ -119,12 +119,12 @@ static void lighting_basis(const weft_camera *camera, int x, int y, double basis
     memcpy(basis, values, sizeof values);
 }
 
-static double lighting(const comparison *c, const double basis[gain_count])
+static double polynomial(const double basis[gain_count], const double coefficient[gain_count])
 {
-    double gain = 0;
+    double sum = 0;
     for (int k = 0; k < gain_count; k++)
-        gain += c->gain[k] * basis[k];
-    return gain;
+        sum += coefficient[k] * basis[k];
+    return sum;
 }
 
 /* Motion, in pixels, of the image of a plate point at normalised coordinates (x, y) by D: du . d and dv . d. */
@@ -145,7 +145,7 @@ static void equation_at(const comparison *c, int x, int y, double row[WEFT_UNKNO
     const float *t = c->prediction.reflectance + at;
     double basis[gain_count], du[motion_count], dv[motion_count];
     lighting_basis(camera, x, y, basis);
-    double gain = lighting(c, basis);
+    double gain = polynomial(basis, c->gain);
     const float *undistorted = c->sight->undistorted[at];
     motion_rows(camera, (undistorted[0] - camera->cx) / camera->fx, (undistorted[1] - camera->cy) / camera->fy, du, dv);
     double slope_x = gain * 0.5 * (t[1] - t[-1]), slope_y = gain * 0.5 * (t[width] - t[-width]);
@@ -299,27 +299,69 @@ static double uncertainty_mm(const weft_sight *sight, const weft_normal_equation
     return sqrt(variance * sum / (grid * grid));
 }
 
-/* Pearson's correlation of the photograph with the fitted prediction, which is written to `fitted` where not NULL. */
-static double correlate(const comparison *c, float *fitted)
+/* The prediction under the fitted lighting at a pixel. */
+static double lit_prediction(const comparison *c, const double basis[gain_count], size_t at)
+{
+    return polynomial(basis, c->gain) * (double)c->prediction.reflectance[at] + c->stray;
+}
+
+/* Polynomials of the lighting's degree through the photograph and through the prediction under the fitted lighting. */
+static bool smooth_parts(const comparison *c, double photograph[gain_count], double prediction[gain_count])
 {
     const weft_camera *camera = &c->sight->camera;
-    double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+    weft_normal_equations seen = {0}, model = {0};
+    double row[WEFT_UNKNOWNS_LIMIT] = {0};
+    for (int y = 0; y < camera->height; y++) {
+        for (int x = 0; x < camera->width; x++) {
+            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
+            if (!c->prediction.compared[at])
+                continue;
+            lighting_basis(camera, x, y, row);
+            weft_normal_equations_add(&seen, row, (double)c->photograph[at], 1);
+            weft_normal_equations_add(&model, row, lit_prediction(c, row, at), 1);
+        }
+    }
+    if (!weft_normal_equations_factor(&seen, gain_count) || !weft_normal_equations_factor(&model, gain_count))
+        return false;
+    weft_normal_equations_solve(&seen, gain_count, photograph);
+    weft_normal_equations_solve(&model, gain_count, prediction);
+    return true;
+}
+
+/* Correlation of the photograph with the prediction under the fitted lighting, over what is left of both when their
+ * smooth parts are taken away: a lighting gradient on a bare surface would correlate by itself. */
+static double correlate(const comparison *c)
+{
+    const weft_camera *camera = &c->sight->camera;
+    double photograph[gain_count], prediction[gain_count], aa = 0, bb = 0, ab = 0;
+    if (!smooth_parts(c, photograph, prediction))
+        return 0;
     for (int y = 0; y < camera->height; y++) {
         for (int x = 0; x < camera->width; x++) {
             size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
             double basis[gain_count];
-            lighting_basis(camera, x, y, basis);
-            double model = lighting(c, basis) * c->prediction.reflectance[at] + c->stray;
-            if (fitted)
-                fitted[at] = (float)model;
             if (!c->prediction.compared[at])
                 continue;
-            double seen = c->photograph[at];
-            n++, a += seen, b += model, aa += seen * seen, bb += model * model, ab += seen * model;
+            lighting_basis(camera, x, y, basis);
+            double a = (double)c->photograph[at] - polynomial(basis, photograph);
+            double b = lit_prediction(c, basis, at) - polynomial(basis, prediction);
+            aa += a * a, bb += b * b, ab += a * b;
         }
     }
-    double covariance = n * ab - a * b, spread = (n * aa - a * a) * (n * bb - b * b);
-    return spread > 0 ? covariance / sqrt(spread) : 0;
+    return aa > 0 && bb > 0 ? ab / sqrt(aa * bb) : 0;
+}
+
+static void write_fitted(const comparison *c, float *fitted)
+{
+    const weft_camera *camera = &c->sight->camera;
+    for (int y = 0; y < camera->height; y++) {
+        for (int x = 0; x < camera->width; x++) {
+            double basis[gain_count];
+            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
+            lighting_basis(camera, x, y, basis);
+            fitted[at] = (float)lit_prediction(c, basis, at);
+        }
+    }
 }
 
 /* Solves for a step; a smear that would become negative is held (an active set, at most two constraints), and so are
@@ -390,7 +432,9 @@ weft_code weft_refine(const weft_sight *sight, const float *photograph, double b
     if (code == WEFT_OK)
         code = look(&c, photograph, refinement, error);
     if (code == WEFT_OK)
-        refinement->correlation = correlate(&c, fitted);
+        refinement->correlation = correlate(&c);
+    if (code == WEFT_OK && fitted)
+        write_fitted(&c, fitted);
     comparison_free(&c);
     return code;
 }

@@ -13,7 +13,7 @@ typedef struct weft_refinement {
     weft_smear smear;
     bool converged; /* the last step moved the plate by less than 0.005 pixel */
     int iterations;
-    double correlation;    /* of the photograph with the prediction under the fitted lighting, -1..1 */
+    double correlation;    /* of the photograph with the prediction, both without their smooth parts, -1..1 */
     double uncertainty_mm; /* standard error of positions in the opening, RMS, from the residual */
 } weft_refinement;
 
