@@ -3,6 +3,8 @@
 #include <jansson.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
 
 static void print_tile(weft_page *page, const char *label, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -104,25 +106,41 @@ static void print_sizes(weft_page *page, const weft_comparison *comparison)
     fputs("</table>\n", page->html);
 }
 
-static void print_times(weft_page *page, const weft_material *material, const weft_scenes *scenes)
+/* What the material says of its fit. */
+static void print_fit(weft_page *page, const weft_material *material)
 {
-    fputs("<h2>Time</h2>\n<table>\n", page->html);
     json_t *metadata = json_loads(material->metadata, 0, NULL);
-    const json_t *seconds = json_object_get(metadata, "seconds");
-    if (json_is_number(seconds))
-        weft_page_fact(page, "fitting and packing", "%.1f s", json_number_value(seconds));
+    const char *name;
+    json_t *value;
+    fputs("<h2>Fit</h2>\n<table>\n", page->html);
+    weft_page_fact(page, "lobes", "%d", material->lobe_count);
+    weft_page_fact(page, "views in the table", "%d", material->view_count);
+    json_object_foreach(json_object_get(metadata, "fit"), name, value)
+    {
+        if (strcmp(name, "lobes") == 0)
+            continue;
+        char *text = json_is_string(value) ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(4));
+        weft_page_fact(page, name, "%s", text ? text : json_string_value(value));
+        free(text);
+    }
+    fputs("</table>\n", page->html);
     json_decref(metadata);
-    for (int mode = 0; scenes->drawn && mode < WEFT_MODE_COUNT; mode++) {
+}
+
+static void print_times(weft_page *page, const weft_scenes *scenes)
+{
+    if (!scenes->drawn)
+        return;
+    fputs("<h2>Time</h2>\n<table>\n", page->html);
+    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
         if (scenes->has[mode])
             weft_page_fact(page, weft_mode_name((weft_mode)mode), "%.2f ms a frame", scenes->frame_ms[mode]);
     }
     fputs("</table>\n", page->html);
-    if (scenes->drawn) {
-        fprintf(page->html, "<p class=\"note\">Frames of %d \u00d7 %d pixels of the first scene, drawn by ",
-                scenes->width, scenes->height);
-        weft_page_text(page, scenes->renderer);
-        fputs(".</p>\n", page->html);
-    }
+    fprintf(page->html, "<p class=\"note\">Frames of %d \u00d7 %d pixels of the first scene, drawn by ", scenes->width,
+            scenes->height);
+    weft_page_text(page, scenes->renderer);
+    fputs(".</p>\n", page->html);
 }
 
 static void print_masks(weft_page *page, const weft_measurement *measurement)
@@ -144,6 +162,7 @@ void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const
     print_levels(page, material);
     print_directions(page, layout, &comparison->measurement);
     print_sizes(page, comparison);
-    print_times(page, material, &comparison->scenes);
+    print_fit(page, material);
+    print_times(page, &comparison->scenes);
     print_masks(page, &comparison->measurement);
 }

@@ -11,22 +11,35 @@
 #include <stdbool.h>
 #include <sys/stat.h>
 
+static const size_t longest_list = 16;
+
 static json_int_t file_size(const char *path)
 {
     struct stat status;
     return stat(path, &status) == 0 ? (json_int_t)status.st_size : 0;
 }
 
-/* A JSON text that came with a file, as an object. Long lists of file names are counted instead of shown. */
+/* Replaces long lists (of photographs, of views) by how long they are: they are data, not a description. */
+static void shorten_lists(json_t *object)
+{
+    const char *name;
+    json_t *value;
+    void *next;
+    json_object_foreach_safe(object, next, name, value)
+    {
+        if (json_is_object(value))
+            shorten_lists(value);
+        else if (json_array_size(value) > longest_list)
+            json_object_set_new(object, name, json_sprintf("%zu entries", json_array_size(value)));
+    }
+}
+
+/* A JSON text that came with a file, as an object. */
 static json_t *parsed(const char *text)
 {
     json_t *value = json_loads(text, JSON_DECODE_ANY, NULL);
-    if (!value)
-        return json_string("not JSON");
-    const json_t *names = json_object_get(value, "photographs");
-    if (json_is_array(names))
-        json_object_set_new(value, "photographs", json_integer((json_int_t)json_array_size(names)));
-    return value;
+    shorten_lists(value);
+    return value ? value : json_string("not JSON");
 }
 
 /* ---- Material ---- */

@@ -77,6 +77,7 @@ static weft_code leave_out_each(weft_dataset *dataset, uint8_t *held_out, const 
                                 const weft_progress *progress, weft_leave_one_out *result, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    weft_progress_report(progress, "leaving photographs out", 0, layout->image_count);
     for (int image = 0; image < layout->image_count; image++) {
         weft_left_out *photograph = &result->photograph[result->count];
         WEFT_TRY(weft_image_pair_create(layout, image, &photograph->pair, error));
