@@ -7,11 +7,11 @@
 enum {
     SLOPES = 5,     /* in each direction, SLOPE_STEP apart, around 0 */
     EXPONENTS = 12, /* 4 .. 181, half an octave apart */
-    CANDIDATES = SLOPES * SLOPES * EXPONENTS,
     MAX_SETTINGS = 32,
     CROSS_VALIDATION_SIDE = 128
 };
 
+#define FIRST_EXPONENT 4.0f
 #define SLOPE_STEP 0.08f
 #define DARK_SHARE 0.2f       /* of the mean sample: below it errors count absolutely, above it relatively */
 #define AMPLITUDE_PRIOR 2e-4f /* an amplitude of 70 times rho is as unlikely as an error of the size of the sample */
@@ -25,7 +25,7 @@ static candidate candidate_of_index(int index)
     int slope = index / EXPONENTS;
     return (candidate){.slope_x = SLOPE_STEP * (float)(slope % SLOPES - SLOPES / 2),
                        .slope_y = SLOPE_STEP * (float)(slope / SLOPES - SLOPES / 2),
-                       .exponent = 4 * exp2f(0.5f * (float)(index % EXPONENTS))};
+                       .exponent = FIRST_EXPONENT * exp2f(0.5f * (float)(index % EXPONENTS))};
 }
 
 static double penalty(const weft_sparse_setting *setting, candidate shape)
@@ -41,12 +41,17 @@ static float dot(const float *a, const float *b)
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* l_z max(0, l'.diag(-1, -1, 1).v')^N, which is l_z (2 (n.l)(n.v) - l.v)^N. */
-static float lobe_value(candidate shape, const float *light, const float *view)
+/* l'.diag(-1, -1, 1).v', which is 2 (n.l)(n.v) - l.v. */
+static float lobe_base(candidate shape, const float *light, const float *view)
 {
     float scale = 1 / sqrtf(1 + shape.slope_x * shape.slope_x + shape.slope_y * shape.slope_y);
     float normal[3] = {shape.slope_x * scale, shape.slope_y * scale, scale};
-    float base = 2 * dot(normal, light) * dot(normal, view) - dot(light, view);
+    return 2 * dot(normal, light) * dot(normal, view) - dot(light, view);
+}
+
+static float lobe_value(candidate shape, const float *light, const float *view)
+{
+    float base = lobe_base(shape, light, view);
     return base > 0 ? light[2] * powf(base, shape.exponent) : 0;
 }
 
@@ -119,13 +124,13 @@ static weft_code allocate_search(search *run, weft_error *error)
     size_t choices = texels * (size_t)run->setting_count;
     run->weight = malloc(samples * sizeof(float));
     run->grey = malloc(samples * sizeof(float));
-    run->error = malloc(texels * sizeof(float));
-    run->pooled = malloc(texels * sizeof(float));
+    run->error = malloc(EXPONENTS * texels * sizeof(float));
+    run->pooled = malloc(EXPONENTS * texels * sizeof(float));
     run->least = malloc(choices * sizeof(float));
     run->choice = calloc(choices, sizeof *run->choice);
     if (run->weight && run->grey && run->error && run->pooled && run->least && run->choice)
         return WEFT_OK;
-    return weft_fail_memory(error, "neighbourhood search", (samples + 2 * choices) * sizeof(float));
+    return weft_fail_memory(error, "neighbourhood search", (2 * samples + 2 * choices) * sizeof(float));
 }
 
 static void free_search(search *run)
@@ -155,17 +160,45 @@ static void weigh_samples(search *run)
     }
 }
 
-static float candidate_error(const search *run, size_t texel, candidate shape)
+/* l_z b^N of all exponents at once: every other one is the square of the one before it, an octave higher. */
+static void lobe_values(candidate slope, const float *light, const float *view, float value[EXPONENTS])
 {
-    size_t images = (size_t)run->field->image_count;
-    products sums = {0};
+    float base = lobe_base(slope, light, view);
+    memset(value, 0, EXPONENTS * sizeof *value);
+    if (!(base > 0))
+        return;
+    value[0] = base * base * base * base;
+    value[1] = powf(base, FIRST_EXPONENT * (float)M_SQRT2);
+    for (int e = 2; e < EXPONENTS; e++)
+        value[e] = value[e - 2] * value[e - 2];
+    for (int e = 0; e < EXPONENTS; e++)
+        value[e] *= light[2];
+}
+
+/* Squared errors of one texel for one slope and all exponents, into run->error[exponent][texel]. */
+static void slope_errors(const search *run, size_t texel, candidate slope)
+{
+    size_t images = (size_t)run->field->image_count, texels = (size_t)texel_count(run->field);
+    products common = {0};
+    float gg[EXPONENTS] = {0}, cg[EXPONENTS] = {0}, gr[EXPONENTS] = {0};
     for (size_t i = texel * images; i < (texel + 1) * images; i++) {
-        if (run->weight[i] > 0)
-            add_product(&sums, run->weight[i], run->field->light[3 * i + 2],
-                        lobe_value(shape, run->field->light + 3 * i, run->field->view + 3 * i), run->grey[i]);
+        float weight = run->weight[i], c = run->field->light[3 * i + 2], g[EXPONENTS];
+        if (!(weight > 0))
+            continue;
+        lobe_values(slope, run->field->light + 3 * i, run->field->view + 3 * i, g);
+        add_product(&common, weight, c, 0, run->grey[i]);
+        for (int e = 0; e < EXPONENTS; e++) {
+            float weighted = weight * g[e];
+            gg[e] += weighted * g[e];
+            cg[e] += weighted * c;
+            gr[e] += weighted * run->grey[i];
+        }
     }
-    float diffuse, amplitude;
-    return solve_products(&sums, &diffuse, &amplitude);
+    for (int e = 0; e < EXPONENTS; e++) {
+        products sums = {common.cc, gg[e], cg[e], common.cr, gr[e], common.rr};
+        float diffuse, amplitude;
+        run->error[(size_t)e * texels + texel] = solve_products(&sums, &diffuse, &amplitude);
+    }
 }
 
 /* Running mean of `count` values `stride` apart over windows of 2 radius + 1, cut off at the ends. */
@@ -183,49 +216,62 @@ static void mean_line(const float *from, float *to, int count, size_t stride, in
 }
 
 /* Three box means each way are a Gaussian of a fortieth of the width, within which a finish rarely changes. */
-static void pool_errors(search *run)
+static void pool_errors(const search *run, float *error, float *pooled)
 {
     int width = run->field->width, height = run->field->height;
     double sigma = fmin(fmax(width, height) / 42.0, 12);
     int radius = (int)lround((sqrt(4 * sigma * sigma + 1) - 1) / 2);
     for (int round = 0; radius > 0 && round < 3; round++) {
-#pragma omp parallel for
         for (int y = 0; y < height; y++)
-            mean_line(run->error + (size_t)y * (size_t)width, run->pooled + (size_t)y * (size_t)width, width, 1,
-                      radius);
-#pragma omp parallel for
+            mean_line(error + (size_t)y * (size_t)width, pooled + (size_t)y * (size_t)width, width, 1, radius);
         for (int x = 0; x < width; x++)
-            mean_line(run->pooled + x, run->error + x, height, (size_t)width, radius);
+            mean_line(pooled + x, error + x, height, (size_t)width, radius);
     }
 }
 
-static void try_candidate(search *run, int index)
+/* Where candidate `index` is the best so far under a setting, it becomes the choice. */
+static void compare_candidate(const search *run, int setting, int index, const float *error)
 {
-    candidate shape = candidate_of_index(index);
-    double cost[MAX_SETTINGS];
-    bool wanted = false;
-    for (int s = 0; s < run->setting_count; s++) {
-        cost[s] = penalty(&run->setting[s], shape);
-        wanted = wanted || isfinite(cost[s]);
-    }
-    if (!wanted)
-        return;
-    int texels = texel_count(run->field);
-#pragma omp parallel for schedule(static)
-    for (int texel = 0; texel < texels; texel++)
-        run->error[texel] = candidate_error(run, (size_t)texel, shape);
-    pool_errors(run);
-    for (int s = 0; s < run->setting_count; s++) {
-        float *least = run->least + (size_t)s * (size_t)texels;
-        int16_t *choice = run->choice + (size_t)s * (size_t)texels;
-        for (int texel = 0; isfinite(cost[s]) && texel < texels; texel++) {
-            float error = run->error[texel] * (float)cost[s];
-            if (error < least[texel]) {
-                least[texel] = error;
-                choice[texel] = (int16_t)index;
-            }
+    size_t texels = (size_t)texel_count(run->field);
+    double cost = penalty(&run->setting[setting], candidate_of_index(index));
+    float *least = run->least + (size_t)setting * texels;
+    int16_t *choice = run->choice + (size_t)setting * texels;
+    for (size_t texel = 0; isfinite(cost) && texel < texels; texel++) {
+        float weighed = error[texel] * (float)cost;
+        if (weighed < least[texel]) {
+            least[texel] = weighed;
+            choice[texel] = (int16_t)index;
         }
     }
+}
+
+static void try_slope(search *run, int slope)
+{
+    int texels = texel_count(run->field);
+    candidate shape = candidate_of_index(slope * EXPONENTS);
+#pragma omp parallel for schedule(static)
+    for (int texel = 0; texel < texels; texel++)
+        slope_errors(run, (size_t)texel, shape);
+#pragma omp parallel for schedule(dynamic)
+    for (int e = 0; e < EXPONENTS; e++) {
+        size_t at = (size_t)e * (size_t)texels;
+        pool_errors(run, run->error + at, run->pooled + at);
+    }
+#pragma omp parallel for schedule(static)
+    for (int s = 0; s < run->setting_count; s++) {
+        for (int e = 0; e < EXPONENTS; e++)
+            compare_candidate(run, s, slope * EXPONENTS + e, run->error + (size_t)e * (size_t)texels);
+    }
+}
+
+/* Whether any setting allows a slope. */
+static bool is_allowed(const search *run, int slope)
+{
+    for (int s = 0; s < run->setting_count; s++) {
+        if (isfinite(penalty(&run->setting[s], candidate_of_index(slope * EXPONENTS))))
+            return true;
+    }
+    return false;
 }
 
 static void search_shapes(search *run)
@@ -234,8 +280,10 @@ static void search_shapes(search *run)
     for (size_t i = 0; i < choices; i++)
         run->least[i] = INFINITY;
     weigh_samples(run);
-    for (int index = 0; index < CANDIDATES; index++)
-        try_candidate(run, index);
+    for (int slope = 0; slope < SLOPES * SLOPES; slope++) {
+        if (is_allowed(run, slope))
+            try_slope(run, slope);
+    }
 }
 
 /* The texel's own rho and amplitudes for the shape chosen under a setting. */
@@ -314,7 +362,8 @@ static int list_settings(weft_sparse_setting *setting)
     setting[count++] = (weft_sparse_setting){.largest_exponent = 0, .stiffness = INFINITY};
     for (int i = 0; i < 3; i++) {
         for (int e = 3; e < EXPONENTS; e++)
-            setting[count++] = (weft_sparse_setting){.largest_exponent = 4 * exp2(0.5 * e), .stiffness = stiffness[i]};
+            setting[count++] = (weft_sparse_setting){.largest_exponent = (double)FIRST_EXPONENT * exp2(0.5 * e),
+                                                     .stiffness = stiffness[i]};
     }
     return count;
 }
