@@ -84,6 +84,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (!command->model || !command->directions)
             argp_error(state, "needs a model and --at DIRECTIONS.csv");
+        if (command->common.json && !command->output)
+            argp_error(state, "--json and the table cannot share standard output: add -o FILE.csv");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -131,9 +131,9 @@ static weft_code inspect_weave(const char *path, json_t **result, weft_error *er
     weft_weave weave;
     char warning[WEFT_MESSAGE_SIZE] = "";
     WEFT_TRY(weft_weave_read(path, NULL, 0, &weave, warning, error));
-    *result = json_pack("{s:s, s:s, s:s, s:[ii], s:i, s:f, s:s}", "file", path, "kind", "weave", "name", weave.name,
+    *result = json_pack("{s:s, s:s, s:s, s:[ii], s:i, s:f, s:s*}", "file", path, "kind", "weave", "name", weave.name,
                         "tile_cells", weave.tile_width, weave.tile_height, "yarns", weave.yarn_count, "specular_scale",
-                        weave.specular_scale, "warning", warning);
+                        weave.specular_scale, "warning", warning[0] ? warning : NULL);
     weft_weave_free(&weave);
     return WEFT_OK;
 }
