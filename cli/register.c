@@ -106,7 +106,7 @@ static void say_outcome(const register_command *command, const weft_session *ses
                 r->survey.stay_count - r->failed_stays, r->survey.stay_count);
     command_say(
         &command->common,
-        "estimated standard error of a position: %.4f texels median, %.4f worst; %.3f %% of the samples saturated",
+        "random error of a position, estimated: %.4f texels median, %.4f worst; %.3f %% of the samples saturated",
         all.median_uncertainty, all.worst_uncertainty, 100 * all.saturated);
     if (command->report_folder)
         command_say(&command->common, "report: %s/index.html", command->report_folder);

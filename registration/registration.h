@@ -43,7 +43,7 @@ weft_code weft_register_session(const weft_session *session, const char *output,
                                 weft_registration *registration, weft_error *error);
 void weft_registration_free(weft_registration *registration);
 
-/* Standard error of a stay's positions in texels of the dataset. Pure. */
+/* Random error of a stay's positions in texels of the dataset; errors of the calibration are not in it. Pure. */
 double weft_registration_uncertainty_texels(const weft_session *session, const weft_registration *registration,
                                             int stay);
 

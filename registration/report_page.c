@@ -46,9 +46,9 @@ static void write_summary(FILE *page, const weft_session *session, const weft_re
     snprintf(text, sizeof text, "%d of %d", r->survey.stay_count - r->failed_stays, r->survey.stay_count);
     write_tile(page, text, "stays of the camera registered");
     snprintf(text, sizeof text, "%.4f", all.median_uncertainty);
-    write_tile(page, text, "texels: standard error, median stay");
+    write_tile(page, text, "texels: random error, median stay");
     snprintf(text, sizeof text, "%.4f", all.worst_uncertainty);
-    write_tile(page, text, "texels: standard error, worst stay");
+    write_tile(page, text, "texels: random error, worst stay");
     snprintf(text, sizeof text, "%.3f mm", all.median_shift_mm);
     write_tile(page, text, "median shift against the rig's promise");
     snprintf(text, sizeof text, "%.0f s", r->seconds);

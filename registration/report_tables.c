@@ -120,8 +120,10 @@ void weft_write_faults(FILE *page, const weft_session *session, const weft_regis
 void weft_write_rings(FILE *page, const weft_session *session, const weft_registration *r)
 {
     fputs(
-        "<h2>By ring of views</h2>\n<p>The standard error is estimated from what the drawing leaves unexplained in the "
-        "photograph; it is the RMS over the opening. The shift is against the pose that the rig promised.</p>\n"
+        "<h2>By ring of views</h2>\n<p>The error is the random one, estimated from what the drawing leaves unexplained "
+        "in "
+        "the photograph, RMS over the opening; what the calibration of the lens has wrong comes on top and is not seen "
+        "here. The shift is against the pose that the rig promised.</p>\n"
         "<table><tr><th>view</th><th>stays</th><th>failed</th><th>error, median (texels)</th><th>worst</th>"
         "<th>correlation, median</th><th>worst</th><th>shift, median (mm)</th><th>worst</th><th>saturated "
         "(%)</th></tr>\n",
