@@ -30,10 +30,10 @@ static const struct argp_option option_table[] = {
     {"tiles", KEY_TILES, "X,Y", 0, "Tiles of the weave across the material (default: as the virtual rig lays it)", 1},
     {"mode", KEY_MODE, "MODE", 0, "raw, compressed, analytic, or split: all that are given, side by side", 1},
     {"mesh", KEY_MESH, "MESH", 0, "drape (default), sphere, plane, or an OBJ file with texture coordinates", 2},
-    {"repeat", KEY_REPEAT, "N", 0, "Materials across one unit of the mesh (default: 4; 1 for the plane)", 2},
-    {"light", KEY_LIGHT, "THETA,PHI", 0, "Direction to the light, degrees from up and around it (default: 40,-130)", 2},
+    {"repeat", KEY_REPEAT, "N", 0, "Materials across one unit of the mesh (default: 8; 1 for the plane)", 2},
+    {"light", KEY_LIGHT, "THETA,PHI", 0, "Direction to the light, degrees from up and around it (default: 45,-110)", 2},
     {"camera", KEY_CAMERA, "AZIMUTH,ELEVATION,DISTANCE", 0,
-     "Place of the camera in degrees and radii of the mesh (default: -70,28,3.6)", 2},
+     "Place of the camera in degrees and radii of the mesh (default: -70,28,3.6; plane: -90,75,3)", 2},
     {"level", KEY_LEVEL, "auto|none|N", 0, "Mip level: by the pixel's footprint, finest, or this one", 2},
     {"exposure", KEY_EXPOSURE, "X", 0, "Brightness; 1 shows reflectance", 2},
     {"size", KEY_SIZE, "WxH", 0, "Size of the picture in pixels (default: 960x540)", 2},
@@ -177,6 +177,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_CAMERA:
         parse_camera(&o->scene.orbit, argument, state);
+        o->has_camera = true;
         return 0;
     case KEY_LEVEL:
         parse_level(&o->scene, argument, state);
@@ -209,6 +210,11 @@ const struct argp scene_argp = {option_table, parse_option, NULL, NULL, children
 
 /* ---- Loading ---- */
 
+static bool is_plane(const scene_options *o)
+{
+    return strcmp(o->mesh, "plane") == 0;
+}
+
 static weft_code load_mesh(scene_options *o, weft_player *player, weft_error *error)
 {
     weft_mesh mesh = {0};
@@ -216,7 +222,9 @@ static weft_code load_mesh(scene_options *o, weft_player *player, weft_error *er
     if (code == WEFT_OK)
         code = weft_player_set_mesh(player, &mesh, error);
     weft_mesh_free(&mesh);
-    o->scene.repeat = o->repeat > 0 ? o->repeat : strcmp(o->mesh, "plane") == 0 ? 1 : 4;
+    if (is_plane(o) && !o->has_camera)
+        o->scene.orbit = (weft_orbit){weft_rad_of_deg(-90), weft_rad_of_deg(75), 3};
+    o->scene.repeat = o->repeat > 0 ? o->repeat : is_plane(o) ? 1 : 8;
     return code;
 }
 

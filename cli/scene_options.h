@@ -11,6 +11,7 @@ typedef struct scene_options {
     const char *mode; /* NULL: what is there */
     double tiles[2];  /* of the weave across the material; 0 = as the virtual rig lays it out */
     double repeat;    /* 0 = by the mesh */
+    bool has_camera;  /* else by the mesh */
     int width, height;
     weft_scene scene;
 } scene_options;

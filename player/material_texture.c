@@ -70,6 +70,19 @@ static weft_code upload_directions(const weft_material *material, weft_material_
     return code;
 }
 
+static bool is_opaque(const weft_material *material)
+{
+    for (int k = 0; k < material->level_count; k++) {
+        const weft_material_level *level = &material->level[k];
+        size_t count = (size_t)level->width * (size_t)level->height * (size_t)material->view_count;
+        for (size_t i = 0; level->table && i < count; i++) {
+            if (level->table[4 * i + 3] != 255)
+                return false;
+        }
+    }
+    return true;
+}
+
 weft_code weft_material_texture_upload(const weft_material *material, weft_material_texture *t, weft_error *error)
 {
     int layers = weft_gl_max_layers();
@@ -77,6 +90,7 @@ weft_code weft_material_texture_upload(const weft_material *material, weft_mater
         .layout = weft_mip_layout_of(material->level[0].width, material->level[0].height, material->level_count, 0),
         .lobe_count = material->lobe_count,
         .has_table = material->view_count > 0 && material->level[0].table,
+        .opaque = is_opaque(material),
         .table_columns = material->view_count > 0 ? (material->view_count + layers - 1) / layers : 1,
     };
     WEFT_TRY(upload_frames(material, t, error));
@@ -105,6 +119,7 @@ void weft_material_texture_bind(const weft_material_texture *t, GLuint program)
     weft_direction_texture_bind(&t->directions, program, 4);
     weft_gl_set_int(program, "lobe_count", t->lobe_count);
     weft_gl_set_int(program, "has_table", t->has_table);
+    weft_gl_set_int(program, "opaque", t->opaque);
     weft_gl_set_int(program, "level_count", t->layout.level_count);
     glUniform2i(glGetUniformLocation(program, "table_tiles"), t->table_columns, t->layout.width);
     glUniform4iv(glGetUniformLocation(program, "level_area"), t->layout.level_count, &t->layout.area[0].x);

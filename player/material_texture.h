@@ -13,7 +13,7 @@ typedef struct weft_material_texture {
     weft_direction_texture directions;
     weft_mip_layout layout;
     int lobe_count;
-    bool has_table;
+    bool has_table, opaque;
     int table_columns; /* views side by side in a layer */
 } weft_material_texture;
 

@@ -16,9 +16,9 @@ weft_scene weft_scene_default(void)
 {
     return (weft_scene){
         .orbit = {weft_rad_of_deg(-70), weft_rad_of_deg(28), 3.6},
-        .light = {weft_rad_of_deg(40), weft_rad_of_deg(-130)},
+        .light = {weft_rad_of_deg(45), weft_rad_of_deg(-110)},
         .exposure = 1,
-        .repeat = 4,
+        .repeat = 8,
         .pane_count = 1,
         .pane = {WEFT_MODE_COMPRESSED},
         .labels = true,

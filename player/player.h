@@ -40,7 +40,7 @@ typedef struct weft_scene {
     const char *help; /* text over the picture, or NULL; borrowed */
 } weft_scene;
 
-/* A light from the upper left, the drape seen from above its rim, four materials across it, compressed. */
+/* A light from the upper left, the drape seen from above its rim, eight materials across it, compressed. */
 weft_scene weft_scene_default(void);
 
 typedef struct weft_player weft_player;

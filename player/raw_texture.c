@@ -196,7 +196,9 @@ static void fill_row(stream *s, const weft_raw_images *images, const weft_datase
         float *result = s->row[0] + (size_t)x * (size_t)layout->image_count * 4;
         for (int i = 0; i < layout->image_count; i++) {
             memcpy(result + 4 * i, b->value + 3 * i, 3 * sizeof(float));
-            result[4 * i + 3] = b->opacity[texel * (size_t)layout->view_count + (size_t)layout->view_of_image[i]];
+            float opacity = b->opacity[texel * (size_t)layout->view_count + (size_t)layout->view_of_image[i]];
+            s->texture->opaque &= opacity >= 1;
+            result[4 * i + 3] = opacity;
         }
     }
 }
@@ -290,7 +292,7 @@ weft_code weft_raw_texture_upload(weft_dataset *dataset, size_t half_limit, size
                                   weft_raw_texture *texture, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    *texture = (weft_raw_texture){0};
+    *texture = (weft_raw_texture){.opaque = true};
     WEFT_TRY(choose_levels(layout, weft_dataset_path(dataset), half_limit, limit, texture, error));
     weft_raw_images images = {0};
     weft_code code = weft_raw_images_find(dataset, &images, error);
@@ -321,6 +323,7 @@ void weft_raw_texture_bind(const weft_raw_texture *t, GLuint program)
     weft_gl_bind(program, "raw_sample", 0, GL_TEXTURE_2D_ARRAY, t->sample);
     weft_direction_texture_bind(&t->directions, program, 1);
     weft_gl_set_int(program, "level_count", t->layout.level_count);
+    weft_gl_set_int(program, "opaque", t->opaque || t->packed);
     glUniform2i(glGetUniformLocation(program, "raw_tiles"), t->columns, t->layout.width);
     weft_gl_set_vec2(program, "raw_atlas_size", (double)t->layout.width * t->columns, t->layout.height);
     glUniform4fv(glGetUniformLocation(program, "level_area"), t->layout.level_count, area[0]);

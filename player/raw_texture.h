@@ -19,6 +19,7 @@ typedef struct weft_raw_texture {
     weft_mip_layout layout;            /* of the levels that are held */
     int skipped_levels;                /* finest levels left out because they do not fit */
     bool packed;                       /* RGB with a shared exponent: 4 bytes a sample instead of 8, without opacity */
+    bool opaque;                       /* no texel has an opacity below 1 */
     int columns, layers;
 } weft_raw_texture;
 

@@ -96,5 +96,6 @@ void weft_weave_texture_bind(const weft_weave_texture *t, GLuint program)
     weft_gl_bind(program, "weave_table", 0, GL_TEXTURE_2D, t->table);
     weft_gl_bind(program, "weave_mean", 1, GL_TEXTURE_2D, t->mean);
     weft_direction_texture_bind(&t->directions, program, 2);
+    weft_gl_set_int(program, "opaque", 1);
     weft_gl_set_vec2(program, "weave_tiles", t->tiles[0], t->tiles[1]);
 }

@@ -26,7 +26,7 @@ vec4 reflectance(SurfacePoint point)
 {
     float fade = clamp((point.level - FADE_BEGIN) / (FADE_END - FADE_BEGIN), 0.0, 1.0);
     vec3 brdf = vec3(0.0);
-    if (point.light.z > 0.0 && fade > 0.0)
+    if (fade > 0.0)
         brdf = fade * mean_brdf(point.light, point.view);
     if (fade < 1.0) {
         WeavePoint place = weave_locate(weave_table, point.coordinate * weave_tiles, uvec2(0u));

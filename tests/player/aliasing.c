@@ -3,11 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-weft_scene aliasing_scene(void)
+weft_scene aliasing_scene(int height)
 {
     weft_scene scene = weft_scene_default();
     scene.orbit.distance = 7;
-    scene.repeat = 7;
+    scene.repeat = 7.0 * height / 150;
     scene.pane_count = 1;
     scene.pane[0] = WEFT_MODE_COMPRESSED;
     return scene;

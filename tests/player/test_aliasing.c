@@ -11,7 +11,7 @@ static void mip_levels_lower_the_aliasing_of_a_far_checkerboard_tenfold(void **s
     aliasing a;
     stage_checker(32, &checker);
     expect_ok(weft_player_set_material(s->player, &checker, &error), &error);
-    expect_ok(aliasing_measure(s->player, aliasing_scene(), 200, 150, 12, &a, &error), &error);
+    expect_ok(aliasing_measure(s->player, aliasing_scene(150), 200, 150, 12, &a, &error), &error);
     printf("aliasing energy %.3g without mip levels, %.3g with them: %.0f times lower over %ld pixels\n",
            a.energy_without, a.energy_with, a.energy_without / a.energy_with, a.pixels);
     assert_true(a.pixels > 2000);
