@@ -118,7 +118,7 @@ weft_material_error weft_error_result(const weft_error_tally *tally, const weft_
     error.percentile80_relative = percentile(relative, RELATIVE_BINS, 0.8, relative_edge);
     error.rmse = sums->count > 0 ? sqrt(sums->square_error / sums->count) : 0;
     error.relative_rmse = sums->square > 0 ? sqrt(sums->square_error / sums->square) : 0;
-    double peak = percentile(tally->magnitude, MAGNITUDE_BINS, 0.999, magnitude_edge);
+    double peak = fmin(percentile(tally->magnitude, MAGNITUDE_BINS, 0.999, magnitude_edge), (double)tally->largest);
     error.psnr_db = error.rmse > 0 && peak > 0 ? 20 * log10(peak / error.rmse) : 0;
     return error;
 }
