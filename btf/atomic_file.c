@@ -110,7 +110,7 @@ static int write_all(int descriptor, const char *bytes, size_t size)
     return 0;
 }
 
-static int write_new_file(const char *path, const void *bytes, size_t size)
+static int create_and_write(const char *path, const void *bytes, size_t size)
 {
     int descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor < 0)
@@ -127,12 +127,21 @@ weft_code weft_write_file(const char *path, const void *bytes, size_t size, weft
 {
     weft_atomic_file file;
     WEFT_TRY(weft_atomic_file_begin(path, &file, error));
-    if (write_new_file(file.temporary_path, bytes, size) != 0) {
+    if (create_and_write(file.temporary_path, bytes, size) != 0) {
         weft_code code = weft_fail_errno(error, "write", path);
         weft_atomic_file_abandon(&file);
         return code;
     }
     return weft_atomic_file_commit(&file, error);
+}
+
+weft_code weft_write_new_file(const char *path, const void *bytes, size_t size, weft_error *error)
+{
+    if (create_and_write(path, bytes, size) == 0)
+        return WEFT_OK;
+    weft_code code = weft_fail_errno(error, "write", path);
+    unlink(path);
+    return code;
 }
 
 static weft_code read_descriptor(int descriptor, const char *path, size_t size, char **bytes, weft_error *error)

@@ -31,6 +31,10 @@ void weft_atomic_file_abandon(weft_atomic_file *file);
 /* The whole of begin, write, commit for `size` bytes in memory. */
 weft_code weft_write_file(const char *path, const void *bytes, size_t size, weft_error *error);
 
+/* Writes `size` bytes under a name that the caller renames later; no sync. A file that cannot be written whole is
+ * removed. Errors: WEFT_SYSTEM. */
+weft_code weft_write_new_file(const char *path, const void *bytes, size_t size, weft_error *error);
+
 /* Reads a whole file. *bytes is NUL-terminated beyond *size, owned by the caller (free). Errors:
  * WEFT_BAD_INPUT where the file is missing, a folder, or larger than `limit` bytes. */
 weft_code weft_read_file(const char *path, size_t limit, char **bytes, size_t *size, weft_error *error);

@@ -1,12 +1,12 @@
 #include "btf/atomic_file.h"
 #include "btf/image.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -80,18 +80,21 @@ OIIO::TypeDesc type_for(const std::string &path)
     return OIIO::TypeDesc::UINT8;
 }
 
-bool write_output(const char *path, const OIIO::ImageSpec &spec, OIIO::TypeDesc type, const void *pixels,
-                  std::string *why)
+using encoded_bytes = std::vector<unsigned char>;
+
+/* Encodes into memory, because the library keeps silent where a disk is full. */
+weft_code encode(const char *path, const OIIO::ImageSpec &spec, OIIO::TypeDesc type, const void *pixels,
+                 encoded_bytes *bytes, weft_error *error)
 {
+    OIIO::Filesystem::IOVecOutput memory;
     auto output = OIIO::ImageOutput::create(path);
-    if (!output) {
-        *why = OIIO::geterror();
-        return false;
-    }
-    bool written = output->open(path, spec) && output->write_image(type, pixels) && output->close();
-    if (!written)
-        *why = output->geterror();
-    return written;
+    if (!output || !output->supports("ioproxy") || !output->set_ioproxy(&memory))
+        return weft_fail(error, WEFT_BAD_USAGE, "cannot write image '%s': use .png, .exr or .tif", path);
+    if (!output->open(path, spec) || !output->write_image(type, pixels) || !output->close())
+        return weft_fail(error, WEFT_SYSTEM, "cannot write image '%s': %s", path,
+                         first_line(output->geterror()).c_str());
+    *bytes = memory.buffer();
+    return WEFT_OK;
 }
 
 weft_code write_image(const char *path, const weft_image *image, const char *description, weft_error *error)
@@ -101,14 +104,9 @@ weft_code write_image(const char *path, const weft_image *image, const char *des
     spec.attribute("oiio:ColorSpace", type == OIIO::TypeDesc::UINT8 ? "sRGB" : "linear");
     if (description)
         spec.attribute("ImageDescription", description);
-    weft_atomic_file file;
-    WEFT_TRY(weft_atomic_file_begin(path, &file, error));
-    std::string why;
-    if (!write_output(file.temporary_path, spec, OIIO::TypeDesc::FLOAT, image->pixels, &why)) {
-        weft_atomic_file_abandon(&file);
-        return weft_fail(error, WEFT_SYSTEM, "cannot write image '%s': %s", path, first_line(why).c_str());
-    }
-    return weft_atomic_file_commit(&file, error);
+    encoded_bytes bytes;
+    WEFT_TRY(encode(path, spec, OIIO::TypeDesc::FLOAT, image->pixels, &bytes, error));
+    return weft_write_file(path, bytes.data(), bytes.size(), error);
 }
 
 weft_code write_photograph(const char *path, int width, int height, int bits, const uint16_t *samples,
@@ -125,16 +123,9 @@ weft_code write_photograph(const char *path, int width, int height, int bits, co
     std::vector<uint16_t> shifted(size_t(width) * size_t(height) * 3);
     for (size_t i = 0; i < shifted.size(); i++)
         shifted[i] = uint16_t(samples[i] << (16 - bits) | samples[i] >> (2 * bits - 16));
-    std::string why;
-    if (!write_output(path, spec, OIIO::TypeDesc::UINT16, shifted.data(), &why))
-        return weft_fail(error, WEFT_SYSTEM, "cannot write photograph '%s': %s", path, first_line(why).c_str());
-    /* The library keeps silent where the disk is full. */
-    uintmax_t needed = (uintmax_t(width) * 3 * uintmax_t(bits) + 7) / 8 * uintmax_t(height);
-    uintmax_t written = std::filesystem::file_size(path);
-    if (written < needed)
-        return weft_fail(error, WEFT_SYSTEM, "cannot write photograph '%s': %ju of at least %ju bytes were written",
-                         path, written, needed);
-    return WEFT_OK;
+    encoded_bytes bytes;
+    WEFT_TRY(encode(path, spec, OIIO::TypeDesc::UINT16, shifted.data(), &bytes, error));
+    return weft_write_new_file(path, bytes.data(), bytes.size(), error);
 }
 
 weft_code read_photograph(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error)

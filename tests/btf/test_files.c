@@ -62,13 +62,15 @@ static weft_code write_many_bytes(weft_error *error)
     return weft_write_file("data.bin", many_bytes, sizeof many_bytes, error);
 }
 
+static const char *picture;
+
 static weft_code write_picture(weft_error *error)
 {
     weft_image image;
     WEFT_TRY(weft_image_create(200, 200, &image, error));
     for (int i = 0; i < 200 * 200 * 3; i++)
         image.pixels[i] = (float)(rand() % 1000) / 1000;
-    weft_code code = weft_image_write("picture.exr", &image, NULL, error);
+    weft_code code = weft_image_write(picture, &image, NULL, error);
     weft_image_free(&image);
     return code;
 }
@@ -81,8 +83,12 @@ static void full_disk_leaves_the_old_file_and_no_other(void **state)
     int before = entries_in_folder();
     assert_int_equal(with_file_limit(5000, write_many_bytes, &error), WEFT_SYSTEM);
     assert_non_null(strstr(error.message, "data.bin"));
-    assert_int_equal(with_file_limit(5000, write_picture, &error), WEFT_SYSTEM);
-    assert_non_null(strstr(error.message, "picture.exr"));
+    static const char *pictures[] = {"picture.exr", "picture.png", "picture.tif"};
+    for (size_t i = 0; i < sizeof pictures / sizeof pictures[0]; i++) {
+        picture = pictures[i];
+        assert_int_equal(with_file_limit(5000, write_picture, &error), WEFT_SYSTEM);
+        assert_non_null(strstr(error.message, picture));
+    }
     assert_int_equal(entries_in_folder(), before);
     char *bytes;
     size_t size;
