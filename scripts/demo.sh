@@ -5,7 +5,7 @@ set -eu
 weft=$1
 out=$2
 source_dir=$(cd "$(dirname "$0")/.." && pwd)
-weave="$source_dir/assets/weaves/silk_charmeuse.wv"
+weave="$source_dir/assets/weaves/wool_gabardine.wv"
 shared="$source_dir/../shared/real"
 mkdir -p "$out"
 
@@ -14,20 +14,20 @@ step() {
 }
 
 step "1/5 Photograph the cloth: 81 views x 81 lights = 6561 photographs by the virtual rig"
-"$weft" capture --rig virtual --sample "$weave" --seed 1 -o "$out/silk"
+"$weft" capture --rig virtual --sample "$weave" --seed 1 -o "$out/gabardine"
 
 step "2/5 Register the photographs: one projective warp a view, calibrated reflectance"
-"$weft" register "$out/silk" --size 64x64 -o "$out/silk.btf.h5" --report "$out/registration"
+"$weft" register "$out/gabardine" --size 64x64 -o "$out/gabardine.btf.h5" --report "$out/registration"
 
 step "3/5 Compress: two lobes and a view table a texel, all mip levels"
-"$weft" compress "$out/silk.btf.h5" --lobes 2 -o "$out/silk.weft"
+"$weft" compress "$out/gabardine.btf.h5" --lobes 2 -o "$out/gabardine.weft"
 
 step "4/5 Draw: raw BTF, compressed material and analytic cloth side by side"
-"$weft" render "$out/silk.weft" --raw "$out/silk.btf.h5" --weave "$weave" --mode split --mesh drape --size 1500x560 \
+"$weft" render "$out/gabardine.weft" --raw "$out/gabardine.btf.h5" --weave "$weave" --mode split --mesh drape --size 1500x560 \
     -o "$out/side-by-side.png"
 
 step "5/5 Compare them with numbers"
-"$weft" compare "$out/silk.btf.h5" "$out/silk.weft" --weave "$weave" -o "$out/compare"
+"$weft" compare "$out/gabardine.btf.h5" "$out/gabardine.weft" --weave "$weave" -o "$out/compare"
 
 if [ -d "$shared/cards-blue" ]; then
     step "And real photographs: nine flash pictures of a card"
