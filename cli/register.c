@@ -80,11 +80,10 @@ static const struct argp parser = {option_table,
 static void say_faults(const register_command *command, const weft_session *session, const weft_registration *r)
 {
     for (int stay = 0; stay < r->survey.stay_count; stay++) {
-        weft_angles view = r->survey.view[r->survey.stay[stay].view];
+        const weft_stay *one = &r->survey.stay[stay];
         if (r->pose[stay].remark[0])
-            command_say(&command->common, "view %d (%.0f, %.0f degrees), stay %d: %s%s", r->survey.stay[stay].view,
-                        weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), r->survey.stay[stay].stay,
-                        r->pose[stay].source == WEFT_POSE_FAILED ? "masked: " : "kept the markers' pose: ",
+            command_say(&command->common, "view %s, stay %d: %s%s", weft_view_name_of(r->survey.view[one->view]).text,
+                        one->stay, r->pose[stay].source == WEFT_POSE_FAILED ? "masked: " : "kept the markers' pose: ",
                         r->pose[stay].remark);
     }
     for (int shot = 0; shot < session->shot_count; shot++) {

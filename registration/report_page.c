@@ -69,8 +69,7 @@ static void write_figure(FILE *page, const weft_registration *r, int stay)
     if (r->used[stay] > 0)
         fprintf(page, "<img class=\"texels\" loading=\"lazy\" alt=\"rectified\" src=\"pictures/%03d_texels.png\">",
                 stay);
-    fprintf(page, "</div><figcaption>View %d (%.0f&deg;, %.0f&deg;), stay %d: %s</figcaption></figure>\n", one->view,
-            weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), one->stay,
+    fprintf(page, "</div><figcaption>%s, stay %d: %s</figcaption></figure>\n", weft_view_name_of(view).text, one->stay,
             failed ? "failed" : weft_pose_source_name(pose));
 }
 
@@ -102,8 +101,8 @@ static void write_page(FILE *page, const weft_session *session, const weft_regis
     weft_write_faults(page, session, r);
     weft_write_rings(page, session, r);
     weft_write_whites(page, session, r);
-    weft_write_stays(page, session, r);
     write_gallery(page, r);
+    weft_write_stays(page, session, r);
     fputs("</main></body></html>\n", page);
 }
 

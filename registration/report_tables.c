@@ -96,14 +96,11 @@ void weft_write_faults(FILE *page, const weft_session *session, const weft_regis
     fputs("<h2>What could not be used</h2>\n<table><tr><th class=\"text\">what</th><th class=\"text\">why</th></tr>\n",
           page);
     for (int stay = 0; stay < r->survey.stay_count; stay++) {
-        weft_angles view = r->survey.view[r->survey.stay[stay].view];
+        const weft_stay *one = &r->survey.stay[stay];
         if (r->pose[stay].source != WEFT_POSE_FAILED)
             continue;
-        fprintf(page,
-                "<tr class=\"bad\"><td class=\"text\">view %d (%.0f&deg;, %.0f&deg;), stay %d, %d photographs</td>"
-                "<td class=\"text\">",
-                r->survey.stay[stay].view, weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad),
-                r->survey.stay[stay].stay, r->survey.stay[stay].count);
+        fprintf(page, "<tr class=\"bad\"><td class=\"text\">view %s, stay %d, %d photographs</td><td class=\"text\">",
+                weft_view_name_of(r->survey.view[one->view]).text, one->stay, one->count);
         weft_write_escaped(page, r->pose[stay].remark);
         fputs("</td></tr>\n", page);
     }
@@ -150,9 +147,9 @@ static void write_stay(FILE *page, const weft_session *session, const weft_regis
     const char *class = pose->source == WEFT_POSE_FAILED                ? " class=\"bad\""
                         : pose->remark[0] || r->used[stay] < one->count ? " class=\"weak\""
                                                                         : "";
-    fprintf(page, "<tr%s><td>%d</td><td>%.1f</td><td>%.1f</td><td>%d</td><td>%d of %d</td><td class=\"text\">%s</td>",
-            class, one->view, weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), one->stay, r->used[stay],
-            one->count, weft_pose_source_name(pose));
+    fprintf(page, "<tr%s><td>%s</td><td>%.1f</td><td>%.1f</td><td>%d</td><td>%d of %d</td><td class=\"text\">%s</td>",
+            class, weft_view_name_of(view).text, weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad),
+            one->stay, r->used[stay], one->count, weft_pose_source_name(pose));
     fprintf(page, "<td>%d</td><td>%.2f</td><td>%.4f</td><td>%.4f</td><td>%.3f</td><td class=\"text\">",
             pose->marker_count, pose->marker_rms_px, pose->correlation,
             weft_registration_uncertainty_texels(session, r, stay), pose->shift_mm);

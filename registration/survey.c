@@ -1,6 +1,7 @@
 #include "registration/survey.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static const double same_direction_rad = 1e-7;
@@ -93,4 +94,12 @@ void weft_survey_free(weft_survey *survey)
     free(survey->stay);
     free(survey->order);
     *survey = (weft_survey){0};
+}
+
+weft_view_name weft_view_name_of(weft_angles view)
+{
+    weft_view_name name;
+    long theta_deg = lround(weft_deg_of_rad(view.theta_rad)), phi_deg = lround(weft_deg_of_rad(view.phi_rad));
+    snprintf(name.text, sizeof name.text, "tv%03d_pv%03d", (int)theta_deg % 1000, (int)phi_deg % 1000);
+    return name;
 }

@@ -26,4 +26,12 @@ typedef struct weft_survey {
 weft_code weft_survey_make(const weft_session *session, weft_survey *survey, weft_error *error);
 void weft_survey_free(weft_survey *survey);
 
+/* What users call a view: the folder of its photographs, "tv030_pv090". */
+typedef struct weft_view_name {
+    char text[24];
+} weft_view_name;
+
+/* Pure. */
+weft_view_name weft_view_name_of(weft_angles view);
+
 #endif
