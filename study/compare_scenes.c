@@ -62,7 +62,8 @@ weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_erro
     if (scenes->has[WEFT_MODE_ANALYTIC])
         fputs("Analytic: the weave without its noise. ", page->html);
     if (scenes->near_lights)
-        fputs("Its lights are near: it is drawn with their directions at its centre, so its borders do not meet. ",
+        fputs("The lights of this dataset are near: raw is drawn with their directions at its centre, so its borders "
+              "do not meet. ",
               page->html);
     if (scenes->skipped_levels > 0)
         fprintf(page->html, "The dataset did not fit into graphics memory: its finest %d levels are left out. ",
