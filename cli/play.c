@@ -186,9 +186,12 @@ static weft_code grant_wishes(play *p, weft_error *error)
     weft_interaction *i = &p->interaction;
     if (i->wants_mesh)
         WEFT_TRY(change_mesh(p, error));
-    if (i->wants_screenshot && p->canvas.frame_count > 0)
+    /* A picture is saved once it is smooth: never one that is out of date. */
+    bool is_smooth = p->canvas.frame_count >= STILL_FRAMES && !i->changed;
+    if (i->wants_screenshot && is_smooth) {
+        i->wants_screenshot = false;
         WEFT_TRY(save_screenshot(p, error));
-    i->wants_screenshot = false;
+    }
     if (i->wants_quit)
         weft_window_close(p->window);
     return WEFT_OK;

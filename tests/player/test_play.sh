@@ -16,7 +16,7 @@ if [ "${4-}" != inside ]; then
     "$weft" play --help | grep -q '^Example: weft play' || { "$weft" play --help; exit 1; }
     # No window can be opened twice by accident: the counted run ends by itself.
     xvfb-run -a -s "-screen 0 800x600x24" "$weft" play play/cloth.weft --size 160x120 --frames 5 | grep "5 frames"
-    exec timeout 120 xvfb-run -a -s "-screen 0 800x600x24" "$0" "$weft" "$make" "$weaves" inside
+    exec timeout 300 xvfb-run -a -s "-screen 0 800x600x24" "$0" "$weft" "$make" "$weaves" inside
 fi
 
 cd play
@@ -33,7 +33,7 @@ shoot() { # WHAT: takes a screenshot that must differ from the one before
     last=$(printf 'weft-%03d.png' "$shots")
     shots=$((shots + 1))
     next=$(printf 'weft-%03d.png' "$shots")
-    for _ in $(seq 100); do
+    for _ in $(seq 300); do
         [ -s "$next" ] && break
         sleep 0.1
     done
@@ -69,7 +69,7 @@ xdotool getwindowname "$window" | grep -q 'ms/frame' || { echo "no time in the t
 xdotool windowsize "$window" 400 300
 shoot "resize"
 xdotool key q
-for _ in $(seq 100); do
+for _ in $(seq 300); do
     kill -0 $player 2>/dev/null || break
     sleep 0.1
 done
