@@ -1,0 +1,123 @@
+#!/bin/sh
+# Bad input to whole commands: one clear line, the right exit code, nothing half-written. Usage: bad_input.sh WEFT ASSETS PYTHON
+set -eu
+weft=$1
+assets=$2
+python=$3
+. "$(dirname "$0")/expect.sh"
+scratch=$(mktemp -d "$PWD/bad-input-XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+weave="$assets/weaves/polyester_lining.wv"
+write_plan >plan.csv
+expect_ok capture --sample "$weave" --plan plan.csv -o good
+photograph=tv030_pv090/tl030_pl060_tv030_pv090.tif
+
+# A copy of the good session whose photographs may be spoilt one by one.
+spoil() {
+    rm -rf spoilt spoilt.btf.h5 report
+    cp -r good spoilt
+}
+
+# One bad photograph is named and does not sink the rest.
+expect_survives() {
+    expect_ok register spoilt --size 16x16 -o spoilt.btf.h5 --report report
+    cat out.log err.log report/index.html | grep -q "$1" || fail "'$1' is not named"
+    expect_ok compress spoilt.btf.h5 --lobes 1 -o spoilt.weft
+}
+
+spoil && rm "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
+spoil && truncate -s 20000 "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
+spoil && convert -size 100x80 xc:gray "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
+spoil && head -c 500 /dev/urandom >"spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
+spoil && convert -size 416x416 xc:black -depth 16 -type TrueColor "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
+spoil
+for each in spoilt/tv030_pv090/*.tif; do # a view whose target cannot be seen
+    convert -size 416x416 xc:gray -depth 16 -type TrueColor "$each"
+done
+expect_survives "(30, 90 degrees)"
+spoil
+find spoilt -name '*.tif' -delete
+expect_error 1 spoilt register spoilt --size 16x16 -o spoilt.btf.h5
+expect_no_file spoilt.btf.h5
+
+spoil && rm spoilt/session.json && expect_error 1 session.json register spoilt -o spoilt.btf.h5
+spoil && sed -i 's/"bits"/"bitz"/' spoilt/session.json && expect_error 1 session.json register spoilt -o spoilt.btf.h5
+spoil && sed -i '3s/.*/garbage/' spoilt/journal.jsonl && expect_error 1 "line 3" register spoilt -o spoilt.btf.h5
+spoil && sed -i '20,$d' spoilt/journal.jsonl && expect_error 1 spoilt register spoilt -o spoilt.btf.h5
+expect_no_file spoilt.btf.h5
+expect_error 1 absent register absent -o spoilt.btf.h5
+
+# Datasets.
+expect_ok register good --size 16x16 -o good.btf.h5
+"$python" - <<'PYTHON' || exit 77
+import h5py, numpy, shutil
+shutil.copy("good.btf.h5", "nan.btf.h5")
+with h5py.File("nan.btf.h5", "r+") as f:
+    f["samples"][3, 4, 5, 1] = numpy.nan
+    f["mask"][3, 4, 5] = 0
+PYTHON
+expect_error 1 nan.btf.h5 compress nan.btf.h5 -o nan.weft
+expect_error 1 nan.btf.h5 verify nan.btf.h5
+expect_no_file nan.weft
+size=$(stat -c %s good.btf.h5)
+for part in 0 10 100 2000 $((size / 2)) $((size - 1)); do
+    head -c "$part" good.btf.h5 >cut.btf.h5
+    expect_error 1 cut.btf.h5 compress cut.btf.h5 -o cut.weft
+    expect_no_file cut.weft
+done
+expect_error 1 plan.csv compress plan.csv -o cut.weft
+expect_error 1 absent.btf.h5 compress absent.btf.h5 -o cut.weft
+
+# Materials: cut at every section boundary.
+expect_ok compress good.btf.h5 --lobes 2 -o good.weft
+"$python" - <<'PYTHON' >boundaries
+import struct
+data = open("good.weft", "rb").read()
+count = struct.unpack_from("<I", data, 12)[0]
+edges = {0, 64, 64 + 40 * count}
+for i in range(count):
+    offset, stored = struct.unpack_from("<QQ", data, 64 + 40 * i + 16)
+    edges |= {offset, offset + stored - 1, offset + stored}
+print(*sorted(edge for edge in edges if edge < len(data)))
+PYTHON
+for edge in $(cat boundaries); do
+    head -c "$edge" good.weft >cut.weft
+    expect_error 1 cut.weft verify cut.weft
+done
+expect_error 1 cut.weft render cut.weft -o cut.png
+expect_error 1 cut.weft compare good.btf.h5 cut.weft -o cut-report
+expect_no_file cut.png
+
+# A full disk, here a limit on the size of files.
+limited() {
+    limit=$1
+    shift
+    (
+        ulimit -f "$limit"
+        "$weft" "$@" >out.log 2>err.log
+    ) && fail "weft $* did not notice the full disk"
+    tail -n 1 err.log | grep -q "^weft " || fail "weft $*: no clear line: $(tail -n 1 err.log)"
+    passed=$((passed + 1))
+}
+limited 100 capture --sample "$weave" --plan plan.csv -o full
+limited 100 register good --size 32x32 -o full.btf.h5
+expect_no_file full.btf.h5
+limited 8 compress good.btf.h5 --lobes 2 -o full.weft
+expect_no_file full.weft
+limited 8 render good.weft --size 400x400 -o full.png
+expect_no_file full.png
+limited 4 compare good.btf.h5 good.weft -o full-report
+
+# Weaves and plans.
+sed 's/tileWidth = /tileWidht = /' "$weave" >typo.wv
+expect_error 1 typo.wv capture --sample typo.wv --plan plan.csv -o typo
+printf 'theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n0,0,0,0\n0,zero,0,0\n' >bad.csv
+expect_error 1 bad.csv capture --sample "$weave" --plan bad.csv -o bad
+expect_error 2 "" capture
+expect_error 2 "" compress good.btf.h5 -o x.weft --lobes 7
+status=0
+"$weft" nonsense 2>err.log || status=$?
+[ "$status" = 2 ] || fail "an unknown command exits with $status"
+echo "$passed passed, 0 failed"

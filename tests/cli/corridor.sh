@@ -1,0 +1,43 @@
+#!/bin/sh
+# From photographs to pictures with every command, on a small plan. Usage: corridor.sh WEFT ASSETS PYTHON
+set -eu
+weft=$1
+assets=$2
+. "$(dirname "$0")/expect.sh"
+scratch=$(mktemp -d "$PWD/corridor-XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+write_plan >plan.csv
+expect_ok capture --rig virtual --sample "$assets/weaves/wool_gabardine.wv" --plan plan.csv --seed 3 -o session
+[ "$(wc -l <session/journal.jsonl)" = 32 ] || fail "the journal does not hold 32 photographs"
+expect_ok capture --rig virtual --sample "$assets/weaves/wool_gabardine.wv" --plan plan.csv --seed 3 -o session
+[ "$(wc -l <session/journal.jsonl)" = 32 ] || fail "a finished session was photographed again"
+expect_says "32" info session
+expect_ok verify session
+
+expect_ok register session --size 32x32 -o cloth.btf.h5 --report registration
+grep -q "75" registration/index.html || fail "the report does not list the grazing view"
+expect_says "32 x 32" info cloth.btf.h5
+expect_ok verify cloth.btf.h5
+
+expect_ok compress cloth.btf.h5 --lobes 2 -o cloth.weft
+expect_ok verify cloth.weft
+expect_ok compress cloth.btf.h5 --lobes 2 --threads 1 -o again.weft
+cmp cloth.weft again.weft || fail "the number of threads changes the material"
+
+echo "lx,ly,lz,vx,vy,vz,u,v,level" >at.csv
+echo "0,0,1,0,0,1,0.25,0.75,0" >>at.csv
+for model in cloth.weft cloth.btf.h5 "$assets/weaves/wool_gabardine.wv"; do
+    expect_ok eval "$model" --at at.csv
+    [ "$(wc -l <out.log)" = 2 ] || fail "eval $model did not print one row"
+done
+
+expect_ok render cloth.weft --raw cloth.btf.h5 --weave "$assets/weaves/wool_gabardine.wv" --mode split --size 300x120 -o picture.png
+expect_ok render cloth.weft --mesh sphere --size 64x64 -o sphere.exr
+expect_ok compare cloth.btf.h5 cloth.weft --weave "$assets/weaves/wool_gabardine.wv" -o report
+grep -q "<img" report/index.html || fail "the comparison has no pictures"
+for command in capture register import compress render play compare eval info verify; do
+    expect_says "xample" "$command" --help
+done
+echo "$passed passed, 0 failed"
