@@ -9,14 +9,18 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WIDTH = 320, HEIGHT = 300, SAMPLES = 16, PANES = 3 };
+/* The picture shows CROP x CROP pixels around the drape, enlarged without smoothing. */
+enum { WIDTH = 320, HEIGHT = 300, SAMPLES = 16, PANES = 3, CROP = 150, ENLARGED = 2 };
 
 static void copy_pane(const weft_image *pane, int index, weft_image *picture)
 {
-    for (int y = 0; y < pane->height; y++) {
-        for (int i = 0; i < 3 * pane->width; i++)
-            picture->pixels[3 * (y * picture->width + index * pane->width) + i] =
-                weft_srgb_of_linear(pane->pixels[3 * y * pane->width + i]);
+    const int side = CROP * ENLARGED, left = (WIDTH - CROP) / 2, top = (HEIGHT - CROP) / 2;
+    for (int i = 0; i < side * side; i++) {
+        int x = i % side, y = i / side;
+        const float *from = pane->pixels + 3 * ((top + y / ENLARGED) * pane->width + left + x / ENLARGED);
+        float *to = picture->pixels + 3 * (y * picture->width + index * side + x);
+        for (int c = 0; c < 3; c++)
+            to[c] = weft_srgb_of_linear(from[c]);
     }
 }
 
@@ -24,7 +28,7 @@ static void write_picture(const char *path, const aliasing *a)
 {
     weft_error error = {0};
     weft_image picture;
-    expect_ok(weft_image_create(PANES * WIDTH, HEIGHT, &picture, &error), &error);
+    expect_ok(weft_image_create(PANES * CROP * ENLARGED, CROP * ENLARGED, &picture, &error), &error);
     copy_pane(&a->without, 0, &picture);
     copy_pane(&a->with, 1, &picture);
     copy_pane(&a->reference, 2, &picture);
