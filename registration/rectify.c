@@ -12,8 +12,8 @@ typedef struct job {
     const weft_white *estimated;
     weft_resampler resampler;
     weft_reference_pixels reference;
-    int shown_shot;
-    float *shown;
+    float *shown;   /* NULL: nobody wants to see */
+    int shown_shot; /* the shot in it, -1: none yet */
 } job;
 
 /* Memory of one thread. */
@@ -53,7 +53,22 @@ static weft_exposure exposure_of(const weft_session *session, int shot)
                            weft_scale(direction, session->light_distance_mm)};
 }
 
-static weft_code put(const job *j, int shot, bench *b, weft_error *error)
+/* Keeps the photograph under the highest light; of equal ones the first, so that threads do not matter. */
+static void show(job *j, int shot, const float *texel)
+{
+#pragma omp critical(weft_rectify_show)
+    {
+        const weft_shot *shots = j->rectifier->session->shot;
+        double light = shots[shot].light.theta_rad;
+        double best = j->shown_shot < 0 ? INFINITY : shots[j->shown_shot].light.theta_rad;
+        if (light < best || (light == best && shot < j->shown_shot)) {
+            memcpy(j->shown, texel, texel_count(j) * 3 * sizeof *texel);
+            j->shown_shot = shot;
+        }
+    }
+}
+
+static weft_code put(job *j, int shot, bench *b, weft_error *error)
 {
     size_t texels = texel_count(j), saturated = 0;
     for (size_t i = 0; i < 3 * texels; i++)
@@ -61,13 +76,13 @@ static weft_code put(const job *j, int shot, bench *b, weft_error *error)
     for (size_t i = 0; i < texels; i++)
         saturated += b->mask[i] == WEFT_MASK_SATURATED;
     j->rectifier->registration->saturated[shot] = (float)saturated / (float)texels;
-    if (shot == j->shown_shot)
-        memcpy(j->shown, b->texel, texels * 3 * sizeof *b->texel);
+    if (j->shown)
+        show(j, shot, b->texel);
     return weft_dataset_writer_put_image(j->rectifier->writer, shot, b->half, b->mask, error);
 }
 
 /* Rectifies photograph `index`; *done says whether it is in the dataset. */
-static weft_code rectify_photograph(const job *j, int index, bench *b, bool *done, weft_error *error)
+static weft_code rectify_photograph(job *j, int index, bench *b, bool *done, weft_error *error)
 {
     const weft_session *session = j->rectifier->session;
     int shot = j->photographs->shot[index];
@@ -92,7 +107,7 @@ static weft_code rectify_photograph(const job *j, int index, bench *b, bool *don
     return put(j, shot, b, error);
 }
 
-static weft_code rectify_all(const job *j, int *used, weft_error *error)
+static weft_code rectify_all(job *j, int *used, weft_error *error)
 {
     weft_code result = WEFT_OK;
     int count = 0;
@@ -135,12 +150,13 @@ static double smear_reach(const weft_view_pose *pose, double opening_mm)
 }
 
 weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_photographs *photographs,
-                            const weft_white *estimated, int shown_shot, float *shown, weft_error *error)
+                            const weft_white *estimated, float *shown, weft_error *error)
 {
     weft_registration *registration = rectifier->registration;
     const weft_view_pose *pose = &registration->pose[stay];
     const weft_target *target = &rectifier->session->target;
-    job j = {rectifier, photographs, estimated, {0}, {{0}, {0}, {{0, 0}}}, shown_shot, shown};
+    job j = {
+        .rectifier = rectifier, .photographs = photographs, .estimated = estimated, .shown = shown, .shown_shot = -1};
     weft_resampling resampling = {&rectifier->sight->camera, rectifier->sight->inverse_vignetting, pose->homography,
                                   target->opening_mm, smear_reach(pose, target->opening_mm)};
     WEFT_TRY(weft_resampler_create(&resampling, registration->settings.width, registration->settings.height,

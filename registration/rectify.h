@@ -15,9 +15,9 @@ typedef struct weft_rectifier {
 
 /* Resamples and calibrates the usable photographs of stay `stay` (an index into the survey) under its pose and puts
  * them into the dataset. Photographs without a measured white level are left out unless `estimated` gives them one.
- * `shown_shot` (-1: none) is copied, as reflectance times cosine [height][width][3], to `shown`.
- * Errors: WEFT_SYSTEM. Uses OpenMP. */
+ * `shown` [height][width][3] (may be NULL) receives the one under the highest light, as reflectance times cosine; it is
+ * left as it is where no photograph is put. Errors: WEFT_SYSTEM. Uses OpenMP. */
 weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_photographs *photographs,
-                            const weft_white *estimated, int shown_shot, float *shown, weft_error *error);
+                            const weft_white *estimated, float *shown, weft_error *error);
 
 #endif

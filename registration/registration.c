@@ -113,19 +113,6 @@ static weft_code describe_dataset(const weft_session *session, const weft_regist
     return WEFT_OK;
 }
 
-/* The usable photograph of a stay under the highest light: the one to look at. -1: none. */
-static int shot_to_show(const weft_session *session, const weft_photographs *photographs)
-{
-    int best = -1;
-    for (int i = 0; i < photographs->count; i++) {
-        int shot = photographs->shot[i];
-        if (photographs->usable[i] &&
-            (best < 0 || session->shot[shot].light_driven.theta_rad < session->shot[best].light_driven.theta_rad))
-            best = shot;
-    }
-    return best;
-}
-
 static weft_code find_and_rectify(work *w, int stay, const weft_photographs *photographs, weft_error *error)
 {
     const weft_session *session = w->rectifier.session;
@@ -140,8 +127,7 @@ static weft_code find_and_rectify(work *w, int stay, const weft_photographs *pho
         return WEFT_OK;
     if (pose->source == WEFT_POSE_DRAWING)
         w->smear = pose->smear;
-    int shown_shot = w->shown ? shot_to_show(session, photographs) : -1;
-    return weft_rectify_stay(&w->rectifier, stay, photographs, NULL, shown_shot, w->shown, error);
+    return weft_rectify_stay(&w->rectifier, stay, photographs, NULL, w->shown, error);
 }
 
 static weft_code register_stay(work *w, int stay, weft_error *error)
@@ -166,6 +152,22 @@ static weft_code register_stay(work *w, int stay, weft_error *error)
     return code;
 }
 
+/* Rectifies the photographs of a stay that had no white level of their own. */
+static weft_code rectify_again(work *w, int stay, const weft_white *estimated, weft_error *error)
+{
+    weft_registration *registration = w->rectifier.registration;
+    bool unseen = w->shown && registration->used[stay] == 0;
+    weft_photographs photographs;
+    WEFT_TRY(weft_photographs_read(w->rectifier.session, &w->sight, &registration->survey.stay[stay], kept_bytes,
+                                   registration->fault, &photographs, error));
+    weft_code code = weft_rectify_stay(&w->rectifier, stay, &photographs, estimated, unseen ? w->shown : NULL, error);
+    weft_photographs_free(&photographs);
+    if (code != WEFT_OK || !unseen || registration->used[stay] == 0)
+        return code;
+    weft_report_pictures pictures = {NULL, NULL, w->shown};
+    return weft_report_write_pictures(registration, &w->sight, stay, &pictures, error);
+}
+
 /* Once more through the stays with photographs whose white level was not measured. */
 static weft_code rectify_estimated(work *w, weft_error *error)
 {
@@ -174,16 +176,8 @@ static weft_code rectify_estimated(work *w, weft_error *error)
     WEFT_TRY(weft_white_estimate(w->rectifier.session, registration, &estimated, error));
     weft_code code = WEFT_OK;
     for (int stay = 0; code == WEFT_OK && stay < registration->survey.stay_count; stay++) {
-        const weft_stay *one = &registration->survey.stay[stay];
-        weft_photographs photographs;
-        if (!weft_white_lacking(registration, stay))
-            continue;
-        code = weft_photographs_read(w->rectifier.session, &w->sight, one, kept_bytes, registration->fault,
-                                     &photographs, error);
-        if (code != WEFT_OK)
-            break;
-        code = weft_rectify_stay(&w->rectifier, stay, &photographs, estimated, -1, NULL, error);
-        weft_photographs_free(&photographs);
+        if (weft_white_lacking(registration, stay))
+            code = rectify_again(w, stay, estimated, error);
     }
     free(estimated);
     return code;
