@@ -2,13 +2,14 @@
  * difference below 4/255, of 8-bit sRGB values. */
 #include "stage.h"
 
-#include "player/weave_texture.h"
+#include "player/player_parts.h"
 #include "reflectance/lafortune.h"
 #include "study/raw_btf.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { WIDTH = 320, HEIGHT = 240 };
@@ -96,40 +97,108 @@ static void compressed_equals_c_without_lobes_or_table(void **state)
 
 /* ---- Raw ---- */
 
-static weft_rgba evaluate_raw(void *context, const weft_surface_sample *at)
+typedef struct raw_model {
+    weft_dataset *dataset;
+    weft_raw_btf *raw;
+} raw_model;
+
+static const char *const raw_path = "test_shaders.btf.h5";
+
+static weft_rgba lit_raw(weft_rgb brdf, weft_vec3 light)
 {
-    weft_rgb brdf = {0};
-    weft_error error = {0};
-    weft_vec3 light = vector(at->light);
-    expect_ok(weft_raw_btf_sample(context, (weft_real)at->u, (weft_real)at->v, light, vector(at->view), &brdf, &error),
-              &error);
     return lit((weft_rgb){brdf.r * WEFT_PI, brdf.g * WEFT_PI, brdf.b * WEFT_PI}, light, 1);
 }
 
-static void compare_raw(void **state, const char *what, int views, int lights, weft_values values)
+static weft_rgba evaluate_raw(void *context, const weft_surface_sample *at)
 {
-    stage *s = *state;
+    raw_model *model = context;
+    weft_rgb brdf = {0};
     weft_error error = {0};
-    const char *path = "test_shaders.btf.h5";
-    weft_dataset *dataset;
-    weft_raw_btf *raw;
+    weft_vec3 light = vector(at->light), view = vector(at->view);
+    expect_ok(weft_raw_btf_sample(model->raw, (weft_real)at->u, (weft_real)at->v, light, view, &brdf, &error), &error);
+    return lit_raw(brdf, light);
+}
+
+static weft_rgba evaluate_raw_mean(void *context, const weft_surface_sample *at)
+{
+    raw_model *model = context;
+    weft_rgb brdf = {0};
+    weft_error error = {0};
+    weft_vec3 light = vector(at->light);
+    expect_ok(weft_raw_btf_mean(model->raw, light, vector(at->view), &brdf, &error), &error);
+    return lit_raw(brdf, light);
+}
+
+static raw_model open_raw(stage *s, int size, int views, int lights, weft_values values, size_t half_limit,
+                          size_t limit)
+{
+    weft_error error = {0};
+    raw_model model;
     int skipped;
-    stage_dataset(path, 8, views, lights, values, false);
-    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(weft_raw_btf_create(dataset, &raw, &error), &error);
-    expect_ok(weft_player_set_dataset(s->player, dataset, NULL, &skipped, &error), &error);
-    weft_scene scene = weft_scene_default();
-    scene.level_choice = WEFT_LEVEL_NONE;
-    expect_small(what, stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, raw));
-    weft_raw_btf_free(raw);
-    weft_dataset_close(dataset);
-    unlink(path);
+    stage_dataset(raw_path, size, views, lights, values, false);
+    expect_ok(weft_dataset_open(raw_path, &model.dataset, &error), &error);
+    expect_ok(weft_raw_btf_create(model.dataset, &model.raw, &error), &error);
+    expect_ok(weft_player_set_dataset(s->player, model.dataset, NULL, &skipped, &error), &error);
+    weft_raw_texture_free(&s->player->raw);
+    expect_ok(weft_raw_texture_upload(model.dataset, half_limit, limit, NULL, &s->player->raw, &error), &error);
+    return model;
+}
+
+static void close_raw(raw_model *model)
+{
+    weft_raw_btf_free(model->raw);
+    weft_dataset_close(model->dataset);
+    unlink(raw_path);
 }
 
 static void raw_equals_c_interpolation_in_views_and_lights(void **state)
 {
-    compare_raw(state, "raw 81 x 81", 81, 81, WEFT_REFLECTANCE_COSINE);
-    compare_raw(state, "raw 19 x 37 without cosine", 19, 37, WEFT_REFLECTANCE);
+    stage *s = *state;
+    weft_scene scene = weft_scene_default();
+    scene.level_choice = WEFT_LEVEL_NONE;
+    raw_model model = open_raw(s, 8, 81, 81, WEFT_REFLECTANCE_COSINE, WEFT_RAW_HALF_LIMIT, WEFT_RAW_LIMIT);
+    assert_false(s->player->raw.packed);
+    expect_small("raw 81 x 81", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
+    close_raw(&model);
+    model = open_raw(s, 5, 19, 37, WEFT_REFLECTANCE, WEFT_RAW_HALF_LIMIT, WEFT_RAW_LIMIT);
+    expect_small("raw 19 x 37", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
+    close_raw(&model);
+}
+
+static void raw_with_a_shared_exponent_equals_c_too(void **state)
+{
+    stage *s = *state;
+    weft_scene scene = weft_scene_default();
+    scene.level_choice = WEFT_LEVEL_NONE;
+    raw_model model = open_raw(s, 6, 37, 37, WEFT_REFLECTANCE_COSINE, 0, WEFT_RAW_LIMIT);
+    assert_true(s->player->raw.packed);
+    expect_small("raw packed", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
+    close_raw(&model);
+}
+
+static void the_last_raw_level_is_the_mean_of_all_texels(void **state)
+{
+    stage *s = *state;
+    weft_scene scene = weft_scene_default();
+    scene.level_choice = WEFT_LEVEL_FIXED;
+    scene.level = 99;
+    raw_model model = open_raw(s, 8, 19, 37, WEFT_REFLECTANCE_COSINE, WEFT_RAW_HALF_LIMIT, WEFT_RAW_LIMIT);
+    expect_small("raw mean", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw_mean, &model));
+    close_raw(&model);
+}
+
+static void a_dataset_that_does_not_fit_loses_its_finest_levels_first(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_raw_texture texture;
+    raw_model model = open_raw(s, 8, 7, 7, WEFT_REFLECTANCE_COSINE, 0, (size_t)49 * 9 * 16 * 4);
+    assert_int_equal(s->player->raw.skipped_levels, 1);
+    assert_int_equal(s->player->raw.layout.area[0].width, 4);
+    assert_int_equal(weft_raw_texture_upload(model.dataset, 0, 49 * 4, NULL, &texture, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "too many images for graphics memory: 49"));
+    weft_raw_texture_free(&texture);
+    close_raw(&model);
 }
 
 /* ---- Analytic ---- */
@@ -216,6 +285,9 @@ int main(void)
         cmocka_unit_test(compressed_equals_c_under_grazing_light_from_behind),
         cmocka_unit_test(compressed_equals_c_without_lobes_or_table),
         cmocka_unit_test(raw_equals_c_interpolation_in_views_and_lights),
+        cmocka_unit_test(raw_with_a_shared_exponent_equals_c_too),
+        cmocka_unit_test(the_last_raw_level_is_the_mean_of_all_texels),
+        cmocka_unit_test(a_dataset_that_does_not_fit_loses_its_finest_levels_first),
         cmocka_unit_test(analytic_equals_c_for_staple_and_filament_yarns),
         cmocka_unit_test(analytic_equals_c_where_the_texture_fades_to_the_mean),
     };
