@@ -1,17 +1,20 @@
 # Two commands do everything: `make demo` and `make test`. The build itself is CMake's.
 build := build/release
 
-.PHONY: demo test build check bench packages clean
+.PHONY: demo test program build check bench packages clean
 
-demo: build
+demo: program
 	scripts/demo.sh $(build)/cli/weft demo-out
 
 test: build
 	ctest --test-dir $(build) --output-on-failure
 
-build: packages
-	cmake --preset release -Wno-dev --log-level=WARNING
+build: program
 	cmake --build --preset release
+
+program: packages
+	cmake --preset release -Wno-dev --log-level=WARNING
+	cmake --build --preset release --target weft
 
 packages:
 	scripts/install-packages.sh
