@@ -117,9 +117,9 @@ static void say_model(const compress_command *command, const weft_dataset_layout
     command_say(common, "masked: %.2f %% of the samples; %ld of %ld texels without any",
                 100.0 * (double)report->masked_count / (double)report->sample_count, report->empty_texel_count,
                 report->texel_count);
-    command_say(common, "frames turned: %.1f %% of the texels; cold starts: %.1f %%",
+    command_say(common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
                 100.0 * (double)report->turned_frame_count / (double)report->texel_count,
-                100.0 * (double)report->cold_start_count / (double)report->texel_count);
+                100.0 * (double)report->second_start_count / (double)report->texel_count);
 }
 
 static void say_errors(const common_options *common, const weft_material *material)

@@ -129,7 +129,7 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
         report->lobe_count, "largest_exponent", options->max_exponent, "samples", (json_int_t)report->sample_count,
         "masked_samples", (json_int_t)report->masked_count, "texels", (json_int_t)report->texel_count, "empty_texels",
         (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,
-        "cold_starts", (double)report->cold_start_count / texels);
+        "retro_reflective_starts", (double)report->second_start_count / texels);
     if (fit && report->model == WEFT_COMPRESS_SPARSE) {
         json_object_set_new(fit, "largest_exponent", json_real(setting->largest_exponent));
         json_object_set_new(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
@@ -178,7 +178,7 @@ static weft_code fit_material(weft_dataset *dataset, const weft_compress_options
     report->texel_count = counts.texels;
     report->empty_texel_count = counts.empty;
     report->turned_frame_count = counts.turned;
-    report->cold_start_count = counts.cold;
+    report->second_start_count = counts.second_start;
     report->sample_count = (long)layout->width * layout->height * used_images(layout, options->held_out);
     WEFT_TRY(fill_opacity(dataset, material, error));
     return write_metadata(layout, options, report, &setting, material, error);

@@ -34,7 +34,7 @@ typedef struct weft_compress_report {
     long texel_count;        /* of all levels */
     long empty_texel_count;  /* without any valid sample; they are black */
     long turned_frame_count; /* texels whose frame was fitted rather than the surface's own */
-    long cold_start_count;   /* texels fitted from several starts rather than from their left neighbour */
+    long second_start_count; /* texels whose fit began with a lobe thrown back to the light rather than mirrored */
     double seconds;
 } weft_compress_report;
 

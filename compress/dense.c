@@ -57,7 +57,6 @@ static void fit_row(run *job, const grid *from, int row, weft_texel_counts *coun
 {
     size_t images = (size_t)job->source->layout->image_count;
     weft_texel_fitter *fitter = job->fitter[omp_get_thread_num()];
-    weft_texel_fitter_begin_row(fitter);
     for (int x = 0; x < from->width; x++) {
         size_t texel = (size_t)row * (size_t)from->width + (size_t)x;
         weft_texel_fit(fitter, job->material, from->level, from->x + x, from->y + row, from->sum + 3 * texel * images,
@@ -70,7 +69,7 @@ static void add_counts(weft_texel_counts *to, const weft_texel_counts *from)
     to->texels += from->texels;
     to->empty += from->empty;
     to->turned += from->turned;
-    to->cold += from->cold;
+    to->second_start += from->second_start;
     weft_error_sums_add(&to->sums, &from->sums);
 }
 

@@ -22,6 +22,7 @@ typedef struct weft_fit {
     weft_fit_lobe lobe[WEFT_MATERIAL_MAX_LOBES];
     weft_frame frame; /* of the texel */
     double residual;  /* weighted sum of squares; compare with weft_samples.energy */
+    int start;        /* which start it came from: 0 mirror, 1 retro-reflective */
     int passes;       /* over the samples, coarse ones counted as a quarter (rounded up) */
 } weft_fit;
 
@@ -55,7 +56,8 @@ int weft_fit_affordable_lobes(const weft_bundle *bundle, const weft_samples *sam
 void weft_fit_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                      const weft_fit_options *options, weft_fit_workspace *workspace, weft_fit *fit, double *table);
 
-/* From nothing: tries several starts on the coarse lights, refines the best one. `frame` is the frame to begin with. */
+/* From nothing: tries two starts on the coarse lights for a few passes, refines the better one. `frame` is the frame to
+ * begin with. */
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table);
 

@@ -330,7 +330,7 @@ static int compare_floats(const void *left, const void *right)
     return (*a > *b) - (*a < *b);
 }
 
-/* Relative RMSE plus median relative error of the left-out image; `relative` [texel * 3] is scratch. */
+/* Relative RMSE plus median relative error of the left-out image; `relative` [texel][3] is scratch. */
 static double prediction_error(const search *run, int setting, float *relative)
 {
     const weft_sparse_field *field = run->field;
@@ -373,13 +373,15 @@ static weft_code cross_validate(const weft_sparse_field *field, weft_sparse_sett
     weft_sparse_setting setting[MAX_SETTINGS];
     double score[MAX_SETTINGS] = {0};
     search run = {.field = field, .setting = setting, .setting_count = list_settings(setting)};
-    float *relative = malloc(3 * (size_t)texel_count(field) * sizeof *relative);
-    weft_code code = relative ? allocate_search(&run, error) : weft_fail_memory(error, "cross-validation", 0);
+    size_t errors = 3 * (size_t)texel_count(field), bytes = errors * (size_t)run.setting_count * sizeof(float);
+    float *relative = malloc(bytes);
+    weft_code code = relative ? allocate_search(&run, error) : weft_fail_memory(error, "cross-validation", bytes);
     for (int fold = 0; code == WEFT_OK && fold < field->image_count; fold++) {
         run.left_out = fold;
         search_shapes(&run);
+#pragma omp parallel for schedule(dynamic)
         for (int s = 0; s < run.setting_count; s++)
-            score[s] += prediction_error(&run, s, relative);
+            score[s] += prediction_error(&run, s, relative + (size_t)s * errors);
     }
     int chosen = 0;
     for (int s = 1; s < run.setting_count; s++)

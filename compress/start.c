@@ -8,20 +8,17 @@ static const weft_fit_lobe mirror_start = {.c = {-0.95, -0.9, 1}, .log_exponent 
 static const weft_fit_lobe retro_start = {.c = {0.9, 0.95, 1}, .log_exponent = 2.0794};
 static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent = 0.4055};
 
-enum { START_COUNT = 3 };
+enum { START_COUNT = 2, START_PASSES = 4 };
 
-/* Start number `index`: the mirror and a broad lobe; the same thrown back to the light; both directions. */
+/* Start number `index`: the mirror and a broad lobe, or the same thrown back to the light. */
 static void place_start(int index, int lobe_count, weft_fit *fit)
 {
     const weft_fit_lobe *order[START_COUNT][WEFT_GRAM_LOBES] = {{&mirror_start, &broad_start, &retro_start},
-                                                                {&retro_start, &broad_start, &mirror_start},
-                                                                {&broad_start, &retro_start, &mirror_start}};
+                                                                {&retro_start, &broad_start, &mirror_start}};
+    fit->start = index;
     fit->lobe_count = lobe_count;
-    for (int i = 0; i < lobe_count; i++) {
+    for (int i = 0; i < lobe_count; i++)
         fit->lobe[i] = *order[index][i];
-        if (index == 2 && i == 2)
-            fit->lobe[i].log_exponent += 1.4;
-    }
 }
 
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
@@ -34,7 +31,7 @@ void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int c
     weft_fit best = {.residual = INFINITY};
     weft_fit_options coarse = *options;
     coarse.coarse = true;
-    coarse.tolerance = fmax(options->tolerance, 1e-3);
+    coarse.max_passes = START_PASSES;
     int passes = 0;
     for (int start = 0; start < (options->lobe_count ? START_COUNT : 1); start++) {
         now->fit = (weft_fit){.frame = *frame};

@@ -6,10 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A frame is turned only where that takes at least 2 % off the squared error; and a start from the left neighbour that
- * ends this much worse than the neighbour did is checked against cold starts. */
+/* A frame is turned only where that takes at least 2 % off the squared error. */
 #define WORTHWHILE 0.98
-#define SUSPICIOUS 1.25
 
 /* A fit of the grey samples and its T. */
 typedef struct grey_fit {
@@ -22,11 +20,9 @@ struct weft_texel_fitter {
     weft_bundle bundle;
     weft_samples samples;
     weft_fit_workspace *workspace;
-    grey_fit upright, turned, fresh; /* of this texel, then of the left neighbour; room for cold starts */
-    double *table;                   /* of one channel */
+    grey_fit upright, turned;
+    double *table; /* of one channel */
     uint8_t *code;
-    bool has_neighbour;
-    double neighbour_residual; /* relative, of the upright fit */
     weft_error_tally *tally;
 };
 
@@ -46,18 +42,17 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
     if (code == WEFT_OK)
         code = weft_error_tally_create(&fitter->tally, error);
     if (code == WEFT_OK) {
-        fitter->upright.table = calloc(4 * views, sizeof *fitter->table);
+        fitter->upright.table = calloc(3 * views, sizeof *fitter->table);
         fitter->code = calloc(views, 1);
         if (!fitter->upright.table || !fitter->code)
-            code = weft_fail_memory(error, "view tables of a texel", 4 * views * sizeof *fitter->table);
+            code = weft_fail_memory(error, "view tables of a texel", 3 * views * sizeof *fitter->table);
     }
     if (code != WEFT_OK) {
         weft_texel_fitter_free(fitter);
         return code;
     }
     fitter->turned.table = fitter->upright.table + views;
-    fitter->fresh.table = fitter->upright.table + 2 * views;
-    fitter->table = fitter->upright.table + 3 * views;
+    fitter->table = fitter->upright.table + 2 * views;
     *result = fitter;
     return WEFT_OK;
 }
@@ -80,11 +75,6 @@ weft_error_tally *weft_texel_fitter_tally(weft_texel_fitter *fitter)
     return fitter->tally;
 }
 
-void weft_texel_fitter_begin_row(weft_texel_fitter *fitter)
-{
-    fitter->has_neighbour = false;
-}
-
 static int smaller(int a, int b)
 {
     return a < b ? a : b;
@@ -102,80 +92,26 @@ int weft_texel_group(const weft_dataset_layout *layout, int level, int x, int y,
 
 /* ---- The frame, by fits of the grey samples on a quarter of the lights ---- */
 
-static void copy_grey(const weft_texel_fitter *fitter, const grey_fit *from, grey_fit *to)
-{
-    to->fit = from->fit;
-    memcpy(to->table, from->table, (size_t)fitter->bundle.view_count * sizeof *to->table);
-}
-
-static weft_frame upright_frame(void)
-{
-    return weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
-}
-
-static void fit_cold(weft_texel_fitter *fitter, const weft_fit_options *options, grey_fit *grey)
-{
-    weft_frame frame = upright_frame();
-    weft_fit_cold(&fitter->bundle, &fitter->samples, WEFT_GREY, options, fitter->workspace, &frame, &grey->fit,
-                  grey->table);
-}
-
-static void fit_warm(weft_texel_fitter *fitter, const weft_fit_options *options, grey_fit *grey)
-{
-    weft_fit_refine(&fitter->bundle, &fitter->samples, WEFT_GREY, options, fitter->workspace, &grey->fit, grey->table);
-}
-
-/* The upright fit; true where cold starts were used. */
-static bool fit_upright(weft_texel_fitter *fitter, const weft_fit_options *options)
-{
-    double energy = fitter->samples.energy[WEFT_GREY];
-    bool warm = fitter->has_neighbour && fitter->upright.fit.lobe_count == options->lobe_count;
-    if (warm) {
-        fit_warm(fitter, options, &fitter->upright);
-        warm = fitter->upright.fit.residual <= SUSPICIOUS * fitter->neighbour_residual * energy;
-    } else {
-        fitter->upright.fit.residual = INFINITY;
-        fitter->has_neighbour = false;
-    }
-    if (!warm) {
-        fit_cold(fitter, options, &fitter->fresh);
-        if (fitter->fresh.fit.residual < fitter->upright.fit.residual)
-            copy_grey(fitter, &fitter->fresh, &fitter->upright);
-    }
-    fitter->neighbour_residual = energy > 0 ? fitter->upright.fit.residual / energy : 0;
-    return !warm;
-}
-
-/* Lets the frame turn, from the neighbour's and, after a cold start or where that fails, from the upright one. */
-static void fit_turned(weft_texel_fitter *fitter, const weft_fit_options *options, bool cold)
-{
-    weft_fit_options turning = *options;
-    turning.fit_frame = true;
-    double upright = fitter->upright.fit.residual, turned = INFINITY;
-    if (fitter->has_neighbour) {
-        fit_warm(fitter, &turning, &fitter->turned);
-        turned = fitter->turned.fit.residual;
-    }
-    if (cold || !(turned <= upright)) {
-        copy_grey(fitter, &fitter->upright, &fitter->fresh);
-        fit_warm(fitter, &turning, &fitter->fresh);
-        if (fitter->fresh.fit.residual < turned)
-            copy_grey(fitter, &fitter->fresh, &fitter->turned);
-    }
-}
-
-/* Which of the two fits the channels start from. */
+/* Which of two fits the channels start from: in the frame of the surface, or in one that was free to turn. */
 static const grey_fit *choose_frame(weft_texel_fitter *fitter, const weft_fit_options *options,
                                     weft_texel_counts *counts)
 {
-    bool cold = fit_upright(fitter, options);
-    counts->cold += cold;
+    grey_fit *upright = &fitter->upright, *turned = &fitter->turned;
+    weft_frame frame = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
+    weft_fit_cold(&fitter->bundle, &fitter->samples, WEFT_GREY, options, fitter->workspace, &frame, &upright->fit,
+                  upright->table);
+    counts->second_start += upright->fit.start > 0;
     if (options->lobe_count == 0)
-        return &fitter->upright;
-    fit_turned(fitter, options, cold);
-    bool turn = fitter->turned.fit.residual < WORTHWHILE * fitter->upright.fit.residual;
+        return upright;
+    weft_fit_options turning = *options;
+    turning.fit_frame = true;
+    turned->fit = upright->fit;
+    memcpy(turned->table, upright->table, (size_t)fitter->bundle.view_count * sizeof *turned->table);
+    weft_fit_refine(&fitter->bundle, &fitter->samples, WEFT_GREY, &turning, fitter->workspace, &turned->fit,
+                    turned->table);
+    bool turn = turned->fit.residual < WORTHWHILE * upright->fit.residual;
     counts->turned += turn;
-    return turn ? &fitter->turned : &fitter->upright;
+    return turn ? turned : upright;
 }
 
 /* ---- Storing and measuring ---- */
@@ -251,7 +187,6 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
     const grey_fit *start = choose_frame(fitter, &coarse, counts);
     counts->texels++;
     counts->empty += fitter->samples.valid_count == 0;
-    fitter->has_neighbour = fitter->samples.energy[WEFT_GREY] > 0;
     size_t texel = (size_t)y * (size_t)material->level[level].width + (size_t)x;
     weft_frame frame = weft_pack_frame(&start->fit.frame, material->level[level].frame + 3 * texel);
     for (int channel = 0; channel < WEFT_CHANNELS; channel++)

@@ -6,7 +6,8 @@
 #include "compress/measure.h"
 #include "compress/pack.h"
 
-/* What a thread needs for that; rows of texels go through it from left to right, each starting from its neighbour. */
+/* What a thread needs for that. Texels are fitted independently: starting from the left neighbour saved a tenth of the
+ * time on smooth materials but left 8 % more median error on real cloth, whose neighbours differ. */
 typedef struct weft_texel_fitter weft_texel_fitter;
 
 /* Where the samples are and what they mean. */
@@ -16,9 +17,9 @@ typedef struct weft_texel_source {
     weft_fit_options options;
 } weft_texel_source;
 
-/* What happened to the texels of a row. */
+/* What happened to some texels. */
 typedef struct weft_texel_counts {
-    long texels, empty, turned, cold;
+    long texels, empty, turned, second_start;
     weft_error_sums sums;
 } weft_texel_counts;
 
@@ -28,9 +29,6 @@ void weft_texel_fitter_free(weft_texel_fitter *fitter);
 
 /* Histogram of the errors of all texels so far; the caller merges it away. */
 weft_error_tally *weft_texel_fitter_tally(weft_texel_fitter *fitter);
-
-/* Forgets the left neighbour. */
-void weft_texel_fitter_begin_row(weft_texel_fitter *fitter);
 
 /* Fits texel (x, y) of a level from the sums of samples over its group of texels (see weft_samples_gather) and writes
  * it into the material. Thread-safe for distinct texels and fitters. */
