@@ -1,7 +1,7 @@
 #include "capture/capture.h"
+#include "cli/arguments.h"
 #include "cli/command.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,17 +32,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static unsigned long long whole_argument(const char *text, const char *option, unsigned long long low,
-                                         unsigned long long high, struct argp_state *state)
-{
-    char *end;
-    errno = 0;
-    unsigned long long value = strtoull(text, &end, 10);
-    if (errno || end == text || *end || *text == '-' || value < low || value > high)
-        argp_error(state, "%s needs a whole number from %llu to %llu, not '%s'", option, low, high, text);
-    return value;
-}
-
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     capture_command *command = state->input;
@@ -64,16 +53,16 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         request->plan = argument;
         return 0;
     case KEY_SEED:
-        request->seed = whole_argument(argument, "--seed", 0, INT64_MAX, state);
+        request->seed = parse_whole("seed", argument, 0, INT64_MAX, state);
         return 0;
     case KEY_TRUTH:
         request->truth = argument;
         return 0;
     case KEY_TRUTH_SIZE:
-        request->truth_size = (int)whole_argument(argument, "--truth-size", 1, 4096, state);
+        request->truth_size = (int)parse_whole("truth-size", argument, 1, 4096, state);
         return 0;
     case KEY_TRUTH_IMAGES:
-        request->truth_images = (int)whole_argument(argument, "--truth-images", 1, 1000000, state);
+        request->truth_images = (int)parse_whole("truth-images", argument, 1, 1000000, state);
         return 0;
     case KEY_DRY_RUN:
         command->dry_run = true;

@@ -1,6 +1,6 @@
 #include "cli/command.h"
+#include "cli/arguments.h"
 
-#include <errno.h>
 #include <jansson.h>
 #include <limits.h>
 #include <omp.h>
@@ -34,15 +34,9 @@ static error_t parse_common(int key, char *argument, struct argp_state *state)
     case KEY_JSON:
         options->json = true;
         return 0;
-    case 't': {
-        char *end;
-        errno = 0;
-        long threads = strtol(argument, &end, 10);
-        if (errno || *end || threads < 1 || threads > 4096)
-            argp_error(state, "--threads needs a number from 1 to 4096, not '%s'", argument);
-        options->threads = (int)threads;
+    case 't':
+        options->threads = (int)parse_whole("threads", argument, 1, 4096, state);
         return 0;
-    }
     default:
         return ARGP_ERR_UNKNOWN;
     }

@@ -1,6 +1,6 @@
 #include "study/compare.h"
+#include "cli/arguments.h"
 #include "cli/command.h"
-#include "cli/scene_options.h"
 
 #include <stdio.h>
 

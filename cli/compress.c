@@ -1,4 +1,5 @@
 #include "compress/compress.h"
+#include "cli/arguments.h"
 #include "cli/command.h"
 
 #include <stdio.h>
@@ -24,29 +25,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static double number_argument(const char *text, const char *option, double low, double high, struct argp_state *state)
-{
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end || !(value >= low && value <= high))
-        argp_error(state, "%s needs a number from %g to %g, not '%s'", option, low, high, text);
-    return value;
-}
-
-static int lobes_argument(const char *text, struct argp_state *state)
-{
-    if (strlen(text) != 1 || text[0] < '0' || text[0] > '3')
-        argp_error(state, "--lobes needs 0, 1, 2 or 3, not '%s'", text);
-    return text[0] - '0';
-}
-
-static bool switch_argument(const char *text, const char *option, struct argp_state *state)
-{
-    if (strcmp(text, "on") != 0 && strcmp(text, "off") != 0)
-        argp_error(state, "%s is on or off, not '%s'", option, text);
-    return strcmp(text, "on") == 0;
-}
-
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     compress_command *command = state->input;
@@ -59,16 +37,16 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         command->output = argument;
         return 0;
     case KEY_LOBES:
-        options->lobe_count = lobes_argument(argument, state);
+        options->lobe_count = (int)parse_whole("lobes", argument, 0, WEFT_MATERIAL_MAX_LOBES, state);
         return 0;
     case KEY_TABLE:
-        options->table = switch_argument(argument, "--table", state);
+        options->table = parse_switch("table", argument, state);
         return 0;
     case KEY_LEVELS:
-        options->levels = switch_argument(argument, "--levels", state);
+        options->levels = parse_switch("levels", argument, state);
         return 0;
     case KEY_MAX_EXPONENT:
-        options->max_exponent = number_argument(argument, "--max-exponent", 1, 60000, state);
+        options->max_exponent = parse_number("max-exponent", argument, 1, 60000, state);
         return 0;
     case ARGP_KEY_ARG:
         if (command->input)

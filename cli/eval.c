@@ -1,4 +1,5 @@
 #include "btf/atomic_file.h"
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "study/model.h"
 
@@ -48,15 +49,6 @@ static void add_parameter(eval_command *command, char *argument, struct argp_sta
     command->parameter[command->options.parameter_count++] = (weft_weave_parameter){argument, colour};
 }
 
-static uint64_t seed_argument(const char *text, struct argp_state *state)
-{
-    char *end;
-    unsigned long long seed = strtoull(text, &end, 10);
-    if (end == text || *end || *text == '-' || seed == 0)
-        argp_error(state, "--noise needs a positive whole number, not '%s'", text);
-    return seed;
-}
-
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     eval_command *command = state->input;
@@ -71,7 +63,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         command->output = argument;
         return 0;
     case KEY_NOISE:
-        command->options.noise_seed = seed_argument(argument, state);
+        command->options.noise_seed = parse_whole("noise", argument, 1, UINT64_MAX, state);
         return 0;
     case 's':
         add_parameter(command, argument, state);

@@ -1,4 +1,5 @@
 #include "import/import.h"
+#include "cli/arguments.h"
 #include "cli/command.h"
 
 #include <stdio.h>
@@ -24,16 +25,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-/* A finite number in [low, high], or a usage error. */
-static double number_argument(const char *text, const char *option, double low, double high, struct argp_state *state)
-{
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end || !(value >= low && value <= high))
-        argp_error(state, "%s needs a number from %g to %g, not '%s'", option, low, high, text);
-    return value;
-}
-
 static weft_values values_argument(const char *text, struct argp_state *state)
 {
     if (strcmp(text, "reflectance_cosine") != 0 && strcmp(text, "reflectance") != 0)
@@ -53,13 +44,13 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         command->output = argument;
         return 0;
     case 's':
-        options->width = (int)number_argument(argument, "--size", 1, 65536, state);
+        options->width = (int)parse_whole("size", argument, 1, 65536, state);
         return 0;
     case KEY_PITCH:
-        options->texel_pitch_mm = number_argument(argument, "--pitch", 1e-6, 1e6, state);
+        options->texel_pitch_mm = parse_number("pitch", argument, 1e-6, 1e6, state);
         return 0;
     case KEY_SATURATED:
-        options->saturated_at = number_argument(argument, "--saturated", 1, 256, state) / 255;
+        options->saturated_at = parse_number("saturated", argument, 1, 256, state) / 255;
         return 0;
     case KEY_VALUES:
         options->values = values_argument(argument, state);

@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/scene_options.h"
 
 #include "player/context.h"
@@ -29,7 +30,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         state->child_inputs[0] = &command->scene;
         return 0;
     case KEY_FRAMES:
-        command->frame_limit = parse_count("frames", argument, 1, INT_MAX, state);
+        command->frame_limit = (int)parse_whole("frames", argument, 1, INT_MAX, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

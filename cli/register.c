@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "registration/registration.h"
 #include "registration/report_tables.h"
@@ -23,14 +24,6 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static void parse_size(const char *text, register_command *command, struct argp_state *state)
-{
-    int length = 0;
-    if (sscanf(text, "%dx%d%n", &command->width, &command->height, &length) != 2 || text[length] ||
-        command->width < 1 || command->height < 1 || command->width > LARGEST_SIZE || command->height > LARGEST_SIZE)
-        argp_error(state, "--size needs WIDTHxHEIGHT, such as 64x64, up to %d, not '%s'", LARGEST_SIZE, text);
-}
-
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     register_command *command = state->input;
@@ -42,7 +35,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         command->output = argument;
         return 0;
     case 's':
-        parse_size(argument, command, state);
+        parse_size("size", argument, LARGEST_SIZE, &command->width, &command->height, state);
         return 0;
     case KEY_REPORT:
         command->report_folder = argument;

@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/scene_options.h"
 
 #include "player/context.h"
@@ -27,7 +28,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         command->output = argument;
         return 0;
     case KEY_SAMPLES:
-        command->samples = parse_count("samples", argument, 1, 64, state);
+        command->samples = (int)parse_whole("samples", argument, 1, 64, state);
         return 0;
     case ARGP_KEY_END:
         if (!command->output)

@@ -1,9 +1,9 @@
 #include "cli/scene_options.h"
+#include "cli/arguments.h"
 
 #include "btf/colour.h"
 #include "capture/virtual_cloth.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +23,8 @@ enum {
     KEY_SIZE,
     KEY_NO_LABELS
 };
+
+enum { LARGEST_PICTURE = 16384 };
 
 static const struct argp_option option_table[] = {
     {"raw", KEY_RAW, "NAME.btf.h5", 0, "Show this dataset in mode raw", 1},
@@ -51,49 +53,6 @@ void scene_options_init(scene_options *options)
 
 /* ---- Parsing ---- */
 
-void parse_numbers(const char *option, const char *text, int count, double *numbers, struct argp_state *state)
-{
-    const char *at = text;
-    for (int i = 0; i < count; i++) {
-        char *end;
-        numbers[i] = strtod(at, &end);
-        if (end == at || !isfinite(numbers[i]) || *end != (i + 1 < count ? ',' : '\0'))
-            argp_error(state, "--%s needs %d number%s, not '%s'", option, count, count > 1 ? "s with commas" : "",
-                       text);
-        at = end + 1;
-    }
-}
-
-int parse_count(const char *option, const char *text, int low, int high, struct argp_state *state)
-{
-    char *end;
-    errno = 0;
-    long number = strtol(text, &end, 10);
-    if (errno || end == text || *end || number < low || number > high)
-        argp_error(state, "--%s needs a whole number from %d to %d, not '%s'", option, low, high, text);
-    return (int)number;
-}
-
-void parse_size(const char *text, int *width, int *height, struct argp_state *state)
-{
-    char *end;
-    errno = 0;
-    long w = strtol(text, &end, 10), h = *end == 'x' ? strtol(end + 1, &end, 10) : 0;
-    if (errno || *end || w < 1 || h < 1 || w > 16384 || h > 16384)
-        argp_error(state, "--size needs WIDTHxHEIGHT up to 16384x16384, not '%s'", text);
-    *width = (int)w;
-    *height = (int)h;
-}
-
-static double parse_positive(const char *option, const char *text, struct argp_state *state)
-{
-    double number;
-    parse_numbers(option, text, 1, &number, state);
-    if (!(number > 0))
-        argp_error(state, "--%s needs a positive number, not '%s'", option, text);
-    return number;
-}
-
 static void parse_level(weft_scene *scene, const char *text, struct argp_state *state)
 {
     if (strcmp(text, "auto") == 0) {
@@ -102,7 +61,7 @@ static void parse_level(weft_scene *scene, const char *text, struct argp_state *
         scene->level_choice = WEFT_LEVEL_NONE;
     } else {
         scene->level_choice = WEFT_LEVEL_FIXED;
-        parse_numbers("level", text, 1, &scene->level, state);
+        scene->level = parse_number("level", text, 0, WEFT_MATERIAL_MAX_LEVELS, state);
     }
 }
 
@@ -170,7 +129,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         o->mesh = argument;
         return 0;
     case KEY_REPEAT:
-        o->repeat = parse_positive("repeat", argument, state);
+        o->repeat = parse_number("repeat", argument, 1e-3, 1e6, state);
         return 0;
     case KEY_LIGHT:
         parse_light(&o->scene.light, argument, state);
@@ -183,10 +142,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         parse_level(&o->scene, argument, state);
         return 0;
     case KEY_EXPOSURE:
-        o->scene.exposure = parse_positive("exposure", argument, state);
+        o->scene.exposure = parse_number("exposure", argument, 1e-9, 1e9, state);
         return 0;
     case KEY_SIZE:
-        parse_size(argument, &o->width, &o->height, state);
+        parse_size("size", argument, LARGEST_PICTURE, &o->width, &o->height, state);
         return 0;
     case KEY_NO_LABELS:
         o->scene.labels = false;

@@ -22,15 +22,6 @@ extern const struct argp scene_argp;
 /* To be called from ARGP_KEY_INIT: defaults. */
 void scene_options_init(scene_options *options);
 
-/* "X,Y" or "X,Y,Z" as `count` finite numbers; wrong usage does not return. */
-void parse_numbers(const char *option, const char *text, int count, double *numbers, struct argp_state *state);
-
-/* A whole number in low..high; wrong usage does not return. */
-int parse_count(const char *option, const char *text, int low, int high, struct argp_state *state);
-
-/* "WxH" in pixels; wrong usage does not return. */
-void parse_size(const char *text, int *width, int *height, struct argp_state *state);
-
 /* Loads the mesh and every model that is named into the player, and chooses the panes. Notes are told to the user.
  * Errors: those of reading. */
 weft_code scene_load(scene_options *options, weft_player *player, weft_error *error);

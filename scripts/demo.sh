@@ -31,7 +31,7 @@ step "5/5 Compare them with numbers"
 
 if [ -d "$shared/cards-blue" ]; then
     step "And real photographs: nine flash pictures of a card"
-    "$weft" import "$shared/cards-blue" --size 256x256 -o "$out/cards.btf.h5"
+    "$weft" import "$shared/cards-blue" --size 256 -o "$out/cards.btf.h5"
     "$weft" compress "$out/cards.btf.h5" -o "$out/cards.weft"
     "$weft" render "$out/cards.weft" --mesh plane --repeat 1 --light 35,120 --size 800x800 -o "$out/cards-moved-light.png"
     "$weft" compare "$out/cards.btf.h5" "$out/cards.weft" -o "$out/cards-compare"

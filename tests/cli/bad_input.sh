@@ -116,7 +116,7 @@ expect_error 1 typo.wv capture --sample typo.wv --plan plan.csv -o typo
 printf 'theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n0,0,0,0\n0,zero,0,0\n' >bad.csv
 expect_error 1 bad.csv capture --sample "$weave" --plan bad.csv -o bad
 expect_error 2 "" capture
-expect_error 2 "" compress good.btf.h5 -o x.weft --lobes 7
+expect_error 2 lobes compress good.btf.h5 -o x.weft --lobes 7
 status=0
 "$weft" nonsense 2>err.log || status=$?
 [ "$status" = 2 ] || fail "an unknown command exits with $status"
