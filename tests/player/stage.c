@@ -1,5 +1,6 @@
 #include "stage.h"
 
+#include "../support/keep_modules.h"
 #include "btf/colour.h"
 
 #include <math.h>
@@ -20,6 +21,7 @@ int stage_open(void **state)
         printf("skipped: %s\n", error.message);
         exit(77);
     }
+    keep_modules_loaded();
     expect_ok(weft_player_create(&s->player, &error), &error);
     weft_mesh mesh;
     expect_ok(weft_mesh_drape(&mesh, &error), &error);

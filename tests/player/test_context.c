@@ -1,4 +1,5 @@
 /* What OpenGL must not notice: programs that only one profile takes, objects left behind, errors passed over. */
+#include "../support/keep_modules.h"
 #include "stage.h"
 
 #include <stdio.h>
@@ -14,6 +15,7 @@ static weft_headless *open_context(weft_gl_profile profile)
         printf("skipped: %s\n", error.message);
         exit(77);
     }
+    keep_modules_loaded();
     return headless;
 }
 
