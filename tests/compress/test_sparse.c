@@ -193,7 +193,7 @@ static void real_flash_photographs_predict_the_one_left_out(void **state)
     weft_import_options options = weft_import_defaults();
     weft_import_report report;
     weft_error error = {0};
-    options.width = 64;
+    options.width = 32;
     assert_int_equal(weft_import(WEFT_SHARED "/real/cards-blue", "cards.btf.h5", &options, NULL, &report, &error),
                      WEFT_OK);
     weft_import_report_free(&report);
@@ -207,7 +207,7 @@ static void real_flash_photographs_predict_the_one_left_out(void **state)
         median += own / 9;
         weft_material_free(&material);
     }
-    print_message("64 x 64, leave one out: relative RMSE %.3f, median relative error %.3f\n", rmse, median);
+    print_message("32 x 32, leave one out: relative RMSE %.3f, median relative error %.3f\n", rmse, median);
     assert_true(rmse < 0.45);
     assert_true(median < 0.35);
 }
