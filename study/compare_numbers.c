@@ -34,8 +34,6 @@ void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const
         print_tile(page, "median relative error, photographs left out", "%.4f",
                    comparison->left_out.mean_median_relative);
     }
-    if (comparison->scenes.drawn)
-        print_tile(page, "a frame of the material", "%.1f ms", comparison->scenes.frame_ms[WEFT_MODE_COMPRESSED]);
     fputs("</div>\n", page->html);
 }
 
@@ -137,8 +135,10 @@ static void print_times(weft_page *page, const weft_scenes *scenes)
             weft_page_fact(page, weft_mode_name((weft_mode)mode), "%.2f ms a frame", scenes->frame_ms[mode]);
     }
     fputs("</table>\n", page->html);
-    fprintf(page->html, "<p class=\"note\">Frames of %d \u00d7 %d pixels of the first scene, drawn by ", scenes->width,
-            scenes->height);
+    fprintf(
+        page->html,
+        "<p class=\"note\">Frames of %d \u00d7 %d pixels of the first scene, timed while this page was made, drawn by ",
+        scenes->width, scenes->height);
     weft_page_text(page, scenes->renderer);
     fputs(".</p>\n", page->html);
 }

@@ -4,13 +4,16 @@
 
 #include <stdio.h>
 
+/* Five pictures side by side fill the page; a click shows them as large as they are. */
+static const int shown_width = 224;
+
 /* Encodes, writes and frees one picture of a row. */
 static weft_code put_picture(weft_page *page, int scene, const char *name, weft_image *picture, const char *caption,
                              weft_error *error)
 {
     char file[96];
     snprintf(file, sizeof file, "scene-%d-%s", scene, name);
-    weft_code code = weft_page_picture(page, file, picture, picture->width * 3 / 4, caption, error);
+    weft_code code = weft_page_picture(page, file, picture, shown_width, caption, error);
     weft_image_free(picture);
     return code;
 }

@@ -71,9 +71,9 @@ weft_code weft_page_picture(weft_page *page, const char *name, const weft_image 
     weft_code code = weft_image_write(path, image, caption, error);
     free(path);
     WEFT_TRY(code);
-    fprintf(page->html, "<figure><img src=\"%s.png\" width=\"%d\" alt=\"", name, width);
+    fprintf(page->html, "<figure><a href=\"%s.png\"><img src=\"%s.png\" width=\"%d\" alt=\"", name, name, width);
     weft_page_text(page, caption);
-    fputs("\"><figcaption>", page->html);
+    fputs("\"></a><figcaption>", page->html);
     weft_page_text(page, caption);
     fputs("</figcaption></figure>\n", page->html);
     return WEFT_OK;
