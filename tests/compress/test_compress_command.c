@@ -1,0 +1,121 @@
+/* weft compress as a user runs it. */
+#include "tests/btf/cmocka_all.h"
+
+#include "btf/material.h"
+#include "tests/support/synthetic_dataset.h"
+#include "tests/support/synthetic_texel.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int run(const char *before, const char *arguments, char said[8192])
+{
+    char command[1024];
+    snprintf(command, sizeof command, "%s " WEFT_PROGRAM " compress %s 2>&1", before, arguments);
+    FILE *pipe = popen(command, "r");
+    assert_non_null(pipe);
+    size_t size = fread(said, 1, 8191, pipe);
+    said[size] = 0;
+    int status = pclose(pipe);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static void expect(const char *arguments, int code, const char *what)
+{
+    char said[8192];
+    int got = run("", arguments, said);
+    if (got != code || !strstr(said, what))
+        fail_msg("weft compress %s: %d, '%s', not %d, '%s'", arguments, got, said, code, what);
+}
+
+static void fill_yarn(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    (void)mask;
+    synthetic_texel(layout, SYNTHETIC_YARN, (uint64_t)(8 * y + x), 0.01, samples);
+}
+
+static int write_dataset(void **state)
+{
+    (void)state;
+    weft_dataset_layout layout;
+    assert_int_equal(synthetic_layout(3, 2, &layout, NULL), WEFT_OK);
+    synthetic_dataset_write("command.btf.h5", &layout, fill_yarn);
+    weft_dataset_layout_free(&layout);
+    return 0;
+}
+
+static void a_dataset_becomes_a_material_with_a_table_of_errors(void **state)
+{
+    (void)state;
+    char said[8192];
+    assert_int_equal(run("", "command.btf.h5 -o command.weft --lobes 1", said), 0);
+    assert_non_null(strstr(said, "median rel."));
+    assert_non_null(strstr(said, "3 x 2"));
+    assert_non_null(strstr(said, "fitted in"));
+    weft_material material;
+    assert_int_equal(weft_material_read("command.weft", &material, NULL), WEFT_OK);
+    assert_int_equal(material.lobe_count, 1);
+    assert_int_equal(material.view_count, 81);
+    assert_int_equal(material.level_count, 3);
+    assert_true(material.level[0].error.relative_rmse > 0);
+    assert_non_null(strstr(material.metadata, "lobes and view table"));
+    weft_material_free(&material);
+    expect("command.btf.h5 -o command.weft --table off --levels off --lobes 0 --quiet", 0, "");
+    assert_int_equal(weft_material_read("command.weft", &material, NULL), WEFT_OK);
+    assert_int_equal(material.view_count, 0);
+    assert_int_equal(material.level_count, 1);
+    weft_material_free(&material);
+}
+
+static void wrong_usage_is_2(void **state)
+{
+    (void)state;
+    expect("command.btf.h5", 2, "-o NAME.weft");
+    expect("command.btf.h5 -o a.weft --lobes 4", 2, "'4'");
+    expect("command.btf.h5 -o a.weft --table maybe", 2, "'maybe'");
+    expect("command.btf.h5 -o a.weft --max-exponent 0", 2, "'0'");
+    expect("command.btf.h5 other.btf.h5 -o a.weft", 2, "other.btf.h5");
+    expect("--help", 0, "Example: weft compress");
+}
+
+static void bad_input_is_1_and_leaves_nothing(void **state)
+{
+    (void)state;
+    expect("none.btf.h5 -o none.weft", 1, "none.btf.h5");
+    assert_int_equal(symlink("/dev/null", "null.btf.h5") == 0 || access("null.btf.h5", F_OK) == 0, 1);
+    expect("null.btf.h5 -o none.weft", 1, "null.btf.h5");
+    int whole = open("command.btf.h5", O_RDONLY), cut = open("cut.btf.h5", O_RDWR | O_CREAT | O_TRUNC, 0644);
+    char bytes[65536];
+    ssize_t size = read(whole, bytes, sizeof bytes);
+    assert_int_equal(write(cut, bytes, (size_t)size), size);
+    close(whole);
+    close(cut);
+    expect("cut.btf.h5 -o none.weft", 1, "cut.btf.h5");
+    assert_int_not_equal(access("none.weft", F_OK), 0);
+}
+
+static void a_full_disk_is_3_and_leaves_nothing(void **state)
+{
+    (void)state;
+    char said[8192];
+    unlink("full.weft");
+    assert_int_equal(run("ulimit -f 1; trap '' XFSZ;", "command.btf.h5 -o full.weft", said), 3);
+    assert_int_not_equal(access("full.weft", F_OK), 0);
+    expect("command.btf.h5 -o nowhere/full.weft", 3, "nowhere");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_dataset_becomes_a_material_with_a_table_of_errors),
+        cmocka_unit_test(wrong_usage_is_2),
+        cmocka_unit_test(bad_input_is_1_and_leaves_nothing),
+        cmocka_unit_test(a_full_disk_is_3_and_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, write_dataset, NULL);
+}
