@@ -109,8 +109,9 @@ typedef struct search {
     float *pooled; /* [texel] */
     int setting_count;
     const weft_sparse_setting *setting;
-    float *least;    /* [setting][texel] */
-    int16_t *choice; /* [setting][texel] */
+    float *least;     /* [setting][texel] */
+    int16_t *choice;  /* [setting][texel] */
+    candidate *shape; /* [setting][texel] the choices, smoothed */
 } search;
 
 static int texel_count(const weft_sparse_field *field)
@@ -128,9 +129,10 @@ static weft_code allocate_search(search *run, weft_error *error)
     run->pooled = malloc(EXPONENTS * texels * sizeof(float));
     run->least = malloc(choices * sizeof(float));
     run->choice = calloc(choices, sizeof *run->choice);
-    if (run->weight && run->grey && run->error && run->pooled && run->least && run->choice)
+    run->shape = malloc(choices * sizeof *run->shape);
+    if (run->weight && run->grey && run->error && run->pooled && run->least && run->choice && run->shape)
         return WEFT_OK;
-    return weft_fail_memory(error, "neighbourhood search", (2 * samples + 2 * choices) * sizeof(float));
+    return weft_fail_memory(error, "neighbourhood search", (2 * samples + 5 * choices) * sizeof(float));
 }
 
 static void free_search(search *run)
@@ -141,6 +143,7 @@ static void free_search(search *run)
     free(run->pooled);
     free(run->least);
     free(run->choice);
+    free(run->shape);
 }
 
 static void weigh_samples(search *run)
@@ -216,16 +219,16 @@ static void mean_line(const float *from, float *to, int count, size_t stride, in
 }
 
 /* Three box means each way are a Gaussian of a fortieth of the width, within which a finish rarely changes. */
-static void pool_errors(const search *run, float *error, float *pooled)
+static void pool(const search *run, float *map, float *scratch)
 {
     int width = run->field->width, height = run->field->height;
     double sigma = fmin(fmax(width, height) / 42.0, 12);
     int radius = (int)lround((sqrt(4 * sigma * sigma + 1) - 1) / 2);
     for (int round = 0; radius > 0 && round < 3; round++) {
         for (int y = 0; y < height; y++)
-            mean_line(error + (size_t)y * (size_t)width, pooled + (size_t)y * (size_t)width, width, 1, radius);
+            mean_line(map + (size_t)y * (size_t)width, scratch + (size_t)y * (size_t)width, width, 1, radius);
         for (int x = 0; x < width; x++)
-            mean_line(pooled + x, error + x, height, (size_t)width, radius);
+            mean_line(scratch + x, map + x, height, (size_t)width, radius);
     }
 }
 
@@ -255,7 +258,7 @@ static void try_slope(search *run, int slope)
 #pragma omp parallel for schedule(dynamic)
     for (int e = 0; e < EXPONENTS; e++) {
         size_t at = (size_t)e * (size_t)texels;
-        pool_errors(run, run->error + at, run->pooled + at);
+        pool(run, run->error + at, run->pooled + at);
     }
 #pragma omp parallel for schedule(static)
     for (int s = 0; s < run->setting_count; s++) {
@@ -274,6 +277,25 @@ static bool is_allowed(const search *run, int slope)
     return false;
 }
 
+/* Neighbourhoods that choose differently would meet at a visible edge, so slopes and the logarithm of the exponent are
+ * smoothed as widely as the errors were pooled. `scratch` [4][texel]. */
+static void smooth_choices(const search *run, int setting, float *scratch)
+{
+    size_t texels = (size_t)texel_count(run->field);
+    const int16_t *choice = run->choice + (size_t)setting * texels;
+    candidate *shape = run->shape + (size_t)setting * texels;
+    for (size_t texel = 0; texel < texels; texel++) {
+        candidate chosen = candidate_of_index(choice[texel]);
+        scratch[texel] = chosen.slope_x;
+        scratch[texels + texel] = chosen.slope_y;
+        scratch[2 * texels + texel] = log2f(chosen.exponent);
+    }
+    for (size_t k = 0; k < 3; k++)
+        pool(run, scratch + k * texels, scratch + 3 * texels);
+    for (size_t texel = 0; texel < texels; texel++)
+        shape[texel] = (candidate){scratch[texel], scratch[texels + texel], exp2f(scratch[2 * texels + texel])};
+}
+
 static void search_shapes(search *run)
 {
     size_t choices = (size_t)texel_count(run->field) * (size_t)run->setting_count;
@@ -284,6 +306,8 @@ static void search_shapes(search *run)
         if (is_allowed(run, slope))
             try_slope(run, slope);
     }
+    for (int s = 0; s < run->setting_count; s++)
+        smooth_choices(run, s, run->error);
 }
 
 /* The texel's own rho and amplitudes for the shape chosen under a setting. */
@@ -292,8 +316,7 @@ static weft_sparse_texel fit_texel(const search *run, int setting, size_t texel)
     const weft_sparse_field *field = run->field;
     size_t images = (size_t)field->image_count;
     bool lobe = run->setting[setting].largest_exponent > 0;
-    candidate shape =
-        lobe ? candidate_of_index(run->choice[(size_t)setting * (size_t)texel_count(field) + texel]) : (candidate){0};
+    candidate shape = lobe ? run->shape[(size_t)setting * (size_t)texel_count(field) + texel] : (candidate){0};
     products sums[3] = {{0}};
     for (size_t i = texel * images; i < (texel + 1) * images; i++) {
         if (!(run->weight[i] > 0))
