@@ -1,12 +1,13 @@
 /* A cloth laid over a round table, by position-based dynamics (Mueller et al. 2007) with many small steps of one
- * iteration each (Macklin et al. 2019). The result is refined with a bicubic B-spline for smooth highlights. */
+ * iteration each (Macklin et al. 2019). The result is refined with a bicubic B-spline for smooth highlights; finer than
+ * that, triangles would be smaller than the blocks of pixels that rasterisers shade. */
 #include "player/mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 57, STEPS = 1500, REFINE = 4, FINE = (SIDE - 1) * REFINE + 1 };
+enum { SIDE = 57, STEPS = 1500, REFINE = 2, FINE = (SIDE - 1) * REFINE + 1 };
 
 static const float spacing = 1.0f / (SIDE - 1);
 static const float step_s = 1.0f / 300;
