@@ -36,7 +36,7 @@ spoil
 for each in spoilt/tv030_pv090/*.tif; do # a view whose target cannot be seen
     convert -size 416x416 xc:gray -depth 16 -type TrueColor "$each"
 done
-expect_survives "(30, 90 degrees)"
+expect_survives tv030_pv090
 spoil
 find spoilt -name '*.tif' -delete
 expect_error 1 spoilt register spoilt --size 16x16 -o spoilt.btf.h5
