@@ -132,6 +132,7 @@ static void wrong_usage_is_exit_code_2(void **state)
     assert_int_equal(run("$WEFT render cloth.weft --light nan,0 -o a.png"), WEFT_BAD_USAGE);
     assert_int_equal(run("$WEFT render cloth.weft --camera 0,91,3 -o a.png"), WEFT_BAD_USAGE);
     assert_int_equal(run("$WEFT render cloth.weft --samples 65 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --level=-1 -o a.png"), WEFT_BAD_USAGE);
     assert_int_equal(run("$WEFT render cloth.weft --repeat 0 -o a.png"), WEFT_BAD_USAGE);
     assert_int_not_equal(access("a.png", F_OK), 0);
 }
