@@ -20,10 +20,13 @@ packages:
 	scripts/install-packages.sh
 
 # What a reviewer runs: formatting, static analysis, and every test under AddressSanitizer and UndefinedBehaviorSanitizer.
-check: packages
+check:
+	scripts/install-packages.sh check
 	scripts/check.sh
 
-bench: build
+bench:
+	scripts/install-packages.sh bench
+	$(MAKE) build
 	scripts/bench.sh $(build)
 
 clean:

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Installs the Debian packages that building, testing and the demo need. Says what is missing where it may not install.
+# Installs the Debian packages that building, testing and the demo need; with the argument "check" also those of `make check`, with
+# "bench" the solver that the benchmark of the fit is compared with. Says what is missing where it may not install.
 set -eu
 
 packages="
@@ -8,6 +9,10 @@ packages="
     libglfw3-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri libhidapi-dev
     libcmocka-dev python3 python3-h5py python3-numpy xvfb xauth xdotool imagemagick
 "
+case ${1-} in
+check) packages="$packages clang-format clang-tidy" ;;
+bench) packages="$packages libcminpack-dev" ;;
+esac
 
 missing=""
 for package in $packages; do
