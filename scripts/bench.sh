@@ -1,0 +1,37 @@
+#!/bin/sh
+# Builds and runs every bench, in turn (docs/benchmarks.md). Usage: bench.sh BUILD
+set -eu
+
+build=$(cd "${1:?usage: bench.sh BUILD}" && pwd)
+cd "$(dirname "$0")/.."
+demo='demo-out/gabardine'
+weave=assets/weaves/wool_gabardine.wv
+
+heading() {
+    printf '\n== %s\n' "$*"
+}
+
+cmake --build "$build" --target bench_reflectance bench_fit bench_player bench_aliasing bench_truth
+
+heading "Evaluations a second of the models, one core"
+"$build/bench/bench_reflectance"
+
+heading "Fits of a texel from nothing, one core"
+"$build/bench/bench_fit" 12
+
+heading "Aliasing of the drape seen from afar"
+"$build/bench/bench_aliasing"
+
+heading "Frame times of the player"
+if [ -e "$demo.weft" ] && [ -e "$demo.btf.h5" ]; then
+    "$build/bench/bench_player" "$demo.weft" "$demo.btf.h5" "$weave" 4
+else
+    "$build/bench/bench_player" "$weave" 4
+fi
+
+heading "Registration against the ground truth of the virtual rig"
+if [ -e "$demo.truth.h5" ] && [ -e "$demo.btf.h5" ]; then
+    "$build/bench/bench_truth" "$demo" "$demo.btf.h5" "$demo.truth.h5"
+else
+    printf 'Skipped: no session in %s; make demo takes one.\n' "$demo"
+fi
