@@ -27,7 +27,8 @@ static bool unpack_record(json_t *json, int *shot, weft_shot_record *record)
     if (json_unpack(json, "{si si sF sI sI}", "shot", shot, "stay", &record->stay, "exposure_s", &record->exposure_s,
                     "bytes", &bytes, "crc32", &crc32) != 0)
         return false;
-    if (bytes < 0 || crc32 < 0 || crc32 > UINT32_MAX || record->stay < 0 || !(record->exposure_s > 0))
+    if (bytes < 0 || crc32 < 0 || crc32 > UINT32_MAX || record->stay < 0 || record->stay >= WEFT_SESSION_MAX_SHOTS ||
+        !(record->exposure_s > 0))
         return false;
     record->taken = true;
     record->bytes = (uint64_t)bytes;

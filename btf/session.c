@@ -2,14 +2,14 @@
 
 #include "btf/atomic_file.h"
 #include "btf/journal.h"
+#include "btf/json_text.h"
 
-#include <jansson.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SESSION_VERSION = 1, MAX_SHOTS = 1000000, MAX_SESSION_BYTES = 1 << 28 };
+enum { SESSION_VERSION = 1, MAX_SESSION_BYTES = 1 << 28 };
 
 static const char session_name[] = "session.json";
 
@@ -54,10 +54,11 @@ static json_t *pack_session(const weft_session *s)
 {
     json_error_t ignored;
     json_t *settings = json_loads(s->rig_settings ? s->rig_settings : "{}", 0, &ignored);
-    return json_pack("{si ss ss so so sf sf si si so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
-                     s->sample, "rig_settings", settings ? settings : json_object(), "camera", pack_camera(&s->camera),
-                     "camera_distance_mm", s->camera_distance_mm, "light_distance_mm", s->light_distance_mm, "bits",
-                     s->bits, "black_level", s->black_level, "target", pack_target(&s->target), "plan", pack_plan(s));
+    return json_pack("{si ss so so so sf sf si si so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
+                     weft_json_text(s->sample, strlen(s->sample)), "rig_settings", settings ? settings : json_object(),
+                     "camera", pack_camera(&s->camera), "camera_distance_mm", s->camera_distance_mm,
+                     "light_distance_mm", s->light_distance_mm, "bits", s->bits, "black_level", s->black_level,
+                     "target", pack_target(&s->target), "plan", pack_plan(s));
 }
 
 weft_code weft_session_create(const weft_session *session, weft_error *error)
@@ -108,8 +109,9 @@ static bool unpack_shot(json_t *json, weft_shot *shot)
 static weft_code unpack_plan(json_t *plan, const char *path, weft_session *session, weft_error *error)
 {
     size_t count = json_array_size(plan);
-    if (count < 1 || count > MAX_SHOTS)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': the plan has %zu shots, not 1 to %d", path, count, MAX_SHOTS);
+    if (count < 1 || count > WEFT_SESSION_MAX_SHOTS)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': the plan has %zu shots, not 1 to %d", path, count,
+                         WEFT_SESSION_MAX_SHOTS);
     session->shot_count = (int)count;
     session->shot = calloc(count, sizeof *session->shot);
     session->record = calloc(count, sizeof *session->record);
@@ -165,16 +167,10 @@ static weft_code unpack_session(json_t *root, const char *path, weft_session *s,
 
 static weft_code read_session_json(weft_session *session, weft_error *error)
 {
-    char path[PATH_MAX], *text = NULL;
-    size_t size;
+    char path[PATH_MAX];
+    json_t *root = NULL;
     session_path(session, path);
-    WEFT_TRY(weft_read_file(path, MAX_SESSION_BYTES, &text, &size, error));
-    json_error_t where;
-    json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &where);
-    free(text);
-    if (!root)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d, column %d: %s", path, where.line, where.column,
-                         where.text);
+    WEFT_TRY(weft_json_read(path, MAX_SESSION_BYTES, &root, error));
     weft_code code = unpack_session(root, path, session, error);
     json_decref(root);
     return code;

@@ -13,6 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+enum { WEFT_SESSION_MAX_SHOTS = 1000000 };
+
 /* One planned photograph. */
 typedef struct weft_shot {
     weft_angles light, view;  /* of the grid: they name the file */
@@ -22,7 +24,8 @@ typedef struct weft_shot {
 /* What the journal says of a shot. */
 typedef struct weft_shot_record {
     bool taken;
-    int stay; /* counts the moves of the camera axes: photographs of one stay share one pose */
+    int stay; /* counts the moves of the camera axes, below WEFT_SESSION_MAX_SHOTS: photographs of one stay share one
+                 pose */
     double exposure_s;
     uint64_t bytes; /* size of the file */
     uint32_t crc32; /* of its bytes */

@@ -1,8 +1,7 @@
 #include "capture/settings.h"
 
-#include "btf/atomic_file.h"
+#include "btf/json_text.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -142,15 +141,8 @@ static weft_code check_settings(const char *path, const weft_rig_settings *s, we
 
 weft_code weft_rig_settings_read(const char *path, weft_rig_settings *settings, weft_error *error)
 {
-    char *text = NULL;
-    size_t size;
-    WEFT_TRY(weft_read_file(path, MAX_SETTINGS_BYTES, &text, &size, error));
-    json_error_t where;
-    json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &where);
-    free(text);
-    if (!root)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d, column %d: %s", path, where.line, where.column,
-                         where.text);
+    json_t *root = NULL;
+    WEFT_TRY(weft_json_read(path, MAX_SETTINGS_BYTES, &root, error));
     weft_code code = read_settings(path, root, settings, error);
     json_decref(root);
     if (code == WEFT_OK)
@@ -163,8 +155,9 @@ weft_code weft_rig_settings_read(const char *path, weft_rig_settings *settings, 
 char *weft_rig_settings_text(const weft_rig_settings *settings, uint64_t seed, const char *sample_file,
                              uint32_t sample_crc32)
 {
-    json_t *root = json_pack("{sI ss sI}", "seed", (json_int_t)seed, "sample_file", sample_file, "sample_crc32",
-                             (json_int_t)sample_crc32);
+    json_t *root =
+        json_pack("{sI so sI}", "seed", (json_int_t)seed, "sample_file",
+                  weft_json_text(sample_file, strlen(sample_file)), "sample_crc32", (json_int_t)sample_crc32);
     for (int i = 0; root && i < SETTING_COUNT; i++) {
         double value = *place_of((weft_rig_settings *)settings, &table[i]);
         json_object_set_new(root, table[i].name, table[i].whole ? json_integer((json_int_t)value) : json_real(value));

@@ -1,7 +1,7 @@
 #include "cli/command.h"
+#include "btf/json_text.h"
 #include "cli/arguments.h"
 
-#include <jansson.h>
 #include <limits.h>
 #include <omp.h>
 #include <stdarg.h>
@@ -150,7 +150,7 @@ void command_say(const common_options *common, const char *format, ...)
     va_end(arguments);
     close_line();
     if (common->json)
-        print_event(json_pack("{ss ss}", "event", "note", "text", text));
+        print_event(json_pack("{ss so}", "event", "note", "text", weft_json_text(text, strlen(text))));
     else
         puts(text);
     fflush(stdout);
@@ -163,6 +163,7 @@ int command_exit(const char *command, const common_options *common, weft_code co
         return WEFT_OK;
     fprintf(stderr, "weft %s: %s\n", command, error->message);
     if (common->json && !common->quiet)
-        print_event(json_pack("{ss si ss}", "event", "error", "code", (int)code, "text", error->message));
+        print_event(json_pack("{ss si so}", "event", "error", "code", (int)code, "text",
+                              weft_json_text(error->message, strlen(error->message))));
     return (int)code;
 }

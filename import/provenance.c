@@ -1,6 +1,7 @@
 #include "import/provenance.h"
 
-#include <jansson.h>
+#include "btf/json_text.h"
+
 #include <string.h>
 
 /* The last part of a path: the rest is about the machine, not about the material. */
@@ -12,23 +13,19 @@ static json_t *folder_name(const char *source)
     size_t begin = length;
     while (begin > 0 && source[begin - 1] != '/')
         begin--;
-    json_t *name = json_stringn(source + begin, length - begin);
-    return name ? name : json_string("a folder whose name is not UTF-8");
+    return weft_json_text(source + begin, length - begin);
 }
 
-static json_t *file_name(const weft_photograph *photograph, int index)
+static json_t *file_name(const weft_photograph *photograph)
 {
-    if (photograph->missing)
-        return json_null();
-    json_t *name = json_string(photograph->name);
-    return name ? name : json_sprintf("photograph %d", index);
+    return photograph->missing ? json_null() : weft_json_text(photograph->name, strlen(photograph->name));
 }
 
 static json_t *photograph_names(const weft_collection *collection)
 {
     json_t *names = json_array();
     for (int i = 0; i < collection->count; i++)
-        json_array_append_new(names, file_name(&collection->photograph[i], i));
+        json_array_append_new(names, file_name(&collection->photograph[i]));
     return names;
 }
 

@@ -1,8 +1,9 @@
 #include "registration/registration.h"
 
+#include "btf/json_text.h"
 #include "registration/report_tables.h"
 
-#include <jansson.h>
+#include <string.h>
 
 static json_t *pack_stay(const weft_session *session, const weft_registration *r, int stay)
 {
@@ -26,9 +27,10 @@ static json_t *pack_stay(const weft_session *session, const weft_registration *r
 
 static json_t *pack_session(const weft_session *s)
 {
-    return json_pack("{ss ss* ss* sf sf sf si si}", "folder", s->folder, "rig", s->rig, "sample", s->sample,
-                     "camera_distance_mm", s->camera_distance_mm, "light_distance_mm", s->light_distance_mm,
-                     "opening_mm", s->target.opening_mm, "bits", s->bits, "black_level", s->black_level);
+    return json_pack("{so ss* ss* sf sf sf si si}", "folder", weft_json_text(s->folder, strlen(s->folder)), "rig",
+                     s->rig, "sample", s->sample, "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
+                     s->light_distance_mm, "opening_mm", s->target.opening_mm, "bits", s->bits, "black_level",
+                     s->black_level);
 }
 
 static json_t *pack_camera(const weft_camera *c)

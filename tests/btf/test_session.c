@@ -93,6 +93,18 @@ static void session_survives_the_round_trip(void **state)
     weft_session_free(&read);
 }
 
+static void a_sample_whose_name_is_not_utf_8_is_described_all_the_same(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_session session = example(), read;
+    session.sample = "soi\xe9";
+    assert_int_equal(weft_session_create(&session, &error), WEFT_OK);
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
+    assert_string_equal(read.sample, "soi?");
+    weft_session_free(&read);
+}
+
 static void journal_gives_back_what_was_appended(void **state)
 {
     (void)state;
@@ -130,10 +142,12 @@ static void cut_last_line_is_forgotten_and_overwritten(void **state)
 static void malformed_journal_line_is_named(void **state)
 {
     (void)state;
-    static const char *bad[] = {"nonsense\n", "{\"shot\":3,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":1}\n",
+    static const char *bad[] = {"nonsense\n",
+                                "{\"shot\":3,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":1}\n",
                                 "{\"shot\":-1,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":1}\n",
                                 "{\"shot\":0,\"stay\":0,\"exposure_s\":0,\"bytes\":10,\"crc32\":1}\n",
-                                "{\"shot\":0,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":4294967296}\n"};
+                                "{\"shot\":0,\"stay\":0,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":4294967296}\n",
+                                "{\"shot\":0,\"stay\":2147483647,\"exposure_s\":0.5,\"bytes\":10,\"crc32\":1}\n"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         weft_error error = {0};
         weft_session read;
@@ -192,6 +206,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(session_survives_the_round_trip),
+        cmocka_unit_test(a_sample_whose_name_is_not_utf_8_is_described_all_the_same),
         cmocka_unit_test(journal_gives_back_what_was_appended),
         cmocka_unit_test(cut_last_line_is_forgotten_and_overwritten),
         cmocka_unit_test(malformed_journal_line_is_named),
