@@ -40,14 +40,25 @@ static char *temporary_name(const char *path)
     return result;
 }
 
+/* A rename would put a file in the place of a device or pipe. */
+static weft_code check_name(const char *path, weft_error *error)
+{
+    struct stat status;
+    size_t length = strlen(path);
+    if (length >= PATH_MAX - 32)
+        return weft_fail(error, WEFT_BAD_USAGE, "path is too long (%zu bytes): '%.60s...'", length, path);
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
+        return weft_fail(error, WEFT_BAD_USAGE, "cannot write '%s': it is %s", path,
+                         S_ISDIR(status.st_mode) ? "a folder" : "not a regular file");
+    if (length == 0 || path[length - 1] == '/')
+        return weft_fail(error, WEFT_BAD_USAGE, "cannot write '%s': it does not name a file", path);
+    return WEFT_OK;
+}
+
 weft_code weft_atomic_file_begin(const char *path, weft_atomic_file *file, weft_error *error)
 {
     *file = (weft_atomic_file){0};
-    if (strlen(path) >= PATH_MAX - 32)
-        return weft_fail(error, WEFT_BAD_USAGE, "path is too long (%zu bytes): '%.60s...'", strlen(path), path);
-    struct stat status;
-    if (stat(path, &status) == 0 && S_ISDIR(status.st_mode))
-        return weft_fail(error, WEFT_BAD_USAGE, "cannot write '%s': it is a folder", path);
+    WEFT_TRY(check_name(path, error));
     char folder[PATH_MAX];
     folder_of(path, folder);
     if (access(folder, W_OK | X_OK) != 0)

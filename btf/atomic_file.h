@@ -17,8 +17,8 @@ typedef struct weft_atomic_file {
     char *temporary_path; /* in the same folder, unique to this process, same extension */
 } weft_atomic_file;
 
-/* Chooses the temporary path; creates nothing. Errors: WEFT_SYSTEM for memory, or where the folder
- * of `path` does not exist or is not writable. */
+/* Chooses the temporary path; creates nothing. Errors: WEFT_BAD_USAGE where `path` names no file, or
+ * a folder, device or pipe; WEFT_SYSTEM for memory, or where its folder does not exist or is not writable. */
 weft_code weft_atomic_file_begin(const char *path, weft_atomic_file *file, weft_error *error);
 
 /* Syncs the temporary file to disk, renames it to its final name and syncs the folder. On failure the

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -104,12 +105,27 @@ static void impossible_places_are_named(void **state)
     assert_int_equal(weft_write_file("no/such/folder/file", "x", 1, &error), WEFT_SYSTEM);
     assert_non_null(strstr(error.message, "no/such/folder"));
     assert_int_equal(weft_write_file(".", "x", 1, &error), WEFT_BAD_USAGE);
+    assert_int_equal(weft_write_file("", "x", 1, &error), WEFT_BAD_USAGE);
+    assert_int_equal(weft_write_file("absent/", "x", 1, &error), WEFT_BAD_USAGE);
     char *bytes;
     size_t size;
     assert_int_equal(weft_read_file("absent", 100, &bytes, &size, &error), WEFT_BAD_INPUT);
     assert_int_equal(weft_read_file(".", 100, &bytes, &size, &error), WEFT_BAD_INPUT);
     assert_int_equal(weft_write_file("long", many_bytes, 101, &error), WEFT_OK);
     assert_int_equal(weft_read_file("long", 100, &bytes, &size, &error), WEFT_BAD_INPUT);
+}
+
+static void a_pipe_or_device_is_not_replaced_by_a_file(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    struct stat status;
+    assert_int_equal(mkfifo("pipe", 0600), 0);
+    assert_int_equal(symlink("pipe", "link"), 0);
+    assert_int_equal(weft_write_file("pipe", "x", 1, &error), WEFT_BAD_USAGE);
+    assert_int_equal(weft_write_file("link", "x", 1, &error), WEFT_BAD_USAGE);
+    assert_non_null(strstr(error.message, "not a regular file"));
+    assert_true(stat("link", &status) == 0 && S_ISFIFO(status.st_mode));
 }
 
 static void folders_are_made_with_their_parents(void **state)
@@ -191,6 +207,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(full_disk_leaves_the_old_file_and_no_other),
         cmocka_unit_test(impossible_places_are_named),
+        cmocka_unit_test(a_pipe_or_device_is_not_replaced_by_a_file),
         cmocka_unit_test(folders_are_made_with_their_parents),
         cmocka_unit_test(photograph_keeps_every_raw_value_of_every_depth),
         cmocka_unit_test(bad_photographs_are_named),
