@@ -9,6 +9,9 @@ enum { fewest_pixels = 6 };
 
 static const double largest_disagreement = 0.1;
 
+/* Raw values above black. */
+static const double dimmest_level = 1;
+
 /* A patch's pixels lie this far inside its outline, pixels: half of their own square, and as much again; the smear
  * adds. */
 static const double border_px = 1;
@@ -117,7 +120,8 @@ void weft_reference_pixels_free(weft_reference_pixels *reference)
     *reference = (weft_reference_pixels){0};
 }
 
-/* Mean of a patch without vignetting, above black; false where a pixel is saturated or too few are seen. */
+/* Mean of a patch without vignetting, above black; false where a pixel is saturated, too few are seen, or a channel is
+ * dark: nothing can be divided by it. */
 static bool mean_of_patch(const weft_sight *sight, const weft_reference_pixels *reference, int patch,
                           const uint16_t *samples, const weft_exposure *exposure, double mean[3])
 {
@@ -133,8 +137,11 @@ static bool mean_of_patch(const weft_sight *sight, const weft_reference_pixels *
             sum[c] += (value - exposure->black_level) * (double)sight->inverse_vignetting[at];
         }
     }
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         mean[c] = sum[c] / reference->count[patch];
+        if (!(mean[c] >= dimmest_level))
+            return false;
+    }
     return true;
 }
 
@@ -191,7 +198,7 @@ weft_white weft_white_measure(const weft_sight *sight, const weft_target *target
         double irradiance =
             weft_relative_irradiance(exposure->light, reference->centre[patch].x, reference->centre[patch].y);
         double scale = target->white_reflectance * irradiance * exposure->exposure_s;
-        if (!(scale > 0) || !(total(level[count]) > 0))
+        if (!(scale > 0))
             continue;
         for (int c = 0; c < 3; c++)
             level[count][c] /= scale;

@@ -68,13 +68,25 @@ static void show(job *j, int shot, const float *texel)
     }
 }
 
+/* False where a value is beyond what half floats hold. */
+static bool store_texel(const float *texel, weft_half *half)
+{
+    bool held = true;
+    for (int c = 0; c < 3; c++) {
+        half[c] = weft_half_of_float(texel[c]);
+        held = held && isfinite(weft_float_of_half(half[c]));
+    }
+    return held;
+}
+
 static weft_code put(job *j, int shot, bench *b, weft_error *error)
 {
     size_t texels = texel_count(j), saturated = 0;
-    for (size_t i = 0; i < 3 * texels; i++)
-        b->half[i] = weft_half_of_float(b->texel[i]);
-    for (size_t i = 0; i < texels; i++)
+    for (size_t i = 0; i < texels; i++) {
+        if (!store_texel(b->texel + 3 * i, b->half + 3 * i))
+            b->mask[i] |= WEFT_MASK_MISSING;
         saturated += b->mask[i] == WEFT_MASK_SATURATED;
+    }
     j->rectifier->registration->saturated[shot] = (float)saturated / (float)texels;
     if (j->shown)
         show(j, shot, b->texel);
@@ -128,7 +140,8 @@ static weft_code rectify_all(job *j, int *used, weft_error *error)
 #pragma omp critical(weft_rectify_failure)
             {
                 result = code;
-                *error = own;
+                if (error)
+                    *error = own;
             }
         }
     }

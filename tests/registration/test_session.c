@@ -147,6 +147,35 @@ static void saturated_white_patches_are_replaced_by_the_light_of_other_photograp
     finish();
 }
 
+/* Sets one channel of a photograph to the black level. */
+static void darken_blue(const char *folder, int shot)
+{
+    char path[512];
+    const size_t pixels = (size_t)PLATE_SESSION_SIZE * PLATE_SESSION_SIZE;
+    uint16_t *raw = malloc(3 * pixels * sizeof *raw);
+    assert_non_null(raw);
+    plate_session_photograph(folder, shot, path);
+    assert_int_equal(weft_photograph_read(path, PLATE_SESSION_SIZE, PLATE_SESSION_SIZE, 12, raw, NULL), WEFT_OK);
+    for (size_t i = 0; i < pixels; i++)
+        raw[3 * i + 2] = 64;
+    assert_int_equal(weft_photograph_write(path, PLATE_SESSION_SIZE, PLATE_SESSION_SIZE, 12, raw, NULL), WEFT_OK);
+    free(raw);
+}
+
+static void a_photograph_without_light_in_a_channel_does_not_sink_the_rest(void **state)
+{
+    (void)state;
+    plate_session_write("red", &plate_no_mishaps);
+    darken_blue("red", 4);
+    assert_int_equal(run("red", false, NULL), WEFT_OK);
+    read_dataset();
+    assert_int_equal(registration.estimated_whites, 1);
+    assert_int_equal(registration.white[4].patches, 0);
+    assert_int_equal(registration.image_count, PLATE_SESSION_SHOTS);
+    assert_true(all_masked(3, 0) && worst_error(3) < 0.03);
+    finish();
+}
+
 static void an_unfinished_session_is_registered_only_when_allowed(void **state)
 {
     (void)state;
@@ -222,6 +251,7 @@ int main(void)
         cmocka_unit_test(bad_photographs_are_named_and_masked_and_the_rest_goes_on),
         cmocka_unit_test(a_view_with_a_covered_target_fails_alone),
         cmocka_unit_test(saturated_white_patches_are_replaced_by_the_light_of_other_photographs),
+        cmocka_unit_test(a_photograph_without_light_in_a_channel_does_not_sink_the_rest),
         cmocka_unit_test(an_unfinished_session_is_registered_only_when_allowed),
         cmocka_unit_test(when_nothing_can_be_used_the_command_fails_and_leaves_no_file),
         cmocka_unit_test(a_session_without_photographs_is_refused),
