@@ -129,14 +129,15 @@ static weft_code complete(const weft_capture_request *request, const weft_captur
     int missing = count_missing(session);
     summary->damaged = held->damaged;
     summary->found = session->shot_count - missing;
+    weft_truth_request truth = {request->truth, request->truth_size, request->truth_images};
     WEFT_TRY(check_space(session, missing, error));
+    WEFT_TRY(weft_truth_check_path(&truth, session, error));
     if (missing > 0)
         WEFT_TRY(photograph(request, setup, held, stop, progress, summary, error));
     missing = count_missing(session);
     if (missing > 0)
         return weft_fail(error, WEFT_SYSTEM, "stopped, %d of %d photographs; run again to go on",
                          session->shot_count - missing, session->shot_count);
-    weft_truth_request truth = {request->truth, request->truth_size, request->truth_images};
     return weft_truth_write(&truth, session, &setup->world, &setup->cloth, progress, error);
 }
 

@@ -57,8 +57,7 @@ static weft_code read_angles(const weft_csv *csv, int row, const int column[2], 
     if (!(fabs(phi_deg) <= 360))
         return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: phi of %g degrees is not in -360 to 360", csv->path,
                          csv->line[row], phi_deg);
-    if (phi_deg < 0)
-        phi_deg += 360;
+    phi_deg += phi_deg < 0 ? 360 : phi_deg >= 360 ? -360 : 0;
     *angles = (weft_angles){weft_rad_of_deg(theta_deg), weft_rad_of_deg(phi_deg)};
     return WEFT_OK;
 }

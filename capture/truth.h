@@ -12,6 +12,10 @@ typedef struct weft_truth_request {
     int image_count;  /* shots whose reflectance is computed */
 } weft_truth_request;
 
+/* Whether the file can be written where it is asked for, before there is anything to write. Errors: WEFT_BAD_USAGE,
+ * WEFT_SYSTEM. */
+weft_code weft_truth_check_path(const weft_truth_request *request, const weft_session *session, weft_error *error);
+
 /* Writes, atomically, the true pose of every stay, the true camera, the true light position of every shot, and the
  * reflectance of a choice of shots. Follows from settings, seed and journal, whatever interruptions the session had.
  * Parallel. Errors: WEFT_SYSTEM. */

@@ -184,13 +184,27 @@ static weft_code write_file(const char *path, const weft_camera *camera, double 
     return code;
 }
 
-/* FOLDER.truth.h5, whether or not the folder was written with a slash behind it. */
-static void default_path(const char *folder, char path[PATH_MAX])
+/* The path asked for, else FOLDER.truth.h5, whether or not the folder was written with a slash behind it. */
+static void choose_path(const weft_truth_request *request, const char *folder, char path[PATH_MAX])
 {
     size_t length = strlen(folder);
+    if (request->path) {
+        snprintf(path, PATH_MAX, "%s", request->path);
+        return;
+    }
     while (length > 1 && folder[length - 1] == '/')
         length--;
     snprintf(path, PATH_MAX, "%.*s.truth.h5", (int)length, folder);
+}
+
+weft_code weft_truth_check_path(const weft_truth_request *request, const weft_session *session, weft_error *error)
+{
+    char path[PATH_MAX];
+    weft_atomic_file file;
+    choose_path(request, session->folder, path);
+    WEFT_TRY(weft_atomic_file_begin(path, &file, error));
+    weft_atomic_file_abandon(&file);
+    return WEFT_OK;
 }
 
 weft_code weft_truth_write(const weft_truth_request *request, const weft_session *session,
@@ -198,8 +212,8 @@ weft_code weft_truth_write(const weft_truth_request *request, const weft_session
                            const weft_progress *progress, weft_error *error)
 {
     truth t;
-    char beside[PATH_MAX];
-    default_path(session->folder, beside);
+    char path[PATH_MAX];
+    choose_path(request, session->folder, path);
     weft_code code = allocate_truth(request, session, &t, error);
     if (code == WEFT_OK) {
         fill_poses(session, world, &t);
@@ -208,7 +222,7 @@ weft_code weft_truth_write(const weft_truth_request *request, const weft_session
             fill_image(session, world, cloth, t.image_shot[image], t.size, t.reflectance + (size_t)image * stride);
             weft_progress_report(progress, "computing the ground truth", image + 1, t.image_count);
         }
-        code = write_file(request->path ? request->path : beside, &world->camera, cloth->opening_mm, &t, error);
+        code = write_file(path, &world->camera, cloth->opening_mm, &t, error);
     }
     free_truth(&t);
     return code;

@@ -57,6 +57,17 @@ static void a_plan_file_is_grouped_by_view_and_keeps_its_order(void **state)
     weft_plan_free(&plan);
 }
 
+static void a_full_turn_is_no_turn(void **state)
+{
+    (void)state;
+    weft_plan plan;
+    assert_int_equal(read_text(HEADER "10,0,45,0\n20,-360,45,360\n", &plan, NULL), WEFT_OK);
+    assert_true(plan.shot[1].view.phi_rad == plan.shot[0].view.phi_rad);
+    assert_true(plan.shot[1].light.phi_rad == 0);
+    weft_plan_free(&plan);
+    assert_refused(HEADER "10,0,45,0\n10,0,45,360\n", "plan.csv:3");
+}
+
 static void a_bad_plan_file_is_refused_with_file_and_line(void **state)
 {
     (void)state;
@@ -121,6 +132,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ubo81_has_all_pairs_and_moves_the_camera_once_per_view),
         cmocka_unit_test(a_plan_file_is_grouped_by_view_and_keeps_its_order),
+        cmocka_unit_test(a_full_turn_is_no_turn),
         cmocka_unit_test(a_bad_plan_file_is_refused_with_file_and_line),
         cmocka_unit_test(shots_whose_photographs_would_share_a_name_are_refused),
         cmocka_unit_test(all_81_coincident_lights_step_aside_and_no_other),

@@ -163,6 +163,34 @@ static void a_disk_that_fills_under_the_truth_leaves_no_half_file(void **state)
     remove_session();
 }
 
+static void a_place_where_the_truth_cannot_go_is_named_before_the_first_photograph(void **state)
+{
+    (void)state;
+    weft_capture_request request = small_session_request();
+    weft_capture_summary summary;
+    weft_error error;
+    request.truth = "absent/truth.h5";
+    assert_int_equal(run(&request, &summary, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "absent"));
+    assert_int_equal(summary.taken, 0);
+    remove_session();
+}
+
+static void a_sample_file_whose_name_is_not_utf_8_is_photographed(void **state)
+{
+    (void)state;
+    weft_capture_request request = small_session_request();
+    weft_capture_summary summary;
+    weft_error error;
+    assert_int_equal(symlink(request.sample, "soi\xe9.wv"), 0);
+    request.sample = "soi\xe9.wv";
+    assert_int_equal(run(&request, &summary, &error), WEFT_OK);
+    assert_int_equal(run(&request, &summary, &error), WEFT_OK);
+    assert_int_equal(summary.found, SMALL_SHOTS);
+    assert_int_equal(unlink("soi\xe9.wv"), 0);
+    remove_session();
+}
+
 static volatile sig_atomic_t stop;
 
 static void stop_after_seven(void *context, const char *stage, long done, long total)
@@ -272,6 +300,8 @@ int main(void)
         cmocka_unit_test(a_camera_that_never_delivers_ends_the_run_with_its_message),
         cmocka_unit_test(a_full_disk_ends_the_run_cleanly_and_it_goes_on_later),
         cmocka_unit_test(a_disk_that_fills_under_the_truth_leaves_no_half_file),
+        cmocka_unit_test(a_place_where_the_truth_cannot_go_is_named_before_the_first_photograph),
+        cmocka_unit_test(a_sample_file_whose_name_is_not_utf_8_is_photographed),
         cmocka_unit_test(a_stop_completes_the_shot_in_flight_and_the_next_run_goes_on),
         cmocka_unit_test(another_seed_sample_rig_or_plan_does_not_continue_a_session),
         cmocka_unit_test(a_folder_that_holds_other_files_is_left_alone),
