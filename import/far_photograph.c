@@ -54,6 +54,9 @@ weft_code weft_collection_sort_far(weft_collection *collection, const char *fold
         if (by_view_then_light(&photograph[i - 1], &photograph[i]) == 0)
             return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' and '%s' have the same light and view", folder,
                              photograph[i - 1].name, photograph[i].name);
+        /* One view, also where one name says 0 and another 360 degrees. */
+        if (compare_directions(photograph[i - 1].view, photograph[i].view) == 0)
+            photograph[i].view = photograph[i - 1].view;
     }
     return WEFT_OK;
 }

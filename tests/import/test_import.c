@@ -57,6 +57,20 @@ static void a_utia_folder_of_8_bit_photographs_is_decoded_from_srgb(void **state
     folder_remove(&folder);
 }
 
+static void a_full_turn_is_the_same_view(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    folder_put_grey(&folder, "tl000_pl000_tv045_pv000.png", 2, 2, 0.3f);
+    folder_put_grey(&folder, "tl030_pl090_tv045_pv360.png", 2, 2, 0.4f);
+    assert_int_equal(folder_import(&folder, NULL, NULL), WEFT_OK);
+    imported import = folder_open(&folder);
+    assert_int_equal(import.layout->image_count, 2);
+    assert_int_equal(import.layout->view_count, 1);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
 static void float_photographs_are_linear_already(void **state)
 {
     (void)state;
@@ -295,6 +309,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_utia_folder_of_8_bit_photographs_is_decoded_from_srgb),
+        cmocka_unit_test(a_full_turn_is_the_same_view),
         cmocka_unit_test(float_photographs_are_linear_already),
         cmocka_unit_test(rows_and_channels_keep_their_place),
         cmocka_unit_test(a_hole_in_a_grid_becomes_a_masked_image),
