@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 double parse_number(const char *option, const char *text, double low, double high, struct argp_state *state)
 {
@@ -61,4 +62,12 @@ bool parse_switch(const char *option, const char *text, struct argp_state *state
     if (strcmp(text, "on") != 0 && strcmp(text, "off") != 0)
         argp_error(state, "--%s is on or off, not '%s'", option, text);
     return strcmp(text, "on") == 0;
+}
+
+void refuse_same_file(const char *output, const char *input, struct argp_state *state)
+{
+    struct stat written, read;
+    if (output && input && stat(output, &written) == 0 && stat(input, &read) == 0 && written.st_dev == read.st_dev &&
+        written.st_ino == read.st_ino)
+        argp_error(state, "'%s' would overwrite what it is made from", output);
 }

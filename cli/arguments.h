@@ -22,4 +22,7 @@ void parse_size(const char *option, const char *text, int limit, int *width, int
 /* "on" or "off". */
 bool parse_switch(const char *option, const char *text, struct argp_state *state);
 
+/* Refuses an output that is an input of the command, by whatever path; either may be NULL. */
+void refuse_same_file(const char *output, const char *input, struct argp_state *state);
+
 #endif

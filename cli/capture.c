@@ -73,6 +73,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (!request->folder || !request->sample)
             argp_error(state, "needs --sample CLOTH.wv and -o SESSION");
+        refuse_same_file(request->truth, request->sample, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -56,6 +56,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (!command->input || !command->output)
             argp_error(state, "needs NAME.btf.h5 and -o NAME.weft");
+        refuse_same_file(command->output, command->input, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -78,6 +78,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
             argp_error(state, "needs a model and --at DIRECTIONS.csv");
         if (command->common.json && !command->output)
             argp_error(state, "--json and the table cannot share standard output: add -o FILE.csv");
+        refuse_same_file(command->output, command->model, state);
+        refuse_same_file(command->output, command->directions, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

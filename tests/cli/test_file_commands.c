@@ -80,6 +80,18 @@ static void eval_names_what_is_wrong(void **state)
     expect("eval --help", 0, "Example: weft eval");
 }
 
+static void an_input_is_never_the_output(void **state)
+{
+    (void)state;
+    write_material("file.weft");
+    write_text("file.csv", "lx,ly,lz,vx,vy,vz\n0,0,1,0,0,1\n");
+    expect("eval file.weft --at file.csv -o ./file.csv", 2, "would overwrite");
+    expect("eval file.weft --at file.csv -o file.weft", 2, "would overwrite");
+    expect("compress file.weft -o file.weft", 2, "would overwrite");
+    expect("capture --sample file.csv --truth file.csv -o file-session", 2, "would overwrite");
+    expect("verify file.weft", 0, "sound");
+}
+
 static void info_and_verify_speak_of_the_file(void **state)
 {
     (void)state;
@@ -126,6 +138,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(eval_appends_the_brdf_to_every_row),
         cmocka_unit_test(eval_names_what_is_wrong),
+        cmocka_unit_test(an_input_is_never_the_output),
         cmocka_unit_test(info_and_verify_speak_of_the_file),
         cmocka_unit_test(verify_refuses_a_material_cut_anywhere),
         cmocka_unit_test(import_leaves_nothing_when_a_photograph_is_bad),
