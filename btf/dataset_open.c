@@ -74,9 +74,11 @@ static weft_code read_text_attribute(const weft_dataset *dataset, const char *na
         return fail(dataset, error, "has no attribute", name);
     hid_t space = H5Aget_space(attribute), type = H5Aget_type(attribute);
     char *value = is_scalar(space) && type >= 0 ? read_string(attribute, type, read_attribute) : NULL;
-    weft_code code = value && strlen(value) < MAX_NAME ? WEFT_OK : fail(dataset, error, "cannot read attribute", name);
-    if (code == WEFT_OK)
+    weft_code code = WEFT_OK;
+    if (value && strlen(value) < MAX_NAME)
         strcpy(text, value);
+    else
+        code = fail(dataset, error, "cannot read attribute", name);
     free(value);
     H5Tclose(type);
     H5Sclose(space);

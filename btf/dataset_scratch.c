@@ -116,14 +116,14 @@ static bool is_finite(weft_half half)
 static weft_code clean(const weft_scratch *scratch, int image, weft_half *samples, const uint8_t *mask,
                        weft_error *error)
 {
-    int count = scratch->width * scratch->height;
-    for (int i = 0; i < count; i++) {
-        weft_half *rgb = samples + 3 * (size_t)i;
+    size_t width = (size_t)scratch->width, count = width * (size_t)scratch->height;
+    for (size_t i = 0; i < count; i++) {
+        weft_half *rgb = samples + 3 * i;
         if (mask && mask[i])
             memset(rgb, 0, 3 * sizeof *rgb);
         else if (!is_finite(rgb[0]) || !is_finite(rgb[1]) || !is_finite(rgb[2]))
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': image %d, texel (%d, %d): a valid sample is not finite",
-                             scratch->path, image, i % scratch->width, i / scratch->width);
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': image %d, texel (%zu, %zu): a valid sample is not finite",
+                             scratch->path, image, i % width, i / width);
     }
     return WEFT_OK;
 }

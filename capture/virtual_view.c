@@ -103,7 +103,7 @@ static weft_code allocate_view(weft_virtual_view *view, weft_error *error)
 static weft_code sample_cloth(const scene *s, const int *counts, weft_virtual_view *view, weft_error *error)
 {
     int cloth_count = count_cloth(counts, (size_t)view->width * (size_t)view->height);
-    view->cloth = malloc(((size_t)cloth_count + 1) * sizeof *view->cloth);
+    view->cloth = calloc((size_t)cloth_count + 1, sizeof *view->cloth);
     if (!view->cloth)
         return weft_fail_memory(error, "the cloth in a view", (size_t)cloth_count * sizeof *view->cloth);
     size_t points = list_cloth(view, counts);

@@ -31,8 +31,10 @@ static const struct argp_option option_table[] = {
 static void add_parameter(eval_command *command, char *argument, struct argp_state *state)
 {
     char *value = strchr(argument, '=');
-    if (!value || command->options.parameter_count == PARAMETER_LIMIT)
+    if (!value || command->options.parameter_count == PARAMETER_LIMIT) {
         argp_error(state, "--set needs NAME=VALUE (at most %d of them), not '%s'", PARAMETER_LIMIT, argument);
+        return;
+    }
     *value++ = 0;
     double rgb[3];
     int count = 0;
