@@ -1,0 +1,92 @@
+#include "tests/reflectance/twin_stage.h"
+
+#include "player/gl.h"
+#include "player/shaders.h"
+#include "tests/btf/cmocka_all.h"
+
+#include <stdlib.h>
+
+enum { MAX_SOURCES = 8 };
+
+static const char fragment_main[] = "uniform sampler2D table;\n"
+                                    "uniform sampler2D query;\n"
+                                    "out vec4 colour;\n"
+                                    "void main()\n"
+                                    "{\n"
+                                    "    ivec2 at = ivec2(gl_FragCoord.xy);\n"
+                                    "    colour = twin(table, texelFetch(query, at, 0),\n"
+                                    "                  texelFetch(query, at + ivec2(0, 128), 0),\n"
+                                    "                  texelFetch(query, at + ivec2(0, 256), 0));\n"
+                                    "}\n";
+
+static void expect_ok(weft_code code, const weft_error *error)
+{
+    if (code != WEFT_OK)
+        fail_msg("%s", error->message);
+}
+
+static GLuint upload(const float *rgba, int width, int height)
+{
+    const weft_texture_format format = {GL_RGBA32F, GL_RGBA, GL_FLOAT};
+    weft_error error = {0};
+    GLuint texture;
+    expect_ok(weft_gl_texture(format, width, height, 0, rgba, &texture, &error), &error);
+    return texture;
+}
+
+static GLuint link_program(const char *const *sources)
+{
+    const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
+    const char *fragment[MAX_SOURCES + 2] = {0};
+    int count = 0;
+    while (sources[count] && count < MAX_SOURCES) {
+        fragment[count] = sources[count];
+        count++;
+    }
+    fragment[count] = fragment_main;
+    weft_error error = {0};
+    GLuint program;
+    expect_ok(weft_gl_program("twins", vertex, fragment, &program, &error), &error);
+    return program;
+}
+
+static void draw(GLuint program, GLuint table, GLuint query, float (*result)[4])
+{
+    GLuint target = upload(NULL, TWIN_WIDTH, TWIN_HEIGHT), buffer, vertices;
+    glGenFramebuffers(1, &buffer);
+    glGenVertexArrays(1, &vertices);
+    glBindFramebuffer(GL_FRAMEBUFFER, buffer);
+    glBindVertexArray(vertices);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target, 0);
+    glViewport(0, 0, TWIN_WIDTH, TWIN_HEIGHT);
+    glUseProgram(program);
+    weft_gl_bind(program, "table", 0, GL_TEXTURE_2D, table);
+    weft_gl_bind(program, "query", 1, GL_TEXTURE_2D, query);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glReadPixels(0, 0, TWIN_WIDTH, TWIN_HEIGHT, GL_RGBA, GL_FLOAT, result);
+    weft_error error = {0};
+    expect_ok(weft_gl_check("drawing the twins", &error), &error);
+    glUseProgram(0);
+    glDeleteFramebuffers(1, &buffer);
+    glDeleteVertexArrays(1, &vertices);
+    glDeleteTextures(1, &target);
+}
+
+void twin_run(weft_gl_profile profile, const char *const *sources, const twin_table *table, twin_queries queries,
+              float (*result)[4])
+{
+    weft_headless *headless;
+    weft_error error = {0};
+    if (weft_headless_create(profile, &headless, &error) != WEFT_OK) {
+        print_message("skipped: %s\n", error.message);
+        exit(77);
+    }
+    GLuint program = link_program(sources);
+    GLuint of_table = upload(table->rgba, table->width, table->height);
+    GLuint of_query = upload(queries[0][0], TWIN_WIDTH, TWIN_BANDS * TWIN_HEIGHT);
+    draw(program, of_table, of_query, result);
+    glDeleteTextures(1, &of_query);
+    glDeleteTextures(1, &of_table);
+    glDeleteProgram(program);
+    weft_headless_free(headless);
+}
