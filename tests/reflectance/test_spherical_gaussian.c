@@ -1,0 +1,178 @@
+/* Spherical and circular Gaussians: the reference vectors and the limits. Built twice: in double, and in single
+ * precision. */
+#include "reflectance/spherical_gaussian.h"
+#include "tests/reflectance/random.h"
+#include "tests/reflectance/representable.h"
+
+#include <string.h>
+
+static weft_real real_at(const reference_vectors *v, int row, const char *column)
+{
+    return (weft_real)vectors_number(v, row, column);
+}
+
+/* Changes x by VECTORS_AMOUNT, up or down by one bit of `sample`. */
+static weft_real perturbed(weft_real x, unsigned sample, int bit)
+{
+    return (weft_real)(x * (sample >> bit & 1 ? 1 + VECTORS_AMOUNT : 1 - VECTORS_AMOUNT));
+}
+
+static void product_matches_every_row(void **state)
+{
+    (void)state;
+    reference_vectors v = vectors_open("sg_product.csv", 230);
+    for (int row = 0; row < v.csv.row_count; row++) {
+        const weft_real in[4] = {real_at(&v, row, "mu1"), real_at(&v, row, "sigma1"), real_at(&v, row, "mu2"),
+                                 real_at(&v, row, "sigma2")};
+        weft_circular_lobe lobe = weft_circular_product(in[0], in[1], in[2], in[3]);
+        double change[3] = {0};
+        for (unsigned s = 0; s < 16; s++) {
+            weft_circular_lobe near = weft_circular_product(perturbed(in[0], s, 0), perturbed(in[1], s, 1),
+                                                            perturbed(in[2], s, 2), perturbed(in[3], s, 3));
+            change[0] = fmax(change[0], fabs((double)near.mean - lobe.mean));
+            change[1] = fmax(change[1], fabs((double)near.width - lobe.width));
+            change[2] = fmax(change[2], fabs((double)near.scale - lobe.scale));
+        }
+        check_representable(&v, row, "mu", lobe.mean, change[0]);
+        check_representable(&v, row, "sigma", lobe.width, change[1]);
+        check_representable(&v, row, "scale", lobe.scale, change[2]);
+    }
+    vectors_close(&v);
+}
+
+enum { SPLIT_OUTPUTS = 4 };
+
+static void split_outputs(direction_pair at, weft_real width, double out[SPLIT_OUTPUTS])
+{
+    weft_gaussian_split split = weft_spherical_gaussian_split(at.light, at.view, width);
+    const double value[SPLIT_OUTPUTS] = {weft_spherical_gaussian(at.light, at.view, width), split.theta,
+                                         split.theta_centre, split.phi_width};
+    memcpy(out, value, sizeof value);
+}
+
+static void split_matches_every_row(void **state)
+{
+    (void)state;
+    static const char *const column[SPLIT_OUTPUTS] = {"G", "theta_i", "theta_k", "sigma_prime"};
+    reference_vectors v = vectors_open("sg_split.csv", 220);
+    for (int row = 0; row < v.csv.row_count; row++) {
+        direction_pair at = {vectors_direction(&v, row, "w"), vectors_direction(&v, row, "xi")};
+        double out[SPLIT_OUTPUTS], other[SPLIT_OUTPUTS], change[SPLIT_OUTPUTS] = {0};
+        split_outputs(at, real_at(&v, row, "sigma"), out);
+        for (unsigned sample = 0; sample < VECTORS_SAMPLES; sample++) {
+            split_outputs(vectors_perturbed(at, sample, VECTORS_AMOUNT), real_at(&v, row, "sigma"), other);
+            for (int i = 0; i < SPLIT_OUTPUTS; i++)
+                change[i] = fmax(change[i], fabs(other[i] - out[i]));
+        }
+        for (int i = 0; i < SPLIT_OUTPUTS; i++)
+            check_representable(&v, row, column[i], out[i], change[i]);
+    }
+    vectors_close(&v);
+}
+
+static void split_is_exact(void **state)
+{
+    (void)state;
+    uint64_t random = 4;
+    for (int i = 0; i < 10000; i++) {
+        weft_vec3 direction = random_direction(&random), centre = random_direction(&random);
+        weft_real width = random_between(&random, 0.2, 3);
+        weft_gaussian_split split = weft_spherical_gaussian_split(direction, centre, width);
+        weft_real product = weft_circular_gaussian(split.theta, split.theta_centre, width) *
+                            weft_circular_gaussian(split.phi, split.phi_centre, split.phi_width);
+        weft_real whole = weft_spherical_gaussian(direction, centre, width);
+        assert_true(fabs((double)product - whole) <= 1e3 * (double)WEFT_REAL_EPSILON * whole + LEAST_NORMAL);
+    }
+}
+
+static void box_matches_every_row(void **state)
+{
+    (void)state;
+    reference_vectors v = vectors_open("sg_box.csv", 220);
+    for (int row = 0; row < v.csv.row_count; row++) {
+        weft_real theta_width = real_at(&v, row, "sigma_l"), phi_width = real_at(&v, row, "sigma_p");
+        weft_real value =
+            weft_gaussian_box(real_at(&v, row, "theta_l"), theta_width, real_at(&v, row, "phi_k"), phi_width);
+        /* 1e-9 of pi s s', and the last printed digit. */
+        double absolute = (1e-9 + 20 * (double)WEFT_REAL_EPSILON) * (double)WEFT_PI * theta_width * phi_width;
+        vectors_check_within(&v, row, "value", value, absolute + 5e-9 * fabs((double)value));
+    }
+    vectors_close(&v);
+}
+
+static void half_plane_share_matches_every_row(void **state)
+{
+    (void)state;
+    reference_vectors v = vectors_open("sg_H.csv", 240);
+    for (int row = 0; row < v.csv.row_count; row++)
+        vectors_check_within(&v, row, "H",
+                             weft_gaussian_half_plane(real_at(&v, row, "sigma_l"), real_at(&v, row, "sigma_p"),
+                                                      real_at(&v, row, "d"), real_at(&v, row, "gamma")),
+                             1e-6 + 20 * (double)WEFT_REAL_EPSILON);
+    vectors_close(&v);
+}
+
+static void sigmoid_fit_matches_every_row(void **state)
+{
+    (void)state;
+    reference_vectors v = vectors_open("sg_gain.csv", 200);
+    for (int row = 0; row < v.csv.row_count; row++) {
+        weft_sigmoid_fit fit = weft_gaussian_half_plane_fit(real_at(&v, row, "sigma_l"), real_at(&v, row, "sigma_p"),
+                                                            real_at(&v, row, "gamma"));
+        vectors_check_within(&v, row, "kappa", fit.gain, 1e-3 * vectors_number(&v, row, "kappa"));
+        vectors_check_within(&v, row, "max_abs_error", fit.largest_error,
+                             1e-3 * vectors_number(&v, row, "max_abs_error"));
+    }
+    vectors_close(&v);
+}
+
+static void extreme_widths_give_finite_values(void **state)
+{
+    (void)state;
+    const weft_real widths[] = {0, (weft_real)1e-30, (weft_real)1e-9, (weft_real)0.3, (weft_real)1e18, INFINITY};
+    const weft_vec3 up = {0, 0, 1}, along = {1, 0, 0};
+    for (int i = 0; i < 6; i++) {
+        assert_true(weft_spherical_gaussian(up, up, widths[i]) == 1);
+        assert_true(weft_circular_gaussian(2, 2, widths[i]) == 1);
+        assert_true(weft_spherical_gaussian_split(along, up, widths[i]).phi_width > 0);
+        for (int j = 0; j < 6; j++) {
+            weft_circular_lobe lobe = weft_circular_product(1, widths[i], -2, widths[j]);
+            assert_true(isfinite(lobe.mean) && lobe.width > 0 && lobe.scale >= 0 && lobe.scale <= 1);
+            assert_true(isfinite(weft_gaussian_box(2, widths[i], -1, widths[j])));
+            weft_real share = weft_gaussian_half_plane(widths[i], widths[j], (weft_real)0.2, 1);
+            assert_true(share >= 0.5 && share <= 1);
+        }
+    }
+}
+
+static void opposite_lobes_of_one_width_cancel(void **state)
+{
+    (void)state;
+    weft_circular_lobe lobe = weft_circular_product(0, 2, (weft_real)WEFT_PI, 2);
+    assert_true(fabs(lobe.scale - exp((weft_real)-1)) < 1e-6);
+    assert_true(lobe.width > 1e3 && isfinite(lobe.mean));
+}
+
+static void sigmoid_never_overflows(void **state)
+{
+    (void)state;
+    assert_true(weft_sigmoid((weft_real)1e30, -1) == 0);
+    assert_true(weft_sigmoid((weft_real)1e30, 1) == 1);
+    assert_true(weft_sigmoid(3, 0) == 0.5);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(product_matches_every_row),
+        cmocka_unit_test(split_matches_every_row),
+        cmocka_unit_test(split_is_exact),
+        cmocka_unit_test(box_matches_every_row),
+        cmocka_unit_test(half_plane_share_matches_every_row),
+        cmocka_unit_test(sigmoid_fit_matches_every_row),
+        cmocka_unit_test(extreme_widths_give_finite_values),
+        cmocka_unit_test(opposite_lobes_of_one_width_cancel),
+        cmocka_unit_test(sigmoid_never_overflows),
+    };
+    return cmocka_run_group_tests_name("spherical gaussian", tests, NULL, NULL);
+}
