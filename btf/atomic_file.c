@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <libgen.h>
 #include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,21 +56,33 @@ static weft_code check_name(const char *path, weft_error *error)
     return WEFT_OK;
 }
 
+static weft_code check_folder(const char *path, weft_error *error)
+{
+    char folder[PATH_MAX];
+    folder_of(path, folder);
+    return access(folder, W_OK | X_OK) == 0 ? WEFT_OK : weft_fail_errno(error, "write into folder", folder);
+}
+
+/* A link stays, and what it points to is replaced. */
+static char *final_name(const char *path)
+{
+    struct stat status;
+    bool is_link = lstat(path, &status) == 0 && S_ISLNK(status.st_mode);
+    char *target = is_link ? realpath(path, NULL) : NULL;
+    return target ? target : strdup(path);
+}
+
 weft_code weft_atomic_file_begin(const char *path, weft_atomic_file *file, weft_error *error)
 {
     *file = (weft_atomic_file){0};
     WEFT_TRY(check_name(path, error));
-    char folder[PATH_MAX];
-    folder_of(path, folder);
-    if (access(folder, W_OK | X_OK) != 0)
-        return weft_fail_errno(error, "write into folder", folder);
-    file->final_path = strdup(path);
-    file->temporary_path = temporary_name(path);
-    if (!file->final_path || !file->temporary_path) {
+    file->final_path = final_name(path);
+    file->temporary_path = file->final_path ? temporary_name(file->final_path) : NULL;
+    weft_code code = file->temporary_path ? check_folder(file->final_path, error)
+                                          : weft_fail_memory(error, "file name", strlen(path));
+    if (code != WEFT_OK)
         forget(file);
-        return weft_fail_memory(error, "file name", strlen(path));
-    }
-    return WEFT_OK;
+    return code;
 }
 
 static int sync_path(const char *path, int flags)

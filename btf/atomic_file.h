@@ -13,7 +13,7 @@ extern "C" {
 
 /* A path being written. Owned by the caller; begin, then exactly one of commit or abandon. */
 typedef struct weft_atomic_file {
-    char *final_path;
+    char *final_path;     /* of a link: what it points to */
     char *temporary_path; /* in the same folder, unique to this process, same extension */
 } weft_atomic_file;
 

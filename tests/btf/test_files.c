@@ -128,6 +128,21 @@ static void a_pipe_or_device_is_not_replaced_by_a_file(void **state)
     assert_true(stat("link", &status) == 0 && S_ISFIFO(status.st_mode));
 }
 
+static void a_link_stays_and_what_it_points_to_is_replaced(void **state)
+{
+    (void)state;
+    char *bytes;
+    size_t size;
+    struct stat status;
+    assert_int_equal(weft_write_file("pointed", "old", 3, NULL), WEFT_OK);
+    assert_int_equal(symlink("pointed", "pointing"), 0);
+    assert_int_equal(weft_write_file("pointing", "newer", 5, NULL), WEFT_OK);
+    assert_true(lstat("pointing", &status) == 0 && S_ISLNK(status.st_mode));
+    assert_int_equal(weft_read_file("pointed", 100, &bytes, &size, NULL), WEFT_OK);
+    assert_string_equal(bytes, "newer");
+    free(bytes);
+}
+
 static void folders_are_made_with_their_parents(void **state)
 {
     (void)state;
@@ -208,6 +223,7 @@ int main(void)
         cmocka_unit_test(full_disk_leaves_the_old_file_and_no_other),
         cmocka_unit_test(impossible_places_are_named),
         cmocka_unit_test(a_pipe_or_device_is_not_replaced_by_a_file),
+        cmocka_unit_test(a_link_stays_and_what_it_points_to_is_replaced),
         cmocka_unit_test(folders_are_made_with_their_parents),
         cmocka_unit_test(photograph_keeps_every_raw_value_of_every_depth),
         cmocka_unit_test(bad_photographs_are_named),
