@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -76,7 +77,7 @@ static weft_code read_text_attribute(const weft_dataset *dataset, const char *na
     char *value = is_scalar(space) && type >= 0 ? read_string(attribute, type, read_attribute) : NULL;
     weft_code code = WEFT_OK;
     if (value && strlen(value) < MAX_NAME)
-        strcpy(text, value);
+        snprintf(text, MAX_NAME, "%s", value);
     else
         code = fail(dataset, error, "cannot read attribute", name);
     free(value);

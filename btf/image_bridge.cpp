@@ -17,7 +17,7 @@ namespace
 constexpr long long max_pixels = 1ll << 28;
 
 /* One line of OpenImageIO's last message. */
-std::string first_line(std::string text)
+std::string first_line(const std::string &text)
 {
     return text.substr(0, text.find('\n'));
 }
@@ -83,7 +83,7 @@ OIIO::TypeDesc type_for(const std::string &path)
 using encoded_bytes = std::vector<unsigned char>;
 
 /* Encodes into memory, because the library keeps silent where a disk is full. */
-weft_code encode(const char *path, const OIIO::ImageSpec &spec, OIIO::TypeDesc type, const void *pixels,
+weft_code encode(const char *path, const OIIO::ImageSpec &spec, const OIIO::TypeDesc &type, const void *pixels,
                  encoded_bytes *bytes, weft_error *error)
 {
     OIIO::Filesystem::IOVecOutput memory;

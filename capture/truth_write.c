@@ -33,7 +33,7 @@ static weft_code allocate_truth(const weft_truth_request *request, const weft_se
                                 weft_error *error)
 {
     size_t shots = (size_t)session->shot_count, texels = (size_t)request->size * (size_t)request->size;
-    *t = (truth){.shot_count = session->shot_count, .size = request->size};
+    *t = (truth){.stay_count = 1, .shot_count = session->shot_count, .size = request->size};
     for (int i = 0; i < session->shot_count; i++)
         t->stay_count = session->record[i].stay >= t->stay_count ? session->record[i].stay + 1 : t->stay_count;
     t->rotation = calloc((size_t)t->stay_count * 9, sizeof *t->rotation);
