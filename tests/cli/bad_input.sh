@@ -28,6 +28,7 @@ expect_survives() {
 }
 
 spoil && rm "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
+spoil && : >"spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
 spoil && truncate -s 20000 "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
 spoil && convert -size 100x80 xc:gray "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
 spoil && head -c 500 /dev/urandom >"spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
@@ -48,6 +49,9 @@ spoil && sed -i '3s/.*/garbage/' spoilt/journal.jsonl && expect_error 1 "line 3"
 spoil && sed -i '20,$d' spoilt/journal.jsonl && expect_error 1 spoilt register spoilt -o spoilt.btf.h5
 expect_no_file spoilt.btf.h5
 expect_error 1 absent register absent -o spoilt.btf.h5
+expect_error 2 "a folder" register good --size 16x16 -o good
+expect_error 2 "does not name a file" register good --size 16x16 -o absent/
+expect_error 3 "'absent'" register good --size 16x16 -o absent/good.btf.h5
 
 # Datasets.
 expect_ok register good --size 16x16 -o good.btf.h5
