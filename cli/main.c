@@ -16,6 +16,7 @@ static const command commands[] = {
     {"register", command_register, "turn the photographs of a session into a dataset"},
     {"import", command_import, "turn foreign photographs into a dataset"},
     {"compress", command_compress, "fit lobes and a view table to a dataset"},
+    {"bard", command_bard, "predict a dataset from the photographs under one light"},
     {"render", command_render, "draw a material to an image file"},
     {"play", command_play, "draw a material in a window"},
     {"compare", command_compare, "put dataset, material and analytic cloth side by side"},
