@@ -110,10 +110,11 @@ static int bench_weave(const char *path)
     if (!plain || !noisy)
         return 1;
     double plain_rate = specular_rate(&weave, plain, &lit), noisy_rate = specular_rate(&weave, noisy, &lit_noisy);
-    printf("%-24s load %5.3f s (this thread)   texture %6.2f M/s (%2.0f %% lit)   with noise %6.2f M/s (%2.0f %% lit)   "
-           "locate %6.1f M/s   with noise %6.1f M/s   tile mean %6.0f /s\n",
-           weave.name, load_s, plain_rate / 1e6, 100 * lit, noisy_rate / 1e6, 100 * lit_noisy,
-           locate_rate(&weave, plain, 0) / 1e6, locate_rate(&weave, plain, 1) / 1e6, mean_rate(&weave, plain));
+    printf(
+        "%-24s load %5.3f s (this thread)   texture %6.2f M/s (%2.0f %% lit)   with noise %6.2f M/s (%2.0f %% lit)   "
+        "locate %6.1f M/s   with noise %6.1f M/s   tile mean %6.0f /s\n",
+        weave.name, load_s, plain_rate / 1e6, 100 * lit, noisy_rate / 1e6, 100 * lit_noisy,
+        locate_rate(&weave, plain, 0) / 1e6, locate_rate(&weave, plain, 1) / 1e6, mean_rate(&weave, plain));
     free(plain);
     free(noisy);
     weft_weave_free(&weave);
