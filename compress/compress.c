@@ -96,9 +96,10 @@ static void halve_opacity(const weft_material_level *from, weft_material_level *
     for (size_t view = 0; view < (size_t)view_count; view++) {
         for (int y = 0; y < to->height; y++) {
             for (int x = 0; x < to->width; x++) {
-                int sum = 0, count = 0;
-                for (int row = 2 * y; row < 2 * y + 2 && row < from->height; row++) {
-                    for (int column = 2 * x; column < 2 * x + 2 && column < from->width; column++, count++)
+                int rows = 2 * y + 1 < from->height ? 2 : 1, columns = 2 * x + 1 < from->width ? 2 : 1;
+                int sum = 0, count = rows * columns;
+                for (int row = 2 * y; row < 2 * y + rows; row++) {
+                    for (int column = 2 * x; column < 2 * x + columns; column++)
                         sum += from->table[(view * from_texels + (size_t)(row * from->width + column)) * 4 + 3];
                 }
                 to->table[(view * to_texels + (size_t)(y * to->width + x)) * 4 + 3] =
@@ -175,6 +176,8 @@ static weft_code fit_material(weft_dataset *dataset, const weft_compress_options
         source.options.max_exponent = options->max_exponent;
         WEFT_TRY(weft_dense_fit(dataset, &source, progress, material, &counts, &report->masked_count, error));
     }
+    if (counts.empty == counts.texels && !options->held_out)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(dataset));
     report->texel_count = counts.texels;
     report->empty_texel_count = counts.empty;
     report->turned_frame_count = counts.turned;

@@ -41,7 +41,8 @@ typedef struct weft_compress_report {
 /* Fits `material`, which the caller frees with weft_material_free; errors by level are in it. `report` may be NULL. The
  * result does not depend on the number of threads (OpenMP) nor on the order of the images. Memory: bounded, about 150
  * MB plus what 1/1024 of the dataset needs as floats; the sparse model holds all samples. Errors: WEFT_BAD_USAGE for
- * options out of range or where every image is held out; those of reading; WEFT_SYSTEM for memory. */
+ * options out of range or where every image is held out; WEFT_BAD_INPUT for a dataset without any valid sample; those
+ * of reading; WEFT_SYSTEM for memory. */
 weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *options, const weft_progress *progress,
                         weft_material *material, weft_compress_report *report, weft_error *error);
 

@@ -205,6 +205,25 @@ static void masked_samples_are_counted_and_not_used(void **state)
     weft_material_free(&masked);
 }
 
+static void fill_missing(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_ward(layout, x, y, samples, mask);
+    memset(mask, WEFT_MASK_MISSING, (size_t)layout->image_count);
+}
+
+static void a_dataset_without_valid_samples_is_refused_by_name(void **state)
+{
+    (void)state;
+    write_fill("missing.btf.h5", 1, 1, fill_missing);
+    weft_dataset *dataset = synthetic_dataset_open("missing.btf.h5");
+    weft_compress_options options = weft_compress_default_options();
+    weft_material material;
+    weft_error error = {0};
+    assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_INPUT);
+    assert_string_equal(error.message, "'missing.btf.h5' holds no valid sample");
+    weft_dataset_close(dataset);
+}
+
 static void fill_spoilt(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
 {
     fill_ward(layout, x, y, samples, mask);
@@ -313,6 +332,7 @@ int main(void)
         cmocka_unit_test(number_of_threads_does_not_change_the_bytes),
         cmocka_unit_test(a_material_is_a_sixtieth_of_its_dataset),
         cmocka_unit_test(masked_samples_are_counted_and_not_used),
+        cmocka_unit_test(a_dataset_without_valid_samples_is_refused_by_name),
         cmocka_unit_test(images_held_out_have_no_influence),
         cmocka_unit_test(every_model_gives_a_material_of_its_shape),
         cmocka_unit_test(both_conventions_of_values_give_the_same_material),
