@@ -55,8 +55,8 @@ INLINED void lanes_store(float *to, lanes x)
 /* Sums of neighbours, those of a in the lower half and those of b in the upper. */
 INLINED lanes lanes_pair_sums(lanes a, lanes b)
 {
-    const lane_bits even = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
-    return __builtin_shuffle(a, b, even) + __builtin_shuffle(a, b, even + 1);
+    return __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +
+           __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
 }
 
 /* The sums of sixteen vectors, in their order, by halving four times. Overwrites them. */

@@ -411,7 +411,7 @@ void weft_normal_of_trial(const weft_bundle *bundle, bool with_table, bool rotat
     for (int view = 0; view < bundle->view_count; view++) {
         direction local_view, p[WEFT_GRAM_LOBES], m[WEFT_GRAM_LOBES];
         derivative by[WEFT_SOLVE_MAX] = {{.first = 0, .end = 1, .weight = {1}}};
-        double f[WEFT_GRAM_COLUMNS], error[WEFT_GRAM_COLUMNS];
+        double f[WEFT_GRAM_COLUMNS] = {0}, error[WEFT_GRAM_COLUMNS] = {0};
         view_state state = state_of_view(trial, view, with_table, linear.x);
         shapes_of_view(fit, rows, bundle->view[view], &local_view, p, m);
         for (int i = 0; i < fit->lobe_count; i++)

@@ -95,8 +95,8 @@ static double largest_table(const weft_bundle *bundle, const double *table, cons
     double largest = 0, best = 0, least = INFINITY;
     for (int view = 0; view < bundle->view_count; view++)
         largest = fmax(largest, table[view]);
-    for (double candidate = largest; candidate > largest / 64; candidate *= 0.5) {
-        double loss = 0;
+    for (int halvings = 0; halvings < 6 && largest > 0; halvings++) {
+        double candidate = ldexp(largest, -halvings), loss = 0;
         for (int view = 0; view < bundle->view_count; view++) {
             double t = weft_table_of_code(code_of_table(table[view] / candidate)) * candidate;
             loss += energy[view] * (t - table[view]) * (t - table[view]);

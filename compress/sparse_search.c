@@ -19,9 +19,9 @@ typedef weft_sparse_shape candidate;
 
 static candidate candidate_of_index(int index)
 {
-    int slope = index / EXPONENTS;
-    return (candidate){.slope_x = SLOPE_STEP * (float)(slope % SLOPES - SLOPES / 2),
-                       .slope_y = SLOPE_STEP * (float)(slope / SLOPES - SLOPES / 2),
+    int slope = index / EXPONENTS, column = slope % SLOPES - SLOPES / 2, row = slope / SLOPES - SLOPES / 2;
+    return (candidate){.slope_x = SLOPE_STEP * (float)column,
+                       .slope_y = SLOPE_STEP * (float)row,
                        .exponent = WEFT_SPARSE_FIRST_EXPONENT * exp2f(0.5f * (float)(index % EXPONENTS))};
 }
 

@@ -134,7 +134,7 @@ static weft_code parse_parameter(weave_parser *parser, const weave_field *field,
     if (!parameter)
         return fail_here(parser, "no value was given for '$%.*s'", weave_token_shown(token), token->text);
     const double rgb[3] = {parameter->value.r, parameter->value.g, parameter->value.b};
-    for (int i = 0; i < field->count; i++) {
+    for (int i = 0; i < 3 && i < field->count; i++) {
         WEFT_TRY(check_range(parser, field, rgb[i]));
         values[i] = rgb[i];
     }

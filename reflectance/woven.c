@@ -29,7 +29,7 @@ static void light_up(weft_yarn_point *point, const mirror *at)
 
 static weft_yarn_point staple_point(const weft_prepared_segment *prepared, weft_real u, weft_vec3 light, weft_vec3 view)
 {
-    mirror at;
+    mirror at = {0};
     weft_vec3 half = weft_add(light, view);
     if (!(fabs(u) <= prepared->spine.umax))
         return (weft_yarn_point){0};
@@ -49,7 +49,7 @@ static weft_yarn_point filament_point(const weft_prepared_segment *prepared, wef
                                       weft_vec3 view)
 {
     weft_real umax = prepared->spine.umax;
-    mirror at;
+    mirror at = {0};
     weft_vec3 half = weft_add(light, view);
     weft_real across = filament_mirror(half, &at), u = atan2(half.y, half.z);
     if (!(across > 0))
@@ -108,7 +108,7 @@ static weft_real staple_texture(const weft_prepared_segment *prepared, weft_real
 {
     const weft_segment *segment = &prepared->segment;
     weft_real u = 2 * umax * y / segment->length;
-    mirror at;
+    mirror at = {0};
     if (!staple_at(prepared, half, u, &at) || !faces_both(&at, light, view))
         return 0;
     weft_real centre = segment->width * (atan2(at.sin_v, at.cos_v) / (weft_real)WEFT_PI);
@@ -126,7 +126,7 @@ static weft_real filament_texture(const weft_prepared_segment *prepared, weft_re
                                   weft_vec3 half, weft_vec3 light, weft_vec3 view)
 {
     const weft_segment *segment = &prepared->segment;
-    mirror at;
+    mirror at = {0};
     weft_real across = filament_mirror(half, &at);
     weft_real u = atan2(half.y, half.z);
     if (!(across > 0 && fabs(u) < umax))

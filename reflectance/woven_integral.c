@@ -38,7 +38,7 @@ static weft_real staple_integrand(const void *context, const abscissa *where)
     const staple_piece *piece = context;
     const staple_problem *problem = piece->problem;
     const weft_prepared_segment *prepared = problem->prepared;
-    mirror at;
+    mirror at = {0};
     if (!staple_at(problem, where->x, &at) || !faces_both(&at, problem->light, problem->view))
         return 0;
     weft_real from_low = piece->t.low - problem->range.low + where->from_low;
@@ -50,7 +50,7 @@ static weft_real staple_integrand(const void *context, const abscissa *where)
 /* Whether both directions are seen from the mirroring point, wherever v is. */
 static bool staple_faces(const staple_problem *problem, weft_real t)
 {
-    mirror at;
+    mirror at = {0};
     return staple_at(problem, t, &at) && faces_both(&at, problem->light, problem->view);
 }
 
@@ -174,7 +174,7 @@ static weft_real filament_reflectance(const weft_prepared_segment *prepared, wef
 {
     const weft_spine *spine = &prepared->spine;
     const weft_real quarter = (weft_real)(WEFT_PI / 2);
-    mirror at;
+    mirror at = {0};
     weft_real across = filament_mirror(half, &at), u = atan2(half.y, half.z);
     if (!(across > 0 && fabs(u) < spine->umax))
         return 0;
