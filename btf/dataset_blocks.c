@@ -3,11 +3,16 @@
 #include "btf/atomic_file.h"
 #include "btf/dataset_create.h"
 
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const size_t block_bytes = (size_t)1 << 26;
+
+/* Directions, provenance and the index of the chunks, generously. */
+static const size_t other_bytes = (size_t)1 << 20;
 
 struct weft_dataset_block_writer {
     char *path;
@@ -26,11 +31,29 @@ void weft_dataset_block_size(const weft_dataset_layout *layout, int *width, int 
     *width = most < (size_t)chunk ? chunk : most > (size_t)layout->width ? layout->width : (int)most;
 }
 
+/* Takes and gives back the disk space of the whole file: HDF5 1.10 crashes at exit where it could not write one. */
+static weft_code check_space(const weft_dataset_block_writer *writer, weft_error *error)
+{
+    const weft_dataset_layout *layout = writer->layout;
+    size_t samples = (size_t)layout->width * (size_t)layout->height * (size_t)layout->image_count;
+    size_t bytes = samples * (3 * sizeof(weft_half) + sizeof(uint8_t)) + other_bytes;
+    int descriptor = open(writer->atomic.temporary_path, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor < 0)
+        return weft_fail_errno(error, "write", writer->path);
+    int failure = posix_fallocate(descriptor, 0, (off_t)bytes);
+    close(descriptor);
+    if (failure != 0)
+        return weft_fail(error, WEFT_SYSTEM, "cannot reserve %zu bytes for '%s': %s", bytes, writer->path,
+                         strerror(failure));
+    return WEFT_OK;
+}
+
 static weft_code prepare(weft_dataset_block_writer *writer, weft_error *error)
 {
     const weft_dataset_layout *layout = writer->layout;
     WEFT_TRY(weft_dataset_layout_check(layout, writer->path, WEFT_BAD_INPUT, error));
     WEFT_TRY(weft_atomic_file_begin(writer->path, &writer->atomic, error));
+    WEFT_TRY(check_space(writer, error));
     WEFT_TRY(weft_dataset_create(writer->atomic.temporary_path, writer->path, layout, error));
     WEFT_TRY(weft_dataset_file_open(writer->atomic.temporary_path, writer->path, &writer->file, error));
     writer->is_open = true;

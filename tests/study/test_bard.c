@@ -270,10 +270,11 @@ static void the_file_says_how_it_was_made(void **state)
 
 /* ---- The command ---- */
 
-static void expect_command(const char *arguments, int code, const char *what)
+/* `before` is what the shell does first. */
+static void expect_command_after(const char *before, const char *arguments, int code, const char *what)
 {
     char command[1024], said[8192];
-    snprintf(command, sizeof command, WEFT_PROGRAM " bard %s 2>&1", arguments);
+    snprintf(command, sizeof command, "%s" WEFT_PROGRAM " bard %s 2>&1", before, arguments);
     FILE *pipe = popen(command, "r");
     assert_non_null(pipe);
     said[fread(said, 1, sizeof said - 1, pipe)] = 0;
@@ -282,6 +283,20 @@ static void expect_command(const char *arguments, int code, const char *what)
     if (WEXITSTATUS(status) != code || !strstr(said, what))
         fail_msg("weft bard %s exited with %d, not %d, and said '%s', not '%s'", arguments, WEXITSTATUS(status), code,
                  said, what);
+}
+
+static void expect_command(const char *arguments, int code, const char *what)
+{
+    expect_command_after("", arguments, code, what);
+}
+
+static void a_full_disk_is_an_error_that_leaves_nothing(void **state)
+{
+    (void)state;
+    fixture_far_dataset(input, 40, 40, 3, lambertian, 0);
+    expect_command_after("ulimit -f 2048; ", "bard.btf.h5 -o bard.bard.h5", WEFT_SYSTEM, "bard.bard.h5");
+    assert_int_not_equal(access(output, F_OK), 0);
+    forget_files();
 }
 
 static void the_command_predicts_and_names_what_is_wrong(void **state)
@@ -330,6 +345,7 @@ int main(void)
         cmocka_unit_test(datasets_that_cannot_make_a_table_are_refused),
         cmocka_unit_test(a_texel_without_a_table_is_missing_and_a_tilted_light_will_do),
         cmocka_unit_test(the_file_says_how_it_was_made),
+        cmocka_unit_test(a_full_disk_is_an_error_that_leaves_nothing),
         cmocka_unit_test(the_command_predicts_and_names_what_is_wrong),
     };
     return cmocka_run_group_tests_name("bard", tests, make_views, free_views);
