@@ -127,8 +127,8 @@ static weft_code stream_create(const weft_dataset_layout *layout, weft_raw_textu
 {
     *s = (stream){.texture = texture, .image_count = layout->image_count, .view_count = layout->view_count};
     s->level_count = texture->skipped_levels + texture->layout.level_count;
-    int width = layout->width, height = layout->height;
-    for (int level = 0; level < s->level_count; level++) {
+    int width = layout->width, height = layout->height, level = 0;
+    do {
         size_t size = (size_t)width * (size_t)layout->image_count * 4;
         s->width[level] = width;
         s->height[level] = height;
@@ -138,7 +138,7 @@ static weft_code stream_create(const weft_dataset_layout *layout, weft_raw_textu
             return weft_fail_memory(error, "rows of samples", size * sizeof(float));
         width = (width + 1) / 2;
         height = (height + 1) / 2;
-    }
+    } while (++level < s->level_count);
     size_t strip = (size_t)(layout->width + 2 * BORDER) * (size_t)texture->layers;
     s->strip = calloc(strip, 4 * sizeof(weft_half));
     return s->strip ? WEFT_OK : weft_fail_memory(error, "rows of samples", strip * 4 * sizeof(weft_half));

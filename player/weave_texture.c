@@ -25,7 +25,7 @@ void weft_weave_mean_tabulate(const weft_weave *weave, weft_rgb mean[WEFT_UBO81_
 
 static weft_code upload_mean(const weft_weave *weave, GLuint *texture, weft_error *error)
 {
-    weft_rgb(*mean)[DIRECTIONS] = malloc(sizeof(weft_rgb) * DIRECTIONS * DIRECTIONS);
+    weft_rgb(*mean)[DIRECTIONS] = malloc(sizeof *mean * DIRECTIONS);
     float(*rgba)[4] = malloc(sizeof *rgba * DIRECTIONS * DIRECTIONS);
     weft_code code = WEFT_OK;
     if (!mean || !rgba) {
