@@ -37,7 +37,7 @@ expect_ok render cloth.weft --raw cloth.btf.h5 --weave "$assets/weaves/wool_gaba
 expect_ok render cloth.weft --mesh sphere --size 64x64 -o sphere.exr
 expect_ok compare cloth.btf.h5 cloth.weft --weave "$assets/weaves/wool_gabardine.wv" -o report
 grep -q "<img" report/index.html || fail "the comparison has no pictures"
-for command in capture register import compress render play compare eval info verify; do
+for command in capture register import compress bard render play compare eval info verify; do
     expect_says "xample" "$command" --help
 done
 echo "$passed passed, 0 failed"
