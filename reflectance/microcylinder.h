@@ -122,7 +122,12 @@ weft_rgb weft_microcylinder_scattering(const weft_prepared_cloth *prepared, weft
 weft_rgb weft_microcylinder_brdf(const weft_prepared_cloth *prepared, weft_cloth_weighting weighting, weft_vec3 light,
                                  weft_vec3 view);
 
-/* Texels of the one-line table that microcylinder.glsl reads. */
+/* The one-line table that microcylinder.glsl reads:
+ *     0              1 = admissible, sigma, area without thread, 0
+ *     1 + 67 j + 0   thread j: 0 = x or 1 = y, number of samples, area share, 0
+ *              + 1   eta, gamma_s, gamma_v, kd
+ *              + 2   albedo r, g, b; 0
+ *              + 3.. tangents: cos tilt, sin tilt, 0, 0 */
 enum { WEFT_MICROCYLINDER_TABLE_WIDTH = 1 + WEFT_CLOTH_THREADS * (3 + WEFT_THREAD_MAX_SAMPLES) };
 
 /* Writes the table, RGBA, to rgba [WEFT_MICROCYLINDER_TABLE_WIDTH][4]. */

@@ -86,6 +86,11 @@ static weft_rgb thread_sum(const weft_prepared_cloth *prepared, int j, weft_vec3
     return sum;
 }
 
+static weft_real uncovered_share(const weft_prepared_cloth *prepared)
+{
+    return fmax(1 - prepared->cloth.thread[0].area_share - prepared->cloth.thread[1].area_share, 0);
+}
+
 weft_rgb weft_microcylinder_scattering(const weft_prepared_cloth *prepared, weft_cloth_weighting weighting,
                                        weft_vec3 light, weft_vec3 view)
 {
@@ -93,8 +98,7 @@ weft_rgb weft_microcylinder_scattering(const weft_prepared_cloth *prepared, weft
     if (!prepared->admissible || !(light.z > 0 && view.z > 0))
         return k;
     const weft_cloth_thread *thread = prepared->cloth.thread;
-    weft_real uncovered = fmax(1 - thread[0].area_share - thread[1].area_share, 0);
-    weft_real met = weighting == WEFT_CLOTH_BY_AREA ? uncovered * view.z : 0;
+    weft_real met = weighting == WEFT_CLOTH_BY_AREA ? uncovered_share(prepared) * view.z : 0;
     for (int j = 0; j < WEFT_CLOTH_THREADS; j++) {
         weft_real projection = weft_thread_projection(thread[j].axis, prepared->cloth.sigma, light, view);
         weft_real samples = (weft_real)thread[j].sample_count;
@@ -124,7 +128,7 @@ static void set_texel(float texel[4], weft_real r, weft_real g, weft_real b, wef
 
 void weft_microcylinder_table(const weft_prepared_cloth *prepared, float (*rgba)[4])
 {
-    set_texel(*rgba++, prepared->admissible, prepared->cloth.sigma, 0, 0);
+    set_texel(*rgba++, prepared->admissible, prepared->cloth.sigma, uncovered_share(prepared), 0);
     for (int j = 0; j < WEFT_CLOTH_THREADS; j++) {
         const weft_cloth_thread *thread = &prepared->cloth.thread[j];
         const weft_thread_optics *optics = &thread->optics;

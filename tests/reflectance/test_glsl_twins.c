@@ -7,6 +7,7 @@
 #include "reflectance/weave_table.h"
 #include "tests/btf/cmocka_all.h"
 #include "tests/reflectance/random.h"
+#include "tests/support/keep_modules.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -154,6 +155,7 @@ static void compare_fabrics(weft_gl_profile profile)
         print_message("skipped: %s\n", error.message);
         exit(77);
     }
+    keep_modules_loaded();
     const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
     const char *const fragment[] = {weft_glsl_woven, weft_glsl_weave, fragment_main, NULL};
     GLuint program;

@@ -3,6 +3,7 @@
 #include "player/gl.h"
 #include "player/shaders.h"
 #include "tests/btf/cmocka_all.h"
+#include "tests/support/keep_modules.h"
 
 #include <stdlib.h>
 
@@ -81,6 +82,7 @@ void twin_run(weft_gl_profile profile, const char *const *sources, const twin_ta
         print_message("skipped: %s\n", error.message);
         exit(77);
     }
+    keep_modules_loaded();
     GLuint program = link_program(sources);
     GLuint of_table = upload(table->rgba, table->width, table->height);
     GLuint of_query = upload(queries[0][0], TWIN_WIDTH, TWIN_BANDS * TWIN_HEIGHT);
