@@ -9,6 +9,8 @@
 
 static const size_t largest_file = (size_t)1 << 30;
 
+enum { MOST_COLUMNS = 4096 };
+
 static char *trimmed(char *text)
 {
     while (isspace((unsigned char)*text))
@@ -60,6 +62,17 @@ static weft_code allocate_rows(weft_csv *csv, int lines, weft_error *error)
     return WEFT_OK;
 }
 
+/* A reader asks for columns by name: two of one name would leave one of them unread. */
+static weft_code check_names(const weft_csv *csv, int number, weft_error *error)
+{
+    for (int i = 0; i < csv->column_count; i++) {
+        if (*csv->column[i] && weft_csv_column(csv, csv->column[i]) < i)
+            return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: two columns are named '%s'", csv->path, number,
+                             csv->column[i]);
+    }
+    return WEFT_OK;
+}
+
 static weft_code split_lines(weft_csv *csv, bool has_header, weft_error *error)
 {
     int lines = count_lines(csv->text), number = 0;
@@ -71,6 +84,9 @@ static weft_code split_lines(weft_csv *csv, bool has_header, weft_error *error)
             continue;
         int cells = count_cells(line);
         if (!csv->cell) {
+            if (cells > MOST_COLUMNS)
+                return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: %d columns, at most %d are read", csv->path, number,
+                                 cells, MOST_COLUMNS);
             csv->column_count = cells;
             WEFT_TRY(allocate_rows(csv, lines, error));
         }
@@ -79,6 +95,7 @@ static weft_code split_lines(weft_csv *csv, bool has_header, weft_error *error)
                              cells, csv->column_count);
         if (header_pending) {
             split_cells(line, csv->column);
+            WEFT_TRY(check_names(csv, number, error));
             header_pending = false;
             continue;
         }
