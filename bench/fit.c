@@ -1,7 +1,7 @@
 /* Time and error of the joint fit, of our alternation, and of an alternation with MINPACK where it is installed: the
  * same texels, one method after the other on each, one thread. Usage: bench_fit [texels] [lobes] */
 #include "compress/fit.h"
-#include "compress/gram.h"
+#include "btf/processor.h"
 #include "tests/support/synthetic_texel.h"
 
 #ifdef WEFT_HAVE_MINPACK

@@ -39,6 +39,27 @@ function(weft_room name)
     target_link_libraries(weft_${name} PUBLIC weft_options ${room_LINKS})
 endfunction()
 
+# weft_kernels(TARGET file...): sources that use btf/lanes.h, compiled once for each instruction set and added to the target. The
+# instruction set is part of the names of their functions, so that none of another set is ever called by accident.
+set(WEFT_INSTRUCTION_SETS baseline)
+set(WEFT_FLAGS_baseline "")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND WEFT_INSTRUCTION_SETS avx2 avx512)
+    set(WEFT_FLAGS_avx2 -mavx2 -mfma -mf16c)
+    set(WEFT_FLAGS_avx512 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mf16c -mprefer-vector-width=512)
+endif()
+function(weft_kernels target)
+    foreach(set ${WEFT_INSTRUCTION_SETS})
+        set(kernels ${target}_${set})
+        add_library(${kernels} OBJECT ${ARGN})
+        target_link_libraries(${kernels} PRIVATE weft_options)
+        target_compile_definitions(${kernels} PRIVATE WEFT_INSTRUCTION_SET=${set})
+        # Multiply-adds in one rounding; vectors wider than a register never cross a call, so that their ABI does not matter.
+        target_compile_options(${kernels} PRIVATE -O3 -ffp-contract=fast -fno-trapping-math -Wno-psabi ${WEFT_FLAGS_${set}})
+        target_sources(${target} PRIVATE $<TARGET_OBJECTS:${kernels}>)
+    endforeach()
+endfunction()
+
 # weft_test(NAME SOURCES file... LINKS target... [LABELS label...]): a cmocka program run by ctest.
 function(weft_test name)
     cmake_parse_arguments(test "" "" "SOURCES;LINKS;LABELS" ${ARGN})

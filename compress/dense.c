@@ -1,6 +1,6 @@
 #include "compress/dense.h"
 
-#include "compress/gram.h"
+#include "btf/processor.h"
 
 #include <math.h>
 #include <omp.h>

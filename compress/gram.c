@@ -4,10 +4,6 @@
 
 #include <string.h>
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
-
 typedef float lanes __attribute__((vector_size(4 * WEFT_LANES)));
 typedef int32_t lane_bits __attribute__((vector_size(4 * WEFT_LANES)));
 
@@ -202,24 +198,4 @@ WEFT_HOT void weft_gram_evaluate(const weft_bundle *bundle, const float *cosine,
             lanes_store(result + lane, f);
         }
     }
-}
-
-unsigned weft_denormals_off(void)
-{
-#if defined(__x86_64__)
-    unsigned state = _mm_getcsr();
-    _mm_setcsr(state | 0x8040);
-    return state;
-#else
-    return 0;
-#endif
-}
-
-void weft_denormals_restore(unsigned state)
-{
-#if defined(__x86_64__)
-    _mm_setcsr(state);
-#else
-    (void)state;
-#endif
 }

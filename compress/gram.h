@@ -42,9 +42,4 @@ void weft_gram_accumulate(const weft_bundle *bundle, const float *cosine, const 
 /* f_cos = k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [lane_count]. */
 void weft_gram_evaluate(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
 
-/* Denormal floats cost a hundred cycles each and mean nothing in a fit. Returns the state to restore, for this thread.
- */
-unsigned weft_denormals_off(void);
-void weft_denormals_restore(unsigned state);
-
 #endif
