@@ -23,8 +23,8 @@ enum { LANES = 4 }; /* SSE2, NEON */
 typedef float lanes __attribute__((vector_size(4 * LANES)));
 typedef int32_t lane_bits __attribute__((vector_size(4 * LANES)));
 
-/* Eight doubles, in as many registers as that takes. */
-enum { WIDE_LANES = 8 };
+/* Doubles: half as many. */
+enum { WIDE_LANES = LANES / 2 };
 typedef double wide_lanes __attribute__((vector_size(8 * WIDE_LANES)));
 typedef int64_t wide_bits __attribute__((vector_size(8 * WIDE_LANES)));
 typedef float wide_lanes_source __attribute__((vector_size(4 * WIDE_LANES)));
@@ -100,7 +100,7 @@ WEFT_INLINE wide_lanes wide_load(const double *from)
     return *(const wide_lanes *)__builtin_assume_aligned(from, 8 * WIDE_LANES);
 }
 
-/* Eight floats as doubles. */
+/* WIDE_LANES floats as doubles. */
 WEFT_INLINE wide_lanes wide_load_floats(const float *from)
 {
     return __builtin_convertvector(*(const wide_lanes_source *)__builtin_assume_aligned(from, 4 * WIDE_LANES),
@@ -119,7 +119,10 @@ WEFT_INLINE wide_lanes wide_select(wide_bits mask, wide_lanes yes, wide_lanes no
 
 WEFT_INLINE double wide_sum(wide_lanes x)
 {
-    return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
+    double sum = 0;
+    for (int i = 0; i < WIDE_LANES; i++)
+        sum += x[i];
+    return sum;
 }
 
 #endif

@@ -29,24 +29,21 @@ static void local_of(const weft_frame *frame, weft_vec3 direction, double local[
 static weft_code gather(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_frame *frame,
                         problem *result, weft_error *error)
 {
-    size_t capacity = (size_t)bundle->lane_count + 1;
+    size_t capacity = (size_t)bundle->sample_count + 1;
     *result = (problem){.observations = calloc(capacity, sizeof(observation)), .view_count = bundle->view_count};
     if (!result->observations)
         return weft_fail_memory(error, "observations", capacity * sizeof(observation));
-    for (int view = 0; view < bundle->view_count; view++) {
-        for (int lane = bundle->first_lane[view]; lane < bundle->first_lane[view + 1]; lane++) {
-            if (!(samples->cosine[lane] > 0))
-                continue;
-            observation *one = &result->observations[result->count++];
-            *one = (observation){.cosine = (double)samples->cosine[lane],
-                                 .value = (double)samples->value[channel][lane],
-                                 .bundle = view};
-            local_of(frame, bundle->view[view], one->view);
-            local_of(frame,
-                     weft_vec3_of((double)bundle->light[0][lane], (double)bundle->light[1][lane],
-                                  (double)bundle->light[2][lane]),
-                     one->light);
-        }
+    for (int i = 0; i < bundle->sample_count; i++) {
+        if (!(samples->cosine[i] > 0))
+            continue;
+        observation *one = &result->observations[result->count++];
+        *one = (observation){.cosine = (double)samples->cosine[i],
+                             .value = (double)samples->value[channel][i],
+                             .bundle = bundle->view_of[i]};
+        local_of(frame, bundle->view[one->bundle], one->view);
+        local_of(frame,
+                 weft_vec3_of((double)bundle->light[0][i], (double)bundle->light[1][i], (double)bundle->light[2][i]),
+                 one->light);
     }
     return WEFT_OK;
 }
@@ -251,17 +248,14 @@ double weft_fit_residual(const weft_bundle *bundle, const weft_samples *samples,
                          const double *table)
 {
     double sum = 0;
-    for (int view = 0; view < bundle->view_count; view++) {
-        observation at = {.bundle = view};
-        local_of(&fit->frame, bundle->view[view], at.view);
-        for (int lane = bundle->first_lane[view]; lane < bundle->first_lane[view + 1]; lane++) {
-            at.cosine = (double)samples->cosine[lane];
-            weft_vec3 light = weft_vec3_of((double)bundle->light[0][lane], (double)bundle->light[1][lane],
-                                           (double)bundle->light[2][lane]);
-            local_of(&fit->frame, light, at.light);
-            double difference = (double)samples->value[channel][lane] - table[view] * model_without_table(fit, &at);
-            sum += difference * difference;
-        }
+    for (int i = 0; i < bundle->sample_count; i++) {
+        observation at = {.bundle = bundle->view_of[i], .cosine = (double)samples->cosine[i]};
+        weft_vec3 light =
+            weft_vec3_of((double)bundle->light[0][i], (double)bundle->light[1][i], (double)bundle->light[2][i]);
+        local_of(&fit->frame, bundle->view[at.bundle], at.view);
+        local_of(&fit->frame, light, at.light);
+        double difference = (double)samples->value[channel][i] - table[at.bundle] * model_without_table(fit, &at);
+        sum += difference * difference;
     }
     return sum;
 }

@@ -56,88 +56,186 @@ static entry *sorted_entries(const weft_dataset_layout *layout, const uint8_t *h
     return entries;
 }
 
-static int whole_lanes(int count)
+/* ---- Strips ---- */
+
+static int whole_strips(int count)
 {
-    return (count + WEFT_LANES - 1) / WEFT_LANES * WEFT_LANES;
+    return (count + WEFT_STRIP_LANES - 1) / WEFT_STRIP_LANES;
 }
 
-static void measure(weft_bundle *bundle, const entry *entries, int count)
+/* Images of every view, from the sorted entries. */
+static int *count_by_view(const entry *entries, int count, int view_count)
 {
-    int lane = 0;
-    for (int view = 0, next = 0; view < bundle->view_count; view++) {
-        int first = next;
-        while (next < count && entries[next].view == view)
-            next++;
-        bundle->first_lane[view] = lane;
-        bundle->coarse_end[view] = lane + whole_lanes((next - first + 3) / 4);
-        lane += whole_lanes(next - first);
+    int *images = calloc((size_t)view_count + 1, sizeof *images);
+    for (int i = 0; images && i < count; i++)
+        images[entries[i].view]++;
+    return images;
+}
+
+static void add_strip(weft_bundle *bundle, int view, int slots, bool split)
+{
+    int coarse = (slots + 3) / 4;
+    bundle->strip[bundle->strip_count++] = (weft_strip){
+        .first = bundle->sample_count, .slots = slots, .coarse_slots = coarse, .view = view, .split = split};
+    bundle->sample_count += slots * WEFT_STRIP_LANES;
+}
+
+/* Sixteen views side by side, or one after the other where that takes fewer slots: few views are left at the end, or
+ * one has many more lights than its neighbours. */
+static void plan_strips(weft_bundle *bundle, const int *images)
+{
+    for (int first = 0; first < bundle->view_count; first += WEFT_STRIP_LANES) {
+        int last = first + WEFT_STRIP_LANES < bundle->view_count ? first + WEFT_STRIP_LANES : bundle->view_count;
+        int aligned = 0, split = 0;
+        for (int view = first; view < last; view++) {
+            aligned = images[view] > aligned ? images[view] : aligned;
+            split += whole_strips(images[view]);
+        }
+        if (aligned <= split && aligned > 0)
+            add_strip(bundle, first, aligned, false);
+        for (int view = first; aligned > split && view < last; view++) {
+            if (images[view] > 0)
+                add_strip(bundle, view, whole_strips(images[view]), true);
+        }
     }
-    bundle->first_lane[bundle->view_count] = lane;
-    bundle->lane_count = lane;
 }
 
-static void place_images(weft_bundle *bundle, entry *entries)
+/* Puts image number `index` of a view of a strip into its place. */
+static void place_image(weft_bundle *bundle, const weft_strip *strip, int view, int index, int image)
 {
-    for (int i = 0; i < bundle->lane_count; i++)
+    int slot = strip->split ? index / WEFT_STRIP_LANES : index;
+    int lane = strip->split ? index % WEFT_STRIP_LANES : view - strip->view;
+    bundle->image[strip->first + slot * WEFT_STRIP_LANES + lane] = image;
+}
+
+static void place_images(weft_bundle *bundle, entry *entries, const int *images)
+{
+    for (int i = 0; i < bundle->sample_count; i++)
         bundle->image[i] = -1;
-    for (int view = 0, next = 0; view < bundle->view_count; view++) {
-        int count = 0;
-        while (next + count < bundle->image_count && entries[next + count].view == view)
-            count++;
-        shuffle_evenly(entries + next, count);
-        for (int i = 0; i < count; i++)
-            bundle->image[bundle->first_lane[view] + i] = entries[next + i].image;
-        next += count;
+    for (int s = 0; s < bundle->strip_count; s++) {
+        const weft_strip *strip = &bundle->strip[s];
+        for (int i = 0; i < strip->slots * WEFT_STRIP_LANES; i++) {
+            int view = strip->view + (strip->split ? 0 : i % WEFT_STRIP_LANES);
+            bundle->view_of[strip->first + i] = view < bundle->view_count ? view : 0;
+        }
+        int views = strip->split ? 1 : WEFT_STRIP_LANES;
+        for (int view = strip->view; view < strip->view + views && view < bundle->view_count; view++) {
+            shuffle_evenly(entries, images[view]);
+            for (int i = 0; i < images[view]; i++)
+                place_image(bundle, strip, view, i, entries[i].image);
+            entries += images[view];
+        }
     }
 }
 
-static weft_code allocate_lanes(weft_bundle *bundle, weft_error *error)
+/* ---- Distinct lights ---- */
+
+static int compare_entry_lights(const void *left, const void *right)
 {
-    size_t lanes = (size_t)(bundle->lane_count > 0 ? bundle->lane_count : WEFT_LANES);
-    bundle->image = calloc(lanes, sizeof *bundle->image);
-    for (int k = 0; k < 3; k++) {
-        bundle->light[k] = aligned_alloc(64, lanes * sizeof(float));
-        if (!bundle->light[k])
-            return weft_fail_memory(error, "light directions", lanes * sizeof(float));
-        memset(bundle->light[k], 0, lanes * sizeof(float));
+    entry a = *(const entry *)left, b = *(const entry *)right;
+    a.view = b.view = 0;
+    return compare_lights(&a, &b);
+}
+
+static bool same_light(weft_vec3 a, weft_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* Labels by image; where fewer than four images share a light on average there is nothing to learn about one. */
+static weft_code label_lights(weft_bundle *bundle, const weft_dataset_layout *layout, entry *entries, weft_error *error)
+{
+    if (layout->distance == WEFT_NEAR || bundle->image_count == 0)
+        return WEFT_OK;
+    int *label = calloc((size_t)layout->image_count, sizeof *label), labels = 0;
+    bundle->distinct = calloc((size_t)bundle->image_count, sizeof *bundle->distinct);
+    bundle->light_of = calloc((size_t)bundle->sample_count, sizeof *bundle->light_of);
+    if (!label || !bundle->distinct || !bundle->light_of) {
+        free(label);
+        return weft_fail_memory(error, "labels of lights", (size_t)layout->image_count * sizeof *label);
     }
-    return bundle->image ? WEFT_OK : weft_fail_memory(error, "bundled images", lanes * sizeof *bundle->image);
+    qsort(entries, (size_t)bundle->image_count, sizeof *entries, compare_entry_lights);
+    for (int i = 0; i < bundle->image_count; i++) {
+        if (labels == 0 || !same_light(entries[i].light, bundle->distinct[labels - 1]))
+            bundle->distinct[labels++] = entries[i].light;
+        label[entries[i].image] = labels - 1;
+    }
+    for (int i = 0; i < bundle->sample_count; i++)
+        bundle->light_of[i] = bundle->image[i] < 0 ? 0 : label[bundle->image[i]];
+    bundle->light_count = 4 * labels <= bundle->image_count ? labels : 0;
+    free(label);
+    return WEFT_OK;
+}
+
+/* ---- Creation ---- */
+
+static float *allocate_floats(size_t count)
+{
+    size_t bytes = (count + 2 * WEFT_STRIP_LANES) / WEFT_STRIP_LANES * WEFT_STRIP_LANES * sizeof(float);
+    float *result = aligned_alloc(64, bytes);
+    if (result)
+        memset(result, 0, bytes);
+    return result;
+}
+
+static weft_code allocate_samples(weft_bundle *bundle, weft_error *error)
+{
+    size_t samples = (size_t)bundle->sample_count + 1;
+    bundle->image = calloc(samples, sizeof *bundle->image);
+    bundle->view_of = calloc(samples, sizeof *bundle->view_of);
+    bool complete = bundle->image && bundle->view_of;
+    for (int k = 0; k < 3; k++) {
+        bundle->light[k] = allocate_floats(samples);
+        bundle->view_xyz[k] = allocate_floats((size_t)bundle->view_stride);
+        complete = complete && bundle->light[k] && bundle->view_xyz[k];
+    }
+    return complete ? WEFT_OK : weft_fail_memory(error, "bundled images", samples * 5 * sizeof(float));
+}
+
+static weft_code fill_bundle(weft_bundle *bundle, const weft_dataset_layout *layout, entry *entries, const int *images,
+                             weft_error *error)
+{
+    plan_strips(bundle, images);
+    WEFT_TRY(allocate_samples(bundle, error));
+    place_images(bundle, entries, images);
+    WEFT_TRY(label_lights(bundle, layout, entries, error));
+    weft_bundle_aim(bundle, layout, 0, 0);
+    return WEFT_OK;
 }
 
 weft_code weft_bundle_create(const weft_dataset_layout *layout, const uint8_t *held_out, weft_bundle *bundle,
                              weft_error *error)
 {
-    *bundle = (weft_bundle){.view_count = layout->view_count};
-    size_t views = (size_t)layout->view_count;
+    int views = layout->view_count;
+    *bundle = (weft_bundle){.view_count = views, .view_stride = WEFT_STRIP_LANES * whole_strips(views)};
     entry *entries = sorted_entries(layout, held_out, &bundle->image_count);
-    bundle->first_lane = calloc(views + 1, sizeof *bundle->first_lane);
-    bundle->coarse_end = calloc(views + 1, sizeof *bundle->coarse_end);
-    bundle->view = calloc(views + 1, sizeof *bundle->view);
+    int *images = entries ? count_by_view(entries, bundle->image_count, views) : NULL;
+    bundle->view = calloc((size_t)views + 1, sizeof *bundle->view);
+    bundle->strip = calloc((size_t)views + 1, sizeof *bundle->strip);
     weft_code code = WEFT_OK;
-    if (!entries || !bundle->first_lane || !bundle->coarse_end || !bundle->view)
-        code = weft_fail_memory(error, "bundles of views", views * sizeof *bundle->view);
-    if (code == WEFT_OK) {
-        measure(bundle, entries, bundle->image_count);
-        code = allocate_lanes(bundle, error);
-    }
-    if (code == WEFT_OK) {
-        place_images(bundle, entries);
-        weft_bundle_aim(bundle, layout, 0, 0);
-    } else {
+    if (!images || !bundle->view || !bundle->strip)
+        code = weft_fail_memory(error, "bundles of views", (size_t)views * sizeof *bundle->view);
+    else
+        code = fill_bundle(bundle, layout, entries, images, error);
+    if (code != WEFT_OK)
         weft_bundle_free(bundle);
-    }
     free(entries);
+    free(images);
     return code;
 }
 
 void weft_bundle_free(weft_bundle *bundle)
 {
-    free(bundle->first_lane);
-    free(bundle->coarse_end);
+    free(bundle->strip);
     free(bundle->image);
+    free(bundle->view_of);
     free(bundle->view);
-    for (int k = 0; k < 3; k++)
+    free(bundle->distinct);
+    free(bundle->light_of);
+    for (int k = 0; k < 3; k++) {
         free(bundle->light[k]);
+        free(bundle->view_xyz[k]);
+    }
     *bundle = (weft_bundle){0};
 }
 
@@ -149,15 +247,20 @@ static weft_vec3 direction_from(const weft_dataset_layout *layout, weft_vec3 tar
 void weft_bundle_aim(weft_bundle *bundle, const weft_dataset_layout *layout, double x_mm, double y_mm)
 {
     weft_vec3 place = weft_vec3_of(x_mm, y_mm, 0);
-    for (int view = 0; view < bundle->view_count; view++)
-        bundle->view[view] = direction_from(layout, layout->view[view], place);
-    for (int lane = 0; lane < bundle->lane_count; lane++) {
-        if (bundle->image[lane] < 0)
+    for (int view = 0; view < bundle->view_count; view++) {
+        weft_vec3 direction = direction_from(layout, layout->view[view], place);
+        bundle->view[view] = direction;
+        bundle->view_xyz[0][view] = (float)direction.x;
+        bundle->view_xyz[1][view] = (float)direction.y;
+        bundle->view_xyz[2][view] = (float)direction.z;
+    }
+    for (int i = 0; i < bundle->sample_count; i++) {
+        if (bundle->image[i] < 0)
             continue;
-        weft_vec3 light = direction_from(layout, layout->light[bundle->image[lane]], place);
-        bundle->light[0][lane] = (float)light.x;
-        bundle->light[1][lane] = (float)light.y;
-        bundle->light[2][lane] = (float)light.z;
+        weft_vec3 light = direction_from(layout, layout->light[bundle->image[i]], place);
+        bundle->light[0][i] = (float)light.x;
+        bundle->light[1][i] = (float)light.y;
+        bundle->light[2][i] = (float)light.z;
     }
 }
 
@@ -169,18 +272,18 @@ void weft_bundle_place(const weft_dataset_layout *layout, int x0, int y0, int x1
 
 weft_code weft_samples_create(const weft_bundle *bundle, weft_samples *samples, weft_error *error)
 {
-    *samples = (weft_samples){.lane_count = bundle->lane_count, .scale = 1};
-    size_t bytes = (size_t)(bundle->lane_count > 0 ? bundle->lane_count : WEFT_LANES) * sizeof(float);
-    samples->cosine = aligned_alloc(64, bytes);
+    *samples = (weft_samples){.sample_count = bundle->sample_count, .scale = 1};
+    size_t count = (size_t)bundle->sample_count;
+    samples->cosine = allocate_floats(count);
     bool complete = samples->cosine != NULL;
     for (int channel = 0; channel <= WEFT_GREY; channel++) {
-        samples->value[channel] = aligned_alloc(64, bytes);
+        samples->value[channel] = allocate_floats(count);
         complete = complete && samples->value[channel];
     }
     if (complete)
         return WEFT_OK;
     weft_samples_free(samples);
-    return weft_fail_memory(error, "samples of a texel", bytes);
+    return weft_fail_memory(error, "samples of a texel", 5 * count * sizeof(float));
 }
 
 void weft_samples_free(weft_samples *samples)
@@ -191,23 +294,23 @@ void weft_samples_free(weft_samples *samples)
     *samples = (weft_samples){0};
 }
 
-static void clear_lane(weft_samples *samples, int lane)
+static void clear_sample(weft_samples *samples, int at)
 {
-    samples->cosine[lane] = 0;
+    samples->cosine[at] = 0;
     for (int channel = 0; channel <= WEFT_GREY; channel++)
-        samples->value[channel][lane] = 0;
+        samples->value[channel][at] = 0;
 }
 
-static void gather_lane(weft_samples *samples, int lane, float light_z, const float *sum, float count, float weight,
-                        weft_values values)
+static void gather_sample(weft_samples *samples, int at, float light_z, const float *sum, float count, float weight,
+                          weft_values values)
 {
     float root = sqrtf(weight);
     float factor = root / count * (values == WEFT_REFLECTANCE ? light_z : 1);
     float rgb[3] = {sum[0] * factor, sum[1] * factor, sum[2] * factor};
-    samples->cosine[lane] = root * light_z;
+    samples->cosine[at] = root * light_z;
     for (int channel = 0; channel < WEFT_CHANNELS; channel++)
-        samples->value[channel][lane] = rgb[channel];
-    samples->value[WEFT_GREY][lane] = (rgb[0] + rgb[1] + rgb[2]) / 3;
+        samples->value[channel][at] = rgb[channel];
+    samples->value[WEFT_GREY][at] = (rgb[0] + rgb[1] + rgb[2]) / 3;
     samples->weight += weight;
     samples->valid_count++;
 }
@@ -217,16 +320,16 @@ static void normalise(weft_samples *samples)
 {
     double energy[WEFT_CHANNELS + 1] = {0}, total = 0;
     for (int channel = 0; channel <= WEFT_GREY; channel++) {
-        for (int lane = 0; lane < samples->lane_count; lane++)
-            energy[channel] += (double)samples->value[channel][lane] * (double)samples->value[channel][lane];
+        for (int at = 0; at < samples->sample_count; at++)
+            energy[channel] += (double)samples->value[channel][at] * (double)samples->value[channel][at];
         total += channel < WEFT_CHANNELS ? energy[channel] : 0;
     }
     samples->scale = total > 0 ? sqrt(total / (WEFT_CHANNELS * samples->weight)) : 1;
     float inverse = (float)(1 / samples->scale);
     for (int channel = 0; channel <= WEFT_GREY; channel++) {
         samples->energy[channel] = energy[channel] / (samples->scale * samples->scale);
-        for (int lane = 0; lane < samples->lane_count; lane++)
-            samples->value[channel][lane] *= inverse;
+        for (int at = 0; at < samples->sample_count; at++)
+            samples->value[channel][at] *= inverse;
     }
 }
 
@@ -235,14 +338,14 @@ void weft_samples_gather(const weft_bundle *bundle, weft_values values, const fl
 {
     samples->valid_count = 0;
     samples->weight = 0;
-    for (int lane = 0; lane < bundle->lane_count; lane++) {
-        int image = bundle->image[lane];
-        float light_z = bundle->light[2][lane];
+    for (int at = 0; at < bundle->sample_count; at++) {
+        int image = bundle->image[at];
+        float light_z = bundle->light[2][at];
         const float *rgb = sum + 3 * (image < 0 ? 0 : image);
         if (image < 0 || !(count[image] > 0) || !(light_z > 0) || !isfinite(rgb[0] + rgb[1] + rgb[2]))
-            clear_lane(samples, lane);
+            clear_sample(samples, at);
         else
-            gather_lane(samples, lane, light_z, rgb, count[image], count[image] / (float)group_size, values);
+            gather_sample(samples, at, light_z, rgb, count[image], count[image] / (float)group_size, values);
     }
     normalise(samples);
 }

@@ -1,22 +1,41 @@
-/* The images of a dataset in the order in which a fit wants them: bundled by view, so that T(v) is one number a bundle,
- * and padded to whole vectors. Samples of a texel are gathered into this order once and then read many times. */
+/* The images of a dataset in the order in which a fit wants them: a view a lane, one light after the other, so that
+ * what belongs to a view adds up without leaving its lane. Samples of a texel are gathered into this order once and
+ * then read many times. */
 #ifndef WEFT_COMPRESS_BUNDLE_H
 #define WEFT_COMPRESS_BUNDLE_H
 
 #include "btf/dataset.h"
 #include "btf/status.h"
 
-enum { WEFT_LANES = 16 }; /* every bundle starts at a multiple of this many samples */
+#include <stdbool.h>
 
-/* Owned by the caller. The order depends on the directions alone, not on the order of the images. Inside a bundle the
- * lights are shuffled evenly, so that its first lanes alone are a fair coarse sample. */
+enum { WEFT_STRIP_LANES = 16 };
+
+/* Samples that are looked at together, sixteen at a time. Slot s of lane i is sample first + 16 s + i. */
+typedef struct weft_strip {
+    int first;
+    int slots;
+    int coarse_slots; /* the first slots, with about a quarter of the lights */
+    int view;         /* lane i holds the samples of view + i; where `split`, all lanes hold those of `view` */
+    bool split;
+} weft_strip;
+
+/* Owned by the caller. The order depends on the directions alone, not on the order of the images. Inside a view the
+ * lights are shuffled evenly, so that its first slots alone are a fair coarse sample. */
 typedef struct weft_bundle {
-    int view_count, lane_count, image_count;
-    int *first_lane; /* [view_count + 1], multiples of WEFT_LANES */
-    int *coarse_end; /* [view_count]: lanes first_lane[v] .. coarse_end[v] hold about a quarter of the lights */
-    int32_t *image;  /* [lane_count] the image whose sample stands here, -1 in the padding */
-    weft_vec3 *view; /* [view_count] unit, in the frame of the surface */
-    float *light[3]; /* [lane_count] unit, in the frame of the surface; 0 in the padding */
+    int view_count, image_count;
+    int view_stride; /* view_count rounded up to whole strips: the length of what is kept for every view */
+    int sample_count;
+    int strip_count;
+    weft_strip *strip;   /* [strip_count] */
+    int32_t *image;      /* [sample_count] the image whose sample stands here, -1 in the padding */
+    int32_t *view_of;    /* [sample_count] */
+    weft_vec3 *view;     /* [view_count] unit, in the frame of the surface */
+    float *view_xyz[3];  /* [view_stride] the same; 0 in the padding */
+    float *light[3];     /* [sample_count] unit, in the frame of the surface; 0 in the padding */
+    int light_count;     /* distinct lights; 0 where few repeat or directions differ from texel to texel */
+    weft_vec3 *distinct; /* [light_count] */
+    int32_t *light_of;   /* [sample_count] index into distinct, 0 in the padding; NULL without */
 } weft_bundle;
 
 /* Bundles the images of a layout; those with held_out[image] != 0 are left out (held_out may be NULL). Directions are
@@ -34,9 +53,9 @@ void weft_bundle_place(const weft_dataset_layout *layout, int x0, int y0, int x1
 enum { WEFT_CHANNELS = 3, WEFT_GREY = 3 };
 
 /* The samples of one texel in the order of a bundle, scaled by the root of their weights and by one factor for the
- * whole texel that brings their mean square to 1. Arrays are [lane_count]; rows of zero weight are 0. */
+ * whole texel that brings their mean square to 1. Arrays are [sample_count]; samples of zero weight are 0. */
 typedef struct weft_samples {
-    int lane_count;
+    int sample_count;
     float *cosine;                    /* root of the weight times l_z */
     float *value[WEFT_CHANNELS + 1];  /* root of the weight times the sample / scale: r, g, b and their mean */
     double energy[WEFT_CHANNELS + 1]; /* sum of squares of value */

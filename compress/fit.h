@@ -77,7 +77,7 @@ void weft_fit_amplitudes(const weft_bundle *bundle, const weft_samples *samples,
 void weft_fit_model_energy(const weft_bundle *bundle, const weft_samples *samples, weft_fit_workspace *workspace,
                            const weft_fit *fit, double *energy);
 
-/* The model at every sample, without T: [lane_count], valid until the workspace is used again. */
+/* The model at every sample, without T: [sample_count], valid until the workspace is used again. */
 const float *weft_fit_evaluate(const weft_bundle *bundle, const weft_samples *samples, weft_fit_workspace *workspace,
                                const weft_fit *fit);
 

@@ -1,8 +1,9 @@
 /* The one pass over the samples of a texel that a joint fit makes for every trial: per view, the products of the
  * columns from which residual, gradient, Gauss-Newton matrix and T all follow without another look at the samples.
  *
- * With b_i = l . M_i v, M_i = R^T diag(Cx, Cy, Cz)_i R, k = sqrt(w) l_z, h_i = k b_i^(N_i - 1), the columns of a view
- * are k | h_i l_x, h_i l_y, h_i l_z, q_i = h_i b_i log2 b_i for every lobe | e = r - T(v) k (rho + sum_i A_i b_i^N_i)
+ * With b_i = l . M_i v, M_i = R^T diag(Cx, Cy, Cz)_i R, k = sqrt(w) S(l) l_z, h_i = k b_i^(N_i - 1), the columns of a
+ * view are
+ *     k | h_i l_x, h_i l_y, h_i l_z, q_i = h_i b_i log2 b_i for every lobe | e = r - T(v) k (rho + sum_i A_i b_i^N_i)
  * The lobe itself, k b_i^N_i, is M_i v times its first three columns, and so are its derivatives by any parameter of
  * M_i. */
 #ifndef WEFT_COMPRESS_GRAM_H
@@ -10,12 +11,10 @@
 
 #include "compress/bundle.h"
 
-#include <stdbool.h>
-
 enum {
     WEFT_GRAM_LOBES = 3,
     WEFT_GRAM_COLUMNS = 2 + 4 * WEFT_GRAM_LOBES,
-    WEFT_GRAM_STRIDE = 16 /* columns of a stored view, padded */
+    WEFT_GRAM_PRODUCTS = WEFT_GRAM_COLUMNS * (WEFT_GRAM_COLUMNS + 1) / 2
 };
 
 /* Where the model is evaluated. */
@@ -33,13 +32,10 @@ static inline int weft_gram_columns(int lobe_count)
     return 2 + 4 * lobe_count;
 }
 
-/* sums [view_count][WEFT_GRAM_STRIDE][WEFT_GRAM_STRIDE]: products of columns summed over the samples of each view (only
- * the first lanes of each with `coarse`). table [view_count] is T(v) in e. value and cosine: see weft_samples. Pure,
- * thread-safe; faster where the caller's thread flushes denormals (weft_denormals_off). */
-void weft_gram_accumulate(const weft_bundle *bundle, const float *cosine, const float *value,
-                          const weft_gram_point *point, const float *table, bool coarse, float *sums);
-
-/* f_cos = k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [lane_count]. */
-void weft_gram_evaluate(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
+/* Place of the product of columns a <= b among all. */
+static inline int weft_gram_product(int a, int b, int columns)
+{
+    return a * columns - a * (a - 1) / 2 + b - a;
+}
 
 #endif

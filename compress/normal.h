@@ -9,6 +9,8 @@
 #include "compress/gram.h"
 #include "compress/solve.h"
 
+typedef struct weft_fit_kernels weft_fit_kernels; /* compress/kernels.h */
+
 enum { WEFT_LINEAR_MAX = 1 + WEFT_GRAM_LOBES };
 
 /* Largest rho or A, times the root mean square of the samples: more belongs to a lobe that no sample sees. */
@@ -19,23 +21,34 @@ typedef struct weft_linear {
     double x[WEFT_LINEAR_MAX];
 } weft_linear;
 
-/* The part of one view's sums that belongs to the linear parameters. */
-typedef struct weft_linear_view {
-    double gram[WEFT_LINEAR_MAX][WEFT_LINEAR_MAX]; /* <column | column> */
-    double error[WEFT_LINEAR_MAX];                 /* <column | e> */
-    double square;                                 /* <e | e> */
-} weft_linear_view;
+/* What a view's sums say about the linear parameters, a row [view_stride] for each number. */
+enum {
+    WEFT_LINEAR_GRAM = 0,                                                               /* <column | column>, packed */
+    WEFT_LINEAR_ERROR = WEFT_LINEAR_GRAM + WEFT_LINEAR_MAX * (WEFT_LINEAR_MAX + 1) / 2, /* <column | e> */
+    WEFT_LINEAR_SQUARE = WEFT_LINEAR_ERROR + WEFT_LINEAR_MAX,                           /* <e | e> */
+    WEFT_LINEAR_ROWS
+};
 
-/* A point of the search after its pass: the sums, and where they were taken. */
+/* Row of <column j | column k>. */
+static inline int weft_linear_gram(int j, int k)
+{
+    int low = j < k ? j : k, high = j < k ? k : j;
+    return WEFT_LINEAR_GRAM + low * WEFT_LINEAR_MAX - low * (low - 1) / 2 + high - low;
+}
+
+/* A point of the search after its pass: the sums, and where they were taken. Arrays by view are [view_stride]. */
 typedef struct weft_trial {
-    weft_fit fit;             /* shapes and frame of the pass; rho and A are moved by weft_trial_solve_linear */
-    weft_linear at;           /* rho and A of the pass */
-    float *pass_table;        /* [view_count] T of the pass */
-    double *table;            /* [view_count] T that belongs to `fit` */
-    float *sums;              /* see weft_gram_accumulate */
-    weft_linear_view *linear; /* [view_count] */
-    double negligible;        /* <f|f> below this: T stays 1 */
-    double residual;          /* of `fit` with `table` */
+    const weft_fit_kernels *kernels;
+    weft_fit fit;                     /* shapes and frame of the pass; rho and A are moved by weft_trial_solve_linear */
+    weft_linear at;                   /* rho and A of the pass */
+    float *pass_table;                /* T of the pass */
+    double *table;                    /* T that belongs to `fit` */
+    float *sums;                      /* [WEFT_GRAM_PRODUCTS][view_stride], see compress/kernels.h */
+    double *linear;                   /* [WEFT_LINEAR_ROWS][view_stride] */
+    double strength[WEFT_LINEAR_MAX]; /* sum over the views of <column | column> */
+    double energy;                    /* of <e | e> */
+    double negligible;                /* <f|f> below this: T stays 1 */
+    double residual;                  /* of `fit` with `table` */
 } weft_trial;
 
 typedef struct weft_normal {
@@ -53,7 +66,7 @@ void weft_frame_rows(const weft_frame *frame, double rows[3][3]);
 /* Index of the component of c held at +-1. */
 int weft_lobe_fixed(const weft_fit_lobe *lobe);
 
-/* After a pass: the linear parts of every view, then T and the residual at the parameters of the pass. */
+/* After a pass: the linear rows, then T and the residual at the parameters of the pass. */
 void weft_trial_digest(const weft_bundle *bundle, bool with_table, weft_trial *trial);
 
 /* Moves rho and the amplitudes to where the residual is smallest with T eliminated; the amplitudes stay at or above

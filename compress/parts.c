@@ -10,13 +10,12 @@ weft_fit_options weft_fit_default_options(void)
 
 int weft_fit_affordable_lobes(const weft_bundle *bundle, const weft_samples *samples, int wanted, bool table)
 {
+    uint8_t is_seen[WEFT_MATERIAL_MAX_VIEWS] = {0};
     int seen = 0;
-    for (int view = 0; table && view < bundle->view_count; view++) {
-        bool any = false;
-        for (int lane = bundle->first_lane[view]; lane < bundle->first_lane[view + 1]; lane++)
-            any = any || samples->cosine[lane] > 0;
-        seen += any;
-    }
+    for (int i = 0; table && i < bundle->sample_count; i++)
+        is_seen[bundle->view_of[i]] |= samples->cosine[i] > 0;
+    for (int view = 0; table && view < bundle->view_count; view++)
+        seen += is_seen[view];
     int parameters = (samples->valid_count - 4 * seen) / 4;
     int lobes = (parameters - 1) / 4;
     return lobes < 0 || parameters < 1 ? 0 : lobes < wanted ? lobes : wanted;
@@ -54,7 +53,7 @@ const float *weft_fit_evaluate(const weft_bundle *bundle, const weft_samples *sa
                                const weft_fit *fit)
 {
     weft_gram_point point = weft_gram_point_of_fit(fit);
-    weft_gram_evaluate(bundle, samples->cosine, &point, workspace->model);
+    workspace->trial[0].kernels->evaluate(bundle, samples->cosine, &point, workspace->model);
     return workspace->model;
 }
 
@@ -62,9 +61,8 @@ void weft_fit_model_energy(const weft_bundle *bundle, const weft_samples *sample
                            const weft_fit *fit, double *energy)
 {
     const float *model = weft_fit_evaluate(bundle, samples, workspace, fit);
-    for (int view = 0; view < bundle->view_count; view++) {
+    for (int view = 0; view < bundle->view_count; view++)
         energy[view] = 0;
-        for (int lane = bundle->first_lane[view]; lane < bundle->first_lane[view + 1]; lane++)
-            energy[view] += (double)model[lane] * (double)model[lane];
-    }
+    for (int i = 0; i < bundle->sample_count; i++)
+        energy[bundle->view_of[i]] += (double)model[i] * (double)model[i];
 }

@@ -136,19 +136,17 @@ static void measure_channel(weft_texel_fitter *fitter, int channel, const weft_f
     const weft_bundle *bundle = &fitter->bundle;
     const weft_samples *samples = &fitter->samples;
     const float *model = weft_fit_evaluate(bundle, samples, fitter->workspace, fit);
-    for (int view = 0; view < bundle->view_count; view++) {
-        float t = table ? (float)weft_table_of_code(fitter->code[view]) : 1;
-        for (int lane = bundle->first_lane[view]; lane < bundle->first_lane[view + 1]; lane++) {
-            float cosine = samples->cosine[lane];
-            if (!(cosine > 0))
-                continue;
-            float scale = (float)samples->scale * bundle->light[2][lane] / cosine;
-            float sample = samples->value[channel][lane] * scale, prediction = model[lane] * t * scale;
-            weft_error_tally_add(fitter->tally, sample, prediction);
-            sums->square += (double)sample * (double)sample;
-            sums->square_error += (double)(sample - prediction) * (double)(sample - prediction);
-            sums->count += 1;
-        }
+    for (int i = 0; i < bundle->sample_count; i++) {
+        float cosine = samples->cosine[i];
+        if (!(cosine > 0))
+            continue;
+        float t = table ? (float)weft_table_of_code(fitter->code[bundle->view_of[i]]) : 1;
+        float scale = (float)samples->scale * bundle->light[2][i] / cosine;
+        float sample = samples->value[channel][i] * scale, prediction = model[i] * t * scale;
+        weft_error_tally_add(fitter->tally, sample, prediction);
+        sums->square += (double)sample * (double)sample;
+        sums->square_error += (double)(sample - prediction) * (double)(sample - prediction);
+        sums->count += 1;
     }
 }
 

@@ -2,14 +2,25 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-static bool create_trial(int view_count, weft_trial *trial)
+static void *allocate_rows(size_t rows, size_t stride, size_t size)
 {
-    size_t views = (size_t)view_count;
-    trial->pass_table = calloc(views, sizeof *trial->pass_table);
-    trial->table = calloc(views, sizeof *trial->table);
-    trial->linear = calloc(views, sizeof *trial->linear);
-    trial->sums = calloc(views * WEFT_GRAM_STRIDE * WEFT_GRAM_STRIDE, sizeof *trial->sums);
+    size_t bytes = rows * stride * size;
+    void *result = aligned_alloc(64, bytes);
+    if (result)
+        memset(result, 0, bytes);
+    return result;
+}
+
+static bool create_trial(int view_stride, weft_trial *trial)
+{
+    size_t stride = (size_t)view_stride;
+    trial->kernels = weft_fit_kernels_of(weft_processor_instruction_set());
+    trial->pass_table = allocate_rows(1, stride, sizeof *trial->pass_table);
+    trial->table = allocate_rows(1, stride, sizeof *trial->table);
+    trial->linear = allocate_rows(WEFT_LINEAR_ROWS, stride, sizeof *trial->linear);
+    trial->sums = allocate_rows(WEFT_GRAM_PRODUCTS, stride, sizeof *trial->sums);
     return trial->pass_table && trial->table && trial->linear && trial->sums;
 }
 
@@ -27,12 +38,12 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
     *result = NULL;
     if (!workspace)
         return weft_fail_memory(error, "workspace of a fit", sizeof *workspace);
-    size_t views = (size_t)bundle->view_count;
-    workspace->table = calloc(3 * views, sizeof *workspace->table);
-    workspace->model = aligned_alloc(64, ((size_t)bundle->lane_count + WEFT_LANES) * sizeof *workspace->model);
-    bool complete = create_trial(bundle->view_count, &workspace->trial[0]);
+    size_t views = (size_t)bundle->view_stride;
+    workspace->table = allocate_rows(3, views, sizeof *workspace->table);
+    workspace->model = allocate_rows((size_t)bundle->sample_count + WEFT_STRIP_LANES, 1, sizeof *workspace->model);
+    bool complete = create_trial(bundle->view_stride, &workspace->trial[0]);
     complete =
-        create_trial(bundle->view_count, &workspace->trial[1]) && complete && workspace->table && workspace->model;
+        create_trial(bundle->view_stride, &workspace->trial[1]) && complete && workspace->table && workspace->model;
     if (!complete) {
         weft_fit_workspace_free(workspace);
         return weft_fail_memory(error, "workspace of a fit", views * 2048);
@@ -73,8 +84,8 @@ void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples,
     trial->fit.diffuse = (double)point.diffuse;
     for (int i = 0; i < point.lobe_count; i++)
         trial->fit.lobe[i].amplitude = (double)point.amplitude[i];
-    weft_gram_accumulate(bundle, samples->cosine, samples->value[channel], &point, trial->pass_table, options->coarse,
-                         trial->sums);
+    trial->kernels->accumulate(bundle, samples->cosine, samples->value[channel], &point, trial->pass_table,
+                               options->coarse, trial->sums);
     weft_trial_digest(bundle, options->table, trial);
     trial->fit.passes += 1;
 }
@@ -85,14 +96,14 @@ void weft_workspace_take_table(const weft_bundle *bundle, const weft_fit_options
     double sum = 0;
     int seen = 0;
     for (int view = 0; view < bundle->view_count; view++) {
-        if (trial->linear[view].gram[0][0] > 0) {
+        if (trial->linear[view] > 0) {
             sum += trial->table[view];
             seen++;
         }
     }
     for (int view = 0; view < bundle->view_count; view++) {
         double unseen = seen ? sum / seen : 1, learnt = trial->table[view];
-        table[view] = !options->table ? 1 : trial->linear[view].gram[0][0] > 0 ? learnt : unseen;
+        table[view] = !options->table ? 1 : trial->linear[view] > 0 ? learnt : unseen;
     }
 }
 
@@ -119,12 +130,8 @@ static void least_amplitudes(const weft_fit *fit, double *least)
 /* Amplitudes of a start: the best for T = 1, then with T eliminated. A vanished lobe keeps enough to be moved. */
 static void solve_start(const weft_bundle *bundle, const weft_fit_options *options, weft_trial *trial)
 {
-    double least[WEFT_GRAM_LOBES] = {0}, strength[WEFT_LINEAR_MAX] = {0}, energy = 0;
-    for (int view = 0; view < bundle->view_count; view++) {
-        energy += trial->linear[view].square;
-        for (int j = 0; j <= trial->fit.lobe_count; j++)
-            strength[j] += trial->linear[view].gram[j][j];
-    }
+    double least[WEFT_GRAM_LOBES] = {0}, energy = trial->energy;
+    const double *strength = trial->strength;
     for (int i = 0; i < trial->fit.lobe_count; i++)
         least[i] = strength[1 + i] > 1e-6 * strength[0] ? 0.02 * sqrt(energy / strength[1 + i]) : 0;
     trial->fit.diffuse = strength[0] > 0 ? 0.5 * sqrt(energy / strength[0]) : 0;

@@ -2,13 +2,13 @@
 #ifndef WEFT_COMPRESS_WORKSPACE_H
 #define WEFT_COMPRESS_WORKSPACE_H
 
-#include "compress/normal.h"
+#include "compress/kernels.h"
 
 struct weft_fit_workspace {
     weft_trial trial[2]; /* the point reached, and the one being tried */
-    double *table;       /* [view_count] of the best start so far */
-    double *scratch[2];  /* [view_count] */
-    float *model;        /* [lane_count] */
+    double *table;       /* [view_stride] of the best start so far */
+    double *scratch[2];  /* [view_stride] */
+    float *model;        /* [sample_count] */
 };
 
 /* One pass at trial->fit with T = `table` in e (NULL: 0; without options->table: 1). Fills sums, linear parts, T,

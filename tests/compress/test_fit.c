@@ -241,22 +241,20 @@ static void weights_act_as_repeated_samples(void **state)
     fit_cold(fixture, 0, &options, &fit);
     /* The diffuse gradient of the weighted problem vanishes, that of the unweighted one does not. */
     double weighted = 0, plain = 0, size = 0;
-    for (int view = 0; view < fixture->bundle.view_count; view++) {
-        for (int lane = fixture->bundle.first_lane[view]; lane < fixture->bundle.first_lane[view + 1]; lane++) {
-            int image = fixture->bundle.image[lane];
-            if (image < 0)
-                continue;
-            weft_vec3 l = fixture->layout.light[image], v = fixture->bundle.view[view];
-            const weft_fit_lobe *lobe = &fit.lobe[0];
-            double base = lobe->c[0] * l.x * v.x + lobe->c[1] * l.y * v.y + lobe->c[2] * l.z * v.z;
-            double model = fit.diffuse + (base > 0 ? lobe->amplitude * pow(base, exp(lobe->log_exponent)) : 0);
-            double weight = image % 2 ? 0.5 : 1, t = fixture->table[view];
-            double sample = (double)fixture->samples.value[0][lane] / sqrt(weight);
-            double gradient = t * l.z * (sample - t * l.z * model);
-            weighted += weight * gradient;
-            plain += gradient;
-            size += weight * fabs(gradient);
-        }
+    for (int i = 0; i < fixture->bundle.sample_count; i++) {
+        int image = fixture->bundle.image[i], view = fixture->bundle.view_of[i];
+        if (image < 0)
+            continue;
+        weft_vec3 l = fixture->layout.light[image], v = fixture->bundle.view[view];
+        const weft_fit_lobe *lobe = &fit.lobe[0];
+        double base = lobe->c[0] * l.x * v.x + lobe->c[1] * l.y * v.y + lobe->c[2] * l.z * v.z;
+        double model = fit.diffuse + (base > 0 ? lobe->amplitude * pow(base, exp(lobe->log_exponent)) : 0);
+        double weight = image % 2 ? 0.5 : 1, t = fixture->table[view];
+        double sample = (double)fixture->samples.value[0][i] / sqrt(weight);
+        double gradient = t * l.z * (sample - t * l.z * model);
+        weighted += weight * gradient;
+        plain += gradient;
+        size += weight * fabs(gradient);
     }
     assert_true(fabs(weighted) < 1e-3 * size);
     assert_true(fabs(plain) > 3 * fabs(weighted));

@@ -1,0 +1,187 @@
+/* The passes over the samples; see compress/gram.h. */
+#include "compress/kernels.h"
+
+#include "btf/lanes.h"
+
+#include <string.h>
+
+WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
+
+enum {
+    PIECE = 27,                     /* slots whose columns stay in the first cache */
+    TILE = LANES == 8 ? 3 : 5,      /* TILE x TILE sums stay in registers: AVX2 has half as many as AVX-512 and NEON */
+    LAST = WEFT_GRAM_COLUMNS + TILE /* columns are read by whole tiles */
+};
+
+/* What the lanes of a strip have in common over its slots. */
+typedef struct strip_lanes {
+    lanes m[WEFT_GRAM_LOBES][3]; /* M_i v */
+    lanes table;
+} strip_lanes;
+
+WEFT_INLINE lanes of_view(const weft_strip *strip, const float *by_view, int lane)
+{
+    return strip->split ? lanes_of(by_view[strip->view]) : lanes_load(by_view + strip->view + lane);
+}
+
+WEFT_INLINE strip_lanes lanes_of_strip(const weft_bundle *bundle, const weft_strip *strip, const weft_gram_point *point,
+                                       int lobe_count, const float *table, int lane)
+{
+    strip_lanes own = {.table = table ? of_view(strip, table, lane) : lanes_of(0)};
+    lanes x = of_view(strip, bundle->view_xyz[0], lane), y = of_view(strip, bundle->view_xyz[1], lane);
+    lanes z = of_view(strip, bundle->view_xyz[2], lane);
+    for (int i = 0; i < lobe_count; i++) {
+        for (int row = 0; row < 3; row++)
+            own.m[i][row] = point->shape[i][row][0] * x + point->shape[i][row][1] * y + point->shape[i][row][2] * z;
+    }
+    return own;
+}
+
+/* k b^(N - 1), b and log2 b; the first is 0 where b <= 0. */
+WEFT_INLINE lanes lobe_column(const lanes l[3], lanes k, const lanes m[3], float exponent, lanes *b, lanes *log2_b)
+{
+    lanes dot = l[0] * m[0] + l[1] * m[1] + l[2] * m[2];
+    lane_bits positive = dot > 1e-30f;
+    *b = lanes_where(positive, dot);
+    *log2_b = lanes_log2(lanes_select(positive, dot, lanes_of(1e-30f)));
+    return lanes_where(positive, k * lanes_exp2((exponent - 1) * *log2_b));
+}
+
+/* Columns of one slot. */
+WEFT_INLINE void write_columns(const weft_bundle *bundle, const float *cosine, const float *value,
+                               const weft_gram_point *point, int lobe_count, const strip_lanes *own, int sample,
+                               int slot, lanes columns[LAST][PIECE])
+{
+    const lanes l[3] = {lanes_load(bundle->light[0] + sample), lanes_load(bundle->light[1] + sample),
+                        lanes_load(bundle->light[2] + sample)};
+    lanes k = lanes_load(cosine + sample), f = k * point->diffuse;
+    columns[0][slot] = k;
+    for (int i = 0; i < lobe_count; i++) {
+        lanes b, log2_b;
+        lanes h = lobe_column(l, k, own->m[i], point->exponent[i], &b, &log2_b);
+        lanes g = h * b;
+        f += point->amplitude[i] * g;
+        for (int axis = 0; axis < 3; axis++)
+            columns[1 + 4 * i + axis][slot] = h * l[axis];
+        columns[4 + 4 * i][slot] = g * log2_b;
+    }
+    columns[1 + 4 * lobe_count][slot] = lanes_load(value + sample) - own->table * f;
+}
+
+/* Adds the products of the columns from a with those from b, as many sums as fit the registers. */
+WEFT_INLINE void add_tile(lanes columns[LAST][PIECE], int slots, int a, int b, int count, lanes *sums)
+{
+    lanes sum[TILE][TILE] = {{{0}}};
+    for (int slot = 0; slot < slots; slot++) {
+        lanes right[TILE];
+#pragma GCC unroll 8
+        for (int j = 0; j < TILE; j++)
+            right[j] = columns[b + j][slot];
+#pragma GCC unroll 8
+        for (int i = 0; i < TILE; i++) {
+            lanes left = columns[a + i][slot];
+#pragma GCC unroll 8
+            for (int j = a == b ? i : 0; j < TILE; j++)
+                sum[i][j] += left * right[j];
+        }
+    }
+#pragma GCC unroll 8
+    for (int i = 0; i < TILE; i++) {
+#pragma GCC unroll 8
+        for (int j = a == b ? i : 0; j < TILE; j++) {
+            if (a + i < count && b + j < count)
+                sums[weft_gram_product(a + i, b + j, count)] += sum[i][j];
+        }
+    }
+}
+
+/* All products of the first `count` columns. */
+WEFT_INLINE void add_products(lanes columns[LAST][PIECE], int slots, int count, lanes *sums)
+{
+#pragma GCC unroll 8
+    for (int a = 0; a < count; a += TILE) {
+        add_tile(columns, slots, a, a, count, sums);
+#pragma GCC unroll 8
+        for (int b = a + TILE; b < count; b += TILE)
+            add_tile(columns, slots, a, b, count, sums);
+    }
+}
+
+static void store_sums(const weft_strip *strip, int lane, const lanes *own, int products, int stride, float *sums)
+{
+    for (int p = 0; p < products; p++) {
+        float *to = sums + (size_t)p * (size_t)stride + strip->view;
+        if (strip->split)
+            *to += lanes_sum(own[p]);
+        else
+            lanes_store(to + lane, own[p]);
+    }
+}
+
+/* One lobe count at a time, so that the compiler unrolls everything inside. */
+WEFT_INLINE void accumulate(const weft_bundle *bundle, const float *cosine, const float *value,
+                            const weft_gram_point *point, int lobe_count, const float *table, bool coarse, float *sums)
+{
+    lanes columns[LAST][PIECE], own_sums[WEFT_GRAM_PRODUCTS];
+    int count = weft_gram_columns(lobe_count), products = count * (count + 1) / 2;
+    memset(columns, 0, sizeof columns);
+    memset(sums, 0, (size_t)products * (size_t)bundle->view_stride * sizeof *sums);
+    for (int s = 0; s < bundle->strip_count; s++) {
+        const weft_strip *strip = &bundle->strip[s];
+        int slots = coarse ? strip->coarse_slots : strip->slots;
+        for (int lane = 0; lane < WEFT_STRIP_LANES; lane += LANES) {
+            strip_lanes own = lanes_of_strip(bundle, strip, point, lobe_count, table, lane);
+            memset(own_sums, 0, sizeof own_sums);
+            for (int first = 0; first < slots; first += PIECE) {
+                int piece = slots - first < PIECE ? slots - first : PIECE;
+                for (int slot = 0; slot < piece; slot++)
+                    write_columns(bundle, cosine, value, point, lobe_count, &own,
+                                  strip->first + (first + slot) * WEFT_STRIP_LANES + lane, slot, columns);
+                add_products(columns, piece, count, own_sums);
+            }
+            store_sums(strip, lane, own_sums, products, bundle->view_stride, sums);
+        }
+    }
+}
+
+void WEFT_KERNEL(weft_gram_accumulate)(const weft_bundle *bundle, const float *cosine, const float *value,
+                                       const weft_gram_point *point, const float *table, bool coarse, float *sums)
+{
+    switch (point->lobe_count) {
+    case 0:
+        accumulate(bundle, cosine, value, point, 0, table, coarse, sums);
+        break;
+    case 1:
+        accumulate(bundle, cosine, value, point, 1, table, coarse, sums);
+        break;
+    case 2:
+        accumulate(bundle, cosine, value, point, 2, table, coarse, sums);
+        break;
+    default:
+        accumulate(bundle, cosine, value, point, 3, table, coarse, sums);
+        break;
+    }
+}
+
+void WEFT_KERNEL(weft_gram_evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,
+                                     float *result)
+{
+    for (int s = 0; s < bundle->strip_count; s++) {
+        const weft_strip *strip = &bundle->strip[s];
+        for (int lane = 0; lane < WEFT_STRIP_LANES; lane += LANES) {
+            strip_lanes own = lanes_of_strip(bundle, strip, point, point->lobe_count, NULL, lane);
+            for (int slot = 0; slot < strip->slots; slot++) {
+                int sample = strip->first + slot * WEFT_STRIP_LANES + lane;
+                const lanes l[3] = {lanes_load(bundle->light[0] + sample), lanes_load(bundle->light[1] + sample),
+                                    lanes_load(bundle->light[2] + sample)};
+                lanes k = lanes_load(cosine + sample), f = k * point->diffuse;
+                for (int i = 0; i < point->lobe_count; i++) {
+                    lanes b, log2_b;
+                    lanes h = lobe_column(l, k, own.m[i], point->exponent[i], &b, &log2_b);
+                    f += point->amplitude[i] * h * b;
+                }
+                lanes_store(result + sample, f);
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+/* The inner loops of the fit: compiled once for every instruction set, each copy behind one table of functions. */
+#ifndef WEFT_COMPRESS_KERNELS_H
+#define WEFT_COMPRESS_KERNELS_H
+
+#include "btf/processor.h"
+#include "compress/normal.h"
+
+struct weft_fit_kernels {
+    /* sums [WEFT_GRAM_PRODUCTS][view_stride]: products of columns (see compress/gram.h) summed over the samples of each
+     * view, only its coarse slots with `coarse`. table [view_stride] is T(v) in e. */
+    void (*accumulate)(const weft_bundle *bundle, const float *cosine, const float *value, const weft_gram_point *point,
+                       const float *table, bool coarse, float *sums);
+    /* k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [sample_count]. */
+    void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
+    /* The linear rows of a trial from its sums, and their totals. */
+    void (*digest)(const weft_bundle *bundle, weft_trial *trial);
+    /* Residual at other linear parameters than those of the pass; their T into table [view_stride] unless NULL. */
+    double (*residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, const weft_linear *linear,
+                       double *table);
+    /* Normal equations of the linear parameters alone at `linear`, T eliminated: h [n][n], g [n]. */
+    void (*linear_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
+                          const weft_linear *linear, double *h, double *g);
+    /* See weft_normal_of_trial; the lower triangle only, and without the curvature of the scale, which it returns. */
+    double (*normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,
+                     weft_normal *normal);
+};
+
+/* The functions of one set, by their names in it. */
+#define WEFT_DECLARE_FIT_KERNELS_OF(set)                                                                               \
+    void weft_gram_accumulate_##set(const weft_bundle *bundle, const float *cosine, const float *value,                \
+                                    const weft_gram_point *point, const float *table, bool coarse, float *sums);       \
+    void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \
+                                  float *result);                                                                      \
+    void weft_views_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                        \
+    double weft_views_residual_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,              \
+                                     const weft_linear *linear, double *table);                                        \
+    void weft_views_linear_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,           \
+                                        const weft_linear *linear, double *h, double *g);                              \
+    double weft_views_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,   \
+                                   weft_normal *normal)
+#define WEFT_DECLARE_FIT_KERNELS(set) WEFT_DECLARE_FIT_KERNELS_OF(set)
+
+/* Those of an instruction set of this processor. */
+const weft_fit_kernels *weft_fit_kernels_of(weft_instruction_set set);
+
+#endif
