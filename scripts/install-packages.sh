@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the Debian packages that building, testing and the demo need; with the argument "check" also those of `make check`, with
-# "bench" the solver that the benchmark of the fit is compared with. Says what is missing where it may not install.
+# "bench" the solvers that the fit is compared with. Says what is missing where it may not install.
 set -eu
 
 packages="
@@ -11,7 +11,7 @@ packages="
 "
 case ${1-} in
 check) packages="$packages clang-format clang-tidy" ;;
-bench) packages="$packages libcminpack-dev" ;;
+bench) packages="$packages libcminpack-dev libceres-dev" ;;
 esac
 
 missing=""

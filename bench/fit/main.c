@@ -1,0 +1,160 @@
+/* Speed and quality of the fit, against general solvers on the same texels (docs/benchmarks.md). */
+#include "bench/fit/sections.h"
+#include "btf/processor.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SPEED, QUALITY, EXTENSIONS, INSTRUCTION_SETS, TAPE, PASS, SECTIONS };
+
+static const char *const section_name[SECTIONS] = {"speed", "quality", "extensions", "instruction-sets",
+                                                   "tape",  "pass"};
+
+typedef struct arguments {
+    bench_plan plan;
+    const char *dataset;
+    int only; /* a section, or -1 for all */
+    bool json;
+} arguments;
+
+enum { OPTION_JSON = 256, OPTION_ONLY, OPTION_TAPE, OPTION_TOLERANCE, OPTION_SCALAR };
+
+static const struct argp_option option[] = {
+    {"texels", 'n', "N", 0, "Texels of each family (default 100)", 0},
+    {"lobes", 'l', "K", 0, "Lobes, 1 to 3 (default 2)", 0},
+    {"tolerance", OPTION_TOLERANCE, "X", 0, "Relative decrease that ends a fit, for all methods (default 0.001)", 0},
+    {"only", OPTION_ONLY, "SECTION", 0, "speed, quality, extensions, instruction-sets, tape or pass (default all)", 0},
+    {"tape", OPTION_TAPE, "FILE", 0, "Measurements of the retro-reflective tape", 0},
+    {"scalar", OPTION_SCALAR, NULL, 0, "Let general solvers call the scalar exp and log of libm, not those on vectors",
+     0},
+    {"json", OPTION_JSON, NULL, 0, "Print all tables as JSON", 0},
+    {0},
+};
+
+static int section_of_name(const char *name, struct argp_state *state)
+{
+    for (int i = 0; i < SECTIONS; i++) {
+        if (!strcmp(section_name[i], name))
+            return i;
+    }
+    argp_error(state, "there is no section '%s'", name);
+    return -1;
+}
+
+static long whole_number(const char *text, long low, long high, const char *what, struct argp_state *state)
+{
+    char *end;
+    long value = strtol(text, &end, 10);
+    if (end == text || *end || value < low || value > high)
+        argp_error(state, "'%s': the %s must be %ld to %ld", text, what, low, high);
+    return value;
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state)
+{
+    arguments *to = state->input;
+    char *end;
+    switch (key) {
+    case 'n':
+        to->plan.texel_count = (int)whole_number(text, 1, 100000, "number of texels", state);
+        return 0;
+    case 'l':
+        to->plan.lobe_count = (int)whole_number(text, 1, 3, "number of lobes", state);
+        return 0;
+    case OPTION_TOLERANCE:
+        to->plan.tolerance = strtod(text, &end);
+        if (end == text || *end || !(to->plan.tolerance > 0) || to->plan.tolerance >= 1)
+            argp_error(state, "'%s': the tolerance must lie between 0 and 1", text);
+        return 0;
+    case OPTION_ONLY:
+        to->only = section_of_name(text, state);
+        return 0;
+    case OPTION_TAPE:
+        to->plan.tape_path = text;
+        return 0;
+    case OPTION_SCALAR:
+        to->plan.scalar_callbacks = true;
+        return 0;
+    case OPTION_JSON:
+        to->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (to->dataset)
+            argp_error(state, "one dataset at most");
+        to->dataset = text;
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp parser = {
+    .options = option,
+    .parser = parse_option,
+    .args_doc = "[NAME.btf.h5]",
+    .doc = "Fits texels of a dataset, or of three invented families, with Weft and with general solvers.\v"
+           "Times are processor times of one thread. What the columns mean is written in docs/benchmarks.md.",
+};
+
+static weft_code run_source(const arguments *given, texel_source *source, weft_error *error)
+{
+    static weft_code (*const section[])(const bench_plan *, texel_source *,
+                                        weft_error *) = {[SPEED] = section_speed,
+                                                         [QUALITY] = section_quality,
+                                                         [EXTENSIONS] = section_extensions,
+                                                         [INSTRUCTION_SETS] = section_instruction_sets};
+    weft_code code = WEFT_OK;
+    for (int i = SPEED; code == WEFT_OK && i < TAPE; i++) {
+        if (given->only < 0 || given->only == i)
+            code = section[i](&given->plan, source, error);
+    }
+    return code;
+}
+
+static weft_code run(const arguments *given, weft_error *error)
+{
+    weft_code code = WEFT_OK;
+    texel_source source;
+    for (synthetic_kind kind = 0; code == WEFT_OK && !given->dataset && kind < SYNTHETIC_KINDS; kind++) {
+        code = texel_source_invent(kind, &source, error);
+        if (code == WEFT_OK)
+            code = run_source(given, &source, error);
+        texel_source_free(&source);
+    }
+    if (given->dataset) {
+        code = texel_source_open(given->dataset, &source, error);
+        if (code == WEFT_OK)
+            code = run_source(given, &source, error);
+        texel_source_free(&source);
+    }
+    if (code == WEFT_OK && (given->only == TAPE || given->only < 0))
+        code = section_tape(&given->plan, error);
+    if (code == WEFT_OK && (given->only == PASS || given->only < 0))
+        code = section_pass(&given->plan, error);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    arguments given = {.plan = {.texel_count = 100,
+                                .lobe_count = 2,
+                                .tolerance = 1e-3,
+                                .tape_path = WEFT_SHARED "/real/retro-tape/retro-3M-yellow.dat"},
+                       .only = -1};
+    argp_parse(&parser, argc, argv, 0, NULL, &given);
+    given.plan.report = report_create(given.json);
+    weft_error error = {0};
+    weft_code code = given.plan.report ? WEFT_OK : weft_fail_memory(&error, "the report", sizeof(void *));
+    unsigned state = weft_denormals_off();
+    if (code == WEFT_OK)
+        code = weft_processor_check(&error);
+    if (code == WEFT_OK)
+        code = run(&given, &error);
+    weft_denormals_restore(state);
+    if (code != WEFT_OK)
+        fprintf(stderr, "bench_fit: %s\n", error.message);
+    bool printed = !given.plan.report || report_finish(given.plan.report);
+    return code == WEFT_OK && printed ? EXIT_SUCCESS : EXIT_FAILURE;
+}

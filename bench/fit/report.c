@@ -1,0 +1,123 @@
+#include "bench/fit/report.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_COLUMNS = 16, NAME_WIDTH = 36, MIN_WIDTH = 9 };
+
+struct report {
+    bool json, failed;
+    json_t *tables, *table, *row; /* the last two are borrowed */
+    int digits[MAX_COLUMNS];      /* of the last table */
+};
+
+report *report_create(bool json)
+{
+    report *created = calloc(1, sizeof *created);
+    if (created) {
+        created->json = json;
+        created->tables = json_array();
+    }
+    return created;
+}
+
+static int column_width(const char *name)
+{
+    int length = (int)strlen(name);
+    return length > MIN_WIDTH ? length : MIN_WIDTH;
+}
+
+static void print_header(json_t *row)
+{
+    const char *name;
+    json_t *cell;
+    printf("%-*s", NAME_WIDTH, "");
+    json_object_foreach(row, name, cell)
+    {
+        if (strcmp(name, "name"))
+            printf("  %*s", column_width(name), name);
+    }
+    printf("\n");
+}
+
+static void print_row(const report *from, json_t *row)
+{
+    const char *name;
+    json_t *cell;
+    int column = 0;
+    printf("%-*s", NAME_WIDTH, json_string_value(json_object_get(row, "name")));
+    json_object_foreach(row, name, cell)
+    {
+        if (!strcmp(name, "name"))
+            continue;
+        if (json_is_number(cell))
+            printf("  %*.*f", column_width(name), from->digits[column], json_number_value(cell));
+        else
+            printf("  %*s", column_width(name), "-");
+        column++;
+    }
+    printf("\n");
+}
+
+static void print_table(const report *from)
+{
+    json_t *rows = json_object_get(from->table, "rows"), *element;
+    size_t index;
+    if (from->json || !from->table)
+        return;
+    printf("\n%s\n", json_string_value(json_object_get(from->table, "title")));
+    if (json_array_size(rows))
+        print_header(json_array_get(rows, 0));
+    json_array_foreach(rows, index, element) print_row(from, element);
+    json_array_foreach(json_object_get(from->table, "notes"), index, element)
+        printf("%s\n", json_string_value(element));
+    fflush(stdout);
+}
+
+void report_table(report *to, const char *name, const char *title)
+{
+    print_table(to);
+    to->table = json_pack("{s:s, s:s, s:[], s:[]}", "name", name, "title", title, "rows", "notes");
+    to->failed |= json_array_append_new(to->tables, to->table) != 0;
+}
+
+void report_row(report *to, const char *name)
+{
+    to->row = json_pack("{s:s}", "name", name);
+    to->failed |= json_array_append_new(json_object_get(to->table, "rows"), to->row) != 0;
+}
+
+void report_number(report *to, const char *column, int digits, double value)
+{
+    size_t index = json_object_size(to->row) - 1;
+    if (index < MAX_COLUMNS)
+        to->digits[index] = digits;
+    to->failed |= json_object_set_new(to->row, column, isfinite(value) ? json_real(value) : json_null()) != 0;
+}
+
+void report_note(report *to, const char *format, ...)
+{
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    to->failed |= json_array_append_new(json_object_get(to->table, "notes"), json_string(text)) != 0;
+}
+
+bool report_finish(report *to)
+{
+    print_table(to);
+    json_t *all = json_pack("{s:s, s:O}", "benchmark", "fit", "tables", to->tables);
+    if (to->json)
+        to->failed |= json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) != 0 || putchar('\n') == EOF;
+    bool done = all && !to->failed && fflush(stdout) == 0;
+    json_decref(all);
+    json_decref(to->tables);
+    free(to);
+    return done;
+}

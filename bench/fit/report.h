@@ -1,0 +1,28 @@
+/* Tables of results, printed as aligned text or kept as JSON. */
+#ifndef WEFT_BENCH_FIT_REPORT_H
+#define WEFT_BENCH_FIT_REPORT_H
+
+#include <stdbool.h>
+
+typedef struct report report;
+
+/* NULL where memory is short. With `json` nothing is printed before report_finish. */
+report *report_create(bool json);
+
+/* Begins a table. `name` is its key in JSON, `title` its heading. */
+void report_table(report *to, const char *name, const char *title);
+
+/* Begins a row of the last table. */
+void report_row(report *to, const char *name);
+
+/* A cell of the last row; tables have the same columns in all rows. `digits` after the decimal point are printed. NaN
+ * is a cell without a value. */
+void report_number(report *to, const char *column, int digits, double value);
+
+/* A line of text below the last table, and in JSON among its "notes". */
+void report_note(report *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Prints what is left and frees. Returns false where memory was short or standard output failed. */
+bool report_finish(report *to);
+
+#endif
