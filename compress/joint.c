@@ -145,7 +145,8 @@ void weft_fit_refine(const weft_bundle *bundle, const weft_samples *samples, int
     weft_trial *now = &workspace->trial[0];
     now->fit = *fit;
     now->fit.passes = 0;
-    weft_workspace_begin_warm(bundle, samples, channel, options, table, now);
+    weft_workspace_begin_warm(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, table),
+                              now);
     weft_workspace_refine(bundle, samples, channel, options, workspace, 0.01);
     *fit = now->fit;
     fit->residual = now->residual;

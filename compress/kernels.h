@@ -16,7 +16,7 @@ struct weft_fit_kernels {
     void (*digest)(const weft_bundle *bundle, weft_trial *trial);
     /* Residual at other linear parameters than those of the pass; their T into table [view_stride] unless NULL. */
     double (*residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, const weft_linear *linear,
-                       double *table);
+                       float *table);
     /* Normal equations of the linear parameters alone at `linear`, T eliminated: h [n][n], g [n]. */
     void (*linear_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
                           const weft_linear *linear, double *h, double *g);
@@ -33,7 +33,7 @@ struct weft_fit_kernels {
                                   float *result);                                                                      \
     void weft_views_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                        \
     double weft_views_residual_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,              \
-                                     const weft_linear *linear, double *table);                                        \
+                                     const weft_linear *linear, float *table);                                         \
     void weft_views_linear_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,           \
                                         const weft_linear *linear, double *h, double *g);                              \
     double weft_views_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,   \

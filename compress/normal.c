@@ -71,7 +71,7 @@ void weft_trial_digest(const weft_bundle *bundle, bool with_table, weft_trial *t
         for (int j = 0; j <= trial->fit.lobe_count; j++) {
             for (int k = 0; k <= trial->fit.lobe_count; k++)
                 energy += trial->at.x[j] * trial->at.x[k] *
-                          trial->linear[weft_linear_gram(j, k) * bundle->view_stride + view];
+                          (double)trial->linear[weft_linear_gram(j, k) * bundle->view_stride + view];
         }
     }
     trial->negligible = 1e-9 * energy / bundle->view_count;
@@ -124,9 +124,10 @@ void weft_trial_solve_given_table(const weft_bundle *bundle, const double *table
     double h[WEFT_LINEAR_MAX * WEFT_LINEAR_MAX] = {0}, g[WEFT_LINEAR_MAX] = {0}, trace = 0;
     for (int view = 0; view < bundle->view_count; view++) {
         for (int j = 0; j < n; j++) {
-            g[j] += table[view] * trial->linear[(WEFT_LINEAR_ERROR + j) * stride + view];
+            g[j] += table[view] * (double)trial->linear[(WEFT_LINEAR_ERROR + j) * stride + view];
             for (int k = 0; k < n; k++)
-                h[j * n + k] += table[view] * table[view] * trial->linear[weft_linear_gram(j, k) * stride + view];
+                h[j * n + k] +=
+                    table[view] * table[view] * (double)trial->linear[weft_linear_gram(j, k) * stride + view];
         }
     }
     for (int j = 0; j < n; j++)

@@ -42,9 +42,9 @@ typedef struct weft_trial {
     weft_fit fit;                     /* shapes and frame of the pass; rho and A are moved by weft_trial_solve_linear */
     weft_linear at;                   /* rho and A of the pass */
     float *pass_table;                /* T of the pass */
-    double *table;                    /* T that belongs to `fit` */
+    float *table;                     /* T that belongs to `fit` */
     float *sums;                      /* [WEFT_GRAM_PRODUCTS][view_stride], see compress/kernels.h */
-    double *linear;                   /* [WEFT_LINEAR_ROWS][view_stride] */
+    float *linear;                    /* [WEFT_LINEAR_ROWS][view_stride] */
     double strength[WEFT_LINEAR_MAX]; /* sum over the views of <column | column> */
     double energy;                    /* of <e | e> */
     double negligible;                /* <f|f> below this: T stays 1 */

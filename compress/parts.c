@@ -26,7 +26,7 @@ void weft_fit_table(const weft_bundle *bundle, const weft_samples *samples, int 
 {
     weft_trial *trial = &workspace->trial[0];
     trial->fit = *fit;
-    weft_workspace_pass(bundle, samples, channel, options, table, trial);
+    weft_workspace_pass(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, table), trial);
     weft_workspace_take_table(bundle, options, trial, table);
 }
 

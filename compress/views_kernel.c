@@ -1,4 +1,4 @@
-/* What follows from the sums of a pass, all views at once: a view a lane, in doubles. T(v) is eliminated, so that
+/* What follows from the sums of a pass, all views at once: a view a lane. T(v) is eliminated, so that
  * r - T f = e + sum_j delta_j column_j with delta = T_pass x_pass - T x for linear parameters x = (rho, A_1, ...). */
 #include "compress/kernels.h"
 
@@ -9,66 +9,101 @@
 
 WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
 
-#define LN2 0.69314718055994530942
+#define LN2 0.69314718f
+
+/* The parameters of a trial, as vectors want them. */
+typedef struct parameters {
+    int lobe_count;
+    float x[WEFT_LINEAR_MAX], pass[WEFT_LINEAR_MAX];      /* rho and A where asked, and of the pass */
+    float rows[3][3];                                     /* of the frame */
+    float c[WEFT_GRAM_LOBES][3], factor[WEFT_GRAM_LOBES]; /* A N */
+    int fixed[WEFT_GRAM_LOBES];
+    float negligible;
+} parameters;
+
+static parameters parameters_of(const weft_trial *trial, const double *x)
+{
+    const weft_fit *fit = &trial->fit;
+    parameters own = {.lobe_count = fit->lobe_count, .negligible = (float)trial->negligible};
+    double rows[3][3];
+    weft_frame_rows(&fit->frame, rows);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++)
+            own.rows[i][k] = (float)rows[i][k];
+    }
+    for (int j = 0; j <= fit->lobe_count; j++) {
+        own.x[j] = (float)x[j];
+        own.pass[j] = (float)trial->at.x[j];
+    }
+    for (int i = 0; i < fit->lobe_count; i++) {
+        const weft_fit_lobe *lobe = &fit->lobe[i];
+        for (int k = 0; k < 3; k++)
+            own.c[i][k] = (float)lobe->c[k];
+        own.factor[i] = (float)(x[1 + i] * exp(lobe->log_exponent));
+        own.fixed[i] = weft_lobe_fixed(lobe);
+    }
+    return own;
+}
 
 /* ---- Linear parameters ---- */
 
 /* The linear rows of the views of one vector. */
 typedef struct linear_lanes {
-    int count;
-    wide_lanes gram[WEFT_LINEAR_MAX][WEFT_LINEAR_MAX], error[WEFT_LINEAR_MAX], square, pass_table;
+    lanes gram[WEFT_LINEAR_MAX][WEFT_LINEAR_MAX], error[WEFT_LINEAR_MAX], square, pass_table;
 } linear_lanes;
 
 /* What is known about the views at linear parameters x. */
 typedef struct view_state {
-    wide_lanes t, ff, residual;
-    wide_lanes delta[WEFT_LINEAR_MAX];
-    wide_lanes eliminated; /* 1 where T follows f, 0 where it is fixed */
+    lanes t, ff, residual;
+    lanes delta[WEFT_LINEAR_MAX];
+    lanes eliminated; /* 1 where T follows f, 0 where it is fixed */
 } view_state;
 
 WEFT_INLINE linear_lanes load_linear(const weft_trial *trial, int stride, int view)
 {
-    linear_lanes own = {.count = trial->fit.lobe_count + 1};
-    for (int j = 0; j < own.count; j++) {
-        own.error[j] = wide_load(trial->linear + (WEFT_LINEAR_ERROR + j) * stride + view);
-        for (int k = 0; k < own.count; k++)
-            own.gram[j][k] = wide_load(trial->linear + weft_linear_gram(j, k) * stride + view);
+    int count = trial->fit.lobe_count + 1;
+    linear_lanes own;
+    for (int j = 0; j < count; j++) {
+        own.error[j] = lanes_load(trial->linear + (WEFT_LINEAR_ERROR + j) * stride + view);
+        for (int k = 0; k < count; k++)
+            own.gram[j][k] = lanes_load(trial->linear + weft_linear_gram(j, k) * stride + view);
     }
-    own.square = wide_load(trial->linear + WEFT_LINEAR_SQUARE * stride + view);
-    own.pass_table = wide_load_floats(trial->pass_table + view);
+    own.square = lanes_load(trial->linear + WEFT_LINEAR_SQUARE * stride + view);
+    own.pass_table = lanes_load(trial->pass_table + view);
     return own;
 }
 
-WEFT_INLINE wide_lanes larger(wide_lanes a, double b)
+WEFT_INLINE lanes larger(lanes a, float b)
 {
-    return wide_select(a > b, a, wide_of(b));
+    return lanes_select(a > b, a, lanes_of(b));
 }
 
-WEFT_INLINE view_state state_of(const linear_lanes *own, const weft_trial *trial, bool with_table, const double *x)
+WEFT_INLINE view_state state_of(const linear_lanes *own, const parameters *at, bool with_table)
 {
-    view_state state = {.t = wide_of(1)};
-    wide_lanes fr = {0};
-    for (int j = 0; j < own->count; j++) {
-        for (int k = 0; k < own->count; k++) {
-            state.ff += x[j] * x[k] * own->gram[j][k];
-            fr += x[j] * trial->at.x[k] * own->gram[j][k];
+    int count = at->lobe_count + 1;
+    view_state state = {.t = lanes_of(1)};
+    lanes fr = {0};
+    for (int j = 0; j < count; j++) {
+        for (int k = 0; k < count; k++) {
+            state.ff += at->x[j] * at->x[k] * own->gram[j][k];
+            fr += at->x[j] * at->pass[k] * own->gram[j][k];
         }
     }
     fr *= own->pass_table;
-    for (int j = 0; j < own->count; j++)
-        fr += x[j] * own->error[j];
+    for (int j = 0; j < count; j++)
+        fr += at->x[j] * own->error[j];
     if (with_table) {
-        wide_bits seen = state.ff > trial->negligible;
-        state.t = wide_select(seen, larger(fr, 0) / wide_select(seen, state.ff, wide_of(1)), wide_of(1));
-        state.eliminated = wide_select(seen, wide_of(1), wide_of(0));
+        lane_bits seen = state.ff > at->negligible;
+        state.t = lanes_select(seen, larger(fr, 0) / lanes_select(seen, state.ff, lanes_of(1)), lanes_of(1));
+        state.eliminated = lanes_select(seen, lanes_of(1), lanes_of(0));
     }
     state.residual = own->square;
-    for (int j = 0; j < own->count; j++) {
-        state.delta[j] = own->pass_table * trial->at.x[j] - state.t * x[j];
+    for (int j = 0; j < count; j++) {
+        state.delta[j] = own->pass_table * at->pass[j] - state.t * at->x[j];
         state.residual += 2 * state.delta[j] * own->error[j];
     }
-    for (int j = 0; j < own->count; j++) {
-        for (int k = 0; k < own->count; k++)
+    for (int j = 0; j < count; j++) {
+        for (int k = 0; k < count; k++)
             state.residual += state.delta[j] * state.delta[k] * own->gram[j][k];
     }
     state.residual = larger(state.residual, 0);
@@ -76,17 +111,18 @@ WEFT_INLINE view_state state_of(const linear_lanes *own, const weft_trial *trial
 }
 
 double WEFT_KERNEL(weft_views_residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
-                                        const weft_linear *linear, double *table)
+                                        const weft_linear *linear, float *table)
 {
-    wide_lanes sum = {0};
-    for (int view = 0; view < bundle->view_stride; view += WIDE_LANES) {
+    parameters at = parameters_of(trial, linear->x);
+    double sum = 0;
+    for (int view = 0; view < bundle->view_stride; view += LANES) {
         linear_lanes own = load_linear(trial, bundle->view_stride, view);
-        view_state state = state_of(&own, trial, with_table, linear->x);
-        sum += state.residual;
+        view_state state = state_of(&own, &at, with_table);
+        sum += (double)lanes_sum(state.residual);
         if (table)
-            wide_store(table + view, state.t);
+            lanes_store(table + view, state.t);
     }
-    return wide_sum(sum);
+    return sum;
 }
 
 void WEFT_KERNEL(weft_views_linear_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
@@ -94,16 +130,17 @@ void WEFT_KERNEL(weft_views_linear_normal)(const weft_bundle *bundle, const weft
 {
     int n = trial->fit.lobe_count + 1;
     const double *x = linear->x;
-    wide_lanes h_sum[WEFT_LINEAR_MAX][WEFT_LINEAR_MAX] = {{{0}}}, g_sum[WEFT_LINEAR_MAX] = {{0}}, scale = {0};
-    for (int view = 0; view < bundle->view_stride; view += WIDE_LANES) {
+    parameters at = parameters_of(trial, x);
+    lanes h_sum[WEFT_LINEAR_MAX][WEFT_LINEAR_MAX] = {{{0}}}, g_sum[WEFT_LINEAR_MAX] = {{0}}, scale = {0};
+    for (int view = 0; view < bundle->view_stride; view += LANES) {
         linear_lanes own = load_linear(trial, bundle->view_stride, view);
-        view_state state = state_of(&own, trial, with_table, x);
-        wide_lanes s[WEFT_LINEAR_MAX] = {{0}}, t2 = state.t * state.t;
-        wide_lanes shrink = state.eliminated / wide_select(state.eliminated > 0, state.ff, wide_of(1));
+        view_state state = state_of(&own, &at, with_table);
+        lanes s[WEFT_LINEAR_MAX] = {{0}}, t2 = state.t * state.t;
+        lanes shrink = state.eliminated / lanes_select(state.eliminated > 0, state.ff, lanes_of(1));
         for (int j = 0; j < n; j++) {
-            wide_lanes error = own.error[j];
+            lanes error = own.error[j];
             for (int k = 0; k < n; k++) {
-                s[j] += own.gram[j][k] * x[k];
+                s[j] += own.gram[j][k] * at.x[k];
                 error += own.gram[j][k] * state.delta[k];
             }
             g_sum[j] += state.t * error;
@@ -112,50 +149,50 @@ void WEFT_KERNEL(weft_views_linear_normal)(const weft_bundle *bundle, const weft
         }
         scale += state.eliminated * t2 * state.ff;
     }
-    double length = 0, total = wide_sum(scale);
+    double length = 0, total = (double)lanes_sum(scale);
     for (int j = 0; j < n; j++)
         length += x[j] * x[j];
     for (int j = 0; j < n; j++) {
-        g[j] = wide_sum(g_sum[j]);
+        g[j] = (double)lanes_sum(g_sum[j]);
         for (int k = 0; k <= j; k++)
             h[j * n + k] = h[k * n + j] =
-                wide_sum(h_sum[j][k]) + (length > 0 ? total * x[j] * x[k] / (length * length) : 0);
+                (double)lanes_sum(h_sum[j][k]) + (length > 0 ? total * x[j] * x[k] / (length * length) : 0);
     }
 }
 
 /* ---- Directions of a vector of views ---- */
 
 typedef struct view_lanes {
-    wide_lanes local[3];              /* v' = R v */
-    wide_lanes p[WEFT_GRAM_LOBES][3]; /* diag(c) v' */
-    wide_lanes m[WEFT_GRAM_LOBES][3]; /* R^T diag(c) v' */
+    lanes local[3];              /* v' = R v */
+    lanes p[WEFT_GRAM_LOBES][3]; /* diag(c) v' */
+    lanes m[WEFT_GRAM_LOBES][3]; /* R^T diag(c) v' */
 } view_lanes;
 
-WEFT_INLINE view_lanes lanes_of_views(const weft_bundle *bundle, const weft_fit *fit, double rows[3][3], int view)
+WEFT_INLINE view_lanes lanes_of_views(const weft_bundle *bundle, const parameters *at, int view)
 {
     view_lanes own;
-    wide_lanes v[3];
+    lanes v[3];
     for (int k = 0; k < 3; k++)
-        v[k] = wide_load_floats(bundle->view_xyz[k] + view);
+        v[k] = lanes_load(bundle->view_xyz[k] + view);
     for (int k = 0; k < 3; k++)
-        own.local[k] = rows[k][0] * v[0] + rows[k][1] * v[1] + rows[k][2] * v[2];
-    for (int i = 0; i < fit->lobe_count; i++) {
+        own.local[k] = at->rows[k][0] * v[0] + at->rows[k][1] * v[1] + at->rows[k][2] * v[2];
+    for (int i = 0; i < at->lobe_count; i++) {
         for (int k = 0; k < 3; k++)
-            own.p[i][k] = fit->lobe[i].c[k] * own.local[k];
+            own.p[i][k] = at->c[i][k] * own.local[k];
         for (int k = 0; k < 3; k++)
-            own.m[i][k] = rows[0][k] * own.p[i][0] + rows[1][k] * own.p[i][1] + rows[2][k] * own.p[i][2];
+            own.m[i][k] = at->rows[0][k] * own.p[i][0] + at->rows[1][k] * own.p[i][1] + at->rows[2][k] * own.p[i][2];
     }
     return own;
 }
 
-/* The products of all columns, as doubles. */
+/* The products of all columns. */
 WEFT_INLINE void load_products(const float *sums, int columns, int stride, int view,
-                               wide_lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS])
+                               lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS])
 {
     for (int a = 0; a < columns; a++) {
         for (int b = a; b < columns; b++)
             product[a][b] = product[b][a] =
-                wide_load_floats(sums + (size_t)weft_gram_product(a, b, columns) * (size_t)stride + view);
+                lanes_load(sums + (size_t)weft_gram_product(a, b, columns) * (size_t)stride + view);
     }
 }
 
@@ -164,14 +201,14 @@ WEFT_INLINE void load_products(const float *sums, int columns, int stride, int v
 /* Linear column j as a combination of the columns of the pass. */
 typedef struct combination {
     int count, column[3];
-    wide_lanes weight[3];
+    lanes weight[3];
 } combination;
 
 WEFT_INLINE combination linear_column(int j, const view_lanes *own)
 {
     if (j == 0)
-        return (combination){1, {0}, {wide_of(1)}};
-    const wide_lanes *m = own->m[j - 1];
+        return (combination){1, {0}, {lanes_of(1)}};
+    const lanes *m = own->m[j - 1];
     int first = 1 + 4 * (j - 1);
     return (combination){3, {first, first + 1, first + 2}, {m[0], m[1], m[2]}};
 }
@@ -181,36 +218,35 @@ void WEFT_KERNEL(weft_views_digest)(const weft_bundle *bundle, weft_trial *trial
     const weft_fit *fit = &trial->fit;
     int n = fit->lobe_count + 1, columns = weft_gram_columns(fit->lobe_count), e = columns - 1;
     int stride = bundle->view_stride;
-    wide_lanes strength[WEFT_LINEAR_MAX] = {{0}}, energy = {0};
-    double rows[3][3];
-    weft_frame_rows(&fit->frame, rows);
-    for (int view = 0; view < stride; view += WIDE_LANES) {
-        wide_lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS];
-        view_lanes own = lanes_of_views(bundle, fit, rows, view);
+    lanes strength[WEFT_LINEAR_MAX] = {{0}}, energy = {0};
+    parameters at = parameters_of(trial, trial->at.x);
+    for (int view = 0; view < stride; view += LANES) {
+        lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS];
+        view_lanes own = lanes_of_views(bundle, &at, view);
         load_products(trial->sums, columns, stride, view, product);
         for (int j = 0; j < n; j++) {
             combination a = linear_column(j, &own);
-            wide_lanes error = {0};
+            lanes error = {0};
             for (int i = 0; i < a.count; i++)
                 error += a.weight[i] * product[a.column[i]][e];
-            wide_store(trial->linear + (WEFT_LINEAR_ERROR + j) * stride + view, error);
+            lanes_store(trial->linear + (WEFT_LINEAR_ERROR + j) * stride + view, error);
             for (int k = 0; k <= j; k++) {
                 combination b = linear_column(k, &own);
-                wide_lanes sum = {0};
+                lanes sum = {0};
                 for (int i = 0; i < a.count; i++) {
                     for (int l = 0; l < b.count; l++)
                         sum += a.weight[i] * b.weight[l] * product[a.column[i]][b.column[l]];
                 }
-                wide_store(trial->linear + weft_linear_gram(j, k) * stride + view, sum);
-                strength[j] += j == k ? sum : wide_of(0);
+                lanes_store(trial->linear + weft_linear_gram(j, k) * stride + view, sum);
+                strength[j] += j == k ? sum : lanes_of(0);
             }
         }
-        wide_store(trial->linear + WEFT_LINEAR_SQUARE * stride + view, product[e][e]);
+        lanes_store(trial->linear + WEFT_LINEAR_SQUARE * stride + view, product[e][e]);
         energy += product[e][e];
     }
     for (int j = 0; j < n; j++)
-        trial->strength[j] = wide_sum(strength[j]);
-    trial->energy = wide_sum(energy);
+        trial->strength[j] = (double)lanes_sum(strength[j]);
+    trial->energy = (double)lanes_sum(energy);
 }
 
 /* ---- All parameters ---- */
@@ -218,57 +254,54 @@ void WEFT_KERNEL(weft_views_digest)(const weft_bundle *bundle, weft_trial *trial
 /* The derivative of f by one parameter. */
 typedef struct derivative {
     int count, column[3 * WEFT_GRAM_LOBES];
-    wide_lanes weight[3 * WEFT_GRAM_LOBES];
+    lanes weight[3 * WEFT_GRAM_LOBES];
 } derivative;
 
-WEFT_INLINE void lobe_derivatives(const weft_fit *fit, int i, double rows[3][3], const view_lanes *own, derivative *by)
+WEFT_INLINE void lobe_derivatives(const parameters *at, int i, const view_lanes *own, derivative *by)
 {
-    const weft_fit_lobe *lobe = &fit->lobe[i];
     int block = 1 + 4 * i, next = 1;
-    double factor = lobe->amplitude * exp(lobe->log_exponent);
     by[0].count = 3;
     for (int axis = 0; axis < 3; axis++) {
         by[0].column[axis] = block + axis;
         by[0].weight[axis] = own->m[i][axis];
     }
     for (int k = 0; k < 3; k++) {
-        if (k == weft_lobe_fixed(lobe))
+        if (k == at->fixed[i])
             continue;
         by[next].count = 3;
         for (int axis = 0; axis < 3; axis++) {
             by[next].column[axis] = block + axis;
-            by[next].weight[axis] = factor * rows[k][axis] * own->local[k];
+            by[next].weight[axis] = at->factor[i] * at->rows[k][axis] * own->local[k];
         }
         next++;
     }
     by[3].count = 1;
     by[3].column[0] = block + 3;
-    by[3].weight[0] = wide_of(factor * LN2);
+    by[3].weight[0] = lanes_of(at->factor[i] * LN2);
 }
 
-WEFT_INLINE void cross_axis(const wide_lanes *a, int k, wide_lanes *result)
+WEFT_INLINE void cross_axis(const lanes *a, int k, lanes *result)
 {
     int next = (k + 1) % 3, last = (k + 2) % 3;
-    result[k] = wide_of(0);
+    result[k] = lanes_of(0);
     result[next] = a[last];
     result[last] = -a[next];
 }
 
 /* A small rotation w turns l' into l' + w x l' and v' likewise: db = l' . (p x w + c o (w x v')). */
-WEFT_INLINE void frame_derivatives(const weft_fit *fit, double rows[3][3], const view_lanes *own, derivative *by)
+WEFT_INLINE void frame_derivatives(const parameters *at, const view_lanes *own, derivative *by)
 {
     for (int k = 0; k < 3; k++) {
-        wide_lanes moved[3];
+        lanes moved[3];
         cross_axis(own->local, k, moved); /* v' x w, the negative of what is wanted */
-        by[k].count = 3 * fit->lobe_count;
-        for (int i = 0; i < fit->lobe_count; i++) {
-            double factor = fit->lobe[i].amplitude * exp(fit->lobe[i].log_exponent);
-            wide_lanes turned[3];
+        by[k].count = 3 * at->lobe_count;
+        for (int i = 0; i < at->lobe_count; i++) {
+            lanes turned[3];
             cross_axis(own->p[i], k, turned);
             for (int axis = 0; axis < 3; axis++) {
-                wide_lanes weight = {0};
+                lanes weight = {0};
                 for (int row = 0; row < 3; row++)
-                    weight += factor * rows[row][axis] * (turned[row] - fit->lobe[i].c[row] * moved[row]);
+                    weight += at->factor[i] * at->rows[row][axis] * (turned[row] - at->c[i][row] * moved[row]);
                 by[k].column[3 * i + axis] = 1 + 4 * i + axis;
                 by[k].weight[3 * i + axis] = weight;
             }
@@ -277,38 +310,37 @@ WEFT_INLINE void frame_derivatives(const weft_fit *fit, double rows[3][3], const
 }
 
 /* f and r - T f as combinations of the columns. */
-WEFT_INLINE void expand_columns(const weft_fit *fit, const view_lanes *own, const view_state *state, wide_lanes *f,
-                                wide_lanes *error)
+WEFT_INLINE void expand_columns(const parameters *at, const view_lanes *own, const view_state *state, lanes *f,
+                                lanes *error)
 {
-    f[0] = wide_of(fit->diffuse);
+    f[0] = lanes_of(at->x[0]);
     error[0] = state->delta[0];
-    for (int i = 0; i < fit->lobe_count; i++) {
+    for (int i = 0; i < at->lobe_count; i++) {
         for (int k = 0; k < 3; k++) {
-            f[1 + 4 * i + k] = fit->lobe[i].amplitude * own->m[i][k];
+            f[1 + 4 * i + k] = at->x[1 + i] * own->m[i][k];
             error[1 + 4 * i + k] = state->delta[1 + i] * own->m[i][k];
         }
-        f[4 + 4 * i] = error[4 + 4 * i] = wide_of(0);
+        f[4 + 4 * i] = error[4 + 4 * i] = lanes_of(0);
     }
-    f[1 + 4 * fit->lobe_count] = wide_of(0);
-    error[1 + 4 * fit->lobe_count] = wide_of(1);
+    f[1 + 4 * at->lobe_count] = lanes_of(0);
+    error[1 + 4 * at->lobe_count] = lanes_of(1);
 }
 
 /* Sums over the vectors of views. */
 typedef struct normal_lanes {
-    wide_lanes h[WEFT_SOLVE_MAX][WEFT_SOLVE_MAX], g[WEFT_SOLVE_MAX];
+    lanes h[WEFT_SOLVE_MAX][WEFT_SOLVE_MAX], g[WEFT_SOLVE_MAX];
 } normal_lanes;
 
-WEFT_INLINE void add_views(int n, const derivative *by, wide_lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS],
-                           const wide_lanes *f, const wide_lanes *error, const view_state *state, int columns,
-                           normal_lanes *sums)
+WEFT_INLINE void add_views(int n, const derivative *by, lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS],
+                           const lanes *f, const lanes *error, const view_state *state, int columns, normal_lanes *sums)
 {
-    wide_lanes of[WEFT_SOLVE_MAX][WEFT_GRAM_COLUMNS], s[WEFT_SOLVE_MAX];
-    wide_lanes t2 = state->t * state->t;
-    wide_lanes shrink = state->eliminated / wide_select(state->eliminated > 0, state->ff, wide_of(1));
+    lanes of[WEFT_SOLVE_MAX][WEFT_GRAM_COLUMNS], s[WEFT_SOLVE_MAX];
+    lanes t2 = state->t * state->t;
+    lanes shrink = state->eliminated / lanes_select(state->eliminated > 0, state->ff, lanes_of(1));
     for (int p = 0; p < n; p++) {
-        wide_lanes along = {0}, against = {0};
+        lanes along = {0}, against = {0};
         for (int c = 0; c < columns; c++) {
-            wide_lanes sum = {0};
+            lanes sum = {0};
             for (int k = 0; k < by[p].count; k++)
                 sum += by[p].weight[k] * product[by[p].column[k]][c];
             of[p][c] = sum;
@@ -318,7 +350,7 @@ WEFT_INLINE void add_views(int n, const derivative *by, wide_lanes product[WEFT_
         s[p] = along;
         sums->g[p] += state->t * against;
         for (int q = 0; q <= p; q++) {
-            wide_lanes sum = -s[p] * s[q] * shrink;
+            lanes sum = -s[p] * s[q] * shrink;
             for (int k = 0; k < by[q].count; k++)
                 sum += of[p][by[q].column[k]] * by[q].weight[k];
             sums->h[p][q] += t2 * sum;
@@ -331,35 +363,35 @@ double WEFT_KERNEL(weft_views_normal)(const weft_bundle *bundle, const weft_tria
 {
     const weft_fit *fit = &trial->fit;
     int n = normal->n, columns = weft_gram_columns(fit->lobe_count);
-    double rows[3][3], x[WEFT_LINEAR_MAX] = {fit->diffuse};
-    wide_lanes scale = {0};
+    double x[WEFT_LINEAR_MAX] = {fit->diffuse};
+    lanes scale = {0};
     normal_lanes sums;
     memset(&sums, 0, sizeof sums);
     for (int i = 0; i < fit->lobe_count; i++)
         x[1 + i] = fit->lobe[i].amplitude;
-    weft_frame_rows(&fit->frame, rows);
-    for (int view = 0; view < bundle->view_stride; view += WIDE_LANES) {
-        wide_lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS], f[WEFT_GRAM_COLUMNS], error[WEFT_GRAM_COLUMNS];
+    parameters at = parameters_of(trial, x);
+    for (int view = 0; view < bundle->view_stride; view += LANES) {
+        lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS], f[WEFT_GRAM_COLUMNS], error[WEFT_GRAM_COLUMNS];
         derivative by[WEFT_SOLVE_MAX];
         by[0].count = 1;
         by[0].column[0] = 0;
-        by[0].weight[0] = wide_of(1);
+        by[0].weight[0] = lanes_of(1);
         linear_lanes linear = load_linear(trial, bundle->view_stride, view);
-        view_state state = state_of(&linear, trial, with_table, x);
-        view_lanes own = lanes_of_views(bundle, fit, rows, view);
+        view_state state = state_of(&linear, &at, with_table);
+        view_lanes own = lanes_of_views(bundle, &at, view);
         load_products(trial->sums, columns, bundle->view_stride, view, product);
         for (int i = 0; i < fit->lobe_count; i++)
-            lobe_derivatives(fit, i, rows, &own, by + 1 + 4 * i);
+            lobe_derivatives(&at, i, &own, by + 1 + 4 * i);
         if (rotate && fit->lobe_count)
-            frame_derivatives(fit, rows, &own, by + 1 + 4 * fit->lobe_count);
-        expand_columns(fit, &own, &state, f, error);
+            frame_derivatives(&at, &own, by + 1 + 4 * fit->lobe_count);
+        expand_columns(&at, &own, &state, f, error);
         add_views(n, by, product, f, error, &state, columns, &sums);
         scale += state.eliminated * state.t * state.t * state.ff;
     }
     for (int p = 0; p < n; p++) {
-        normal->g[p] = wide_sum(sums.g[p]);
+        normal->g[p] = (double)lanes_sum(sums.g[p]);
         for (int q = 0; q <= p; q++)
-            normal->h[p * n + q] = wide_sum(sums.h[p][q]);
+            normal->h[p * n + q] = (double)lanes_sum(sums.h[p][q]);
     }
-    return wide_sum(scale);
+    return (double)lanes_sum(scale);
 }

@@ -39,17 +39,17 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
     if (!workspace)
         return weft_fail_memory(error, "workspace of a fit", sizeof *workspace);
     size_t views = (size_t)bundle->view_stride;
-    workspace->table = allocate_rows(3, views, sizeof *workspace->table);
+    workspace->table = allocate_rows(1, views, sizeof *workspace->table);
+    workspace->scratch[0] = allocate_rows(2, views, sizeof *workspace->scratch[0]);
     workspace->model = allocate_rows((size_t)bundle->sample_count + WEFT_STRIP_LANES, 1, sizeof *workspace->model);
     bool complete = create_trial(bundle->view_stride, &workspace->trial[0]);
-    complete =
-        create_trial(bundle->view_stride, &workspace->trial[1]) && complete && workspace->table && workspace->model;
+    complete = create_trial(bundle->view_stride, &workspace->trial[1]) && complete && workspace->table &&
+               workspace->scratch[0] && workspace->model;
     if (!complete) {
         weft_fit_workspace_free(workspace);
         return weft_fail_memory(error, "workspace of a fit", views * 2048);
     }
-    for (int i = 0; i < 2; i++)
-        workspace->scratch[i] = workspace->table + (size_t)(1 + i) * views;
+    workspace->scratch[1] = workspace->scratch[0] + views;
     *result = workspace;
     return WEFT_OK;
 }
@@ -61,6 +61,7 @@ void weft_fit_workspace_free(weft_fit_workspace *workspace)
     free_trial(&workspace->trial[0]);
     free_trial(&workspace->trial[1]);
     free(workspace->table);
+    free(workspace->scratch[0]);
     free(workspace->model);
     free(workspace);
 }
@@ -71,10 +72,10 @@ double *weft_fit_scratch(weft_fit_workspace *workspace, int index)
 }
 
 void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                         const weft_fit_options *options, const double *table, weft_trial *trial)
+                         const weft_fit_options *options, const float *table, weft_trial *trial)
 {
     for (int view = 0; view < bundle->view_count; view++)
-        trial->pass_table[view] = table ? (float)table[view] : 0.0f;
+        trial->pass_table[view] = table ? table[view] : 0.0f;
     if (!options->table) {
         for (int view = 0; view < bundle->view_count; view++)
             trial->pass_table[view] = 1;
@@ -90,6 +91,13 @@ void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples,
     trial->fit.passes += 1;
 }
 
+const float *weft_workspace_keep_table(const weft_bundle *bundle, weft_fit_workspace *workspace, const double *table)
+{
+    for (int view = 0; view < bundle->view_count; view++)
+        workspace->table[view] = (float)table[view];
+    return workspace->table;
+}
+
 void weft_workspace_take_table(const weft_bundle *bundle, const weft_fit_options *options, const weft_trial *trial,
                                double *table)
 {
@@ -97,12 +105,12 @@ void weft_workspace_take_table(const weft_bundle *bundle, const weft_fit_options
     int seen = 0;
     for (int view = 0; view < bundle->view_count; view++) {
         if (trial->linear[view] > 0) {
-            sum += trial->table[view];
+            sum += (double)trial->table[view];
             seen++;
         }
     }
     for (int view = 0; view < bundle->view_count; view++) {
-        double unseen = seen ? sum / seen : 1, learnt = trial->table[view];
+        double unseen = seen ? sum / seen : 1, learnt = (double)trial->table[view];
         table[view] = !options->table ? 1 : trial->linear[view] > 0 ? learnt : unseen;
     }
 }
@@ -154,7 +162,7 @@ void weft_workspace_begin_cold(const weft_bundle *bundle, const weft_samples *sa
 }
 
 void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                               const weft_fit_options *options, const double *table, weft_trial *trial)
+                               const weft_fit_options *options, const float *table, weft_trial *trial)
 {
     double least[WEFT_GRAM_LOBES] = {0};
     least_amplitudes(&trial->fit, least);

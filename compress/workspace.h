@@ -6,7 +6,7 @@
 
 struct weft_fit_workspace {
     weft_trial trial[2]; /* the point reached, and the one being tried */
-    double *table;       /* [view_stride] of the best start so far */
+    float *table;        /* [view_stride] T to begin with */
     double *scratch[2];  /* [view_stride] */
     float *model;        /* [sample_count] */
 };
@@ -14,7 +14,10 @@ struct weft_fit_workspace {
 /* One pass at trial->fit with T = `table` in e (NULL: 0; without options->table: 1). Fills sums, linear parts, T,
  * residual. */
 void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                         const weft_fit_options *options, const double *table, weft_trial *trial);
+                         const weft_fit_options *options, const float *table, weft_trial *trial);
+
+/* `table` [view_count] as floats, in workspace->table. */
+const float *weft_workspace_keep_table(const weft_bundle *bundle, weft_fit_workspace *workspace, const double *table);
 
 /* T of the trial, with the mean of the others in views where nothing was learnt. */
 void weft_workspace_take_table(const weft_bundle *bundle, const weft_fit_options *options, const weft_trial *trial,
@@ -26,7 +29,7 @@ void weft_workspace_begin_cold(const weft_bundle *bundle, const weft_samples *sa
 
 /* Starts from a fit that is nearly right: its T keeps the sums free of cancellation. */
 void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                               const weft_fit_options *options, const double *table, weft_trial *trial);
+                               const weft_fit_options *options, const float *table, weft_trial *trial);
 
 /* Damped Gauss-Newton steps from workspace->trial[0], which holds the result. */
 void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
