@@ -24,10 +24,11 @@ check:
 	scripts/install-packages.sh check
 	scripts/check.sh
 
+# TEXELS and SIZE make it shorter or longer (scripts/bench.sh).
 bench:
 	scripts/install-packages.sh bench
 	$(MAKE) build
-	scripts/bench.sh $(build)
+	scripts/bench.sh $(build) $(or $(TEXELS),100) $(or $(SIZE),64)
 
 clean:
 	rm -rf build demo-out

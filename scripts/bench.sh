@@ -1,8 +1,11 @@
 #!/bin/sh
-# Builds and runs every bench, in turn (docs/benchmarks.md). Usage: bench.sh BUILD
+# Builds and runs every bench, in turn (docs/benchmarks.md).
+# Usage: bench.sh BUILD [TEXELS [SIZE]]    texels of each family in the bench of the fit (100), SIZE x SIZE texels for the whole job (64)
 set -eu
 
-build=$(cd "${1:?usage: bench.sh BUILD}" && pwd)
+build=$(cd "${1:?usage: bench.sh BUILD [TEXELS [SIZE]]}" && pwd)
+texels=${2:-100}
+size=${3:-64}
 cd "$(dirname "$0")/.."
 demo='demo-out/gabardine'
 weave=assets/weaves/wool_gabardine.wv
@@ -11,13 +14,19 @@ heading() {
     printf '\n== %s\n' "$*"
 }
 
-cmake --build "$build" --target bench_reflectance bench_fit bench_player bench_aliasing bench_truth
+cmake --build "$build" --target bench_reflectance bench_fit bench_compress bench_player bench_aliasing bench_truth
 
 heading "Evaluations a second of the models, one core"
 "$build/bench/bench_reflectance"
 
-heading "Fits of a texel from nothing, one core"
-"$build/bench/bench_fit" 12
+heading "Fits of a texel against general solvers, one core"
+"$build/bench/bench_fit" --texels "$texels"
+if [ -e "$demo.btf.h5" ]; then
+    "$build/bench/bench_fit" --texels "$texels" --only speed "$demo.btf.h5"
+fi
+
+heading "The whole job: reading, fitting all levels, writing, all cores"
+"$build/bench/bench_compress" --size "$size"
 
 heading "Aliasing of the drape seen from afar"
 "$build/bench/bench_aliasing"
