@@ -61,28 +61,9 @@ void weft_fit_refine(const weft_bundle *bundle, const weft_samples *samples, int
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table);
 
-/* ---- Parts of it, one pass each, for what has been rounded ---- */
-
-/* T by eq. 4 for given lobes; views in which nothing was learnt get the mean of the others. */
-void weft_fit_table(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                    const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit, double *table);
-
-/* rho and the amplitudes for given T and shapes, linear least squares with all >= 0; lobes of the bit set `frozen`
- * stay. */
-void weft_fit_amplitudes(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                         const weft_fit_options *options, weft_fit_workspace *workspace, const double *table,
-                         unsigned frozen, weft_fit *fit);
-
-/* <f|f> of every view, without T: how much an error of T(v) weighs. */
-void weft_fit_model_energy(const weft_bundle *bundle, const weft_samples *samples, weft_fit_workspace *workspace,
-                           const weft_fit *fit, double *energy);
-
 /* The model at every sample, without T: [sample_count], valid until the workspace is used again. */
 const float *weft_fit_evaluate(const weft_bundle *bundle, const weft_samples *samples, weft_fit_workspace *workspace,
                                const weft_fit *fit);
-
-/* A spare array [view_count], index 0 or 1, for the caller's use. */
-double *weft_fit_scratch(weft_fit_workspace *workspace, int index);
 
 /* ---- Reference: alternation in plain double, as the paper describes it ---- */
 

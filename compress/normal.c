@@ -117,14 +117,57 @@ void weft_trial_solve_linear(const weft_bundle *bundle, bool with_table, const d
     trial->residual = trial->kernels->residual(bundle, trial, with_table, &linear, trial->table);
 }
 
-void weft_trial_solve_given_table(const weft_bundle *bundle, const double *table, const double *low, const double *high,
-                                  weft_trial *trial)
+void weft_trial_model_energy(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *energy)
 {
-    int n = trial->fit.lobe_count + 1, stride = bundle->view_stride;
+    const weft_linear linear = linear_of_fit(fit);
+    for (int view = 0; view < bundle->view_count; view++) {
+        energy[view] = 0;
+        for (int j = 0; j <= fit->lobe_count; j++) {
+            for (int k = 0; k <= fit->lobe_count; k++)
+                energy[view] += linear.x[j] * linear.x[k] *
+                                (double)trial->linear[weft_linear_gram(j, k) * bundle->view_stride + view];
+        }
+    }
+}
+
+void weft_trial_table(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *table)
+{
+    const weft_linear linear = linear_of_fit(fit);
+    trial->kernels->residual(bundle, trial, true, &linear, trial->table);
+    weft_trial_take_table(bundle, trial, table);
+}
+
+void weft_trial_take_table(const weft_bundle *bundle, const weft_trial *trial, double *table)
+{
+    double sum = 0;
+    int seen = 0;
+    for (int view = 0; view < bundle->view_count; view++) {
+        if (trial->linear[view] > 0) {
+            sum += (double)trial->table[view];
+            seen++;
+        }
+    }
+    for (int view = 0; view < bundle->view_count; view++)
+        table[view] = trial->linear[view] > 0 ? (double)trial->table[view] : seen ? sum / seen : 1;
+}
+
+/* <column j | r>: r = e + T f at the parameters of the pass. */
+static double column_sample(const weft_trial *trial, int j, int stride, int view)
+{
+    double sum = 0;
+    for (int k = 0; k <= trial->fit.lobe_count; k++)
+        sum += trial->at.x[k] * (double)trial->linear[weft_linear_gram(j, k) * stride + view];
+    return sum * (double)trial->pass_table[view] + (double)trial->linear[(WEFT_LINEAR_ERROR + j) * stride + view];
+}
+
+void weft_trial_solve_given_table(const weft_bundle *bundle, const weft_trial *trial, const double *table,
+                                  const double *low, const double *high, weft_fit *fit)
+{
+    int n = fit->lobe_count + 1, stride = bundle->view_stride;
     double h[WEFT_LINEAR_MAX * WEFT_LINEAR_MAX] = {0}, g[WEFT_LINEAR_MAX] = {0}, trace = 0;
     for (int view = 0; view < bundle->view_count; view++) {
         for (int j = 0; j < n; j++) {
-            g[j] += table[view] * (double)trial->linear[(WEFT_LINEAR_ERROR + j) * stride + view];
+            g[j] += table[view] * column_sample(trial, j, stride, view);
             for (int k = 0; k < n; k++)
                 h[j * n + k] +=
                     table[view] * table[view] * (double)trial->linear[weft_linear_gram(j, k) * stride + view];
@@ -134,9 +177,9 @@ void weft_trial_solve_given_table(const weft_bundle *bundle, const double *table
         trace += h[j * n + j];
     for (int j = 0; j < n; j++)
         h[j * n + j] += 1e-9 * h[j * n + j] + 1e-14 * trace + 1e-300;
-    weft_linear solution = linear_of_fit(&trial->fit);
+    weft_linear solution = linear_of_fit(fit);
     if (weft_solve_box(n, h, g, low, high, solution.x))
-        linear_to_fit(&solution, &trial->fit);
+        linear_to_fit(&solution, fit);
 }
 
 /* T leaves the overall scale of rho and A free: give that direction the curvature it would have with T fixed. */

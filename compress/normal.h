@@ -73,9 +73,16 @@ void weft_trial_digest(const weft_bundle *bundle, bool with_table, weft_trial *t
  * `least` [lobe_count]. Needs no samples. */
 void weft_trial_solve_linear(const weft_bundle *bundle, bool with_table, const double *least, weft_trial *trial);
 
-/* The same with T given: pass_table of the trial must be 0. `low` and `high` bound rho and the amplitudes. */
-void weft_trial_solve_given_table(const weft_bundle *bundle, const double *table, const double *low, const double *high,
-                                  weft_trial *trial);
+/* From the sums of a trial's last pass, for other linear parameters than it ended with: <f|f> of every view, without T;
+ * T by eq. 4; rho and the amplitudes between `low` and `high` that are best for a given T [view_count]. The shapes and
+ * the frame of `fit` are those of the pass. */
+void weft_trial_model_energy(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *energy);
+void weft_trial_table(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *table);
+void weft_trial_solve_given_table(const weft_bundle *bundle, const weft_trial *trial, const double *table,
+                                  const double *low, const double *high, weft_fit *fit);
+
+/* trial->table as doubles [view_count], with the mean of the others in views where nothing was learnt. */
+void weft_trial_take_table(const weft_bundle *bundle, const weft_trial *trial, double *table);
 
 /* Matrix and gradient at trial->fit. */
 void weft_normal_of_trial(const weft_bundle *bundle, bool with_table, bool rotate, const weft_trial *trial,

@@ -1,6 +1,6 @@
 #include "compress/pack.h"
 
-#include "compress/normal.h"
+#include "compress/workspace.h"
 
 #include <math.h>
 #include <string.h>
@@ -144,28 +144,75 @@ void weft_pack_rounded(const weft_fit *fit, double scale, weft_packed *packed)
         packed->lobe[i][3] = half_of(1);
 }
 
+/* T by eq. 4 for the rounded lobes, as codes, and as they will be read. */
+static void code_table(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *rounded, uint8_t *code,
+                       double *decoded)
+{
+    weft_trial_table(bundle, trial, rounded, decoded);
+    for (int view = 0; view < bundle->view_count; view++) {
+        code[view] = code_of_table(decoded[view]);
+        decoded[view] = weft_table_of_code(code[view]);
+    }
+}
+
+/* rho and the lobes that are not frozen, solved for again with the table as it will be read. */
+static void solve_rest(const weft_bundle *bundle, const weft_trial *trial, const double *decoded, unsigned frozen,
+                       weft_fit *rounded)
+{
+    double low[WEFT_LINEAR_MAX] = {0}, high[WEFT_LINEAR_MAX];
+    for (int j = 0; j <= rounded->lobe_count; j++) {
+        bool fixed = j > 0 && (frozen >> (j - 1) & 1);
+        low[j] = fixed ? rounded->lobe[j - 1].amplitude : 0;
+        high[j] = fixed ? low[j] : WEFT_LARGEST_AMPLITUDE;
+    }
+    weft_trial_solve_given_table(bundle, trial, decoded, low, high, rounded);
+}
+
 void weft_pack_channel(const weft_bundle *bundle, const weft_samples *samples, int channel,
                        const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit,
                        const double *table, weft_packed *packed, uint8_t *code)
 {
+    weft_trial *trial = &workspace->trial[0];
     weft_fit rounded = *fit;
-    double *decoded = weft_fit_scratch(workspace, 0), *energy = weft_fit_scratch(workspace, 1);
-    double largest = 1;
+    double *decoded = workspace->scratch[0], *energy = workspace->scratch[1], scale = 1;
+    memcpy(decoded, table, (size_t)bundle->view_count * sizeof *decoded);
+    if (options->table)
+        memset(code, 255, (size_t)bundle->view_count);
+    if (!(samples->energy[channel] > 0)) {
+        weft_pack_rounded(fit, samples->scale, packed);
+        return;
+    }
     if (options->table) {
-        weft_fit_model_energy(bundle, samples, workspace, fit, energy);
-        largest = largest_table(bundle, table, energy);
-        scale_amplitudes(&rounded, choose_scale(fit, samples->scale, largest));
+        weft_trial_model_energy(bundle, trial, fit, energy);
+        scale = choose_scale(fit, samples->scale, largest_table(bundle, table, energy));
+        scale_amplitudes(&rounded, scale);
     }
     unsigned frozen = freeze_sharp(&rounded, samples->scale);
-    for (int view = 0; view < bundle->view_count; view++)
-        decoded[view] = options->table ? table[view] : 1;
-    if (options->table) {
-        weft_fit_table(bundle, samples, channel, options, workspace, &rounded, decoded);
-        for (int view = 0; view < bundle->view_count; view++) {
-            code[view] = code_of_table(decoded[view]);
-            decoded[view] = weft_table_of_code(code[view]);
-        }
+    if (frozen) {
+        for (int view = 0; view < bundle->view_count; view++)
+            workspace->table[view] = (float)(table[view] / scale);
+        trial->fit = rounded;
+        weft_workspace_pass(bundle, samples, channel, options, workspace->table, trial);
     }
-    weft_fit_amplitudes(bundle, samples, channel, options, workspace, decoded, frozen, &rounded);
+    if (options->table)
+        code_table(bundle, trial, &rounded, code, decoded);
+    solve_rest(bundle, trial, decoded, frozen, &rounded);
+    weft_pack_rounded(&rounded, samples->scale, packed);
+}
+
+void weft_pack_given_table(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                           const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit,
+                           const uint8_t *code, weft_packed *packed)
+{
+    weft_trial *trial = &workspace->trial[0];
+    weft_fit rounded = *fit;
+    double *decoded = workspace->scratch[0];
+    unsigned frozen = freeze_sharp(&rounded, samples->scale);
+    for (int view = 0; view < bundle->view_count; view++)
+        decoded[view] = options->table ? weft_table_of_code(code[view]) : 1;
+    trial->fit = rounded;
+    weft_workspace_pass(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, decoded),
+                        trial);
+    solve_rest(bundle, trial, decoded, frozen, &rounded);
     weft_pack_rounded(&rounded, samples->scale, packed);
 }

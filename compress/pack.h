@@ -13,12 +13,20 @@ typedef struct weft_packed {
 /* The nearest storable frame, so that lobes can be fitted in the frame that will be read. Pure. */
 weft_frame weft_pack_frame(const weft_frame *frame, int16_t code[3]);
 
-/* Rounds a fit whose frame came from weft_pack_frame. The largest T goes into rho and C; high exponents are rounded
- * first, and T and then rho and the lower lobes are solved for again against what the reader will decode: a C rounded
- * to a half float errs by N 2^-12 in C^N. `code` [view_count] receives T (unused when options->table is off). */
+/* Rounds a fit whose frame came from weft_pack_frame. To be called right after the fit of this channel on all lights:
+ * it goes on with the sums of the last pass in the workspace. The largest T goes into rho and C; high exponents are
+ * rounded first, and T and then rho and the lower lobes are solved for again against what the reader will decode: a C
+ * rounded to a half float errs by N 2^-12 in C^N. `code` [view_count] receives T (unused when options->table is off).
+ */
 void weft_pack_channel(const weft_bundle *bundle, const weft_samples *samples, int channel,
                        const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit,
                        const double *table, weft_packed *packed, uint8_t *code);
+
+/* Rounds a fit whose T will be read as `code` whatever the fit thought of it: rho and the lower lobes are solved for
+ * again. One pass. */
+void weft_pack_given_table(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                           const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit,
+                           const uint8_t *code, weft_packed *packed);
 
 /* Rounds a fit as it is, `scale` times larger. Pure. */
 void weft_pack_rounded(const weft_fit *fit, double scale, weft_packed *packed);

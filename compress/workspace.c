@@ -66,11 +66,6 @@ void weft_fit_workspace_free(weft_fit_workspace *workspace)
     free(workspace);
 }
 
-double *weft_fit_scratch(weft_fit_workspace *workspace, int index)
-{
-    return workspace->scratch[index];
-}
-
 void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples, int channel,
                          const weft_fit_options *options, const float *table, weft_trial *trial)
 {
@@ -101,18 +96,10 @@ const float *weft_workspace_keep_table(const weft_bundle *bundle, weft_fit_works
 void weft_workspace_take_table(const weft_bundle *bundle, const weft_fit_options *options, const weft_trial *trial,
                                double *table)
 {
-    double sum = 0;
-    int seen = 0;
-    for (int view = 0; view < bundle->view_count; view++) {
-        if (trial->linear[view] > 0) {
-            sum += (double)trial->table[view];
-            seen++;
-        }
-    }
-    for (int view = 0; view < bundle->view_count; view++) {
-        double unseen = seen ? sum / seen : 1, learnt = (double)trial->table[view];
-        table[view] = !options->table ? 1 : trial->linear[view] > 0 ? learnt : unseen;
-    }
+    for (int view = 0; view < bundle->view_count; view++)
+        table[view] = 1;
+    if (options->table)
+        weft_trial_take_table(bundle, trial, table);
 }
 
 bool weft_workspace_finish_empty(const weft_bundle *bundle, const weft_samples *samples, int channel, weft_fit *fit,
