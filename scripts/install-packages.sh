@@ -10,7 +10,7 @@ packages="
     libcmocka-dev python3 python3-h5py python3-numpy xvfb xauth xdotool imagemagick
 "
 case ${1-} in
-check) packages="$packages clang-format clang-tidy" ;;
+check) packages="$packages clang-format clang-tidy gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user" ;;
 bench) packages="$packages libcminpack-dev libceres-dev" ;;
 esac
 
