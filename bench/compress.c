@@ -31,7 +31,7 @@ static double seconds_of(clockid_t clock)
 static void invent_texel(const weft_dataset_layout *layout, int x, int y, float *scratch, weft_half *samples)
 {
     synthetic_kind kind = (synthetic_kind)(SYNTHETIC_KINDS * y / layout->height);
-    synthetic_texel(layout, kind, (uint64_t)(y * layout->width + x), 0.01, scratch);
+    synthetic_texel(layout, kind, (uint64_t)y * (uint64_t)layout->width + (uint64_t)x, 0.01, scratch);
     for (int i = 0; i < 3 * layout->image_count; i++)
         samples[i] = weft_half_of_float(scratch[i]);
 }

@@ -16,10 +16,10 @@ typedef struct arguments {
     bench_plan plan;
     const char *dataset;
     int only; /* a section, or -1 for all */
-    bool json;
+    report_form form;
 } arguments;
 
-enum { OPTION_JSON = 256, OPTION_ONLY, OPTION_TAPE, OPTION_TOLERANCE, OPTION_SCALAR };
+enum { OPTION_JSON = 256, OPTION_MARKDOWN, OPTION_ONLY, OPTION_TAPE, OPTION_TOLERANCE, OPTION_SCALAR };
 
 static const struct argp_option option[] = {
     {"texels", 'n', "N", 0, "Texels of each family (default 100)", 0},
@@ -30,6 +30,7 @@ static const struct argp_option option[] = {
     {"scalar", OPTION_SCALAR, NULL, 0, "Let general solvers call the scalar exp and log of libm, not those on vectors",
      0},
     {"json", OPTION_JSON, NULL, 0, "Print all tables as JSON", 0},
+    {"markdown", OPTION_MARKDOWN, NULL, 0, "Print all tables as Markdown", 0},
     {0},
 };
 
@@ -78,7 +79,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         to->plan.scalar_callbacks = true;
         return 0;
     case OPTION_JSON:
-        to->json = true;
+        to->form = REPORT_JSON;
+        return 0;
+    case OPTION_MARKDOWN:
+        to->form = REPORT_MARKDOWN;
         return 0;
     case ARGP_KEY_ARG:
         if (to->dataset)
@@ -113,27 +117,51 @@ static weft_code run_source(const arguments *given, texel_source *source, weft_e
     return code;
 }
 
-static weft_code run(const arguments *given, weft_error *error)
+/* Four samples for every unknown, or there is nothing to compare: any method fits them exactly. */
+static weft_code check_samples(const arguments *given, const texel_source *source, weft_error *error)
+{
+    int samples = source->layout.image_count, unknowns = 1 + 4 * given->plan.lobe_count + source->layout.view_count;
+    if (samples < 4 * unknowns)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': %d images are too few for %d lobes and T of %d views: %d wanted",
+                         given->dataset, samples, given->plan.lobe_count, source->layout.view_count, 4 * unknowns);
+    return WEFT_OK;
+}
+
+static weft_code run_dataset(const arguments *given, weft_error *error)
+{
+    texel_source source;
+    weft_code code = texel_source_open(given->dataset, &source, error);
+    if (code == WEFT_OK)
+        code = check_samples(given, &source, error);
+    if (code == WEFT_OK)
+        code = run_source(given, &source, error);
+    texel_source_free(&source);
+    return code;
+}
+
+static weft_code run_families(const arguments *given, weft_error *error)
 {
     weft_code code = WEFT_OK;
-    texel_source source;
-    for (synthetic_kind kind = 0; code == WEFT_OK && !given->dataset && kind < SYNTHETIC_KINDS; kind++) {
+    for (synthetic_kind kind = 0; code == WEFT_OK && kind < SYNTHETIC_KINDS; kind++) {
+        texel_source source;
         code = texel_source_invent(kind, &source, error);
         if (code == WEFT_OK)
             code = run_source(given, &source, error);
         texel_source_free(&source);
     }
-    if (given->dataset) {
-        code = texel_source_open(given->dataset, &source, error);
-        if (code == WEFT_OK)
-            code = run_source(given, &source, error);
-        texel_source_free(&source);
-    }
-    if (code == WEFT_OK && (given->only == TAPE || given->only < 0))
-        code = section_tape(&given->plan, error);
-    if (code == WEFT_OK && (given->only == PASS || given->only < 0))
-        code = section_pass(&given->plan, error);
     return code;
+}
+
+/* Tape and pass have nothing to do with a dataset. */
+static weft_code run(const arguments *given, weft_error *error)
+{
+    WEFT_TRY(given->dataset ? run_dataset(given, error) : run_families(given, error));
+    bool all = given->only < 0 && !given->dataset;
+    if (all || given->only == TAPE)
+        WEFT_TRY(section_tape(&given->plan, error));
+    if (all || given->only == PASS)
+        WEFT_TRY(section_pass(&given->plan, error));
+    return WEFT_OK;
 }
 
 int main(int argc, char **argv)
@@ -144,7 +172,7 @@ int main(int argc, char **argv)
                                 .tape_path = WEFT_SHARED "/real/retro-tape/retro-3M-yellow.dat"},
                        .only = -1};
     argp_parse(&parser, argc, argv, 0, NULL, &given);
-    given.plan.report = report_create(given.json);
+    given.plan.report = report_create(given.form);
     weft_error error = {0};
     weft_code code = given.plan.report ? WEFT_OK : weft_fail_memory(&error, "the report", sizeof(void *));
     unsigned state = weft_denormals_off();

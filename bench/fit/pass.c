@@ -77,7 +77,7 @@ static weft_code measure(const bench_plan *plan, texel_source *source, weft_erro
     if (code == WEFT_OK) {
         for (size_t view = 0; view < views; view++)
             memory.table[view] = 1;
-        report_table(plan->report, "pass", "One pass over 6561 samples in the first caches, with T");
+        report_table(plan->report, "pass", "One pass over 6561 samples, with T");
         for (weft_instruction_set set = WEFT_BASELINE; set <= weft_processor_best(); set++) {
             for (int lobes = 1; lobes <= WEFT_GRAM_LOBES; lobes++)
                 add_row(plan, set, source, &memory, lobes);

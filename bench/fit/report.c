@@ -10,16 +10,17 @@
 enum { MAX_COLUMNS = 16, NAME_WIDTH = 36, MIN_WIDTH = 9 };
 
 struct report {
-    bool json, failed;
+    report_form form;
+    bool failed;
     json_t *tables, *table, *row; /* the last two are borrowed */
     int digits[MAX_COLUMNS];      /* of the last table */
 };
 
-report *report_create(bool json)
+report *report_create(report_form form)
 {
     report *created = calloc(1, sizeof *created);
     if (created) {
-        created->json = json;
+        created->form = form;
         created->tables = json_array();
     }
     return created;
@@ -31,17 +32,35 @@ static int column_width(const char *name)
     return length > MIN_WIDTH ? length : MIN_WIDTH;
 }
 
-static void print_header(json_t *row)
+static void print_name(const report *from, const char *name)
+{
+    if (from->form == REPORT_MARKDOWN)
+        printf("| %s |", name);
+    else
+        printf("%-*s", NAME_WIDTH, name);
+}
+
+static void print_cell(const report *from, const char *column, const char *text)
+{
+    if (from->form == REPORT_MARKDOWN)
+        printf(" %s |", text);
+    else
+        printf("  %*s", column_width(column), text);
+}
+
+static void print_header(const report *from, json_t *row)
 {
     const char *name;
     json_t *cell;
-    printf("%-*s", NAME_WIDTH, "");
+    print_name(from, "");
     json_object_foreach(row, name, cell)
     {
-        if (strcmp(name, "name"))
-            printf("  %*s", column_width(name), name);
+        if (strcmp(name, "name") != 0)
+            print_cell(from, name, name);
     }
     printf("\n");
+    for (size_t i = 0; from->form == REPORT_MARKDOWN && i < json_object_size(row); i++)
+        printf(i + 1 < json_object_size(row) ? "| --- " : "| --- |\n");
 }
 
 static void print_row(const report *from, json_t *row)
@@ -49,15 +68,15 @@ static void print_row(const report *from, json_t *row)
     const char *name;
     json_t *cell;
     int column = 0;
-    printf("%-*s", NAME_WIDTH, json_string_value(json_object_get(row, "name")));
+    print_name(from, json_string_value(json_object_get(row, "name")));
     json_object_foreach(row, name, cell)
     {
+        char text[64] = "-";
         if (!strcmp(name, "name"))
             continue;
         if (json_is_number(cell))
-            printf("  %*.*f", column_width(name), from->digits[column], json_number_value(cell));
-        else
-            printf("  %*s", column_width(name), "-");
+            snprintf(text, sizeof text, "%.*f", from->digits[column], json_number_value(cell));
+        print_cell(from, name, text);
         column++;
     }
     printf("\n");
@@ -67,11 +86,12 @@ static void print_table(const report *from)
 {
     json_t *rows = json_object_get(from->table, "rows"), *element;
     size_t index;
-    if (from->json || !from->table)
+    if (from->form == REPORT_JSON || !from->table)
         return;
-    printf("\n%s\n", json_string_value(json_object_get(from->table, "title")));
+    printf("\n%s\n%s", json_string_value(json_object_get(from->table, "title")),
+           from->form == REPORT_MARKDOWN ? "\n" : "");
     if (json_array_size(rows))
-        print_header(json_array_get(rows, 0));
+        print_header(from, json_array_get(rows, 0));
     json_array_foreach(rows, index, element) print_row(from, element);
     json_array_foreach(json_object_get(from->table, "notes"), index, element)
         printf("%s\n", json_string_value(element));
@@ -113,7 +133,7 @@ bool report_finish(report *to)
 {
     print_table(to);
     json_t *all = json_pack("{s:s, s:O}", "benchmark", "fit", "tables", to->tables);
-    if (to->json)
+    if (to->form == REPORT_JSON)
         to->failed |= json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) != 0 || putchar('\n') == EOF;
     bool done = all && !to->failed && fflush(stdout) == 0;
     json_decref(all);

@@ -1,13 +1,15 @@
-/* Tables of results, printed as aligned text or kept as JSON. */
+/* Tables of results, printed as aligned text, as Markdown for docs/benchmarks.md, or kept as JSON. */
 #ifndef WEFT_BENCH_FIT_REPORT_H
 #define WEFT_BENCH_FIT_REPORT_H
 
 #include <stdbool.h>
 
+typedef enum report_form { REPORT_TEXT, REPORT_MARKDOWN, REPORT_JSON } report_form;
+
 typedef struct report report;
 
-/* NULL where memory is short. With `json` nothing is printed before report_finish. */
-report *report_create(bool json);
+/* NULL where memory is short. JSON is printed by report_finish, the others table by table. */
+report *report_create(report_form form);
 
 /* Begins a table. `name` is its key in JSON, `title` its heading. */
 void report_table(report *to, const char *name, const char *title);
