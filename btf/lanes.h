@@ -4,7 +4,12 @@
 #ifndef WEFT_BTF_LANES_H
 #define WEFT_BTF_LANES_H
 
+#include <math.h>
 #include <stdint.h>
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
 
 #if defined(__AVX512F__)
 enum { LANES = 16 };
@@ -39,6 +44,29 @@ WEFT_INLINE void lanes_store(float *to, lanes x)
     *(lanes *)__builtin_assume_aligned(to, 4 * LANES) = x;
 }
 
+/* from[index] for every lane. */
+WEFT_INLINE lanes lanes_gather(const float *from, lane_bits index)
+{
+#if defined(__AVX512F__)
+    return (lanes)_mm512_i32gather_ps((__m512i)index, from, 4);
+#elif defined(__AVX2__)
+    return (lanes)_mm256_i32gather_ps(from, (__m256i)index, 4);
+#else
+    return (lanes){from[index[0]], from[index[1]], from[index[2]], from[index[3]]};
+#endif
+}
+
+WEFT_INLINE lanes lanes_sqrt(lanes x)
+{
+#if defined(__AVX512F__)
+    return (lanes)_mm512_sqrt_ps((__m512)x);
+#elif defined(__AVX2__)
+    return (lanes)_mm256_sqrt_ps((__m256)x);
+#else
+    return (lanes){sqrtf(x[0]), sqrtf(x[1]), sqrtf(x[2]), sqrtf(x[3])};
+#endif
+}
+
 /* `mask` is all ones or zero in each lane, as comparisons give it. */
 WEFT_INLINE lanes lanes_select(lane_bits mask, lanes yes, lanes no)
 {
@@ -48,6 +76,11 @@ WEFT_INLINE lanes lanes_select(lane_bits mask, lanes yes, lanes no)
 WEFT_INLINE lanes lanes_where(lane_bits mask, lanes x)
 {
     return (lanes)((lane_bits)x & mask);
+}
+
+WEFT_INLINE lane_bits lane_bits_load(const int32_t *from)
+{
+    return *(const lane_bits *)__builtin_assume_aligned(from, 4 * LANES);
 }
 
 WEFT_INLINE float lanes_sum(lanes x)

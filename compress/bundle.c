@@ -1,5 +1,7 @@
 #include "compress/bundle.h"
 
+#include "compress/kernels.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -169,10 +171,11 @@ static weft_code label_lights(weft_bundle *bundle, const weft_dataset_layout *la
 
 /* ---- Creation ---- */
 
-static float *allocate_floats(size_t count)
+/* Zeros, four bytes each. */
+static void *allocate_rows(size_t count)
 {
     size_t bytes = (count + 2 * WEFT_STRIP_LANES) / WEFT_STRIP_LANES * WEFT_STRIP_LANES * sizeof(float);
-    float *result = aligned_alloc(64, bytes);
+    void *result = aligned_alloc(64, bytes);
     if (result)
         memset(result, 0, bytes);
     return result;
@@ -181,12 +184,12 @@ static float *allocate_floats(size_t count)
 static weft_code allocate_samples(weft_bundle *bundle, weft_error *error)
 {
     size_t samples = (size_t)bundle->sample_count + 1;
-    bundle->image = calloc(samples, sizeof *bundle->image);
-    bundle->view_of = calloc(samples, sizeof *bundle->view_of);
+    bundle->image = allocate_rows(samples);
+    bundle->view_of = allocate_rows(samples);
     bool complete = bundle->image && bundle->view_of;
     for (int k = 0; k < 3; k++) {
-        bundle->light[k] = allocate_floats(samples);
-        bundle->view_xyz[k] = allocate_floats((size_t)bundle->view_stride);
+        bundle->light[k] = allocate_rows(samples);
+        bundle->view_xyz[k] = allocate_rows((size_t)bundle->view_stride);
         complete = complete && bundle->light[k] && bundle->view_xyz[k];
     }
     return complete ? WEFT_OK : weft_fail_memory(error, "bundled images", samples * 5 * sizeof(float));
@@ -274,10 +277,10 @@ weft_code weft_samples_create(const weft_bundle *bundle, weft_samples *samples, 
 {
     *samples = (weft_samples){.sample_count = bundle->sample_count, .scale = 1};
     size_t count = (size_t)bundle->sample_count;
-    samples->cosine = allocate_floats(count);
+    samples->cosine = allocate_rows(count);
     bool complete = samples->cosine != NULL;
     for (int channel = 0; channel <= WEFT_GREY; channel++) {
-        samples->value[channel] = allocate_floats(count);
+        samples->value[channel] = allocate_rows(count);
         complete = complete && samples->value[channel];
     }
     if (complete)
@@ -294,58 +297,8 @@ void weft_samples_free(weft_samples *samples)
     *samples = (weft_samples){0};
 }
 
-static void clear_sample(weft_samples *samples, int at)
-{
-    samples->cosine[at] = 0;
-    for (int channel = 0; channel <= WEFT_GREY; channel++)
-        samples->value[channel][at] = 0;
-}
-
-static void gather_sample(weft_samples *samples, int at, float light_z, const float *sum, float count, float weight,
-                          weft_values values)
-{
-    float root = sqrtf(weight);
-    float factor = root / count * (values == WEFT_REFLECTANCE ? light_z : 1);
-    float rgb[3] = {sum[0] * factor, sum[1] * factor, sum[2] * factor};
-    samples->cosine[at] = root * light_z;
-    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
-        samples->value[channel][at] = rgb[channel];
-    samples->value[WEFT_GREY][at] = (rgb[0] + rgb[1] + rgb[2]) / 3;
-    samples->weight += weight;
-    samples->valid_count++;
-}
-
-/* Scaling by the texel keeps the sums of the fit far from the ends of the range of floats. */
-static void normalise(weft_samples *samples)
-{
-    double energy[WEFT_CHANNELS + 1] = {0}, total = 0;
-    for (int channel = 0; channel <= WEFT_GREY; channel++) {
-        for (int at = 0; at < samples->sample_count; at++)
-            energy[channel] += (double)samples->value[channel][at] * (double)samples->value[channel][at];
-        total += channel < WEFT_CHANNELS ? energy[channel] : 0;
-    }
-    samples->scale = total > 0 ? sqrt(total / (WEFT_CHANNELS * samples->weight)) : 1;
-    float inverse = (float)(1 / samples->scale);
-    for (int channel = 0; channel <= WEFT_GREY; channel++) {
-        samples->energy[channel] = energy[channel] / (samples->scale * samples->scale);
-        for (int at = 0; at < samples->sample_count; at++)
-            samples->value[channel][at] *= inverse;
-    }
-}
-
 void weft_samples_gather(const weft_bundle *bundle, weft_values values, const float *sum, const float *count,
                          int group_size, weft_samples *samples)
 {
-    samples->valid_count = 0;
-    samples->weight = 0;
-    for (int at = 0; at < bundle->sample_count; at++) {
-        int image = bundle->image[at];
-        float light_z = bundle->light[2][at];
-        const float *rgb = sum + 3 * (image < 0 ? 0 : image);
-        if (image < 0 || !(count[image] > 0) || !(light_z > 0) || !isfinite(rgb[0] + rgb[1] + rgb[2]))
-            clear_sample(samples, at);
-        else
-            gather_sample(samples, at, light_z, rgb, count[image], count[image] / (float)group_size, values);
-    }
-    normalise(samples);
+    weft_fit_kernels_of(weft_processor_instruction_set())->gather(bundle, values, sum, count, group_size, samples);
 }

@@ -85,8 +85,21 @@ static void apply_step(const double *d, int n, weft_fit *fit)
         rotate_frame(d + 1 + 4 * fit->lobe_count, &fit->frame);
 }
 
-/* The damped step from `normal`; false where there is none. */
-static bool make_step(const weft_normal *normal, double damping, const weft_fit_options *options, weft_fit *fit)
+/* By how much the quadratic model says that a step lowers the residual. */
+static double predicted_gain(const weft_normal *normal, const double *d)
+{
+    double gain = 0;
+    for (int p = 0; p < normal->n; p++) {
+        gain += 2 * normal->g[p] * d[p];
+        for (int q = 0; q < normal->n; q++)
+            gain -= d[p] * normal->h[p * normal->n + q] * d[q];
+    }
+    return gain;
+}
+
+/* The damped step from `normal` and what it promises; false where there is none. */
+static bool make_step(const weft_normal *normal, double damping, const weft_fit_options *options, weft_fit *fit,
+                      double *gain)
 {
     int n = normal->n;
     double h[WEFT_SOLVE_MAX * WEFT_SOLVE_MAX], low[WEFT_SOLVE_MAX], high[WEFT_SOLVE_MAX], d[WEFT_SOLVE_MAX] = {0};
@@ -104,6 +117,7 @@ static bool make_step(const weft_normal *normal, double damping, const weft_fit_
             return false;
     }
     apply_step(d, n, fit);
+    *gain = predicted_gain(normal, d);
     return fit->frame.normal.z >= LEAST_TILT_COSINE;
 }
 
@@ -112,28 +126,29 @@ void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *sample
 {
     weft_trial *now = &workspace->trial[0], *next = &workspace->trial[1];
     double enough = 1e-10 * samples->energy[channel];
-    while (now->fit.passes < options->max_passes && now->residual > enough && damping < 1e5) {
+    bool converged = false;
+    while (!converged && now->residual > enough) {
         weft_normal normal;
         weft_normal_of_trial(bundle, options->table, options->fit_frame, now, &normal);
-        bool accepted = false, converged = false;
-        while (!accepted && now->fit.passes < options->max_passes && damping < 1e5) {
+        bool accepted = false;
+        while (!accepted) {
+            double least_gain = options->tolerance * now->residual, gain = 0;
+            if (now->fit.passes >= options->max_passes || !(damping < 1e5))
+                return;
             next->fit = now->fit;
-            if (make_step(&normal, damping, options, &next->fit)) {
+            if (make_step(&normal, damping, options, &next->fit, &gain)) {
+                if (gain < 0.5 * least_gain)
+                    return;
                 weft_workspace_begin_warm(bundle, samples, channel, options, now->table, next);
                 accepted = next->residual < now->residual;
+                converged = accepted && now->residual - next->residual < least_gain;
             }
             now->fit.passes = next->fit.passes;
-            damping *= accepted ? 0.2 : 6;
+            damping = fmax(1e-6, damping * (accepted ? 0.2 : 6));
         }
-        if (accepted) {
-            converged = now->residual - next->residual < options->tolerance * now->residual;
-            weft_trial swap = *now;
-            *now = *next;
-            *next = swap;
-        }
-        if (converged || !accepted)
-            break;
-        damping = fmax(damping, 1e-6);
+        weft_trial swap = *now;
+        *now = *next;
+        *next = swap;
     }
 }
 
@@ -148,7 +163,5 @@ void weft_fit_refine(const weft_bundle *bundle, const weft_samples *samples, int
     weft_workspace_begin_warm(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, table),
                               now);
     weft_workspace_refine(bundle, samples, channel, options, workspace, 0.01);
-    *fit = now->fit;
-    fit->residual = now->residual;
-    weft_workspace_take_table(bundle, options, now, table);
+    weft_workspace_finish(bundle, options, now, fit, table);
 }

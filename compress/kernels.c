@@ -2,7 +2,8 @@
 
 #define TABLE(set)                                                                                                     \
     WEFT_DECLARE_FIT_KERNELS(set);                                                                                     \
-    static const weft_fit_kernels kernels_##set = {weft_gram_accumulate_##set,     weft_gram_evaluate_##set,           \
+    static const weft_fit_kernels kernels_##set = {weft_gram_accumulate_##set,     weft_gather_samples_##set,          \
+                                                   weft_gather_compare_##set,      weft_gram_evaluate_##set,           \
                                                    weft_views_digest_##set,        weft_views_residual_##set,          \
                                                    weft_views_linear_normal_##set, weft_views_normal_##set}
 

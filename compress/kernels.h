@@ -3,6 +3,7 @@
 #define WEFT_COMPRESS_KERNELS_H
 
 #include "btf/processor.h"
+#include "compress/measure.h"
 #include "compress/normal.h"
 
 struct weft_fit_kernels {
@@ -10,6 +11,13 @@ struct weft_fit_kernels {
      * view, only its coarse slots with `coarse`. table [view_stride] is T(v) in e. */
     void (*accumulate)(const weft_bundle *bundle, const float *cosine, const float *value, const weft_gram_point *point,
                        const float *table, bool coarse, float *sums);
+    /* The samples of a texel: see weft_samples_gather. */
+    void (*gather)(const weft_bundle *bundle, weft_values values, const float *sum, const float *count, int group_size,
+                   weft_samples *samples);
+    /* Adds the squares of the samples, each counted once whatever its weight, and of what `model` [sample_count] times
+     * table [view_stride] leaves of them. */
+    void (*compare)(const weft_bundle *bundle, const weft_samples *samples, int channel, const float *model,
+                    const float *table, weft_error_sums *sums);
     /* k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [sample_count]. */
     void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
     /* The linear rows of a trial from its sums, and their totals. */
@@ -29,6 +37,10 @@ struct weft_fit_kernels {
 #define WEFT_DECLARE_FIT_KERNELS_OF(set)                                                                               \
     void weft_gram_accumulate_##set(const weft_bundle *bundle, const float *cosine, const float *value,                \
                                     const weft_gram_point *point, const float *table, bool coarse, float *sums);       \
+    void weft_gather_samples_##set(const weft_bundle *bundle, weft_values values, const float *sum,                    \
+                                   const float *count, int group_size, weft_samples *samples);                         \
+    void weft_gather_compare_##set(const weft_bundle *bundle, const weft_samples *samples, int channel,                \
+                                   const float *model, const float *table, weft_error_sums *sums);                     \
     void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \
                                   float *result);                                                                      \
     void weft_views_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                        \

@@ -8,7 +8,9 @@ static const weft_fit_lobe mirror_start = {.c = {-0.95, -0.9, 1}, .log_exponent 
 static const weft_fit_lobe retro_start = {.c = {0.9, 0.95, 1}, .log_exponent = 2.0794};
 static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent = 0.4055};
 
-enum { START_COUNT = 2, START_PASSES = 4 };
+enum { START_COUNT = 2, START_PASSES = 3 };
+
+#define START_TOLERANCE 1e-2
 
 /* Start number `index`: the mirror and a broad lobe, or the same thrown back to the light. */
 static void place_start(int index, int lobe_count, weft_fit *fit)
@@ -32,6 +34,7 @@ void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int c
     weft_fit_options coarse = *options;
     coarse.coarse = true;
     coarse.max_passes = START_PASSES;
+    coarse.tolerance = START_TOLERANCE;
     int passes = 0;
     for (int start = 0; start < (options->lobe_count ? START_COUNT : 1); start++) {
         now->fit = (weft_fit){.frame = *frame};
@@ -51,7 +54,5 @@ void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int c
     weft_fit_options full = *options;
     full.max_passes += passes;
     weft_workspace_refine(bundle, samples, channel, &full, workspace, 0.01);
-    *fit = now->fit;
-    fit->residual = now->residual;
-    weft_workspace_take_table(bundle, options, now, table);
+    weft_workspace_finish(bundle, options, now, fit, table);
 }

@@ -1,5 +1,6 @@
 #include "compress/texel.h"
 
+#include "compress/kernels.h"
 #include "compress/pack.h"
 
 #include <math.h>
@@ -8,6 +9,9 @@
 
 /* A frame is turned only where that takes at least 2 % off the squared error. */
 #define WORTHWHILE 0.98
+
+/* The fit of a few lights is a start, not worth its last steps. */
+#define COARSE_TOLERANCE 3e-3
 
 /* A fit of the grey samples and its T. */
 typedef struct grey_fit {
@@ -23,6 +27,8 @@ struct weft_texel_fitter {
     grey_fit upright, turned;
     double *table; /* of one channel */
     uint8_t *code;
+    float *decoded; /* T as it will be read */
+    const weft_fit_kernels *kernels;
     weft_error_tally *tally;
 };
 
@@ -33,6 +39,7 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
     if (!fitter)
         return weft_fail_memory(error, "texel fitter", sizeof *fitter);
     fitter->source = source;
+    fitter->kernels = weft_fit_kernels_of(weft_processor_instruction_set());
     size_t views = (size_t)source->layout->view_count;
     weft_code code = weft_bundle_create(source->layout, source->held_out, &fitter->bundle, error);
     if (code == WEFT_OK)
@@ -44,7 +51,8 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
     if (code == WEFT_OK) {
         fitter->upright.table = calloc(3 * views, sizeof *fitter->table);
         fitter->code = calloc(views, 1);
-        if (!fitter->upright.table || !fitter->code)
+        fitter->decoded = calloc(views, sizeof *fitter->decoded);
+        if (!fitter->upright.table || !fitter->code || !fitter->decoded)
             code = weft_fail_memory(error, "view tables of a texel", 3 * views * sizeof *fitter->table);
     }
     if (code != WEFT_OK) {
@@ -67,6 +75,7 @@ void weft_texel_fitter_free(weft_texel_fitter *fitter)
     weft_error_tally_free(fitter->tally);
     free(fitter->upright.table);
     free(fitter->code);
+    free(fitter->decoded);
     free(fitter);
 }
 
@@ -130,24 +139,40 @@ void weft_texel_store(weft_material *material, int level, int x, int y, int chan
         to->table[((size_t)view * texels + texel) * 4 + (size_t)channel] = code[view];
 }
 
-static void measure_channel(weft_texel_fitter *fitter, int channel, const weft_fit *fit, bool table,
-                            weft_error_sums *sums)
+/* In a level of many texels this share of them is enough for percentiles. */
+enum { TALLIED_TEXELS = 4096 };
+
+static bool is_tallied(const weft_material_level *level, int x, int y)
+{
+    int stride = level->width * level->height / TALLIED_TEXELS;
+    return stride < 2 || (y * level->width + x) % stride == 0;
+}
+
+static void tally_channel(weft_texel_fitter *fitter, int channel, const float *model, const float *table)
 {
     const weft_bundle *bundle = &fitter->bundle;
     const weft_samples *samples = &fitter->samples;
-    const float *model = weft_fit_evaluate(bundle, samples, fitter->workspace, fit);
     for (int i = 0; i < bundle->sample_count; i++) {
         float cosine = samples->cosine[i];
         if (!(cosine > 0))
             continue;
-        float t = table ? (float)weft_table_of_code(fitter->code[bundle->view_of[i]]) : 1;
         float scale = (float)samples->scale * bundle->light[2][i] / cosine;
-        float sample = samples->value[channel][i] * scale, prediction = model[i] * t * scale;
-        weft_error_tally_add(fitter->tally, sample, prediction);
-        sums->square += (double)sample * (double)sample;
-        sums->square_error += (double)(sample - prediction) * (double)(sample - prediction);
-        sums->count += 1;
+        weft_error_tally_add(fitter->tally, samples->value[channel][i] * scale,
+                             model[i] * table[bundle->view_of[i]] * scale);
     }
+}
+
+/* The material as it will be read, against the samples. */
+static void measure_channel(weft_texel_fitter *fitter, int channel, const weft_fit *fit, bool table, bool tallied,
+                            weft_error_sums *sums)
+{
+    const weft_bundle *bundle = &fitter->bundle;
+    const float *model = weft_fit_evaluate(bundle, &fitter->samples, fitter->workspace, fit);
+    for (int view = 0; view < bundle->view_count; view++)
+        fitter->decoded[view] = table ? (float)weft_table_of_code(fitter->code[view]) : 1;
+    fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, sums);
+    if (tallied)
+        tally_channel(fitter, channel, model, fitter->decoded);
 }
 
 static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, const grey_fit *start,
@@ -163,7 +188,7 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
                       &packed, fitter->code);
     weft_texel_store(material, level, x, y, channel, &packed, options->table ? fitter->code : NULL);
     fit = weft_unpack(&packed, options->lobe_count, frame, fitter->samples.scale);
-    measure_channel(fitter, channel, &fit, options->table, sums);
+    measure_channel(fitter, channel, &fit, options->table, is_tallied(&material->level[level], x, y), sums);
 }
 
 void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int level, int x, int y, const float *sum,
@@ -182,6 +207,7 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         weft_fit_affordable_lobes(&fitter->bundle, &fitter->samples, options.lobe_count, options.table);
     weft_fit_options coarse = options;
     coarse.coarse = true;
+    coarse.tolerance = COARSE_TOLERANCE;
     const grey_fit *start = choose_frame(fitter, &coarse, counts);
     counts->texels++;
     counts->empty += fitter->samples.valid_count == 0;

@@ -93,15 +93,6 @@ const float *weft_workspace_keep_table(const weft_bundle *bundle, weft_fit_works
     return workspace->table;
 }
 
-void weft_workspace_take_table(const weft_bundle *bundle, const weft_fit_options *options, const weft_trial *trial,
-                               double *table)
-{
-    for (int view = 0; view < bundle->view_count; view++)
-        table[view] = 1;
-    if (options->table)
-        weft_trial_take_table(bundle, trial, table);
-}
-
 bool weft_workspace_finish_empty(const weft_bundle *bundle, const weft_samples *samples, int channel, weft_fit *fit,
                                  double *table)
 {
@@ -155,4 +146,17 @@ void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *sa
     least_amplitudes(&trial->fit, least);
     weft_workspace_pass(bundle, samples, channel, options, table, trial);
     weft_trial_solve_linear(bundle, options->table, least, trial);
+}
+
+void weft_workspace_finish(const weft_bundle *bundle, const weft_fit_options *options, weft_trial *trial, weft_fit *fit,
+                           double *table)
+{
+    const double least[WEFT_GRAM_LOBES] = {0};
+    weft_trial_solve_linear(bundle, options->table, least, trial);
+    *fit = trial->fit;
+    fit->residual = trial->residual;
+    for (int view = 0; view < bundle->view_count; view++)
+        table[view] = 1;
+    if (options->table)
+        weft_trial_take_table(bundle, trial, table);
 }

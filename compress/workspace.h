@@ -19,10 +19,6 @@ void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples,
 /* `table` [view_count] as floats, in workspace->table. */
 const float *weft_workspace_keep_table(const weft_bundle *bundle, weft_fit_workspace *workspace, const double *table);
 
-/* T of the trial, with the mean of the others in views where nothing was learnt. */
-void weft_workspace_take_table(const weft_bundle *bundle, const weft_fit_options *options, const weft_trial *trial,
-                               double *table);
-
 /* Starts from shapes alone: amplitudes for T = 1, then with T eliminated. */
 void weft_workspace_begin_cold(const weft_bundle *bundle, const weft_samples *samples, int channel,
                                const weft_fit_options *options, weft_trial *trial);
@@ -34,6 +30,10 @@ void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *sa
 /* Damped Gauss-Newton steps from workspace->trial[0], which holds the result. */
 void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                            const weft_fit_options *options, weft_fit_workspace *workspace, double damping);
+
+/* The result of a search: rho and the amplitudes once more, now free to vanish; then `fit` and `table` [view_count]. */
+void weft_workspace_finish(const weft_bundle *bundle, const weft_fit_options *options, weft_trial *trial, weft_fit *fit,
+                           double *table);
 
 /* True where there is nothing to fit, black or no samples at all; `fit` is then black and T = 1. */
 bool weft_workspace_finish_empty(const weft_bundle *bundle, const weft_samples *samples, int channel, weft_fit *fit,
