@@ -1,8 +1,6 @@
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"
 
-#include <stdio.h>
-
 typedef struct variant {
     const char *name;
     bool fit_frame;
@@ -53,12 +51,10 @@ weft_code section_extensions(const bench_plan *plan, texel_source *source, weft_
     bench_free(&with);
     if (code != WEFT_OK)
         return code;
-    char title[256];
-    snprintf(title, sizeof title, "%s: what more freedom gains, %d texels, %d lobes + T", source->name, count,
-             plan->lobe_count);
-    report_table(plan->report, "extensions", title);
+    report_table(plan->report, "extensions", "What more freedom gains, %d texels, %d lobes + T", count,
+                 plan->lobe_count);
     for (int i = 0; i < VARIANTS; i++) {
-        report_row(plan->report, variants[i].name);
+        report_row(plan->report, "%s, %s", source->name, variants[i].name);
         report_number(plan->report, "us mean", 0, sums.microseconds[i] / count);
         report_number(plan->report, "rel. RMSE", 4, sums.rmse[i] / count);
         report_number(plan->report, "lower by %", 1, 100 * (1 - sums.rmse[i] / sums.rmse[0]));

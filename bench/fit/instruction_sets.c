@@ -3,7 +3,6 @@
 #include "btf/processor.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,12 +65,10 @@ static weft_code measure(const texel_source *source, int texel, set_series *all,
 static void add_table(const bench_plan *plan, const texel_source *source, const set_series *all)
 {
     int count = plan->texel_count;
-    char title[256];
-    snprintf(title, sizeof title, "%s: the fast fit by instruction set, %d texels, %d lobes + T", source->name, count,
-             plan->lobe_count);
-    report_table(plan->report, "instruction sets", title);
+    report_table(plan->report, "instruction sets", "The fast fit by instruction set, %d texels, %d lobes + T", count,
+                 plan->lobe_count);
     for (int set = (int)weft_processor_best(); set >= WEFT_BASELINE; set--) {
-        report_row(plan->report, weft_instruction_set_name((weft_instruction_set)set));
+        report_row(plan->report, "%s, %s", source->name, weft_instruction_set_name((weft_instruction_set)set));
         report_number(plan->report, "us median", 0, quantile_of(all[set].microseconds, count, 0.5));
         report_number(plan->report, "times the first", 2, quantile_of(all[set].ratio, count, 0.5));
         report_number(plan->report, "rel. RMSE", 6, mean_of(all[set].rmse, count));

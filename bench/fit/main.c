@@ -102,19 +102,20 @@ static const struct argp parser = {
            "Times are processor times of one thread. What the columns mean is written in docs/benchmarks.md.",
 };
 
-static weft_code run_source(const arguments *given, texel_source *source, weft_error *error)
+/* One section after the other over all sources, so that a table may hold them all. */
+static weft_code run_sources(const arguments *given, texel_source *sources, int count, weft_error *error)
 {
-    static weft_code (*const section[])(const bench_plan *, texel_source *,
-                                        weft_error *) = {[SPEED] = section_speed,
-                                                         [QUALITY] = section_quality,
-                                                         [EXTENSIONS] = section_extensions,
-                                                         [INSTRUCTION_SETS] = section_instruction_sets};
-    weft_code code = WEFT_OK;
-    for (int i = SPEED; code == WEFT_OK && i < TAPE; i++) {
-        if (given->only < 0 || given->only == i)
-            code = section[i](&given->plan, source, error);
+    static weft_code (*const section[])(const bench_plan *, texel_source *, weft_error *) = {
+        [SPEED] = section_speed,
+        [QUALITY] = section_quality,
+        [EXTENSIONS] = section_extensions,
+        [INSTRUCTION_SETS] = section_instruction_sets,
+    };
+    for (int i = SPEED; i < TAPE; i++) {
+        for (int k = 0; k < count && (given->only < 0 || given->only == i); k++)
+            WEFT_TRY(section[i](&given->plan, &sources[k], error));
     }
-    return code;
+    return WEFT_OK;
 }
 
 /* Four samples for every unknown, or there is nothing to compare: any method fits them exactly. */
@@ -134,21 +135,21 @@ static weft_code run_dataset(const arguments *given, weft_error *error)
     if (code == WEFT_OK)
         code = check_samples(given, &source, error);
     if (code == WEFT_OK)
-        code = run_source(given, &source, error);
+        code = run_sources(given, &source, 1, error);
     texel_source_free(&source);
     return code;
 }
 
 static weft_code run_families(const arguments *given, weft_error *error)
 {
+    texel_source sources[SYNTHETIC_KINDS] = {0};
     weft_code code = WEFT_OK;
-    for (synthetic_kind kind = 0; code == WEFT_OK && kind < SYNTHETIC_KINDS; kind++) {
-        texel_source source;
-        code = texel_source_invent(kind, &source, error);
-        if (code == WEFT_OK)
-            code = run_source(given, &source, error);
-        texel_source_free(&source);
-    }
+    for (synthetic_kind kind = 0; code == WEFT_OK && kind < SYNTHETIC_KINDS; kind++)
+        code = texel_source_invent(kind, &sources[kind], error);
+    if (code == WEFT_OK)
+        code = run_sources(given, sources, SYNTHETIC_KINDS, error);
+    for (synthetic_kind kind = 0; kind < SYNTHETIC_KINDS; kind++)
+        texel_source_free(&sources[kind]);
     return code;
 }
 

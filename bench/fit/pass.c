@@ -3,7 +3,6 @@
 #include "bench/fit/statistics.h"
 #include "compress/kernels.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 enum { REPEATS = 201 };
@@ -54,12 +53,10 @@ static double floor_microseconds(weft_instruction_set set, double multiply_adds)
 static void add_row(const bench_plan *plan, weft_instruction_set set, const texel_source *source,
                     const pass_memory *memory, int lobe_count)
 {
-    char name[64];
     int samples = source->bundle.image_count;
-    snprintf(name, sizeof name, "%s, %d lobe%s", weft_instruction_set_name(set), lobe_count, lobe_count > 1 ? "s" : "");
     double pass = pass_microseconds(set, source, memory, lobe_count);
     double least = floor_microseconds(set, (double)samples * pass_multiply_adds(lobe_count));
-    report_row(plan->report, name);
+    report_row(plan->report, "%s, %d lobe%s", weft_instruction_set_name(set), lobe_count, lobe_count > 1 ? "s" : "");
     report_number(plan->report, "us a pass", 2, pass);
     report_number(plan->report, "ns a sample", 3, 1000 * pass / samples);
     report_number(plan->report, "us of multiply-adds", 2, least);

@@ -2,7 +2,6 @@
 #include "bench/fit/statistics.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 enum { RANDOM_STARTS = 5, CONVERGED_ROUNDS = 500 };
@@ -74,15 +73,14 @@ static void add_table(const bench_plan *plan, const texel_source *source, const 
         above_in_residual += found[i].fast > 1.02 * found[i].best_random;
         above_in_rmse += sqrt(found[i].fast) > 1.02 * sqrt(found[i].best_random);
     }
-    char title[256];
-    snprintf(title, sizeof title, "%s: what a fit from nothing leaves, %d texels, %d lobes + T", source->name, count,
-             plan->lobe_count);
-    report_table(plan->report, "quality", title);
-    report_row(plan->report, "residual, fast over others");
-    report_number(plan->report, "converged alternation, means", 4, fast / converged);
+    report_table(plan->report, "quality",
+                 "What a fit from nothing leaves: residual over that of others, %d texels, %d lobes + T", count,
+                 plan->lobe_count);
+    report_row(plan->report, "%s", source->name);
+    report_number(plan->report, "of converged", 4, fast / converged);
     report_number(plan->report, "mean of ratios", 4, ratio);
-    report_number(plan->report, "% of texels 2 % above best random start", 1, 100.0 * above_in_residual / count);
-    report_number(plan->report, "the same in RMSE", 1, 100.0 * above_in_rmse / count);
+    report_number(plan->report, "above random, %", 1, 100.0 * above_in_residual / count);
+    report_number(plan->report, "in RMSE, %", 1, 100.0 * above_in_rmse / count);
 }
 
 weft_code section_quality(const bench_plan *plan, texel_source *source, weft_error *error)

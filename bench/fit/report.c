@@ -98,16 +98,27 @@ static void print_table(const report *from)
     fflush(stdout);
 }
 
-void report_table(report *to, const char *name, const char *title)
+void report_table(report *to, const char *name, const char *format, ...)
 {
+    va_list arguments;
+    va_start(arguments, format);
+    json_t *title = json_vsprintf(format, arguments);
+    va_end(arguments);
+    if (to->table && json_equal(title, json_object_get(to->table, "title"))) {
+        json_decref(title);
+        return;
+    }
     print_table(to);
-    to->table = json_pack("{s:s, s:s, s:[], s:[]}", "name", name, "title", title, "rows", "notes");
+    to->table = json_pack("{s:s, s:o, s:[], s:[]}", "name", name, "title", title, "rows", "notes");
     to->failed |= json_array_append_new(to->tables, to->table) != 0;
 }
 
-void report_row(report *to, const char *name)
+void report_row(report *to, const char *format, ...)
 {
-    to->row = json_pack("{s:s}", "name", name);
+    va_list arguments;
+    va_start(arguments, format);
+    to->row = json_pack("{s:o}", "name", json_vsprintf(format, arguments));
+    va_end(arguments);
     to->failed |= json_array_append_new(json_object_get(to->table, "rows"), to->row) != 0;
 }
 
@@ -121,12 +132,11 @@ void report_number(report *to, const char *column, int digits, double value)
 
 void report_note(report *to, const char *format, ...)
 {
-    char text[512];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    json_t *text = json_vsprintf(format, arguments);
     va_end(arguments);
-    to->failed |= json_array_append_new(json_object_get(to->table, "notes"), json_string(text)) != 0;
+    to->failed |= json_array_append_new(json_object_get(to->table, "notes"), text) != 0;
 }
 
 bool report_finish(report *to)

@@ -11,11 +11,11 @@ typedef struct report report;
 /* NULL where memory is short. JSON is printed by report_finish, the others table by table. */
 report *report_create(report_form form);
 
-/* Begins a table. `name` is its key in JSON, `title` its heading. */
-void report_table(report *to, const char *name, const char *title);
+/* Begins a table, or goes on with the last one where that has the same heading. `name` is its key in JSON. */
+void report_table(report *to, const char *name, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* Begins a row of the last table. */
-void report_row(report *to, const char *name);
+void report_row(report *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* A cell of the last row; tables have the same columns in all rows. `digits` after the decimal point are printed. NaN
  * is a cell without a value. */

@@ -3,7 +3,6 @@
 #include "btf/processor.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* All runs of one method, texel by texel. */
@@ -44,7 +43,7 @@ static void measure(bench *with, int texel, series all[METHOD_COUNT])
 
 static void add_row(report *to, const series *of, method which, int count, double tolerance)
 {
-    report_row(to, method_name(which));
+    report_row(to, "%s", method_name(which));
     report_number(to, "us q1", 0, quantile_of(of->microseconds, count, 0.25));
     report_number(to, "us median", 0, quantile_of(of->microseconds, count, 0.5));
     report_number(to, "us q3", 0, quantile_of(of->microseconds, count, 0.75));
@@ -73,12 +72,10 @@ weft_code section_speed(const bench_plan *plan, texel_source *source, weft_error
             measure(&with, i, all);
     }
     if (code == WEFT_OK) {
-        char title[256];
-        snprintf(title, sizeof title,
-                 "%s: %d texels, %d lobes + T, %d samples, microseconds of processor a channel, %s", source->name,
-                 plan->texel_count, plan->lobe_count, source->bundle.image_count,
-                 weft_instruction_set_name(weft_processor_instruction_set()));
-        report_table(plan->report, "speed", title);
+        report_table(plan->report, "speed",
+                     "%s: %d texels, %d lobes + T, %d samples, microseconds of processor a channel, %s", source->name,
+                     plan->texel_count, plan->lobe_count, source->bundle.image_count,
+                     weft_instruction_set_name(weft_processor_instruction_set()));
         for (method which = 0; which < METHOD_COUNT; which++) {
             if (method_available(which))
                 add_row(plan->report, &all[which], which, plan->texel_count, plan->tolerance);

@@ -2,7 +2,6 @@
 #include "bench/fit/statistics.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <unistd.h>
 
 enum { REPEATS = 5, STARTS = 2 };
@@ -37,10 +36,8 @@ static void add_row(const bench_plan *plan, bench *with, method which, const cha
         microseconds[i] = last.microseconds;
     }
     double rmse = relative_rmse(last.residual, with->source->samples.energy[0]);
-    char title[128];
     int lobes = with->options.lobe_count;
-    snprintf(title, sizeof title, "%d lobe%s, %s", lobes, lobes > 1 ? "s" : "", name);
-    report_row(plan->report, title);
+    report_row(plan->report, "%d lobe%s, %s", lobes, lobes > 1 ? "s" : "", name);
     report_number(plan->report, "ms", 2, quantile_of(microseconds, REPEATS, 0.5) / 1000);
     report_number(plan->report, "passes", 1, last.passes);
     report_number(plan->report, "rel. RMSE", 4, rmse);
@@ -56,10 +53,8 @@ static weft_code measure(const bench_plan *plan, texel_source *source, weft_erro
     } rows[] = {{METHOD_FAST, "fast"},
                 {METHOD_CERES_ALTERNATION, "Ceres, Cholesky"},
                 {METHOD_MINPACK_ALTERNATION, "MINPACK lmder"}};
-    char title[256];
-    snprintf(title, sizeof title, "%s: %d samples, no T, ms of processor, best of %d starts", source->name,
-             source->bundle.image_count, STARTS);
-    report_table(plan->report, "tape", title);
+    report_table(plan->report, "tape", "%s: %d samples, no T, ms of processor, best of %d starts", source->name,
+                 source->bundle.image_count, STARTS);
     for (int lobes = 1; lobes <= PROBLEM_LOBES; lobes++) {
         weft_fit_options options = weft_fit_default_options();
         options.lobe_count = lobes;

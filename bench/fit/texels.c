@@ -27,7 +27,8 @@ weft_code texel_source_invent(synthetic_kind kind, texel_source *source, weft_er
 
 weft_code texel_source_open(const char *path, texel_source *source, weft_error *error)
 {
-    *source = (texel_source){.name = path};
+    const char *slash = strrchr(path, '/');
+    *source = (texel_source){.name = slash ? slash + 1 : path};
     WEFT_TRY(weft_dataset_open(path, &source->dataset, error));
     source->layout = *weft_dataset_get_layout(source->dataset);
     return allocate(source, error);
