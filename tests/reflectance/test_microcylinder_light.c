@@ -5,13 +5,36 @@
 #include "tests/reflectance/tangent_quadrature.h"
 #include "tests/reflectance/vectors.h"
 
+#include <string.h>
+
 enum { ENVIRONMENT_ROWS = 204, TABLE_ROWS = 204, LIGHTS = 2 };
 
-/* The vectors are converged to about 1e-5, relative for the light (one row in 204: 2.5e-5), absolute for table entries
- * (one in twenty, most with lobes round the end of a thread, is no better than that). Plain sums over up to 3e7
- * directions for three such rows (20 and 87 of the table, 103 of the light) agree with the quadrature here instead. */
-static const double table_tolerance = 1e-5;
-static const double tolerance = 3e-5 + 20 * (double)WEFT_REAL_EPSILON;
+/* Both files say that they are converged to about 1e-5, and hold no condition. */
+static const double tolerance = 1e-5 + 20 * (double)WEFT_REAL_EPSILON;
+
+/* Rows that are not: their printed value is farther than 1e-5 from the integral. The values here come from another
+ * program, which shares no code with Weft: the formulas literally, nested adaptive Gauss-Kronrod rules over elevation
+ * and azimuth to 1e-9 (table) and 1e-7 (light). All of these rows have kinks of M or P within the lobe, or a lobe whose
+ * centre is below the horizon. */
+typedef struct unconverged_row {
+    int row;
+    const char *column;
+    double converged;
+} unconverged_row;
+
+enum { UNCONVERGED_ENTRIES = 10, UNCONVERGED_LIGHTS = 3 };
+
+static const unconverged_row unconverged_entry[UNCONVERGED_ENTRIES] = {
+    {18, "T", 0.000250285189},  {32, "T", 0.0224647293},    {69, "T", 0.0582232935},  {81, "T", 7.76702506e-07},
+    {85, "T", 0.0100327494},    {103, "T", 0.0278655717},   {151, "T", 0.0319502026}, {154, "T", 0.0283779658},
+    {173, "T", 2.66094678e-07}, {188, "T", 9.05423483e-05},
+};
+static const unconverged_row unconverged_light[UNCONVERGED_LIGHTS] = {
+    {101, "Lo_r", 3.77919905e-05},
+    {101, "Lo_g", 0.000120070206},
+    {101, "Lo_b", 2.34655033e-05},
+};
+static const double converged_tolerance = 1e-6 + 20 * (double)WEFT_REAL_EPSILON;
 
 typedef struct gaussian_light {
     double radiance[3];
@@ -47,7 +70,7 @@ static void add_table_entry(void *context, weft_vec3 direction, double solid_ang
 {
     lit_tangent *lit = context;
     double gaussian = weft_spherical_gaussian(direction, lit->light[0].centre, lit->light[0].width) * solid_angle;
-    if (gaussian < 1e-14)
+    if (gaussian < 1e-30)
         return;
     weft_thread_angles angles = weft_thread_angles_of(lit->tangent, direction, lit->view);
     lit->whole += gaussian;
@@ -62,7 +85,7 @@ static void add_environment(void *context, weft_vec3 direction, double solid_ang
         for (int c = 0; c < 3; c++)
             radiance[c] += lit->light[k].radiance[c] *
                            (double)weft_spherical_gaussian(direction, lit->light[k].centre, lit->light[k].width);
-    if (radiance[0] + radiance[1] + radiance[2] < 1e-12)
+    if (radiance[0] + radiance[1] + radiance[2] < 1e-30)
         return;
     weft_thread_angles angles = weft_thread_angles_of(lit->tangent, direction, lit->view);
     double share = visible_share(lit, &angles, direction) * angles.cos_theta_light * solid_angle *
@@ -75,28 +98,46 @@ static void add_environment(void *context, weft_vec3 direction, double solid_ang
     lit->sum[2] += share * radiance[2] * scattering.b;
 }
 
+/* The printed value where it is converged, else the converged one; counts the latter. */
+static void check_integral(reference_vectors *v, int row, const char *column, double actual,
+                           const unconverged_row *unconverged, int count, int *named)
+{
+    double expected = vectors_number(v, row, column);
+    for (int i = 0; i < count; i++) {
+        if (unconverged[i].row != row || strcmp(unconverged[i].column, column) != 0)
+            continue;
+        double converged = unconverged[i].converged;
+        assert_true(fabs(expected - converged) > 1e-5 * converged);
+        assert_true(fabs(actual - converged) <= converged_tolerance * converged);
+        ++*named;
+        return;
+    }
+    vectors_check_within(v, row, column, actual, tolerance * expected);
+}
+
+static double table_entry(const reference_vectors *v, int row, const reference_cloth *cloths)
+{
+    lit_tangent lit = {.cloth = reference_cloth_named(cloths, vectors_text(v, row, "cloth")),
+                       .thread = (int)vectors_number(v, row, "thread") - 1,
+                       .view = vectors_direction(v, row, "wo")};
+    lit.tangent = &lit.cloth->tangent[lit.thread][(int)vectors_number(v, row, "tangent") - 1];
+    lit.light[0].centre = vectors_direction(v, row, "xi");
+    lit.light[0].width = (weft_real)vectors_number(v, row, "sigma");
+    tangent_quadrature(lit.tangent, lit.view, (double)WEFT_PI, fmin(0.4 * (double)lit.light[0].width, 0.13),
+                       add_table_entry, &lit);
+    return lit.sum[0] / lit.whole;
+}
+
 static void table_entries_match_every_row(void **state)
 {
     (void)state;
     static reference_cloth cloths[REFERENCE_CLOTHS];
     reference_cloths_read(cloths);
     reference_vectors v = vectors_open("microcylinder_T.csv", TABLE_ROWS);
-    int relative = 0;
-    for (int row = 0; row < TABLE_ROWS; row++) {
-        lit_tangent lit = {.cloth = reference_cloth_named(cloths, vectors_text(&v, row, "cloth")),
-                           .thread = (int)vectors_number(&v, row, "thread") - 1,
-                           .view = vectors_direction(&v, row, "wo")};
-        lit.tangent = &lit.cloth->tangent[lit.thread][(int)vectors_number(&v, row, "tangent") - 1];
-        lit.light[0].centre = vectors_direction(&v, row, "xi");
-        lit.light[0].width = (weft_real)vectors_number(&v, row, "sigma");
-        tangent_quadrature(lit.tangent, lit.view, (double)WEFT_PI, fmin(1.2 * (double)lit.light[0].width, 0.4),
-                           add_table_entry, &lit);
-        double expected = vectors_number(&v, row, "T"), actual = lit.sum[0] / lit.whole;
-        vectors_check_within(&v, row, "T", actual, expected > 0 ? table_tolerance : 0);
-        relative += fabs(actual - expected) <= tolerance * expected;
-    }
-    print_message("%d of %d table entries within %.3g relative\n", relative, TABLE_ROWS, tolerance);
-    assert_true(relative >= TABLE_ROWS * 9 / 10);
+    int named = 0;
+    for (int row = 0; row < TABLE_ROWS; row++)
+        check_integral(&v, row, "T", table_entry(&v, row, cloths), unconverged_entry, UNCONVERGED_ENTRIES, &named);
+    assert_int_equal(named, UNCONVERGED_ENTRIES);
     vectors_close(&v);
 }
 
@@ -121,7 +162,7 @@ static double step_for(const lit_tangent *lit)
     for (int k = 0; k < LIGHTS; k++) {
         const double *radiance = lit->light[k].radiance;
         if (radiance[0] + radiance[1] + radiance[2] > 0)
-            step = fmin(step, 1.5 * (double)lit->light[k].width);
+            step = fmin(step, 1.2 * (double)lit->light[k].width);
     }
     return step;
 }
@@ -143,6 +184,7 @@ static void environment_light_matches_every_row(void **state)
     static reference_cloth cloths[REFERENCE_CLOTHS];
     reference_cloths_read(cloths);
     reference_vectors v = vectors_open("microcylinder_env.csv", ENVIRONMENT_ROWS);
+    int named = 0;
     for (int row = 0; row < ENVIRONMENT_ROWS; row++) {
         lit_tangent lit = {.cloth = reference_cloth_named(cloths, vectors_text(&v, row, "cloth")),
                            .view = vectors_direction(&v, row, "wo"),
@@ -150,8 +192,9 @@ static void environment_light_matches_every_row(void **state)
         add_tangents(&lit);
         const char *const column[] = {"Lo_r", "Lo_g", "Lo_b"};
         for (int c = 0; c < 3; c++)
-            vectors_check_within(&v, row, column[c], lit.sum[c], tolerance * vectors_number(&v, row, column[c]));
+            check_integral(&v, row, column[c], lit.sum[c], unconverged_light, UNCONVERGED_LIGHTS, &named);
     }
+    assert_int_equal(named, UNCONVERGED_LIGHTS);
     vectors_close(&v);
 }
 
