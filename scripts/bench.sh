@@ -10,11 +10,14 @@ cd "$(dirname "$0")/.."
 demo='demo-out/gabardine'
 weave=assets/weaves/wool_gabardine.wv
 
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
 heading() {
     printf '\n== %s\n' "$*"
 }
 
-cmake --build "$build" --target bench_reflectance bench_fit bench_compress bench_player bench_aliasing bench_truth
+cmake --build "$build" --target bench_reflectance bench_fit bench_large_dataset bench_compress bench_player bench_aliasing bench_truth
 
 heading "Evaluations a second of the models, one core"
 "$build/bench/bench_reflectance"
@@ -26,7 +29,8 @@ if [ -e "$demo.btf.h5" ]; then
 fi
 
 heading "The whole job: reading, fitting all levels, writing, all cores"
-"$build/bench/bench_compress" --size "$size"
+"$build/bench/bench_large_dataset" "$scratch/cloth.btf.h5" "$size"
+"$build/bench/bench_compress" "$scratch/cloth.btf.h5"
 
 heading "Aliasing of the drape seen from afar"
 "$build/bench/bench_aliasing"
