@@ -105,16 +105,38 @@ WEFT_INLINE lanes lanes_log2(lanes x)
     return __builtin_convertvector(exponent, lanes) + t * (1.44269502f + t * p);
 }
 
-/* 2^x for x <= 127; 2^-126 below x = -126. An integer power and, for the rest in [-1/2, 1/2], the polynomial of degree
- * 5 of least relative error (7.5e-8). */
+/* x = n + f with a whole n and f in [-1/2, 1/2]; returns f. */
+WEFT_INLINE lanes lanes_split(lanes x, lanes *n)
+{
+#if defined(__AVX512F__)
+    *n = (lanes)_mm512_roundscale_ps((__m512)x, _MM_FROUND_TO_NEAREST_INT);
+#else
+    *n = __builtin_convertvector(__builtin_convertvector(x + 127.5f, lane_bits), lanes) - 127;
+#endif
+    return x - *n;
+}
+
+/* p 2^n for a whole n from -126 to 127. */
+WEFT_INLINE lanes lanes_scale(lanes p, lanes n)
+{
+#if defined(__AVX512F__)
+    return (lanes)_mm512_scalef_ps((__m512)p, (__m512)n);
+#else
+    return p * (lanes)(__builtin_convertvector(n + 127, lane_bits) << 23);
+#endif
+}
+
+/* 2^x for x <= 127; below x = -126 a number of at most 2^-126. An integer power and, for the rest, the polynomial of
+ * degree 5 of least relative error (7.5e-8). */
 WEFT_INLINE lanes lanes_exp2(lanes x)
 {
+#if !defined(__AVX512F__)
     x = lanes_select(x > -126.0f, x, lanes_of(-126));
-    lane_bits biased = __builtin_convertvector(x + 127.5f, lane_bits);
-    lanes f = x - (__builtin_convertvector(biased, lanes) - 127);
+#endif
+    lanes n, f = lanes_split(x, &n);
     lanes p = 0.00967554189f + f * 0.00132764725f;
     p = 0.240221202f + f * (0.0555071309f + f * p);
-    return (lanes)(biased << 23) * (1.00000012f + f * (0.693146944f + f * p));
+    return lanes_scale(1.00000012f + f * (0.693146944f + f * p), n);
 }
 
 #endif

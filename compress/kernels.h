@@ -20,8 +20,8 @@ struct weft_fit_kernels {
                     const float *table, weft_error_sums *sums);
     /* k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [sample_count]. */
     void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
-    /* The linear rows of a trial from its sums, and their totals. */
-    void (*digest)(const weft_bundle *bundle, weft_trial *trial);
+    /* The linear rows of a trial from its sums, and their totals. Returns the sum of <f|f> without T. */
+    double (*digest)(const weft_bundle *bundle, weft_trial *trial);
     /* Residual at other linear parameters than those of the pass; their T into table [view_stride] unless NULL. */
     double (*residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, const weft_linear *linear,
                        float *table);
@@ -43,7 +43,7 @@ struct weft_fit_kernels {
                                    const float *model, const float *table, weft_error_sums *sums);                     \
     void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \
                                   float *result);                                                                      \
-    void weft_views_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                        \
+    double weft_views_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                      \
     double weft_views_residual_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,              \
                                      const weft_linear *linear, float *table);                                         \
     void weft_views_linear_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,           \

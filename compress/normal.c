@@ -65,15 +65,7 @@ static void linear_to_fit(const weft_linear *linear, weft_fit *fit)
 void weft_trial_digest(const weft_bundle *bundle, bool with_table, weft_trial *trial)
 {
     trial->at = linear_of_fit(&trial->fit);
-    trial->kernels->digest(bundle, trial);
-    double energy = 0;
-    for (int view = 0; view < bundle->view_count; view++) {
-        for (int j = 0; j <= trial->fit.lobe_count; j++) {
-            for (int k = 0; k <= trial->fit.lobe_count; k++)
-                energy += trial->at.x[j] * trial->at.x[k] *
-                          (double)trial->linear[weft_linear_gram(j, k) * bundle->view_stride + view];
-        }
-    }
+    double energy = trial->kernels->digest(bundle, trial);
     trial->negligible = 1e-9 * energy / bundle->view_count;
     trial->residual = trial->kernels->residual(bundle, trial, with_table, &trial->at, trial->table);
 }

@@ -8,9 +8,11 @@ static const weft_fit_lobe mirror_start = {.c = {-0.95, -0.9, 1}, .log_exponent 
 static const weft_fit_lobe retro_start = {.c = {0.9, 0.95, 1}, .log_exponent = 2.0794};
 static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent = 0.4055};
 
-enum { START_COUNT = 2, START_PASSES = 3 };
+enum { START_COUNT = 2, START_PASSES = 4 };
 
 #define START_TOLERANCE 1e-2
+#define HOPELESS 3 /* a start whose first residual is so many times that of the first start is not followed */
+#define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
 
 /* Start number `index`: the mirror and a broad lobe, or the same thrown back to the light. */
 static void place_start(int index, int lobe_count, weft_fit *fit)
@@ -23,24 +25,21 @@ static void place_start(int index, int lobe_count, weft_fit *fit)
         fit->lobe[i] = *order[index][i];
 }
 
-void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
-                   weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table)
+/* The best start after a few coarse passes; its T goes into workspace->table. */
+static weft_fit try_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                           const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame)
 {
-    *fit = (weft_fit){.frame = *frame, .lobe_count = options->lobe_count};
-    if (weft_workspace_finish_empty(bundle, samples, channel, fit, table))
-        return;
     weft_trial *now = &workspace->trial[0];
     weft_fit best = {.residual = INFINITY};
-    weft_fit_options coarse = *options;
-    coarse.coarse = true;
-    coarse.max_passes = START_PASSES;
-    coarse.tolerance = START_TOLERANCE;
+    double first_residual = INFINITY;
     int passes = 0;
     for (int start = 0; start < (options->lobe_count ? START_COUNT : 1); start++) {
         now->fit = (weft_fit){.frame = *frame};
         place_start(start, options->lobe_count, &now->fit);
-        weft_workspace_begin_cold(bundle, samples, channel, &coarse, now);
-        weft_workspace_refine(bundle, samples, channel, &coarse, workspace, 0.1);
+        weft_workspace_begin_cold(bundle, samples, channel, options, now);
+        first_residual = fmin(first_residual, now->residual);
+        if (now->residual <= HOPELESS * first_residual)
+            weft_workspace_refine(bundle, samples, channel, options, workspace, 0.1);
         passes += (now->fit.passes + 3) / 4;
         if (now->residual < best.residual) {
             best = now->fit;
@@ -48,11 +47,81 @@ void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int c
             memcpy(workspace->table, now->table, (size_t)bundle->view_count * sizeof *now->table);
         }
     }
-    now->fit = best;
-    now->fit.passes = passes;
+    best.passes = passes;
+    return best;
+}
+
+static void fit_from_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                            const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
+                            weft_fit *fit, double *table)
+{
+    *fit = (weft_fit){.frame = *frame, .lobe_count = options->lobe_count};
+    if (weft_workspace_finish_empty(bundle, samples, channel, fit, table))
+        return;
+    weft_fit_options coarse = *options, full = *options;
+    coarse.coarse = true;
+    coarse.max_passes = START_PASSES;
+    coarse.tolerance = START_TOLERANCE;
+    weft_trial *now = &workspace->trial[0];
+    now->fit = try_starts(bundle, samples, channel, &coarse, workspace, frame);
+    full.max_passes += now->fit.passes;
     weft_workspace_begin_warm(bundle, samples, channel, options, workspace->table, now);
-    weft_fit_options full = *options;
-    full.max_passes += passes;
     weft_workspace_refine(bundle, samples, channel, &full, workspace, 0.01);
     weft_workspace_finish(bundle, options, now, fit, table);
+}
+
+/* The fit with one lobe more: number `split` once more, but broader. */
+static weft_fit with_lobe_split(const weft_fit *fit, int split)
+{
+    weft_fit more = *fit;
+    weft_fit_lobe *added = &more.lobe[more.lobe_count++];
+    *added = fit->lobe[split];
+    added->log_exponent = fmax(0, added->log_exponent - SPLIT_LOG_RATIO);
+    more.passes = 0;
+    return more;
+}
+
+/* Three lobes from the best two: which of them has a shape that one power cannot follow is not known beforehand. */
+static void fit_by_splitting(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                             const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
+                             weft_fit *fit, double *table)
+{
+    weft_fit_options less = *options;
+    less.lobe_count--;
+    fit_from_starts(bundle, samples, channel, &less, workspace, frame, fit, table);
+    const weft_fit few = *fit;
+    double *first = workspace->scratch[0], *best = workspace->scratch[1];
+    size_t size = (size_t)bundle->view_count * sizeof *table;
+    int passes = few.passes;
+    if (!(samples->energy[channel] > 0)) {
+        fit->lobe_count = options->lobe_count;
+        return;
+    }
+    memcpy(first, table, size);
+    for (int split = 0; split < less.lobe_count; split++) {
+        weft_fit candidate = with_lobe_split(&few, split);
+        memcpy(table, first, size);
+        weft_fit_refine(bundle, samples, channel, options, workspace, &candidate, table);
+        passes += candidate.passes;
+        if (split == 0 || candidate.residual < fit->residual) {
+            *fit = candidate;
+            memcpy(best, table, size);
+        }
+    }
+    memcpy(table, best, size);
+    weft_trial *now = &workspace->trial[0];
+    now->fit = *fit;
+    weft_workspace_begin_warm(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, table),
+                              now);
+    weft_workspace_finish(bundle, options, now, fit, table);
+    fit->passes = passes + 1;
+}
+
+void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
+                   weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table)
+{
+    if (options->lobe_count < 3)
+        fit_from_starts(bundle, samples, channel, options, workspace, frame, fit, table);
+    else
+        fit_by_splitting(bundle, samples, channel, options, workspace, frame, fit, table);
 }

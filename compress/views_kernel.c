@@ -213,12 +213,12 @@ WEFT_INLINE combination linear_column(int j, const view_lanes *own)
     return (combination){3, {first, first + 1, first + 2}, {m[0], m[1], m[2]}};
 }
 
-void WEFT_KERNEL(weft_views_digest)(const weft_bundle *bundle, weft_trial *trial)
+double WEFT_KERNEL(weft_views_digest)(const weft_bundle *bundle, weft_trial *trial)
 {
     const weft_fit *fit = &trial->fit;
     int n = fit->lobe_count + 1, columns = weft_gram_columns(fit->lobe_count), e = columns - 1;
     int stride = bundle->view_stride;
-    lanes strength[WEFT_LINEAR_MAX] = {{0}}, energy = {0};
+    lanes strength[WEFT_LINEAR_MAX] = {{0}}, energy = {0}, model_energy = {0};
     parameters at = parameters_of(trial, trial->at.x);
     for (int view = 0; view < stride; view += LANES) {
         lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS];
@@ -239,6 +239,7 @@ void WEFT_KERNEL(weft_views_digest)(const weft_bundle *bundle, weft_trial *trial
                 }
                 lanes_store(trial->linear + weft_linear_gram(j, k) * stride + view, sum);
                 strength[j] += j == k ? sum : lanes_of(0);
+                model_energy += (j == k ? 1.0f : 2.0f) * at.x[j] * at.x[k] * sum;
             }
         }
         lanes_store(trial->linear + WEFT_LINEAR_SQUARE * stride + view, product[e][e]);
@@ -247,6 +248,7 @@ void WEFT_KERNEL(weft_views_digest)(const weft_bundle *bundle, weft_trial *trial
     for (int j = 0; j < n; j++)
         trial->strength[j] = (double)lanes_sum(strength[j]);
     trial->energy = (double)lanes_sum(energy);
+    return (double)lanes_sum(model_energy);
 }
 
 /* ---- All parameters ---- */
