@@ -53,8 +53,8 @@ static weft_code measure(const bench_plan *plan, texel_source *source, weft_erro
     } rows[] = {{METHOD_FAST, "fast"},
                 {METHOD_CERES_ALTERNATION, "Ceres, Cholesky"},
                 {METHOD_MINPACK_ALTERNATION, "MINPACK lmder"}};
-    report_table(plan->report, "tape", "%s: %d samples, no T, ms of processor, best of %d starts", source->name,
-                 source->bundle.image_count, STARTS);
+    report_table(plan->report, "tape", "%s: %d samples, no T, ms of processor, general solvers from %d starts",
+                 source->name, source->bundle.image_count, STARTS);
     for (int lobes = 1; lobes <= PROBLEM_LOBES; lobes++) {
         weft_fit_options options = weft_fit_default_options();
         options.lobe_count = lobes;
