@@ -1,4 +1,4 @@
-/* Tokens of a weave file. Private to the room. */
+/* Tokens of weave files and stitch files. */
 #ifndef WEFT_REFLECTANCE_WEAVE_LEXER_H
 #define WEFT_REFLECTANCE_WEAVE_LEXER_H
 

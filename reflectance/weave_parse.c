@@ -1,5 +1,5 @@
 /* The grammar of a weave file (docs/weave-format.md). Blocks do not nest, so neither does the parser. */
-#include "reflectance/weave_lexer.h"
+#include "reflectance/block_parser.h"
 #include "reflectance/weave_syntax.h"
 
 #include <stdlib.h>
@@ -18,15 +18,7 @@ typedef struct yarn_values {
     double psi_deg, umax_deg, kappa, width, length, center_u, center_v, kd[3], ks[3];
 } yarn_values;
 
-typedef struct weave_field {
-    const char *key;
-    size_t offset; /* of its first double in the values */
-    int count;     /* doubles: 1, or 3 for a colour */
-    bool optional; /* 0 where absent */
-    double low, high;
-} weave_field;
-
-static const weave_field weave_fields[] = {
+static const block_field weave_fields[] = {
     {"tileWidth", offsetof(weave_values, tile_width), 1, false, 1, WEAVE_MAX_TILE_SIDE},
     {"tileHeight", offsetof(weave_values, tile_height), 1, false, 1, WEAVE_MAX_TILE_SIDE},
     {"alpha", offsetof(weave_values, alpha), 1, false, 0, LARGE},
@@ -43,7 +35,7 @@ static const weave_field weave_fields[] = {
     {"period", offsetof(weave_values, period), 1, true, 0, LARGE},
 };
 
-static const weave_field yarn_fields[] = {
+static const block_field yarn_fields[] = {
     {"psi", offsetof(yarn_values, psi_deg), 1, false, -LARGE, LARGE},
     {"umax", offsetof(yarn_values, umax_deg), 1, false, -LARGE, LARGE},
     {"kappa", offsetof(yarn_values, kappa), 1, false, -LARGE, LARGE},
@@ -64,10 +56,7 @@ enum {
 enum { SEEN_NAME = 1 << WEAVE_FIELD_COUNT, SEEN_PATTERN = SEEN_NAME << 1, SEEN_TYPE = 1 << YARN_FIELD_COUNT };
 
 typedef struct weave_parser {
-    weave_lexer lexer;
-    weft_error *error;
-    const weft_weave_parameter *parameters;
-    int parameter_count;
+    block_parser block;
     weft_weave *weave;
     weave_values values;
     size_t cell_count, cell_capacity, yarn_capacity;
@@ -75,169 +64,16 @@ typedef struct weave_parser {
     int largest_id;
 } weave_parser;
 
-static weft_code advance(weave_parser *parser)
-{
-    return weave_lexer_advance(&parser->lexer, parser->error);
-}
-
-#define fail_here(parser, ...) weave_lexer_fail(&(parser)->lexer, (parser)->error, __VA_ARGS__)
-
-static weft_code unexpected(weave_parser *parser, const char *wanted)
-{
-    const weave_token *token = &parser->lexer.token;
-    if (token->kind == WEAVE_END)
-        return fail_here(parser, "expected %s, found the end of the file", wanted);
-    return fail_here(parser, "expected %s, found '%.*s'", wanted, weave_token_shown(token), token->text);
-}
-
-static weft_code expect_symbol(weave_parser *parser, char symbol)
-{
-    char wanted[] = {'\'', symbol, '\'', '\0'};
-    if (!weave_token_is_symbol(&parser->lexer.token, symbol))
-        return unexpected(parser, wanted);
-    return advance(parser);
-}
-
-/* After an item of a list: consumes ',' and sets *more, or leaves '}' to the caller. */
-static weft_code next_item(weave_parser *parser, bool *more)
-{
-    *more = weave_token_is_symbol(&parser->lexer.token, ',');
-    if (*more)
-        return advance(parser);
-    if (!weave_token_is_symbol(&parser->lexer.token, '}'))
-        return unexpected(parser, "',' or '}'");
-    return WEFT_OK;
-}
-
-static const weft_weave_parameter *find_parameter(const weave_parser *parser)
-{
-    const weave_token *token = &parser->lexer.token;
-    for (int i = 0; i < parser->parameter_count; i++) {
-        const char *name = parser->parameters[i].name;
-        if (strlen(name) == token->size && memcmp(name, token->text, token->size) == 0)
-            return &parser->parameters[i];
-    }
-    return NULL;
-}
-
-static weft_code check_range(weave_parser *parser, const weave_field *field, double value)
-{
-    if (value >= field->low && value <= field->high)
-        return WEFT_OK;
-    return fail_here(parser, "%s = %g is outside [%g, %g]", field->key, value, field->low, field->high);
-}
-
-static weft_code parse_parameter(weave_parser *parser, const weave_field *field, double *values)
-{
-    const weft_weave_parameter *parameter = find_parameter(parser);
-    const weave_token *token = &parser->lexer.token;
-    if (!parameter)
-        return fail_here(parser, "no value was given for '$%.*s'", weave_token_shown(token), token->text);
-    const double rgb[3] = {parameter->value.r, parameter->value.g, parameter->value.b};
-    for (int i = 0; i < 3 && i < field->count; i++) {
-        WEFT_TRY(check_range(parser, field, rgb[i]));
-        values[i] = rgb[i];
-    }
-    return advance(parser);
-}
-
-static weft_code parse_number(weave_parser *parser, const weave_field *field, double *value)
-{
-    const weave_token *token = &parser->lexer.token;
-    if (token->kind == WEAVE_PARAMETER && field->count == 1)
-        return parse_parameter(parser, field, value);
-    if (token->kind != WEAVE_NUMBER)
-        return unexpected(parser, "a number");
-    WEFT_TRY(check_range(parser, field, token->number));
-    *value = token->number;
-    return advance(parser);
-}
-
-static weft_code parse_colour(weave_parser *parser, const weave_field *field, double *rgb)
-{
-    if (parser->lexer.token.kind == WEAVE_PARAMETER)
-        return parse_parameter(parser, field, rgb);
-    WEFT_TRY(expect_symbol(parser, '{'));
-    for (int i = 0; i < 3; i++) {
-        if (i > 0)
-            WEFT_TRY(expect_symbol(parser, ','));
-        WEFT_TRY(parse_number(parser, field, &rgb[i]));
-    }
-    return expect_symbol(parser, '}');
-}
-
-static weft_code mark_seen(weave_parser *parser, unsigned *seen, unsigned key)
-{
-    const weave_token *token = &parser->lexer.token;
-    if (*seen & key)
-        return fail_here(parser, "'%.*s' is given twice", weave_token_shown(token), token->text);
-    *seen |= key;
-    return WEFT_OK;
-}
-
-/* The field named by the current token among `count`, or NULL. */
-static const weave_field *find_field(const weave_parser *parser, const weave_field *fields, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (weave_token_is_word(&parser->lexer.token, fields[i].key))
-            return &fields[i];
-    return NULL;
-}
-
-/* key = value, for one of `fields`; the current token is the key. */
-static weft_code parse_field(weave_parser *parser, const weave_field *fields, const weave_field *field, void *values,
-                             unsigned *seen)
-{
-    WEFT_TRY(mark_seen(parser, seen, 1u << (field - fields)));
-    WEFT_TRY(advance(parser));
-    WEFT_TRY(expect_symbol(parser, '='));
-    double *into = (double *)(void *)((char *)values + field->offset);
-    return field->count == 3 ? parse_colour(parser, field, into) : parse_number(parser, field, into);
-}
-
-static weft_code check_complete(weave_parser *parser, const weave_field *fields, int count, unsigned seen)
-{
-    for (int i = 0; i < count; i++)
-        if (!fields[i].optional && !(seen & 1u << i))
-            return fail_here(parser, "'%s' is missing in the block that ends here", fields[i].key);
-    return WEFT_OK;
-}
-
-static weft_code unknown_key(weave_parser *parser)
-{
-    const weave_token *token = &parser->lexer.token;
-    if (token->kind != WEAVE_WORD)
-        return unexpected(parser, "a key");
-    return fail_here(parser, "unknown key '%.*s'", weave_token_shown(token), token->text);
-}
-
-/* Room for one more element; doubles the array. */
-static weft_code grow(weave_parser *parser, void **array, size_t count, size_t *capacity, size_t element, size_t limit,
-                      const char *what)
-{
-    if (count < *capacity)
-        return WEFT_OK;
-    if (count >= limit)
-        return fail_here(parser, "more than %zu %s", limit, what);
-    size_t wanted = *capacity ? 2 * *capacity : 64;
-    void *larger = realloc(*array, wanted * element);
-    if (!larger)
-        return weft_fail_memory(parser->error, what, wanted * element);
-    *array = larger;
-    *capacity = wanted;
-    return WEFT_OK;
-}
-
 static weft_code parse_pattern_cell(weave_parser *parser)
 {
-    static const weave_field id_field = {.key = "yarn id", .count = 1, .low = 1, .high = WEAVE_MAX_YARNS};
-    weave_token token = parser->lexer.token;
+    static const block_field id_field = {.key = "yarn id", .count = 1, .low = 1, .high = WEAVE_MAX_YARNS};
+    weave_token token = parser->block.lexer.token;
     double id = 0;
-    WEFT_TRY(grow(parser, (void **)&parser->weave->pattern, parser->cell_count, &parser->cell_capacity,
-                  sizeof *parser->weave->pattern, WEAVE_MAX_CELLS, "cells in the pattern"));
+    WEFT_TRY(block_grow(&parser->block, (void **)&parser->weave->pattern, parser->cell_count, &parser->cell_capacity,
+                        sizeof *parser->weave->pattern, WEAVE_MAX_CELLS, "cells in the pattern"));
     if (token.kind == WEAVE_NUMBER && token.number != (int)weft_clamp(token.number, 0, WEAVE_MAX_YARNS + 1))
-        return fail_here(parser, "a yarn id is a whole number from 1 to %d", WEAVE_MAX_YARNS);
-    WEFT_TRY(parse_number(parser, &id_field, &id));
+        return block_fail(&parser->block, "a yarn id is a whole number from 1 to %d", WEAVE_MAX_YARNS);
+    WEFT_TRY(block_parse_number(&parser->block, &id_field, &id));
     if (id > parser->largest_id) {
         parser->largest_id = (int)id;
         parser->largest_id_at = token;
@@ -248,41 +84,26 @@ static weft_code parse_pattern_cell(weave_parser *parser)
 
 static weft_code parse_pattern(weave_parser *parser, unsigned *seen)
 {
-    WEFT_TRY(mark_seen(parser, seen, SEEN_PATTERN));
-    parser->pattern_at = parser->lexer.token;
-    WEFT_TRY(advance(parser));
-    WEFT_TRY(expect_symbol(parser, '{'));
+    WEFT_TRY(block_mark_seen(&parser->block, seen, SEEN_PATTERN));
+    parser->pattern_at = parser->block.lexer.token;
+    WEFT_TRY(block_advance(&parser->block));
+    WEFT_TRY(block_expect_symbol(&parser->block, '{'));
     for (bool more = true; more;) {
         WEFT_TRY(parse_pattern_cell(parser));
-        WEFT_TRY(next_item(parser, &more));
+        WEFT_TRY(block_next_item(&parser->block, &more));
     }
-    return expect_symbol(parser, '}');
-}
-
-static weft_code parse_name(weave_parser *parser, unsigned *seen)
-{
-    WEFT_TRY(mark_seen(parser, seen, SEEN_NAME));
-    WEFT_TRY(advance(parser));
-    WEFT_TRY(expect_symbol(parser, '='));
-    const weave_token *token = &parser->lexer.token;
-    if (token->kind != WEAVE_STRING)
-        return unexpected(parser, "a name in quotes");
-    if (token->size >= sizeof parser->weave->name)
-        return fail_here(parser, "name of %zu bytes, at most %zu", token->size, sizeof parser->weave->name - 1);
-    memcpy(parser->weave->name, token->text, token->size);
-    parser->weave->name[token->size] = '\0';
-    return advance(parser);
+    return block_expect_symbol(&parser->block, '}');
 }
 
 static weft_code parse_yarn_type(weave_parser *parser, bool *warp, unsigned *seen)
 {
-    WEFT_TRY(mark_seen(parser, seen, SEEN_TYPE));
-    WEFT_TRY(advance(parser));
-    WEFT_TRY(expect_symbol(parser, '='));
-    *warp = weave_token_is_word(&parser->lexer.token, "warp");
-    if (!*warp && !weave_token_is_word(&parser->lexer.token, "weft"))
-        return unexpected(parser, "'warp' or 'weft'");
-    return advance(parser);
+    WEFT_TRY(block_mark_seen(&parser->block, seen, SEEN_TYPE));
+    WEFT_TRY(block_advance(&parser->block));
+    WEFT_TRY(block_expect_symbol(&parser->block, '='));
+    *warp = weave_token_is_word(&parser->block.lexer.token, "warp");
+    if (!*warp && !weave_token_is_word(&parser->block.lexer.token, "weft"))
+        return block_unexpected(&parser->block, "'warp' or 'weft'");
+    return block_advance(&parser->block);
 }
 
 static void store_yarn(weft_yarn *yarn, const yarn_values *values, bool warp)
@@ -299,12 +120,12 @@ static void store_yarn(weft_yarn *yarn, const yarn_values *values, bool warp)
 
 static weft_code parse_yarn_item(weave_parser *parser, yarn_values *values, bool *warp, unsigned *seen)
 {
-    if (weave_token_is_word(&parser->lexer.token, "type"))
+    if (weave_token_is_word(&parser->block.lexer.token, "type"))
         return parse_yarn_type(parser, warp, seen);
-    const weave_field *field = find_field(parser, yarn_fields, YARN_FIELD_COUNT);
+    const block_field *field = block_find_field(&parser->block, yarn_fields, YARN_FIELD_COUNT);
     if (!field)
-        return unknown_key(parser);
-    return parse_field(parser, yarn_fields, field, values, seen);
+        return block_unknown_key(&parser->block);
+    return block_parse_field(&parser->block, yarn_fields, field, values, seen);
 }
 
 static weft_code parse_yarn(weave_parser *parser)
@@ -313,52 +134,52 @@ static weft_code parse_yarn(weave_parser *parser)
     bool warp = false;
     unsigned seen = 0;
     weft_weave *weave = parser->weave;
-    WEFT_TRY(grow(parser, (void **)&weave->yarn, (size_t)weave->yarn_count, &parser->yarn_capacity, sizeof *weave->yarn,
-                  WEAVE_MAX_YARNS, "yarns"));
-    WEFT_TRY(advance(parser));
-    WEFT_TRY(expect_symbol(parser, '{'));
+    WEFT_TRY(block_grow(&parser->block, (void **)&weave->yarn, (size_t)weave->yarn_count, &parser->yarn_capacity,
+                        sizeof *weave->yarn, WEAVE_MAX_YARNS, "yarns"));
+    WEFT_TRY(block_advance(&parser->block));
+    WEFT_TRY(block_expect_symbol(&parser->block, '{'));
     for (bool more = true; more;) {
         WEFT_TRY(parse_yarn_item(parser, &values, &warp, &seen));
-        WEFT_TRY(next_item(parser, &more));
+        WEFT_TRY(block_next_item(&parser->block, &more));
     }
     if (!(seen & SEEN_TYPE))
-        return fail_here(parser, "'type' is missing in the block that ends here");
-    WEFT_TRY(check_complete(parser, yarn_fields, YARN_FIELD_COUNT, seen));
+        return block_fail(&parser->block, "'type' is missing in the block that ends here");
+    WEFT_TRY(block_check_complete(&parser->block, yarn_fields, YARN_FIELD_COUNT, seen));
     store_yarn(&weave->yarn[weave->yarn_count++], &values, warp);
-    return expect_symbol(parser, '}');
+    return block_expect_symbol(&parser->block, '}');
 }
 
 static weft_code parse_weave_item(weave_parser *parser, unsigned *seen)
 {
-    const weave_token *token = &parser->lexer.token;
+    const weave_token *token = &parser->block.lexer.token;
     if (weave_token_is_word(token, "name"))
-        return parse_name(parser, seen);
+        return block_parse_name(&parser->block, parser->weave->name, sizeof parser->weave->name, seen, SEEN_NAME);
     if (weave_token_is_word(token, "pattern"))
         return parse_pattern(parser, seen);
     if (weave_token_is_word(token, "yarn"))
         return parse_yarn(parser);
-    const weave_field *field = find_field(parser, weave_fields, WEAVE_FIELD_COUNT);
+    const block_field *field = block_find_field(&parser->block, weave_fields, WEAVE_FIELD_COUNT);
     if (!field)
-        return unknown_key(parser);
-    return parse_field(parser, weave_fields, field, &parser->values, seen);
+        return block_unknown_key(&parser->block);
+    return block_parse_field(&parser->block, weave_fields, field, &parser->values, seen);
 }
 
 static weft_code check_pattern(weave_parser *parser)
 {
     const weave_values *values = &parser->values;
     if (values->tile_width != (int)values->tile_width || values->tile_height != (int)values->tile_height)
-        return fail_here(parser, "the tile has %g x %g cells, not whole numbers", values->tile_width,
-                         values->tile_height);
+        return block_fail(&parser->block, "the tile has %g x %g cells, not whole numbers", values->tile_width,
+                          values->tile_height);
     size_t wanted = (size_t)values->tile_width * (size_t)values->tile_height;
     if (parser->cell_count != wanted) {
-        parser->lexer.token = parser->pattern_at;
-        return fail_here(parser, "the pattern has %zu cells, the tile %g x %g = %zu", parser->cell_count,
-                         values->tile_width, values->tile_height, wanted);
+        parser->block.lexer.token = parser->pattern_at;
+        return block_fail(&parser->block, "the pattern has %zu cells, the tile %g x %g = %zu", parser->cell_count,
+                          values->tile_width, values->tile_height, wanted);
     }
     if (parser->largest_id > parser->weave->yarn_count) {
-        parser->lexer.token = parser->largest_id_at;
-        return fail_here(parser, "yarn %d does not exist, there are only %d", parser->largest_id,
-                         parser->weave->yarn_count);
+        parser->block.lexer.token = parser->largest_id_at;
+        return block_fail(&parser->block, "yarn %d does not exist, there are only %d", parser->largest_id,
+                          parser->weave->yarn_count);
     }
     return WEFT_OK;
 }
@@ -385,21 +206,21 @@ static void store_values(weft_weave *weave, const weave_values *values)
 static weft_code parse_weave(weave_parser *parser)
 {
     unsigned seen = 0;
-    if (!weave_token_is_word(&parser->lexer.token, "weave"))
-        return unexpected(parser, "'weave'");
-    WEFT_TRY(advance(parser));
-    WEFT_TRY(expect_symbol(parser, '{'));
+    if (!weave_token_is_word(&parser->block.lexer.token, "weave"))
+        return block_unexpected(&parser->block, "'weave'");
+    WEFT_TRY(block_advance(&parser->block));
+    WEFT_TRY(block_expect_symbol(&parser->block, '{'));
     for (bool more = true; more;) {
         WEFT_TRY(parse_weave_item(parser, &seen));
-        WEFT_TRY(next_item(parser, &more));
+        WEFT_TRY(block_next_item(&parser->block, &more));
     }
-    WEFT_TRY(check_complete(parser, weave_fields, WEAVE_FIELD_COUNT, seen));
+    WEFT_TRY(block_check_complete(&parser->block, weave_fields, WEAVE_FIELD_COUNT, seen));
     if (!(seen & SEEN_PATTERN))
-        return fail_here(parser, "'pattern' is missing in the block that ends here");
+        return block_fail(&parser->block, "'pattern' is missing in the block that ends here");
     WEFT_TRY(check_pattern(parser));
-    WEFT_TRY(advance(parser));
-    if (parser->lexer.token.kind != WEAVE_END)
-        return unexpected(parser, "the end of the file");
+    WEFT_TRY(block_advance(&parser->block));
+    if (parser->block.lexer.token.kind != WEAVE_END)
+        return block_unexpected(&parser->block, "the end of the file");
     store_values(parser->weave, &parser->values);
     return WEFT_OK;
 }
@@ -408,12 +229,12 @@ weft_code weave_parse_text(const char *text, const char *path, const weft_weave_
                            int parameter_count, weft_weave *weave, weft_error *error)
 {
     *weave = (weft_weave){0};
-    weave_parser parser = {
-        .error = error, .parameters = parameters, .parameter_count = parameter_count, .weave = weave};
-    weft_code code = weave_lexer_start(&parser.lexer, text, path, error);
+    weave_parser parser = {.block = {.error = error, .parameters = parameters, .parameter_count = parameter_count},
+                           .weave = weave};
+    weft_code code = weave_lexer_start(&parser.block.lexer, text, path, error);
     if (code == WEFT_OK)
         code = parse_weave(&parser);
-    weave_lexer_end(&parser.lexer);
+    weave_lexer_end(&parser.block.lexer);
     if (code != WEFT_OK)
         weft_weave_free(weave);
     return code;
