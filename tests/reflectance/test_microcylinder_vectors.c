@@ -20,13 +20,12 @@ typedef struct thread_row {
     weft_real sigma;
 } thread_row;
 
-/* `factor` changes the tilt. */
-static thread_row thread_row_at(const reference_vectors *v, int row, double factor)
+static thread_row thread_row_at(const reference_vectors *v, int row)
 {
     weft_thread_axis axis = strcmp(vectors_text(v, row, "axis"), "x") == 0 ? WEFT_AXIS_X : WEFT_AXIS_Y;
     double tilt_rad = vectors_number(v, row, "tilt_deg") * (double)WEFT_PI / 180;
     weft_real albedo = real_at(v, row, "A");
-    return (thread_row){.tangent = weft_thread_tangent_of(axis, (weft_real)(tilt_rad * factor)),
+    return (thread_row){.tangent = weft_thread_tangent_of(axis, (weft_real)tilt_rad),
                         .optics = {.eta = real_at(v, row, "eta"),
                                    .gamma_s = real_at(v, row, "gamma_s"),
                                    .gamma_v = real_at(v, row, "gamma_v"),
@@ -54,17 +53,11 @@ static void thread_outputs(const thread_row *thread, direction_pair at, double o
 static void check_thread(reference_vectors *v, int row)
 {
     direction_pair at = {vectors_direction(v, row, "wi"), vectors_direction(v, row, "wo")};
-    thread_row thread = thread_row_at(v, row, 1);
-    double out[OUTPUTS], other[OUTPUTS], change[OUTPUTS] = {0};
+    thread_row thread = thread_row_at(v, row);
+    double out[OUTPUTS];
     thread_outputs(&thread, at, out);
-    for (unsigned sample = 0; sample < VECTORS_SAMPLES; sample++) {
-        thread_row near = thread_row_at(v, row, sample * 3 >> 1 & 1 ? 1 + VECTORS_AMOUNT : 1 - VECTORS_AMOUNT);
-        thread_outputs(&near, vectors_perturbed(at, sample, VECTORS_AMOUNT), other);
-        for (int i = 0; i < OUTPUTS; i++)
-            change[i] = fmax(change[i], fabs(other[i] - out[i]));
-    }
     for (int i = 0; i < OUTPUTS; i++)
-        check_representable(v, row, output_column[i], out[i], change[i]);
+        check_representable(v, row, output_column[i], out[i]);
 }
 
 static void one_tangent_matches_every_row(void **state)
@@ -102,15 +95,10 @@ static void cloth_matches_every_row(void **state)
     for (int row = 0; row < CLOTH_ROWS; row++) {
         const weft_prepared_cloth *cloth = reference_cloth_named(cloths, vectors_text(&v, row, "cloth"));
         direction_pair at = {vectors_direction(&v, row, "wi"), vectors_direction(&v, row, "wo")};
-        double out[CLOTH_OUTPUTS], other[CLOTH_OUTPUTS], change[CLOTH_OUTPUTS] = {0};
+        double out[CLOTH_OUTPUTS];
         cloth_outputs(cloth, at, out);
-        for (unsigned sample = 0; sample < VECTORS_SAMPLES; sample++) {
-            cloth_outputs(cloth, vectors_perturbed(at, sample, VECTORS_AMOUNT), other);
-            for (int i = 0; i < CLOTH_OUTPUTS; i++)
-                change[i] = fmax(change[i], fabs(other[i] - out[i]));
-        }
         for (int i = 0; i < CLOTH_OUTPUTS; i++)
-            vectors_check_sensitive(&v, row, cloth_column[i], out[i], change[i]);
+            vectors_check(&v, row, cloth_column[i], out[i]);
     }
     vectors_close(&v);
 }
