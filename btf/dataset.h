@@ -63,6 +63,10 @@ typedef struct weft_dataset weft_dataset;
 weft_code weft_dataset_open(const char *path, weft_dataset **result, weft_error *error);
 void weft_dataset_close(weft_dataset *dataset);
 
+/* Keeps fewer decoded chunks, for a reader of square blocks that reads each once. *bytes receives what the HDF5 library
+ * may take from now on for chunks. Errors: WEFT_BAD_INPUT. */
+weft_code weft_dataset_limit_cache(weft_dataset *dataset, uint64_t *bytes, weft_error *error);
+
 /* Owned by the dataset. */
 const weft_dataset_layout *weft_dataset_get_layout(const weft_dataset *dataset);
 const char *weft_dataset_path(const weft_dataset *dataset);

@@ -101,6 +101,8 @@ weft_code weft_dataset_read_block(weft_dataset *dataset, int x, int y, int width
 {
     texel_block block = {x, y, width, height};
     WEFT_TRY(check_block(dataset, block, error));
+    /* Where HDF5 knows threads, each has its own setting. */
+    weft_hdf5_quiet();
     if (mask)
         WEFT_TRY(read_mask(dataset, block, mask, error));
     return samples ? read_samples(dataset, block, samples, mask, error) : WEFT_OK;

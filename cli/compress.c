@@ -1,11 +1,14 @@
 #include "compress/compress.h"
+#include "btf/atomic_file.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct compress_command {
     common_options common;
@@ -13,7 +16,7 @@ typedef struct compress_command {
     weft_compress_options options;
 } compress_command;
 
-enum { KEY_LOBES = 0x2000, KEY_TABLE, KEY_LEVELS, KEY_MAX_EXPONENT };
+enum { KEY_LOBES = 0x2000, KEY_TABLE, KEY_LEVELS, KEY_MAX_EXPONENT, KEY_MEMORY };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "NAME.weft", 0, "The material to write", 0},
@@ -22,6 +25,7 @@ static const struct argp_option option_table[] = {
     {"levels", KEY_LEVELS, "on|off", 0, "Mip levels (default: on)", 0},
     {"max-exponent", KEY_MAX_EXPONENT, "N", 0,
      "Largest exponent of a lobe (default: 512; retro-reflective tape needs thousands)", 0},
+    {"memory", KEY_MEMORY, "MB", 0, "Never take more memory than this (default: a quarter of what there is)", 0},
     {0},
 };
 
@@ -48,6 +52,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_MAX_EXPONENT:
         options->max_exponent = parse_number("max-exponent", argument, 1, 60000, state);
         return 0;
+    case KEY_MEMORY:
+        options->memory_bytes = 1000000 * parse_whole("memory", argument, 1, 1000000000, state);
+        return 0;
     case ARGP_KEY_ARG:
         if (command->input)
             argp_error(state, "one dataset at a time: '%s' is one too many", argument);
@@ -71,7 +78,11 @@ static const struct argp parser = {option_table,
                                    "Example: weft compress cloth.btf.h5 -o cloth.weft --lobes 2\n\n"
                                    "Fits Lafortune lobes with a view table to every texel of every mip level of a "
                                    "dataset, and measures what the result leaves. With too few images for that, "
-                                   "fits what they can carry and says so.",
+                                   "fits what they can carry and says so.\n\n"
+                                   "Samples are read in blocks while the blocks before are fitted. What is done is "
+                                   "kept in NAME.weft.partial: killed, the same command goes on where it stopped and "
+                                   "ends with the same bytes. Where the memory does not suffice it says how much "
+                                   "would.",
                                    children,
                                    NULL,
                                    NULL};
@@ -134,23 +145,50 @@ static void say_sizes(const compress_command *command, const weft_dataset_layout
     command_say(&command->common, "%s: %.2f MB, 1:%.0f of the samples as half floats (%.1f MB; the file has %.1f MB)",
                 command->output, material * 1e-6, material > 0 ? samples / material : 0, samples * 1e-6,
                 file_bytes(command->input) * 1e-6);
+    if (report->read_seconds > 0)
+        command_say(&command->common, "read %.1f MB in %ld blocks at %.0f MB/s; the fit waited for it %.1f s",
+                    report->read_bytes * 1e-6, report->block_count - report->resumed_block_count,
+                    report->read_bytes * 1e-6 / report->read_seconds, report->starved_seconds);
     command_say(&command->common, "fitted in %.1f s", report->seconds);
 }
 
-static weft_code compress_dataset(const compress_command *command, weft_dataset *dataset, weft_error *error)
+static void say_note(void *context, const char *text)
+{
+    command_say(context, "%s", text);
+}
+
+/* Tells before hours of work that the output cannot be written. */
+static weft_code check_output(const char *path, weft_error *error)
+{
+    weft_atomic_file file;
+    weft_code code = weft_atomic_file_begin(path, &file, error);
+    weft_atomic_file_abandon(&file);
+    return code;
+}
+
+static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
 {
     weft_progress progress = command_progress(&command->common);
-    weft_material material;
+    weft_compress_options options = command->options;
+    options.checkpoint_path = partial_path;
+    options.note = (weft_note){say_note, (void *)&command->common};
+    weft_dataset *dataset = NULL;
+    weft_material material = {0};
     weft_compress_report report;
-    WEFT_TRY(weft_compress(dataset, &command->options, &progress, &material, &report, error));
-    weft_code code = weft_material_write(command->output, &material, error);
+    weft_code code = weft_dataset_open(command->input, &dataset, error);
+    if (code == WEFT_OK)
+        code = weft_compress(dataset, &options, &progress, &material, &report, error);
+    if (code == WEFT_OK)
+        code = weft_material_write(command->output, &material, error);
     if (code == WEFT_OK) {
         const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+        unlink(partial_path);
         say_model(command, layout, &report);
         say_errors(&command->common, &material);
         say_sizes(command, layout, &report);
     }
     weft_material_free(&material);
+    weft_dataset_close(dataset);
     return code;
 }
 
@@ -159,10 +197,11 @@ int command_compress(int argc, char **argv)
     compress_command command = {.options = weft_compress_default_options()};
     command_parse(&parser, argc, argv, &command, &command.common);
     weft_error error = {0};
-    weft_dataset *dataset = NULL;
-    weft_code code = weft_dataset_open(command.input, &dataset, &error);
-    if (code == WEFT_OK)
-        code = compress_dataset(&command, dataset, &error);
-    weft_dataset_close(dataset);
+    char partial_path[PATH_MAX];
+    weft_code code = check_output(command.output, &error);
+    if (code == WEFT_OK) {
+        snprintf(partial_path, sizeof partial_path, "%s.partial", command.output);
+        code = compress_dataset(&command, partial_path, &error);
+    }
     return command_exit("compress", &command.common, code, &error);
 }

@@ -1,12 +1,21 @@
 #include "compress/compress.h"
 
+#include "btf/dataset_fingerprint.h"
+#include "btf/processor.h"
 #include "compress/dense.h"
+#include "compress/memory.h"
 #include "compress/sparse_material.h"
 
+#include <inttypes.h>
 #include <jansson.h>
+#include <malloc.h>
+#include <omp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
+#include <zlib.h>
 
 enum { SAMPLES_PER_PARAMETER = 4 };
 
@@ -138,15 +147,17 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
     return fit;
 }
 
-/* {"provenance": of the dataset, "fit": what was done}. No time of day and no duration, so that equal input gives equal
- * bytes. */
-static weft_code write_metadata(const weft_dataset_layout *layout, const weft_compress_options *options,
-                                const weft_compress_report *report, const weft_sparse_setting *setting,
-                                weft_material *material, weft_error *error)
+/* {"provenance": of the dataset, "dataset": its fingerprint, "fit": what was done}. No time of day and no duration, so
+ * that equal input gives equal bytes. */
+static weft_code write_metadata(const weft_dataset_layout *layout, const weft_dataset_fingerprint *fingerprint,
+                                json_t *fit, weft_material *material, weft_error *error)
 {
+    char layout_text[16], samples_text[16];
+    snprintf(layout_text, sizeof layout_text, "%08" PRIx32, fingerprint->layout);
+    snprintf(samples_text, sizeof samples_text, "%08" PRIx32, fingerprint->samples);
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
-    json_t *fit = describe_fit(options, report, setting);
-    json_t *object = json_pack("{s:o*, s:o*}", "provenance", provenance, "fit", fit);
+    json_t *object = json_pack("{s:o*, s:{s:s, s:s}, s:o*}", "provenance", provenance, "dataset", "layout", layout_text,
+                               "samples", samples_text, "fit", fit);
     char *text = object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
     json_decref(object);
     if (!text)
@@ -156,35 +167,115 @@ static weft_code write_metadata(const weft_dataset_layout *layout, const weft_co
     return WEFT_OK;
 }
 
+/* ---- Checkpoints ---- */
+
+typedef struct identity_text {
+    char program[96], dataset[192], options[256];
+} identity_text;
+
+/* Whose work a checkpoint keeps. Instruction sets round differently. */
+static weft_code identify(const weft_dataset *dataset, const weft_compress_options *options,
+                          const weft_compress_report *report, const weft_dataset_fingerprint *fingerprint,
+                          identity_text *text, weft_error *error)
+{
+    struct stat status;
+    const char *path = weft_dataset_path(dataset);
+    if (stat(path, &status) != 0)
+        return weft_fail_errno(error, "look at", path);
+    uLong held_out = 0;
+    if (options->held_out)
+        held_out = crc32_z(0, options->held_out, (size_t)weft_dataset_get_layout(dataset)->image_count);
+    snprintf(text->program, sizeof text->program, "weft %s, %s", WEFT_VERSION,
+             weft_instruction_set_name(weft_processor_instruction_set()));
+    snprintf(text->dataset, sizeof text->dataset,
+             "layout %08" PRIx32 ", samples %08" PRIx32 ", %lld bytes of %lld.%09ld", fingerprint->layout,
+             fingerprint->samples, (long long)status.st_size, (long long)status.st_mtim.tv_sec,
+             (long)status.st_mtim.tv_nsec);
+    snprintf(text->options, sizeof text->options, "%s, %d lobes, N <= %.17g, levels %d, held out %08lx",
+             model_name[report->model], report->lobe_count, options->max_exponent, options->levels, held_out);
+    return WEFT_OK;
+}
+
 /* ---- The whole ---- */
 
-static weft_code fit_material(weft_dataset *dataset, const weft_compress_options *options,
-                              const weft_progress *progress, weft_material *material, weft_compress_report *report,
-                              weft_error *error)
-{
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+/* What a fit hands from step to step. */
+typedef struct fitting {
+    weft_dataset *dataset;
+    const weft_compress_options *options;
+    const weft_progress *progress;
+    weft_memory_budget budget;
+    weft_dataset_fingerprint fingerprint;
+    weft_sparse_setting setting;
     weft_texel_counts counts;
-    weft_sparse_setting setting = {0};
-    if (report->model == WEFT_COMPRESS_SPARSE) {
-        WEFT_TRY(weft_sparse_material_fit(dataset, options->held_out, progress, material, &setting, &counts,
-                                          &report->masked_count, error));
-    } else {
-        weft_texel_source source = {
-            .layout = layout, .held_out = options->held_out, .options = weft_fit_default_options()};
-        source.options.lobe_count = report->lobe_count;
-        source.options.table = report->model == WEFT_COMPRESS_TABLE;
-        source.options.max_exponent = options->max_exponent;
-        WEFT_TRY(weft_dense_fit(dataset, &source, progress, material, &counts, &report->masked_count, error));
-    }
-    if (counts.empty == counts.texels && !options->held_out)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(dataset));
-    report->texel_count = counts.texels;
-    report->empty_texel_count = counts.empty;
-    report->turned_frame_count = counts.turned;
-    report->second_start_count = counts.second_start;
-    report->sample_count = (long)layout->width * layout->height * used_images(layout, options->held_out);
-    WEFT_TRY(fill_opacity(dataset, material, error));
-    return write_metadata(layout, options, report, &setting, material, error);
+} fitting;
+
+static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_report *report, weft_error *error)
+{
+    const weft_compress_options *options = of->options;
+    identity_text identity;
+    weft_dense_result result;
+    WEFT_TRY(identify(of->dataset, options, report, &of->fingerprint, &identity, error));
+    weft_dense_job job = {.budget = of->budget,
+                          .checkpoint_path = options->checkpoint_path,
+                          .identity = {identity.program, identity.dataset, identity.options},
+                          .note = options->note,
+                          .progress = of->progress};
+    weft_texel_source source = {.layout = weft_dataset_get_layout(of->dataset),
+                                .held_out = options->held_out,
+                                .options = weft_fit_default_options()};
+    source.options.lobe_count = report->lobe_count;
+    source.options.table = report->model == WEFT_COMPRESS_TABLE;
+    source.options.max_exponent = options->max_exponent;
+    WEFT_TRY(weft_dense_fit(of->dataset, &source, &job, material, &result, error));
+    /* What is free is given back to the system, so that writing the material has room. */
+    malloc_trim(0);
+    of->counts = result.counts;
+    report->masked_count = result.masked;
+    report->block_count = (long)result.block_count;
+    report->resumed_block_count = (long)result.resumed_block_count;
+    report->read_bytes = (double)result.times.bytes;
+    report->read_seconds = result.times.reading;
+    report->starved_seconds = result.times.starving;
+    return WEFT_OK;
+}
+
+/* Fields, their halves and the search of compress/sparse_search.h, from above. */
+static uint64_t sparse_bytes(const weft_dataset_layout *layout)
+{
+    uint64_t texels = (uint64_t)layout->width * (uint64_t)layout->height, threads = (uint64_t)omp_get_max_threads();
+    return texels * (64 * (uint64_t)layout->image_count + 128 * threads + 256);
+}
+
+static weft_code fit_sparse(fitting *of, weft_material *material, weft_compress_report *report, weft_error *error)
+{
+    uint64_t bytes = weft_memory_budget_taken(&of->budget) + sparse_bytes(weft_dataset_get_layout(of->dataset));
+    if (bytes > of->budget.limit)
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "'%s' has so few images that all samples are fitted together: that needs %llu MB of memory, "
+                         "more than the limit of %llu MB",
+                         weft_dataset_path(of->dataset), (unsigned long long)(bytes / 1000000 + 1),
+                         (unsigned long long)(of->budget.limit / 1000000));
+    return weft_sparse_material_fit(of->dataset, of->options->held_out, of->progress, material, &of->setting,
+                                    &of->counts, &report->masked_count, error);
+}
+
+static weft_code fit_material(fitting *of, weft_material *material, weft_compress_report *report, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(of->dataset);
+    WEFT_TRY(weft_dataset_fingerprint_take(of->dataset, &of->fingerprint, error));
+    if (report->model == WEFT_COMPRESS_SPARSE)
+        WEFT_TRY(fit_sparse(of, material, report, error));
+    else
+        WEFT_TRY(fit_dense(of, material, report, error));
+    if (of->counts.empty == of->counts.texels && !of->options->held_out)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(of->dataset));
+    report->texel_count = of->counts.texels;
+    report->empty_texel_count = of->counts.empty;
+    report->turned_frame_count = of->counts.turned;
+    report->second_start_count = of->counts.second_start;
+    report->sample_count = (long)layout->width * layout->height * used_images(layout, of->options->held_out);
+    WEFT_TRY(fill_opacity(of->dataset, material, error));
+    return write_metadata(layout, &of->fingerprint, describe_fit(of->options, report, &of->setting), material, error);
 }
 
 static double seconds_now(void)
@@ -201,8 +292,12 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
     double began = seconds_now();
     WEFT_TRY(check_options(dataset, options, error));
     plan(weft_dataset_get_layout(dataset), options, &own);
+    fitting of = {.dataset = dataset,
+                  .options = options,
+                  .progress = progress,
+                  .budget = weft_memory_budget_begin(options->memory_bytes)};
     WEFT_TRY(create_material(weft_dataset_get_layout(dataset), options, &own, material, error));
-    weft_code code = fit_material(dataset, options, progress, material, &own, error);
+    weft_code code = fit_material(&of, material, &own, error);
     if (code != WEFT_OK)
         weft_material_free(material);
     own.seconds = seconds_now() - began;

@@ -5,6 +5,7 @@
 #include "btf/dataset.h"
 #include "btf/material.h"
 #include "btf/progress.h"
+#include "compress/note.h"
 
 #include <stdbool.h>
 
@@ -14,9 +15,13 @@ typedef struct weft_compress_options {
     bool levels;             /* mip levels, each fitted to the mean samples of its groups of texels */
     double max_exponent;     /* N <= this */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
+    /* These change nothing in the result: */
+    uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */
+    const char *checkpoint_path; /* keeps what is done of a dense model until the caller removes it; NULL: none */
+    weft_note note;              /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 
-/* 2 lobes, table, levels, N <= 512, nothing held out. */
+/* 2 lobes, table, levels, N <= 512, nothing held out, a quarter of the memory, no checkpoint. */
 weft_compress_options weft_compress_default_options(void);
 
 /* What the number of samples a texel allows: at least four for every free parameter. */
@@ -36,13 +41,19 @@ typedef struct weft_compress_report {
     long turned_frame_count; /* texels whose frame was fitted rather than the surface's own */
     long second_start_count; /* texels whose fit began with a lobe thrown back to the light rather than mirrored */
     double seconds;
+    long block_count;         /* of a dense model */
+    long resumed_block_count; /* of these, taken from the checkpoint */
+    double read_bytes;        /* of samples and masks */
+    double read_seconds;      /* that the reading thread read */
+    double starved_seconds;   /* that the fit waited for it */
 } weft_compress_report;
 
 /* Fits `material`, which the caller frees with weft_material_free; errors by level are in it. `report` may be NULL. The
- * result does not depend on the number of threads (OpenMP) nor on the order of the images. Memory: bounded, about 150
- * MB plus what 1/1024 of the dataset needs as floats; the sparse model holds all samples. Errors: WEFT_BAD_USAGE for
- * options out of range or where every image is held out; WEFT_BAD_INPUT for a dataset without any valid sample; those
- * of reading; WEFT_SYSTEM for memory. */
+ * result depends neither on the number of threads (OpenMP) nor on the order of the images, the memory allowed or
+ * whether a checkpoint was used. The sparse model holds all samples and keeps no checkpoint. Nothing else may use the
+ * dataset meanwhile. Errors: WEFT_BAD_USAGE for options out of range, where every image is held out, or where the
+ * memory allowed does not suffice; WEFT_BAD_INPUT for a dataset without any valid sample; those of reading; WEFT_SYSTEM
+ * for memory and for a checkpoint that cannot be opened or written, which then keeps what is in it. */
 weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *options, const weft_progress *progress,
                         weft_material *material, weft_compress_report *report, weft_error *error);
 

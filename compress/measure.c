@@ -61,17 +61,79 @@ void weft_error_tally_add(weft_error_tally *tally, float sample, float predictio
         tally->largest = sample;
 }
 
+/* Magnitudes of one bin of the threshold. */
+enum { FINE_BINS = MAGNITUDE_BINS / THRESHOLD_BINS };
+
+/* Few of the magnitudes that a float can have occur: the others need not be looked at. */
+static bool row_is_empty(const weft_error_tally *tally, int row)
+{
+    uint64_t any = 0;
+    for (int i = row * FINE_BINS; i < (row + 1) * FINE_BINS; i++)
+        any |= tally->magnitude[i];
+    return any == 0;
+}
+
 void weft_error_tally_merge(weft_error_tally *tally, weft_error_tally *other)
 {
-    for (int i = 0; i < MAGNITUDE_BINS; i++)
-        tally->magnitude[i] += other->magnitude[i];
-    for (int i = 0; i < THRESHOLD_BINS; i++) {
+    for (int row = 0; row < THRESHOLD_BINS; row++) {
+        if (row_is_empty(other, row))
+            continue;
+        for (int i = row * FINE_BINS; i < (row + 1) * FINE_BINS; i++)
+            tally->magnitude[i] += other->magnitude[i];
         for (int j = 0; j < RELATIVE_BINS; j++)
-            tally->relative[i][j] += other->relative[i][j];
+            tally->relative[row][j] += other->relative[row][j];
+        memset(other->magnitude + row * FINE_BINS, 0, FINE_BINS * sizeof other->magnitude[0]);
+        memset(other->relative[row], 0, sizeof other->relative[row]);
     }
     if (other->largest > tally->largest)
         tally->largest = other->largest;
-    memset(other, 0, sizeof *other);
+    other->largest = 0;
+}
+
+/* ---- In a file ---- */
+
+/* Bins are numbered: the largest sample (its count is its bits), magnitudes, relative errors row by row. */
+enum { MAGNITUDE_FROM = 1, RELATIVE_FROM = MAGNITUDE_FROM + MAGNITUDE_BINS };
+
+static size_t put_entry(uint32_t (*entry)[2], size_t at, int bin, uint32_t count)
+{
+    if (count == 0)
+        return at;
+    if (entry) {
+        entry[at][0] = (uint32_t)bin;
+        entry[at][1] = count;
+    }
+    return at + 1;
+}
+
+size_t weft_error_tally_entries(const weft_error_tally *tally, uint32_t (*entry)[2])
+{
+    size_t n = put_entry(entry, 0, 0, bits_of(tally->largest));
+    for (int row = 0; row < THRESHOLD_BINS; row++) {
+        if (row_is_empty(tally, row))
+            continue;
+        for (int i = row * FINE_BINS; i < (row + 1) * FINE_BINS; i++)
+            n = put_entry(entry, n, MAGNITUDE_FROM + i, (uint32_t)tally->magnitude[i]);
+        for (int j = 0; j < RELATIVE_BINS; j++)
+            n = put_entry(entry, n, RELATIVE_FROM + row * RELATIVE_BINS + j, tally->relative[row][j]);
+    }
+    return n;
+}
+
+bool weft_error_tally_add_entries(weft_error_tally *tally, uint32_t (*entry)[2], size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bin = entry[i][0], n = entry[i][1];
+        if (bin == 0)
+            tally->largest = fmaxf(tally->largest, float_of(n));
+        else if (bin < RELATIVE_FROM)
+            tally->magnitude[bin - MAGNITUDE_FROM] += n;
+        else if (bin < RELATIVE_FROM + THRESHOLD_BINS * RELATIVE_BINS)
+            tally->relative[(bin - RELATIVE_FROM) / RELATIVE_BINS][(bin - RELATIVE_FROM) % RELATIVE_BINS] += n;
+        else
+            return false;
+    }
+    return true;
 }
 
 void weft_error_sums_add(weft_error_sums *sums, const weft_error_sums *other)

@@ -5,6 +5,8 @@
 #include "btf/material.h"
 #include "btf/status.h"
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* Counts of samples by magnitude and by relative error; owned by the caller. Counting commutes, so that tallies of
@@ -19,6 +21,13 @@ void weft_error_tally_add(weft_error_tally *tally, float sample, float predictio
 
 /* Adds all counts of `other` and clears them. */
 void weft_error_tally_merge(weft_error_tally *tally, weft_error_tally *other);
+
+/* The counts that are not 0, for keeping them in a file: entry [n][2] is a bin and its count. Returns n; `entry` may be
+ * NULL to learn it first. */
+size_t weft_error_tally_entries(const weft_error_tally *tally, uint32_t (*entry)[2]);
+
+/* Adds such counts. False, with some of them added, where a bin does not exist. */
+bool weft_error_tally_add_entries(weft_error_tally *tally, uint32_t (*entry)[2], size_t count);
 
 /* Sums of squares; add them in a fixed order to get the same bits every time. */
 typedef struct weft_error_sums {

@@ -87,3 +87,15 @@ uint64_t weft_memory_allocated(void)
     struct mallinfo2 info = mallinfo2();
     return info.uordblks + info.hblkhd;
 }
+
+weft_memory_budget weft_memory_budget_begin(uint64_t limit)
+{
+    uint64_t resident = weft_memory_resident(), allocated = weft_memory_allocated();
+    return (weft_memory_budget){.limit = limit > 0 ? limit : weft_memory_default(),
+                                .overhead = resident > allocated ? resident - allocated : 0};
+}
+
+uint64_t weft_memory_budget_taken(const weft_memory_budget *budget)
+{
+    return budget->overhead + weft_memory_allocated();
+}

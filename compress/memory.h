@@ -14,4 +14,16 @@ uint64_t weft_memory_resident(void);
 /* Bytes that malloc has handed out and not got back, touched or not. */
 uint64_t weft_memory_allocated(void);
 
+/* How much memory a computation may take. */
+typedef struct weft_memory_budget {
+    uint64_t limit;    /* of the whole process */
+    uint64_t overhead; /* what is resident besides memory from malloc: code, libraries, stacks */
+} weft_memory_budget;
+
+/* limit 0 stands for weft_memory_default. Call it before anything large is allocated. */
+weft_memory_budget weft_memory_budget_begin(uint64_t limit);
+
+/* Bytes of the limit that are taken, counting all memory from malloc as if it had been touched. */
+uint64_t weft_memory_budget_taken(const weft_memory_budget *budget);
+
 #endif

@@ -1,6 +1,6 @@
 #include "compress/pyramid.h"
 
-#include <omp.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,8 +27,7 @@ uint64_t weft_pyramid_bytes(size_t image_count, int side_level, int last_level, 
 weft_code weft_pyramid_create(const weft_block_plan *plan, const uint8_t *held_out, size_t image_count,
                               int thread_count, weft_pyramid *pyramid, weft_error *error)
 {
-    *pyramid = (weft_pyramid){
-        .plan = plan, .held_out = held_out, .image_count = image_count, .thread_count = thread_count};
+    *pyramid = (weft_pyramid){.plan = plan, .held_out = held_out, .image_count = image_count};
     size_t floats = 4 * image_count;
     pyramid->scratch = calloc((size_t)thread_count * floats, sizeof(float));
     bool complete = pyramid->scratch != NULL;
@@ -60,47 +59,57 @@ weft_block_place weft_block_place_at(const weft_block_place *block, int level)
 
 /* ---- Inside a block ---- */
 
-static void add_texel(const weft_pyramid *pyramid, const weft_texel_block *block, int x, int y, float *group)
+static void add_texel(const weft_pyramid *pyramid, const weft_texel_block *block, int x, int y, int thread,
+                      float *group)
 {
     size_t images = pyramid->image_count;
     size_t at = ((size_t)y * (size_t)block->place.width + (size_t)x) * images;
-    float *texel = pyramid->scratch + (size_t)omp_get_thread_num() * 4 * images;
+    float *texel = pyramid->scratch + (size_t)thread * 4 * images;
     weft_group_of_texel(block->samples + 3 * at, block->mask + at, pyramid->held_out, images, texel);
     weft_group_add(texel, images, group);
 }
 
-/* Group (x, y) of a level, counted from the corner of the block, from the four (or fewer) below it. */
-static void sum_group(const weft_pyramid *pyramid, const weft_texel_block *block, int level, int x, int y, int width)
+/* The groups of one level of a block. */
+typedef struct level_sums {
+    const weft_pyramid *pyramid;
+    const weft_texel_block *block;
+    int level;
+    weft_block_place own, below; /* the block at this level and the one below */
+} level_sums;
+
+/* A group from the four (or fewer) below it. */
+static void sum_group(void *context, long item, int thread)
 {
+    const level_sums *of = context;
+    const weft_pyramid *pyramid = of->pyramid;
     size_t floats = 4 * pyramid->image_count;
-    weft_block_place below = weft_block_place_at(&block->place, level - 1);
-    float *group = pyramid->level[level] + ((size_t)y * (size_t)width + (size_t)x) * floats;
+    int x = (int)(item % of->own.width), y = (int)(item / of->own.width);
+    float *group = pyramid->level[of->level] + (size_t)item * floats;
     memset(group, 0, floats * sizeof *group);
-    for (int row = 2 * y; row < 2 * y + 2 && row < below.height; row++) {
-        for (int column = 2 * x; column < 2 * x + 2 && column < below.width; column++) {
-            size_t child = (size_t)row * (size_t)below.width + (size_t)column;
-            if (level == 1)
-                add_texel(pyramid, block, column, row, group);
+    for (int row = 2 * y; row < 2 * y + 2 && row < of->below.height; row++) {
+        for (int column = 2 * x; column < 2 * x + 2 && column < of->below.width; column++) {
+            size_t child = (size_t)row * (size_t)of->below.width + (size_t)column;
+            if (of->level == 1)
+                add_texel(pyramid, of->block, column, row, thread, group);
             else
-                weft_group_add(pyramid->level[level - 1] + child * floats, pyramid->image_count, group);
+                weft_group_add(pyramid->level[of->level - 1] + child * floats, pyramid->image_count, group);
         }
     }
 }
 
-void weft_pyramid_sum_block(weft_pyramid *pyramid, const weft_texel_block *block)
+void weft_pyramid_sum_block(weft_pyramid *pyramid, weft_crew *crew, const weft_texel_block *block)
 {
     const weft_block_plan *plan = pyramid->plan;
     if (plan->last_level == 0)
         return;
     if (plan->side_level == 0) {
         memset(pyramid->level[0], 0, 4 * pyramid->image_count * sizeof(float));
-        add_texel(pyramid, block, 0, 0, pyramid->level[0]);
+        add_texel(pyramid, block, 0, 0, 0, pyramid->level[0]);
     }
     for (int level = 1; level <= plan->side_level; level++) {
-        weft_block_place own = weft_block_place_at(&block->place, level);
-#pragma omp parallel for schedule(static) num_threads(pyramid->thread_count)
-        for (int i = 0; i < own.width * own.height; i++)
-            sum_group(pyramid, block, level, i % own.width, i / own.width, own.width);
+        level_sums sums = {pyramid, block, level, weft_block_place_at(&block->place, level),
+                           weft_block_place_at(&block->place, level - 1)};
+        weft_crew_run(crew, sum_group, &sums, (long)sums.own.width * sums.own.height);
     }
 }
 

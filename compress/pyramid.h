@@ -5,15 +5,15 @@
 
 #include "btf/material.h"
 #include "compress/block_plan.h"
+#include "compress/crew.h"
 #include "compress/group_sums.h"
 
 typedef struct weft_pyramid {
     const weft_block_plan *plan;
     const uint8_t *held_out;
     size_t image_count;
-    int thread_count;
     float *level[WEFT_MATERIAL_MAX_LEVELS]; /* groups: up to the level of the block all of its own, above it one each */
-    float *scratch;                         /* a group a thread */
+    float *scratch;                         /* [thread_count] groups */
 } weft_pyramid;
 
 /* Bytes that a pyramid allocates. Pure. */
@@ -27,8 +27,8 @@ void weft_pyramid_free(weft_pyramid *pyramid);
 /* The texels of a level that belong to a block: x, y, width, height in texels of that level. Pure. */
 weft_block_place weft_block_place_at(const weft_block_place *block, int level);
 
-/* Sums the groups of a block from its samples. */
-void weft_pyramid_sum_block(weft_pyramid *pyramid, const weft_texel_block *block);
+/* Sums the groups of a block from its samples. `crew` has at most thread_count threads. */
+void weft_pyramid_sum_block(weft_pyramid *pyramid, weft_crew *crew, const weft_texel_block *block);
 
 /* The sums of the whole block, which weft_pyramid_sum_block has filled in, or the caller. NULL for a material without
  * levels. */

@@ -1,0 +1,18 @@
+/* By what a dataset is recognised: a material keeps the fingerprint of the one it was made from, and an interrupted
+ * fit that of the one it was reading. */
+#ifndef WEFT_BTF_DATASET_FINGERPRINT_H
+#define WEFT_BTF_DATASET_FINGERPRINT_H
+
+#include "btf/dataset.h"
+
+typedef struct weft_dataset_fingerprint {
+    uint32_t layout;  /* CRC-32 of sizes, conventions, texel pitch, lights and views; not of the provenance */
+    uint32_t samples; /* CRC-32 of samples and masks of 16 texels spread over the material */
+} weft_dataset_fingerprint;
+
+/* Reads a few megabytes at most for the usual 81 x 81 images. Not thread-safe. Errors: those of
+ * weft_dataset_read_block. */
+weft_code weft_dataset_fingerprint_take(weft_dataset *dataset, weft_dataset_fingerprint *fingerprint,
+                                        weft_error *error);
+
+#endif
