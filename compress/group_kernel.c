@@ -3,11 +3,20 @@
 
 #include "btf/lanes.h"
 
+#if defined(__F16C__)
+#include <immintrin.h>
+#endif
+
 WEFT_DECLARE_GROUP_KERNELS(WEFT_INSTRUCTION_SET);
 
 void WEFT_KERNEL(weft_group_convert)(const weft_half *half, size_t count, float *result)
 {
-    for (size_t i = 0; i < count; i++)
+    size_t i = 0;
+#if defined(__F16C__)
+    for (; i + 8 <= count; i += 8)
+        _mm256_storeu_ps(result + i, _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)(half + i))));
+#endif
+    for (; i < count; i++)
         result[i] = weft_float_of_half(half[i]);
 }
 

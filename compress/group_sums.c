@@ -24,20 +24,32 @@ static void convert(const weft_half *half, size_t count, float *result)
         weft_group_convert_baseline(half, count, result);
 }
 
+/* Forgets the samples that do not count. */
+static long drop_masked(const uint8_t *mask, const uint8_t *held_out, size_t image_count, float *group)
+{
+    long masked = 0;
+    float *count = group + 3 * image_count;
+    for (size_t i = 0; i < image_count; i++) {
+        int held = held_out && held_out[i];
+        masked += mask[i] && !held;
+        if (!mask[i] && !held)
+            continue;
+        count[i] = 0;
+        memset(group + 3 * i, 0, 3 * sizeof *group);
+    }
+    return masked;
+}
+
 long weft_group_of_texel(const weft_half *samples, const uint8_t *mask, const uint8_t *held_out, size_t image_count,
                          float *group)
 {
-    long masked = 0;
     convert(samples, 3 * image_count, group);
-    float *count = group + 3 * image_count;
+    unsigned any = held_out != NULL;
     for (size_t i = 0; i < image_count; i++) {
-        int held = held_out && held_out[i], valid = !mask[i] && !held;
-        count[i] = (float)valid;
-        masked += mask[i] && !held;
-        if (!valid)
-            memset(group + 3 * i, 0, 3 * sizeof *group);
+        group[3 * image_count + i] = 1;
+        any |= mask[i];
     }
-    return masked;
+    return any ? drop_masked(mask, held_out, image_count, group) : 0;
 }
 
 void weft_group_add(const float *from, size_t image_count, float *to)
