@@ -10,6 +10,7 @@ static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent =
 
 enum { START_COUNT = 2, START_PASSES = 4 };
 
+#define GOOD_ENOUGH 0.1 /* of the energy: no further start is tried below */
 #define START_TOLERANCE 1e-2
 #define HOPELESS 3 /* a start whose first residual is so many times that of the first start is not followed */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
@@ -34,6 +35,9 @@ static weft_fit try_starts(const weft_bundle *bundle, const weft_samples *sample
     double first_residual = INFINITY;
     int passes = 0;
     for (int start = 0; start < (options->lobe_count ? START_COUNT : 1); start++) {
+        /* A quarter of the lights hold a quarter of the energy. */
+        if (best.residual < GOOD_ENOUGH * samples->energy[channel] / 4)
+            break;
         now->fit = (weft_fit){.frame = *frame};
         place_start(start, options->lobe_count, &now->fit);
         weft_workspace_begin_cold(bundle, samples, channel, options, now);

@@ -45,6 +45,15 @@ static parameters parameters_of(const weft_trial *trial, const double *x)
     return own;
 }
 
+/* A function for a number of lobes that the compiler knows, so that its loops unroll. */
+#define FOR_LOBES(count, function, ...)                                                                                \
+    ((count) == 0   ? function(0, __VA_ARGS__)                                                                         \
+     : (count) == 1 ? function(1, __VA_ARGS__)                                                                         \
+     : (count) == 2 ? function(2, __VA_ARGS__)                                                                         \
+                    : function(3, __VA_ARGS__))
+
+#define UNROLL _Pragma("GCC unroll 16")
+
 /* ---- Linear parameters ---- */
 
 /* The linear rows of the views of one vector. */
@@ -59,9 +68,9 @@ typedef struct view_state {
     lanes eliminated; /* 1 where T follows f, 0 where it is fixed */
 } view_state;
 
-WEFT_INLINE linear_lanes load_linear(const weft_trial *trial, int stride, int view)
+WEFT_INLINE linear_lanes load_linear(const weft_trial *trial, int lobes, int stride, int view)
 {
-    int count = trial->fit.lobe_count + 1;
+    int count = lobes + 1;
     linear_lanes own;
     for (int j = 0; j < count; j++) {
         own.error[j] = lanes_load(trial->linear + (WEFT_LINEAR_ERROR + j) * stride + view);
@@ -78,9 +87,9 @@ WEFT_INLINE lanes larger(lanes a, float b)
     return lanes_select(a > b, a, lanes_of(b));
 }
 
-WEFT_INLINE view_state state_of(const linear_lanes *own, const parameters *at, bool with_table)
+WEFT_INLINE view_state state_of(const linear_lanes *own, const parameters *at, int lobes, bool with_table)
 {
-    int count = at->lobe_count + 1;
+    int count = lobes + 1;
     view_state state = {.t = lanes_of(1)};
     lanes fr = {0};
     for (int j = 0; j < count; j++) {
@@ -110,14 +119,14 @@ WEFT_INLINE view_state state_of(const linear_lanes *own, const parameters *at, b
     return state;
 }
 
-double WEFT_KERNEL(weft_views_residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
-                                        const weft_linear *linear, float *table)
+WEFT_INLINE double residual_of(int lobes, const weft_bundle *bundle, const weft_trial *trial, bool with_table,
+                               const weft_linear *linear, float *table)
 {
     parameters at = parameters_of(trial, linear->x);
     double sum = 0;
     for (int view = 0; view < bundle->view_stride; view += LANES) {
-        linear_lanes own = load_linear(trial, bundle->view_stride, view);
-        view_state state = state_of(&own, &at, with_table);
+        linear_lanes own = load_linear(trial, lobes, bundle->view_stride, view);
+        view_state state = state_of(&own, &at, lobes, with_table);
         sum += (double)lanes_sum(state.residual);
         if (table)
             lanes_store(table + view, state.t);
@@ -125,27 +134,34 @@ double WEFT_KERNEL(weft_views_residual)(const weft_bundle *bundle, const weft_tr
     return sum;
 }
 
-void WEFT_KERNEL(weft_views_linear_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
-                                           const weft_linear *linear, double *h, double *g)
+double WEFT_KERNEL(weft_views_residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
+                                        const weft_linear *linear, float *table)
 {
-    int n = trial->fit.lobe_count + 1;
+    return FOR_LOBES(trial->fit.lobe_count, residual_of, bundle, trial, with_table, linear, table);
+}
+
+WEFT_INLINE void linear_normal_of(int lobes, const weft_bundle *bundle, const weft_trial *trial, bool with_table,
+                                  const weft_linear *linear, double *h, double *g)
+{
+    const int n = lobes + 1;
     const double *x = linear->x;
     parameters at = parameters_of(trial, x);
     lanes h_sum[WEFT_LINEAR_MAX][WEFT_LINEAR_MAX] = {{{0}}}, g_sum[WEFT_LINEAR_MAX] = {{0}}, scale = {0};
     for (int view = 0; view < bundle->view_stride; view += LANES) {
-        linear_lanes own = load_linear(trial, bundle->view_stride, view);
-        view_state state = state_of(&own, &at, with_table);
+        linear_lanes own = load_linear(trial, lobes, bundle->view_stride, view);
+        view_state state = state_of(&own, &at, lobes, with_table);
         lanes s[WEFT_LINEAR_MAX] = {{0}}, t2 = state.t * state.t;
         lanes shrink = state.eliminated / lanes_select(state.eliminated > 0, state.ff, lanes_of(1));
-        for (int j = 0; j < n; j++) {
+        UNROLL for (int j = 0; j < n; j++)
+        {
             lanes error = own.error[j];
-            for (int k = 0; k < n; k++) {
+            UNROLL for (int k = 0; k < n; k++)
+            {
                 s[j] += own.gram[j][k] * at.x[k];
                 error += own.gram[j][k] * state.delta[k];
             }
             g_sum[j] += state.t * error;
-            for (int k = 0; k <= j; k++)
-                h_sum[j][k] += t2 * (own.gram[j][k] - s[j] * s[k] * shrink);
+            UNROLL for (int k = 0; k <= j; k++) h_sum[j][k] += t2 * (own.gram[j][k] - s[j] * s[k] * shrink);
         }
         scale += state.eliminated * t2 * state.ff;
     }
@@ -160,6 +176,12 @@ void WEFT_KERNEL(weft_views_linear_normal)(const weft_bundle *bundle, const weft
     }
 }
 
+void WEFT_KERNEL(weft_views_linear_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
+                                           const weft_linear *linear, double *h, double *g)
+{
+    FOR_LOBES(trial->fit.lobe_count, linear_normal_of, bundle, trial, with_table, linear, h, g);
+}
+
 /* ---- Directions of a vector of views ---- */
 
 typedef struct view_lanes {
@@ -168,7 +190,7 @@ typedef struct view_lanes {
     lanes m[WEFT_GRAM_LOBES][3]; /* R^T diag(c) v' */
 } view_lanes;
 
-WEFT_INLINE view_lanes lanes_of_views(const weft_bundle *bundle, const parameters *at, int view)
+WEFT_INLINE view_lanes lanes_of_views(const weft_bundle *bundle, const parameters *at, int lobes, int view)
 {
     view_lanes own;
     lanes v[3];
@@ -176,7 +198,7 @@ WEFT_INLINE view_lanes lanes_of_views(const weft_bundle *bundle, const parameter
         v[k] = lanes_load(bundle->view_xyz[k] + view);
     for (int k = 0; k < 3; k++)
         own.local[k] = at->rows[k][0] * v[0] + at->rows[k][1] * v[1] + at->rows[k][2] * v[2];
-    for (int i = 0; i < at->lobe_count; i++) {
+    for (int i = 0; i < lobes; i++) {
         for (int k = 0; k < 3; k++)
             own.p[i][k] = at->c[i][k] * own.local[k];
         for (int k = 0; k < 3; k++)
@@ -213,29 +235,30 @@ WEFT_INLINE combination linear_column(int j, const view_lanes *own)
     return (combination){3, {first, first + 1, first + 2}, {m[0], m[1], m[2]}};
 }
 
-double WEFT_KERNEL(weft_views_digest)(const weft_bundle *bundle, weft_trial *trial)
+WEFT_INLINE double digest_of(int lobes, const weft_bundle *bundle, weft_trial *trial)
 {
-    const weft_fit *fit = &trial->fit;
-    int n = fit->lobe_count + 1, columns = weft_gram_columns(fit->lobe_count), e = columns - 1;
+    const int n = lobes + 1, columns = weft_gram_columns(lobes), e = columns - 1;
     int stride = bundle->view_stride;
     lanes strength[WEFT_LINEAR_MAX] = {{0}}, energy = {0}, model_energy = {0};
     parameters at = parameters_of(trial, trial->at.x);
     for (int view = 0; view < stride; view += LANES) {
         lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS];
-        view_lanes own = lanes_of_views(bundle, &at, view);
+        view_lanes own = lanes_of_views(bundle, &at, lobes, view);
         load_products(trial->sums, columns, stride, view, product);
-        for (int j = 0; j < n; j++) {
+        UNROLL for (int j = 0; j < n; j++)
+        {
             combination a = linear_column(j, &own);
             lanes error = {0};
-            for (int i = 0; i < a.count; i++)
-                error += a.weight[i] * product[a.column[i]][e];
+            UNROLL for (int i = 0; i < a.count; i++) error += a.weight[i] * product[a.column[i]][e];
             lanes_store(trial->linear + (WEFT_LINEAR_ERROR + j) * stride + view, error);
-            for (int k = 0; k <= j; k++) {
+            UNROLL for (int k = 0; k <= j; k++)
+            {
                 combination b = linear_column(k, &own);
                 lanes sum = {0};
-                for (int i = 0; i < a.count; i++) {
-                    for (int l = 0; l < b.count; l++)
-                        sum += a.weight[i] * b.weight[l] * product[a.column[i]][b.column[l]];
+                UNROLL for (int i = 0; i < a.count; i++)
+                {
+                    UNROLL for (int l = 0; l < b.count; l++) sum +=
+                        a.weight[i] * b.weight[l] * product[a.column[i]][b.column[l]];
                 }
                 lanes_store(trial->linear + weft_linear_gram(j, k) * stride + view, sum);
                 strength[j] += j == k ? sum : lanes_of(0);
@@ -245,10 +268,14 @@ double WEFT_KERNEL(weft_views_digest)(const weft_bundle *bundle, weft_trial *tri
         lanes_store(trial->linear + WEFT_LINEAR_SQUARE * stride + view, product[e][e]);
         energy += product[e][e];
     }
-    for (int j = 0; j < n; j++)
-        trial->strength[j] = (double)lanes_sum(strength[j]);
+    UNROLL for (int j = 0; j < n; j++) trial->strength[j] = (double)lanes_sum(strength[j]);
     trial->energy = (double)lanes_sum(energy);
     return (double)lanes_sum(model_energy);
+}
+
+double WEFT_KERNEL(weft_views_digest)(const weft_bundle *bundle, weft_trial *trial)
+{
+    return FOR_LOBES(trial->fit.lobe_count, digest_of, bundle, trial);
 }
 
 /* ---- All parameters ---- */
@@ -291,13 +318,13 @@ WEFT_INLINE void cross_axis(const lanes *a, int k, lanes *result)
 }
 
 /* A small rotation w turns l' into l' + w x l' and v' likewise: db = l' . (p x w + c o (w x v')). */
-WEFT_INLINE void frame_derivatives(const parameters *at, const view_lanes *own, derivative *by)
+WEFT_INLINE void frame_derivatives(const parameters *at, int lobes, const view_lanes *own, derivative *by)
 {
     for (int k = 0; k < 3; k++) {
         lanes moved[3];
         cross_axis(own->local, k, moved); /* v' x w, the negative of what is wanted */
-        by[k].count = 3 * at->lobe_count;
-        for (int i = 0; i < at->lobe_count; i++) {
+        by[k].count = 3 * lobes;
+        for (int i = 0; i < lobes; i++) {
             lanes turned[3];
             cross_axis(own->p[i], k, turned);
             for (int axis = 0; axis < 3; axis++) {
@@ -312,20 +339,20 @@ WEFT_INLINE void frame_derivatives(const parameters *at, const view_lanes *own, 
 }
 
 /* f and r - T f as combinations of the columns. */
-WEFT_INLINE void expand_columns(const parameters *at, const view_lanes *own, const view_state *state, lanes *f,
-                                lanes *error)
+WEFT_INLINE void expand_columns(const parameters *at, int lobes, const view_lanes *own, const view_state *state,
+                                lanes *f, lanes *error)
 {
     f[0] = lanes_of(at->x[0]);
     error[0] = state->delta[0];
-    for (int i = 0; i < at->lobe_count; i++) {
+    for (int i = 0; i < lobes; i++) {
         for (int k = 0; k < 3; k++) {
             f[1 + 4 * i + k] = at->x[1 + i] * own->m[i][k];
             error[1 + 4 * i + k] = state->delta[1 + i] * own->m[i][k];
         }
         f[4 + 4 * i] = error[4 + 4 * i] = lanes_of(0);
     }
-    f[1 + 4 * at->lobe_count] = lanes_of(0);
-    error[1 + 4 * at->lobe_count] = lanes_of(1);
+    f[1 + 4 * lobes] = lanes_of(0);
+    error[1 + 4 * lobes] = lanes_of(1);
 }
 
 /* Sums over the vectors of views. */
@@ -341,10 +368,10 @@ WEFT_INLINE void add_views(int n, const derivative *by, lanes product[WEFT_GRAM_
     lanes shrink = state->eliminated / lanes_select(state->eliminated > 0, state->ff, lanes_of(1));
     for (int p = 0; p < n; p++) {
         lanes along = {0}, against = {0};
-        for (int c = 0; c < columns; c++) {
+        UNROLL for (int c = 0; c < columns; c++)
+        {
             lanes sum = {0};
-            for (int k = 0; k < by[p].count; k++)
-                sum += by[p].weight[k] * product[by[p].column[k]][c];
+            UNROLL for (int k = 0; k < by[p].count; k++) sum += by[p].weight[k] * product[by[p].column[k]][c];
             of[p][c] = sum;
             along += sum * f[c];
             against += sum * error[c];
@@ -353,40 +380,35 @@ WEFT_INLINE void add_views(int n, const derivative *by, lanes product[WEFT_GRAM_
         sums->g[p] += state->t * against;
         for (int q = 0; q <= p; q++) {
             lanes sum = -s[p] * s[q] * shrink;
-            for (int k = 0; k < by[q].count; k++)
-                sum += of[p][by[q].column[k]] * by[q].weight[k];
+            UNROLL for (int k = 0; k < by[q].count; k++) sum += of[p][by[q].column[k]] * by[q].weight[k];
             sums->h[p][q] += t2 * sum;
         }
     }
 }
 
-double WEFT_KERNEL(weft_views_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,
-                                      weft_normal *normal)
+WEFT_INLINE double normal_of(int lobes, const weft_bundle *bundle, const weft_trial *trial, bool with_table,
+                             bool rotate, weft_normal *normal)
 {
-    const weft_fit *fit = &trial->fit;
-    int n = normal->n, columns = weft_gram_columns(fit->lobe_count);
-    double x[WEFT_LINEAR_MAX] = {fit->diffuse};
+    const int columns = weft_gram_columns(lobes), n = 1 + 4 * lobes + (rotate ? 3 : 0);
+    double x[WEFT_LINEAR_MAX] = {trial->fit.diffuse};
     lanes scale = {0};
     normal_lanes sums;
     memset(&sums, 0, sizeof sums);
-    for (int i = 0; i < fit->lobe_count; i++)
-        x[1 + i] = fit->lobe[i].amplitude;
+    for (int i = 0; i < lobes; i++)
+        x[1 + i] = trial->fit.lobe[i].amplitude;
     parameters at = parameters_of(trial, x);
     for (int view = 0; view < bundle->view_stride; view += LANES) {
         lanes product[WEFT_GRAM_COLUMNS][WEFT_GRAM_COLUMNS], f[WEFT_GRAM_COLUMNS], error[WEFT_GRAM_COLUMNS];
-        derivative by[WEFT_SOLVE_MAX];
-        by[0].count = 1;
-        by[0].column[0] = 0;
-        by[0].weight[0] = lanes_of(1);
-        linear_lanes linear = load_linear(trial, bundle->view_stride, view);
-        view_state state = state_of(&linear, &at, with_table);
-        view_lanes own = lanes_of_views(bundle, &at, view);
+        derivative by[WEFT_SOLVE_MAX] = {{.count = 1, .weight = {lanes_of(1)}}};
+        linear_lanes linear = load_linear(trial, lobes, bundle->view_stride, view);
+        view_state state = state_of(&linear, &at, lobes, with_table);
+        view_lanes own = lanes_of_views(bundle, &at, lobes, view);
         load_products(trial->sums, columns, bundle->view_stride, view, product);
-        for (int i = 0; i < fit->lobe_count; i++)
+        for (int i = 0; i < lobes; i++)
             lobe_derivatives(&at, i, &own, by + 1 + 4 * i);
-        if (rotate && fit->lobe_count)
-            frame_derivatives(&at, &own, by + 1 + 4 * fit->lobe_count);
-        expand_columns(&at, &own, &state, f, error);
+        if (rotate)
+            frame_derivatives(&at, lobes, &own, by + 1 + 4 * lobes);
+        expand_columns(&at, lobes, &own, &state, f, error);
         add_views(n, by, product, f, error, &state, columns, &sums);
         scale += state.eliminated * state.t * state.t * state.ff;
     }
@@ -396,4 +418,12 @@ double WEFT_KERNEL(weft_views_normal)(const weft_bundle *bundle, const weft_tria
             normal->h[p * n + q] = (double)lanes_sum(sums.h[p][q]);
     }
     return (double)lanes_sum(scale);
+}
+
+double WEFT_KERNEL(weft_views_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,
+                                      weft_normal *normal)
+{
+    int lobes = trial->fit.lobe_count;
+    return rotate && lobes ? FOR_LOBES(lobes, normal_of, bundle, trial, with_table, true, normal)
+                           : FOR_LOBES(lobes, normal_of, bundle, trial, with_table, false, normal);
 }
