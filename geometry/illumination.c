@@ -1,0 +1,251 @@
+#include "geometry/illumination.h"
+
+#include "btf/material.h"
+#include "geometry/fibre.h"
+#include "geometry/ray_scene.h"
+#include "geometry/sample_sequence.h"
+#include "reflectance/lafortune.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Rays start this far above the surface, in cells of the grid. */
+#define RAY_OFFSET 1e-3
+
+/* Visibility at a vertex is found this far above it, in cells, where the facets round it do not hide grazing lights. */
+#define VERTEX_OFFSET 0.05
+
+/* A path that carries less than this part of the light is over. */
+#define NEGLIGIBLE 1e-4
+
+struct weft_illumination {
+    const weft_stitch *stitch;
+    ray_scene *scene;
+    weft_illumination_options options;
+    int light_count;
+    weft_vec3 *light;
+    uint8_t *lit_vertex; /* [vertex_count][light_count] 1 where the light is seen; NULL when not needed */
+};
+
+/* A vertex of a path. */
+typedef struct path_vertex {
+    ray_hit hit;
+    weft_vec3 tangent;
+    const weft_fibre *fibre;
+    weft_fibre_view seen;
+} path_vertex;
+
+static weft_vec3 vertex_vector(const float *from)
+{
+    return weft_vec3_of(from[0], from[1], from[2]);
+}
+
+static weft_vec3 above(const weft_tile_mesh *mesh, weft_vec3 at, weft_vec3 normal, weft_real cells)
+{
+    return weft_add(at, weft_scale(normal, cells * (weft_real)mesh->cell));
+}
+
+static weft_code find_visibility(weft_illumination *illumination, weft_error *error)
+{
+    const weft_tile_mesh *mesh = ray_scene_mesh(illumination->scene);
+    size_t lights = (size_t)illumination->light_count, size = lights * (size_t)mesh->vertex_count;
+    uint8_t *wanted = malloc(lights);
+    illumination->lit_vertex = malloc(size);
+    if (!wanted || !illumination->lit_vertex) {
+        free(wanted);
+        return weft_fail_memory(error, "visibility of the lights", size);
+    }
+    memset(wanted, 1, lights);
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int i = 0; i < mesh->vertex_count; i++) {
+        weft_vec3 from =
+            above(mesh, vertex_vector(mesh->position[i]), vertex_vector(mesh->normal[i]), (weft_real)VERTEX_OFFSET);
+        ray_scene_lit(illumination->scene, from, illumination->light, illumination->light_count, wanted,
+                      illumination->lit_vertex + (size_t)i * lights);
+    }
+    free(wanted);
+    return WEFT_OK;
+}
+
+static weft_code prepare(weft_illumination *illumination, const weft_tile_mesh *mesh, const weft_vec3 *light,
+                         weft_error *error)
+{
+    size_t size = (size_t)illumination->light_count * sizeof *light;
+    illumination->light = malloc(size);
+    if (!illumination->light)
+        return weft_fail_memory(error, "lights", size);
+    memcpy(illumination->light, light, size);
+    WEFT_TRY(ray_scene_create(mesh, &illumination->scene, error));
+    if (illumination->options.bounces > 0 && !illumination->options.exact)
+        return find_visibility(illumination, error);
+    return WEFT_OK;
+}
+
+weft_code weft_illumination_create(const weft_stitch *stitch, const weft_tile_mesh *mesh, const weft_vec3 *light,
+                                   int light_count, const weft_illumination_options *options,
+                                   weft_illumination **result, weft_error *error)
+{
+    *result = NULL;
+    if (light_count < 1 || light_count > WEFT_ILLUMINATION_MAX_LIGHTS)
+        return weft_fail(error, WEFT_BAD_USAGE, "%d lights: 1 to %d can be simulated", light_count,
+                         WEFT_ILLUMINATION_MAX_LIGHTS);
+    if (options->bounces < 0 || options->bounces > WEFT_ILLUMINATION_MAX_BOUNCES)
+        return weft_fail(error, WEFT_BAD_USAGE, "%d bounces: 0 to %d can be simulated", options->bounces,
+                         WEFT_ILLUMINATION_MAX_BOUNCES);
+    weft_illumination *illumination = calloc(1, sizeof *illumination);
+    if (!illumination)
+        return weft_fail_memory(error, "illumination", sizeof *illumination);
+    illumination->stitch = stitch;
+    illumination->options = *options;
+    illumination->light_count = light_count;
+    weft_code code = prepare(illumination, mesh, light, error);
+    if (code != WEFT_OK) {
+        weft_illumination_free(illumination);
+        return code;
+    }
+    *result = illumination;
+    return WEFT_OK;
+}
+
+void weft_illumination_free(weft_illumination *illumination)
+{
+    if (!illumination)
+        return;
+    ray_scene_free(illumination->scene);
+    free(illumination->light);
+    free(illumination->lit_vertex);
+    free(illumination);
+}
+
+static weft_vec3 interpolate(const weft_tile_mesh *mesh, const ray_hit *hit, float (*attribute)[3])
+{
+    weft_vec3 sum = {0};
+    for (int i = 0; i < 3; i++)
+        sum = weft_add(sum, weft_scale(vertex_vector(attribute[mesh->triangle[hit->triangle][i]]), hit->weight[i]));
+    return sum;
+}
+
+static int yarn_at(const weft_tile_mesh *mesh, const ray_hit *hit)
+{
+    int largest = hit->weight[1] > hit->weight[0] ? 1 : 0;
+    largest = hit->weight[2] > hit->weight[largest] ? 2 : largest;
+    return mesh->yarn[mesh->triangle[hit->triangle][largest]];
+}
+
+/* Next vertex along a ray; false where it leaves the cloth, or slips inside through a crease. */
+static bool find_vertex(const weft_illumination *illumination, weft_vec3 from, weft_vec3 direction, path_vertex *vertex)
+{
+    const weft_tile_mesh *mesh = ray_scene_mesh(illumination->scene);
+    if (!ray_scene_trace(illumination->scene, from, direction, &vertex->hit) ||
+        weft_dot(vertex->hit.normal, direction) >= 0)
+        return false;
+    weft_frame frame = weft_frame_of_vectors(vertex->hit.normal, interpolate(mesh, &vertex->hit, mesh->tangent));
+    vertex->tangent = frame.tangent;
+    vertex->fibre = &illumination->stitch->yarn[yarn_at(mesh, &vertex->hit)].fibre;
+    vertex->seen = weft_fibre_seen_from(vertex->fibre, frame.tangent, frame.normal, weft_scale(direction, -1));
+    return true;
+}
+
+static void add_light(const weft_illumination *illumination, const path_vertex *vertex, int light, weft_real visible,
+                      weft_rgb throughput, float radiance[3])
+{
+    weft_vec3 direction = illumination->light[light];
+    weft_rgb f = weft_fibre_brdf(&vertex->seen, direction);
+    weft_real arriving = (weft_real)WEFT_PI * visible * weft_dot(vertex->hit.normal, direction);
+    radiance[0] += (float)(throughput.r * f.r * arriving);
+    radiance[1] += (float)(throughput.g * f.g * arriving);
+    radiance[2] += (float)(throughput.b * f.b * arriving);
+}
+
+/* Light straight from the lights, by shadow rays. */
+static void add_lights_exactly(const weft_illumination *illumination, const path_vertex *vertex, weft_rgb throughput,
+                               float (*radiance)[3])
+{
+    uint8_t wanted[WEFT_ILLUMINATION_MAX_LIGHTS], lit[WEFT_ILLUMINATION_MAX_LIGHTS];
+    for (int i = 0; i < illumination->light_count; i++)
+        wanted[i] = weft_dot(vertex->hit.normal, illumination->light[i]) > 0;
+    weft_vec3 from =
+        above(ray_scene_mesh(illumination->scene), vertex->hit.at, vertex->hit.normal, (weft_real)RAY_OFFSET);
+    ray_scene_lit(illumination->scene, from, illumination->light, illumination->light_count, wanted, lit);
+    for (int i = 0; i < illumination->light_count; i++)
+        if (lit[i])
+            add_light(illumination, vertex, i, 1, throughput, radiance[i]);
+}
+
+/* The same with visibility interpolated between the vertices of the triangle. */
+static void add_lights_by_vertices(const weft_illumination *illumination, const path_vertex *vertex,
+                                   weft_rgb throughput, float (*radiance)[3])
+{
+    const weft_tile_mesh *mesh = ray_scene_mesh(illumination->scene);
+    const uint8_t *lit[3];
+    for (int k = 0; k < 3; k++)
+        lit[k] = illumination->lit_vertex +
+                 (size_t)mesh->triangle[vertex->hit.triangle][k] * (size_t)illumination->light_count;
+    for (int i = 0; i < illumination->light_count; i++) {
+        weft_real visible = 0;
+        for (int k = 0; k < 3; k++)
+            visible += lit[k][i] ? vertex->hit.weight[k] : 0;
+        if (visible > 0 && weft_dot(vertex->hit.normal, illumination->light[i]) > 0)
+            add_light(illumination, vertex, i, visible, throughput, radiance[i]);
+    }
+}
+
+/* A direction whose density is the cosine to the normal over pi. */
+static weft_vec3 cosine_direction(const path_vertex *vertex, const double point[2])
+{
+    weft_real radius = sqrt(point[0]), angle = 2 * (weft_real)WEFT_PI * point[1];
+    weft_vec3 bitangent = weft_cross(vertex->hit.normal, vertex->tangent);
+    weft_vec3 flat =
+        weft_add(weft_scale(vertex->tangent, radius * cos(angle)), weft_scale(bitangent, radius * sin(angle)));
+    return weft_unit(weft_add(flat, weft_scale(vertex->hit.normal, sqrt(1 - point[0]))));
+}
+
+/* Moves the path to its next vertex; false where it ends. */
+static bool bounce(const weft_illumination *illumination, path_vertex *vertex, weft_rgb *throughput, uint64_t key,
+                   uint32_t index)
+{
+    double point[2];
+    sequence_point(key, index, point);
+    weft_vec3 direction = cosine_direction(vertex, point);
+    weft_rgb f = weft_fibre_brdf(&vertex->seen, direction);
+    throughput->r *= f.r * (weft_real)WEFT_PI;
+    throughput->g *= f.g * (weft_real)WEFT_PI;
+    throughput->b *= f.b * (weft_real)WEFT_PI;
+    if (!(fmax(throughput->r, fmax(throughput->g, throughput->b)) > NEGLIGIBLE))
+        return false;
+    weft_vec3 from =
+        above(ray_scene_mesh(illumination->scene), vertex->hit.at, vertex->hit.normal, (weft_real)RAY_OFFSET);
+    return find_vertex(illumination, from, direction, vertex);
+}
+
+/* The point on the view ray just above the cloth. */
+static weft_vec3 ray_start(const weft_illumination *illumination, weft_vec3 place, weft_vec3 view)
+{
+    const weft_tile_mesh *mesh = ray_scene_mesh(illumination->scene);
+    weft_real rise = (weft_real)mesh->top + (weft_real)mesh->cell / 2 - place.z;
+    return weft_add(place, weft_scale(view, rise / view.z));
+}
+
+bool weft_illumination_path(const weft_illumination *illumination, weft_vec3 place, weft_vec3 view, uint64_t key,
+                            uint32_t index, float (*radiance)[3], weft_first_hit *first)
+{
+    path_vertex vertex;
+    weft_rgb throughput = {1, 1, 1};
+    if (!find_vertex(illumination, ray_start(illumination, place, view), weft_scale(view, -1), &vertex))
+        return false;
+    if (first) {
+        const weft_tile_mesh *mesh = ray_scene_mesh(illumination->scene);
+        *first = (weft_first_hit){vertex.hit.at, weft_unit(interpolate(mesh, &vertex.hit, mesh->normal)),
+                                  vertex.tangent, yarn_at(mesh, &vertex.hit)};
+    }
+    add_lights_exactly(illumination, &vertex, throughput, radiance);
+    for (int i = 0; i < illumination->options.bounces; i++) {
+        if (!bounce(illumination, &vertex, &throughput, sequence_key(key, (uint64_t)i), index))
+            break;
+        if (illumination->lit_vertex)
+            add_lights_by_vertices(illumination, &vertex, throughput, radiance);
+        else
+            add_lights_exactly(illumination, &vertex, throughput, radiance);
+    }
+    return true;
+}
