@@ -1,6 +1,11 @@
 #include "btf/dataset_fingerprint.h"
 
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <zlib.h>
 
 enum { PROBES = 4 }; /* along each side */
@@ -43,5 +48,35 @@ weft_code weft_dataset_fingerprint_take(weft_dataset *dataset, weft_dataset_fing
     *fingerprint = (weft_dataset_fingerprint){layout_checksum(layout), (uint32_t)checksum};
     free(samples);
     free(mask);
+    return code;
+}
+
+void weft_checksum_print(uint32_t checksum, char text[WEFT_CHECKSUM_TEXT])
+{
+    snprintf(text, WEFT_CHECKSUM_TEXT, "%08" PRIx32, checksum);
+}
+
+static bool is_another(const json_t *origin, const char *key, uint32_t checksum)
+{
+    char text[WEFT_CHECKSUM_TEXT];
+    const char *said = json_string_value(json_object_get(origin, key));
+    weft_checksum_print(checksum, text);
+    return said && strcmp(said, text) != 0;
+}
+
+weft_code weft_dataset_fingerprint_compare(weft_dataset *dataset, const char *metadata, char warning[WEFT_MESSAGE_SIZE],
+                                           weft_error *error)
+{
+    weft_dataset_fingerprint own;
+    warning[0] = '\0';
+    json_t *object = json_loads(metadata, 0, NULL), *origin = json_object_get(object, "dataset");
+    weft_code code = origin ? weft_dataset_fingerprint_take(dataset, &own, error) : WEFT_OK;
+    if (origin && code == WEFT_OK) {
+        bool layout = is_another(origin, "layout", own.layout), samples = is_another(origin, "samples", own.samples);
+        if (layout || samples)
+            snprintf(warning, WEFT_MESSAGE_SIZE, "the material was not made from '%s' as it is: %s differ",
+                     weft_dataset_path(dataset), layout ? "sizes, lights or views" : "the samples");
+    }
+    json_decref(object);
     return code;
 }

@@ -2,6 +2,7 @@
 #include "cli/arguments.h"
 
 #include "btf/colour.h"
+#include "btf/dataset_fingerprint.h"
 #include "capture/virtual_cloth.h"
 
 #include <math.h>
@@ -187,22 +188,38 @@ static weft_code load_mesh(scene_options *o, weft_player *player, weft_error *er
     return code;
 }
 
-static weft_code load_material(const scene_options *o, weft_player *player, weft_error *error)
+/* *metadata is given to the caller. */
+static weft_code load_material(const scene_options *o, weft_player *player, char **metadata, weft_error *error)
 {
     weft_material material = {0};
     weft_code code = weft_material_read(o->material, &material, error);
     if (code == WEFT_OK)
         code = weft_player_set_material(player, &material, error);
+    *metadata = material.metadata;
+    material.metadata = NULL;
     weft_material_free(&material);
     return code;
 }
 
-static weft_code load_dataset(const scene_options *o, weft_player *player, weft_error *error)
+static weft_code warn_of_another_origin(const scene_options *o, weft_dataset *dataset, const char *metadata,
+                                        weft_error *error)
+{
+    char warning[WEFT_MESSAGE_SIZE];
+    WEFT_TRY(weft_dataset_fingerprint_compare(dataset, metadata, warning, error));
+    if (warning[0])
+        command_say(&o->common, "warning: %s", warning);
+    return WEFT_OK;
+}
+
+/* `metadata` of the material beside it, or NULL. */
+static weft_code load_dataset(const scene_options *o, weft_player *player, const char *metadata, weft_error *error)
 {
     weft_dataset *dataset = NULL;
     int skipped_levels = 0;
     weft_progress progress = command_progress(&o->common);
     weft_code code = weft_dataset_open(o->dataset, &dataset, error);
+    if (code == WEFT_OK && metadata)
+        code = warn_of_another_origin(o, dataset, metadata, error);
     if (code == WEFT_OK)
         code = weft_player_set_dataset(player, dataset, &progress, &skipped_levels, error);
     if (code == WEFT_OK && skipped_levels > 0)
@@ -247,11 +264,13 @@ static void choose_panes(scene_options *o, const weft_player *player)
 
 weft_code scene_load(scene_options *o, weft_player *player, weft_error *error)
 {
+    char *metadata = NULL;
     WEFT_TRY(load_mesh(o, player, error));
-    if (o->material)
-        WEFT_TRY(load_material(o, player, error));
-    if (o->dataset)
-        WEFT_TRY(load_dataset(o, player, error));
+    weft_code code = o->material ? load_material(o, player, &metadata, error) : WEFT_OK;
+    if (code == WEFT_OK && o->dataset)
+        code = load_dataset(o, player, metadata, error);
+    free(metadata);
+    WEFT_TRY(code);
     if (o->weave)
         WEFT_TRY(load_weave(o, player, error));
     choose_panes(o, player);

@@ -152,9 +152,9 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
 static weft_code write_metadata(const weft_dataset_layout *layout, const weft_dataset_fingerprint *fingerprint,
                                 json_t *fit, weft_material *material, weft_error *error)
 {
-    char layout_text[16], samples_text[16];
-    snprintf(layout_text, sizeof layout_text, "%08" PRIx32, fingerprint->layout);
-    snprintf(samples_text, sizeof samples_text, "%08" PRIx32, fingerprint->samples);
+    char layout_text[WEFT_CHECKSUM_TEXT], samples_text[WEFT_CHECKSUM_TEXT];
+    weft_checksum_print(fingerprint->layout, layout_text);
+    weft_checksum_print(fingerprint->samples, samples_text);
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
     json_t *object = json_pack("{s:o*, s:{s:s, s:s}, s:o*}", "provenance", provenance, "dataset", "layout", layout_text,
                                "samples", samples_text, "fit", fit);
