@@ -77,6 +77,8 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
 {
     const common_options *common = &command->common;
     const weft_prediction_error *all = &comparison->measurement.all;
+    if (comparison->warning[0])
+        command_say(common, "warning: %s", comparison->warning);
     command_say(common, "level 0: relative RMSE %.4f, median relative error %.2f %%", all->relative_rmse,
                 100 * all->median_relative);
     command_say(common, "size: %.0f bytes, 1:%.1f of the half floats", comparison->material_bytes,

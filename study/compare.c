@@ -1,5 +1,6 @@
 #include "study/compare.h"
 
+#include "btf/dataset_fingerprint.h"
 #include "study/compare_page.h"
 #include "study/representative.h"
 
@@ -72,6 +73,8 @@ static weft_code compare(const weft_compare_options *options, weft_dataset *data
     weft_material material;
     WEFT_TRY(weft_material_read(options->material, &material, error));
     weft_code code = measure(options, dataset, &material, progress, comparison, error);
+    if (code == WEFT_OK)
+        code = weft_dataset_fingerprint_compare(dataset, material.metadata, comparison->warning, error);
     if (code == WEFT_OK)
         code = write_page(options, weft_dataset_get_layout(dataset), &material, comparison, error);
     weft_material_free(&material);

@@ -24,6 +24,7 @@ typedef struct weft_comparison {
     weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
     double dataset_bytes, half_float_bytes, material_bytes;
     weft_scenes scenes;
+    char warning[WEFT_MESSAGE_SIZE]; /* that the material was made from another dataset, or "" */
 } weft_comparison;
 
 /* Measures, renders, and writes folder/index.html with its pictures; the page appears when it is complete. Without

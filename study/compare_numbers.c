@@ -101,6 +101,8 @@ static void print_sizes(weft_page *page, const weft_comparison *comparison)
     weft_page_fact(page, "half floats : material", "%.1f : 1",
                    comparison->half_float_bytes / comparison->material_bytes);
     weft_page_fact(page, "dataset : material", "%.1f : 1", comparison->dataset_bytes / comparison->material_bytes);
+    if (comparison->warning[0])
+        weft_page_fact(page, "warning", "%s", comparison->warning);
     fputs("</table>\n", page->html);
 }
 
