@@ -16,15 +16,17 @@ typedef struct compress_command {
     weft_compress_options options;
 } compress_command;
 
-enum { KEY_LOBES = 0x2000, KEY_TABLE, KEY_LEVELS, KEY_MAX_EXPONENT, KEY_MEMORY };
+enum { KEY_LOBES = 0x2000, KEY_TABLE, KEY_LEVELS, KEY_FRAMES, KEY_MAX_EXPONENT, KEY_MEMORY };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "NAME.weft", 0, "The material to write", 0},
     {"lobes", KEY_LOBES, "0..3", 0, "Lafortune lobes a texel and channel, at most (default: 2)", 0},
     {"table", KEY_TABLE, "on|off", 0, "View table T, where the samples can carry it (default: on)", 0},
     {"levels", KEY_LEVELS, "on|off", 0, "Mip levels (default: on)", 0},
-    {"max-exponent", KEY_MAX_EXPONENT, "N", 0,
-     "Largest exponent of a lobe (default: 512; retro-reflective tape needs thousands)", 0},
+    {"frames", KEY_FRAMES, "on|off", 0,
+     "Turn the frame of each texel where that helps; off: the frame of the surface everywhere, faster (default: on)",
+     0},
+    {"max-exponent", KEY_MAX_EXPONENT, "N", 0, "Largest exponent of a lobe (default: 8192)", 0},
     {"memory", KEY_MEMORY, "MB", 0, "Never take more memory than this (default: a quarter of what there is)", 0},
     {0},
 };
@@ -48,6 +50,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_LEVELS:
         options->levels = parse_switch("levels", argument, state);
+        return 0;
+    case KEY_FRAMES:
+        options->frames = parse_switch("frames", argument, state);
         return 0;
     case KEY_MAX_EXPONENT:
         options->max_exponent = parse_number("max-exponent", argument, 1, 60000, state);

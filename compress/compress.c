@@ -23,7 +23,8 @@ static const char *const model_name[3] = {"lobes and view table", "lobes", "spar
 
 weft_compress_options weft_compress_default_options(void)
 {
-    return (weft_compress_options){.lobe_count = 2, .table = true, .levels = true, .max_exponent = 512};
+    return (weft_compress_options){
+        .lobe_count = 2, .table = true, .levels = true, .frames = true, .max_exponent = 8192};
 }
 
 static int used_images(const weft_dataset_layout *layout, const uint8_t *held_out)
@@ -191,8 +192,9 @@ static weft_code identify(const weft_dataset *dataset, const weft_compress_optio
              "layout %08" PRIx32 ", samples %08" PRIx32 ", %lld bytes of %lld.%09ld", fingerprint->layout,
              fingerprint->samples, (long long)status.st_size, (long long)status.st_mtim.tv_sec,
              (long)status.st_mtim.tv_nsec);
-    snprintf(text->options, sizeof text->options, "%s, %d lobes, N <= %.17g, levels %d, held out %08lx",
-             model_name[report->model], report->lobe_count, options->max_exponent, options->levels, held_out);
+    snprintf(text->options, sizeof text->options, "%s, %d lobes, frames %d, N <= %.17g, levels %d, held out %08lx",
+             model_name[report->model], report->lobe_count, options->frames, options->max_exponent, options->levels,
+             held_out);
     return WEFT_OK;
 }
 
@@ -222,7 +224,8 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
                           .progress = of->progress};
     weft_texel_source source = {.layout = weft_dataset_get_layout(of->dataset),
                                 .held_out = options->held_out,
-                                .options = weft_fit_default_options()};
+                                .options = weft_fit_default_options(),
+                                .fit_frames = options->frames};
     source.options.lobe_count = report->lobe_count;
     source.options.table = report->model == WEFT_COMPRESS_TABLE;
     source.options.max_exponent = options->max_exponent;

@@ -13,6 +13,7 @@ typedef struct weft_compress_options {
     int lobe_count;          /* at most; 0..3 */
     bool table;              /* T(v), where the samples can carry it */
     bool levels;             /* mip levels, each fitted to the mean samples of its groups of texels */
+    bool frames;             /* fit normal and tangent of every texel too; else all have the frame of the surface */
     double max_exponent;     /* N <= this */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
@@ -21,7 +22,7 @@ typedef struct weft_compress_options {
     weft_note note;              /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 
-/* 2 lobes, table, levels, N <= 512, nothing held out, a quarter of the memory, no checkpoint. */
+/* 2 lobes, table, levels, frames, N <= 8192, nothing held out, a quarter of the memory, no checkpoint. */
 weft_compress_options weft_compress_default_options(void);
 
 /* What the number of samples a texel allows: at least four for every free parameter. */

@@ -31,12 +31,12 @@ typedef struct weft_fit_options {
     bool table;          /* fit T; else T = 1 */
     bool fit_frame;      /* let the joint fit rotate the frame */
     bool coarse;         /* look at a quarter of the lights of each view only */
-    double max_exponent; /* N <= this; 512 is far beyond cloth, tape wants thousands */
+    double max_exponent; /* N <= this; cloth stays below 512, retro-reflective tape wants thousands */
     double tolerance;    /* stop when a step lowers the residual by less than this fraction */
     int max_passes;
 } weft_fit_options;
 
-/* 2 lobes, table, N <= 512, tolerance 1e-3, 40 passes. */
+/* 2 lobes, table, N <= 8192, tolerance 1e-3, 40 passes. */
 weft_fit_options weft_fit_default_options(void);
 
 /* What a thread needs to fit; one per thread, reused for any number of texels. */

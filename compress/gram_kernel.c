@@ -124,14 +124,14 @@ WEFT_INLINE void accumulate(const weft_bundle *bundle, const float *cosine, cons
 {
     lanes columns[LAST][PIECE], own_sums[WEFT_GRAM_PRODUCTS];
     int count = weft_gram_columns(lobe_count), products = count * (count + 1) / 2;
-    memset(columns, 0, sizeof columns);
+    memset(columns[count], 0, TILE * sizeof columns[0]);
     memset(sums, 0, (size_t)products * (size_t)bundle->view_stride * sizeof *sums);
     for (int s = 0; s < bundle->strip_count; s++) {
         const weft_strip *strip = &bundle->strip[s];
         int slots = coarse ? strip->coarse_slots : strip->slots;
         for (int lane = 0; lane < WEFT_STRIP_LANES; lane += LANES) {
             strip_lanes own = lanes_of_strip(bundle, strip, point, lobe_count, table, lane);
-            memset(own_sums, 0, sizeof own_sums);
+            memset(own_sums, 0, (size_t)products * sizeof *own_sums);
             for (int first = 0; first < slots; first += PIECE) {
                 int piece = slots - first < PIECE ? slots - first : PIECE;
                 for (int slot = 0; slot < piece; slot++)

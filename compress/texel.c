@@ -110,7 +110,7 @@ static const grey_fit *choose_frame(weft_texel_fitter *fitter, const weft_fit_op
     weft_fit_cold(&fitter->bundle, &fitter->samples, WEFT_GREY, options, fitter->workspace, &frame, &upright->fit,
                   upright->table);
     counts->second_start += upright->fit.start > 0;
-    if (options->lobe_count == 0)
+    if (options->lobe_count == 0 || !fitter->source->fit_frames)
         return upright;
     weft_fit_options turning = *options;
     turning.fit_frame = true;
@@ -140,7 +140,7 @@ void weft_texel_store(weft_material *material, int level, int x, int y, int chan
 }
 
 /* In a level of many texels this share of them is enough for percentiles. */
-enum { TALLIED_TEXELS = 4096 };
+enum { TALLIED_TEXELS = 1024 };
 
 static bool is_tallied(const weft_material_level *level, int x, int y)
 {

@@ -15,6 +15,7 @@ typedef struct weft_texel_source {
     const weft_dataset_layout *layout;
     const uint8_t *held_out;
     weft_fit_options options;
+    bool fit_frames; /* turn the frame of a texel where that helps; else all have that of the surface */
 } weft_texel_source;
 
 /* What happened to some texels. */

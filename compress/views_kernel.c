@@ -393,7 +393,8 @@ WEFT_INLINE double normal_of(int lobes, const weft_bundle *bundle, const weft_tr
     double x[WEFT_LINEAR_MAX] = {trial->fit.diffuse};
     lanes scale = {0};
     normal_lanes sums;
-    memset(&sums, 0, sizeof sums);
+    memset(sums.h, 0, (size_t)n * sizeof sums.h[0]);
+    memset(sums.g, 0, (size_t)n * sizeof sums.g[0]);
     for (int i = 0; i < lobes; i++)
         x[1 + i] = trial->fit.lobe[i].amplitude;
     parameters at = parameters_of(trial, x);
