@@ -9,12 +9,13 @@ typedef struct compare_command {
     weft_compare_options options;
 } compare_command;
 
-enum { KEY_TILES = 0x2000 };
+enum { KEY_TILES = 0x2000, KEY_BARD };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "REPORT/", 0, "The folder for the page and its pictures", 0},
-    {"weave", 'w', "CLOTH.wv", 0, "Draw this analytic cloth beside them", 0},
+    {"weave", 'w', "CLOTH.wv", 0, "Compare this analytic cloth, too", 0},
     {"tiles", KEY_TILES, "X,Y", 0, "Tiles of the weave across the material (default: as the virtual rig lays it)", 0},
+    {"bard", KEY_BARD, "NAME.bard.h5", 0, "Compare what `weft bard` predicted, too", 0},
     {0},
 };
 
@@ -42,6 +43,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 'w':
         options->weave = argument;
         return 0;
+    case KEY_BARD:
+        options->bard = argument;
+        return 0;
     case KEY_TILES:
         parse_tiles(argument, options, state);
         return 0;
@@ -66,21 +70,34 @@ static const struct argp parser = {
     parse_option,
     "NAME.btf.h5 NAME.weft -o REPORT/",
     "Example: weft compare silk.btf.h5 silk.weft --weave silk.wv -o report/\n\n"
-    "Writes one HTML page: dataset, material and analytic cloth side by side, their differences, the errors by level "
-    "and direction, sizes and times. "
+    "Writes one HTML page: dataset, material, analytic cloth and BARD side by side, the errors of each against the "
+    "dataset, sample by sample and of the mean BRDF, slices of the mean BRDF, sizes and times. "
     "A dataset of fewer than 30 images is also fitted with each image left out, to see how well the others predict it.",
     children,
     NULL,
     NULL};
 
+static void say_error(const common_options *common, const char *model, const char *what, const weft_prediction_error *e)
+{
+    command_say(common, "%s, %s: relative RMSE %.4f, median relative error %.2f %%, 80th percentile %.2f %%", model,
+                what, e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
+    char event[256];
+    snprintf(event, sizeof event,
+             "{\"event\":\"error\",\"model\":\"%s\",\"of\":\"%s\",\"values\":%ld,\"relative_rmse\":%.6g,"
+             "\"median_relative\":%.6g,\"percentile80_relative\":%.6g}",
+             model, what, e->count, e->relative_rmse, e->median_relative, e->percentile80_relative);
+    command_event(common, event);
+}
+
 static void say_numbers(const compare_command *command, const weft_comparison *comparison)
 {
     const common_options *common = &command->common;
-    const weft_prediction_error *all = &comparison->measurement.all;
     if (comparison->warning[0])
         command_say(common, "warning: %s", comparison->warning);
-    command_say(common, "level 0: relative RMSE %.4f, median relative error %.2f %%", all->relative_rmse,
-                100 * all->median_relative);
+    for (int i = 0; i < comparison->model_count; i++) {
+        say_error(common, comparison->model[i].name, "samples", &comparison->model[i].texture.all);
+        say_error(common, comparison->model[i].name, "mean BRDF", &comparison->model[i].mean);
+    }
     command_say(common, "size: %.0f bytes, 1:%.1f of the half floats", comparison->material_bytes,
                 comparison->half_float_bytes / comparison->material_bytes);
     if (comparison->left_out.count > 0)

@@ -1,12 +1,20 @@
 #include "study/compare.h"
 
 #include "btf/dataset_fingerprint.h"
+#include "capture/virtual_cloth.h"
 #include "study/compare_page.h"
 #include "study/representative.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+
+/* Freed with close_files. */
+typedef struct compared_files {
+    weft_dataset *dataset;
+    weft_material material;
+    weft_virtual_cloth cloth; /* empty without a weave */
+} compared_files;
 
 static double file_bytes(const char *path)
 {
@@ -22,27 +30,105 @@ static void weigh(const weft_compare_options *options, const weft_dataset_layout
         (double)layout->width * layout->height * layout->image_count * 3 * (double)sizeof(weft_half);
 }
 
-static weft_code measure(const weft_compare_options *options, weft_dataset *dataset, const weft_material *material,
+/* ---- Sample by sample ---- */
+
+static weft_code measure_texture(weft_dataset *dataset, weft_predictor *predictor, const char *name,
+                                 const weft_progress *progress, weft_comparison *comparison, weft_error *error)
+{
+    int image[WEFT_REPRESENTATIVE_COUNT];
+    int image_count = weft_representative_images(weft_dataset_get_layout(dataset), image);
+    weft_compared_model *model = &comparison->model[comparison->model_count];
+    char step[64];
+    snprintf(step, sizeof step, "measuring: %s", name);
+    *model = (weft_compared_model){.name = name};
+    WEFT_TRY(weft_measurement_make(dataset, predictor, step, image, image_count, progress, &model->texture, error));
+    comparison->model_count++;
+    return WEFT_OK;
+}
+
+static weft_code measure_material(const compared_files *files, const weft_progress *progress,
+                                  weft_comparison *comparison, weft_error *error)
+{
+    weft_predictor *predictor;
+    WEFT_TRY(weft_predictor_of_material(files->dataset, &files->material, &predictor, error));
+    weft_code code = measure_texture(files->dataset, predictor, "compressed", progress, comparison, error);
+    weft_predictor_free(predictor);
+    return code;
+}
+
+static weft_code measure_weave(const compared_files *files, const weft_progress *progress, weft_comparison *comparison,
+                               weft_error *error)
+{
+    const weft_virtual_cloth *cloth = &files->cloth;
+    weft_predictor *predictor;
+    WEFT_TRY(weft_predictor_of_weave(files->dataset, &cloth->weave, cloth->tiles_x, cloth->tiles_y, &predictor, error));
+    weft_code code = measure_texture(files->dataset, predictor, "analytic", progress, comparison, error);
+    weft_predictor_free(predictor);
+    return code;
+}
+
+static weft_code measure_bard(const compared_files *files, const char *path, const weft_progress *progress,
+                              weft_comparison *comparison, weft_error *error)
+{
+    weft_predictor *predictor;
+    WEFT_TRY(weft_predictor_of_dataset(files->dataset, path, &predictor, error));
+    weft_code code = measure_texture(files->dataset, predictor, "BARD", progress, comparison, error);
+    weft_predictor_free(predictor);
+    return code;
+}
+
+/* ---- Mean BRDFs ---- */
+
+static weft_code measure_means(const weft_compare_options *options, const compared_files *files,
+                               const weft_progress *progress, weft_comparison *comparison, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(files->dataset);
+    weft_prediction_error mean[WEFT_CONTENDER_COUNT];
+    weft_contenders contenders;
+    WEFT_TRY(weft_contenders_open(options->dataset, options->material, &files->material, options->weave, options->bard,
+                                  &contenders, error));
+    weft_code code = weft_contenders_measure(&contenders, layout, progress, mean, error);
+    if (code == WEFT_OK)
+        code = weft_slices_make(layout, &contenders, progress, &comparison->slices, error);
+    weft_contenders_close(&contenders);
+    for (int i = 0; code == WEFT_OK && i < comparison->model_count; i++)
+        comparison->model[i].mean = mean[i + 1];
+    return code;
+}
+
+static weft_code measure(const weft_compare_options *options, const compared_files *files,
                          const weft_progress *progress, weft_comparison *comparison, weft_error *error)
 {
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    int image[WEFT_REPRESENTATIVE_COUNT];
-    int image_count = weft_representative_images(layout, image);
+    const weft_dataset_layout *layout = weft_dataset_get_layout(files->dataset);
     weigh(options, layout, comparison);
-    WEFT_TRY(weft_measurement_make(dataset, material, image, image_count, progress, &comparison->measurement, error));
+    WEFT_TRY(weft_dataset_fingerprint_compare(files->dataset, files->material.metadata, comparison->warning, error));
+    snprintf(comparison->weave_name, sizeof comparison->weave_name, "%s", files->cloth.weave.name);
+    comparison->tiles_u = files->cloth.tiles_x;
+    comparison->tiles_v = files->cloth.tiles_y;
+    WEFT_TRY(measure_material(files, progress, comparison, error));
+    if (options->weave)
+        WEFT_TRY(measure_weave(files, progress, comparison, error));
+    if (options->bard)
+        WEFT_TRY(measure_bard(files, options->bard, progress, comparison, error));
+    WEFT_TRY(measure_means(options, files, progress, comparison, error));
     if (layout->image_count > 1 && layout->image_count < WEFT_LEAVE_ONE_OUT_LIMIT)
-        WEFT_TRY(weft_leave_one_out_measure(dataset, progress, &comparison->left_out, error));
-    const weft_scenes_request request = {dataset, material, options->weave, options->tiles_u, options->tiles_v};
+        WEFT_TRY(weft_leave_one_out_measure(files->dataset, progress, &comparison->left_out, error));
+    const weft_scenes_request request = {files->dataset, &files->material, options->weave ? &files->cloth : NULL,
+                                         options->bard};
     return weft_scenes_draw(&request, progress, &comparison->scenes, error);
 }
+
+/* ---- Page ---- */
 
 static weft_code fill_page(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
                            const weft_comparison *comparison, weft_error *error)
 {
     weft_page_summary(page, layout, comparison);
+    weft_page_models(page, comparison);
+    WEFT_TRY(weft_page_slices(page, &comparison->slices, error));
     WEFT_TRY(weft_page_scenes(page, &comparison->scenes, error));
     WEFT_TRY(weft_page_left_out(page, &comparison->left_out, error));
-    WEFT_TRY(weft_page_pairs(page, layout, &comparison->measurement, error));
+    WEFT_TRY(weft_page_pairs(page, layout, comparison, error));
     weft_page_numbers(page, layout, material, comparison);
     return WEFT_OK;
 }
@@ -67,28 +153,40 @@ static weft_code write_page(const weft_compare_options *options, const weft_data
     return code;
 }
 
-static weft_code compare(const weft_compare_options *options, weft_dataset *dataset, const weft_progress *progress,
-                         weft_comparison *comparison, weft_error *error)
+/* ---- All of it ---- */
+
+static weft_code open_files(const weft_compare_options *options, compared_files *files, weft_error *error)
 {
-    weft_material material;
-    WEFT_TRY(weft_material_read(options->material, &material, error));
-    weft_code code = measure(options, dataset, &material, progress, comparison, error);
-    if (code == WEFT_OK)
-        code = weft_dataset_fingerprint_compare(dataset, material.metadata, comparison->warning, error);
-    if (code == WEFT_OK)
-        code = write_page(options, weft_dataset_get_layout(dataset), &material, comparison, error);
-    weft_material_free(&material);
-    return code;
+    weft_rig_settings layout = weft_rig_settings_default();
+    layout.tiles_x = options->tiles_u;
+    layout.tiles_y = options->tiles_v;
+    layout.cloth_noise = 0;
+    char warning[WEFT_MESSAGE_SIZE];
+    WEFT_TRY(weft_dataset_open(options->dataset, &files->dataset, error));
+    WEFT_TRY(weft_material_read(options->material, &files->material, error));
+    if (options->weave)
+        WEFT_TRY(weft_virtual_cloth_read(options->weave, &layout, 0, &files->cloth, warning, error));
+    return WEFT_OK;
+}
+
+static void close_files(compared_files *files)
+{
+    weft_dataset_close(files->dataset);
+    weft_material_free(&files->material);
+    weft_virtual_cloth_free(&files->cloth);
 }
 
 weft_code weft_compare(const weft_compare_options *options, const weft_progress *progress, weft_comparison *comparison,
                        weft_error *error)
 {
+    compared_files files = {0};
     *comparison = (weft_comparison){0};
-    weft_dataset *dataset;
-    WEFT_TRY(weft_dataset_open(options->dataset, &dataset, error));
-    weft_code code = compare(options, dataset, progress, comparison, error);
-    weft_dataset_close(dataset);
+    weft_code code = open_files(options, &files, error);
+    if (code == WEFT_OK)
+        code = measure(options, &files, progress, comparison, error);
+    if (code == WEFT_OK)
+        code = write_page(options, weft_dataset_get_layout(files.dataset), &files.material, comparison, error);
+    close_files(&files);
     if (code != WEFT_OK)
         weft_comparison_free(comparison);
     return code;
@@ -96,7 +194,9 @@ weft_code weft_compare(const weft_compare_options *options, const weft_progress 
 
 void weft_comparison_free(weft_comparison *comparison)
 {
-    weft_measurement_free(&comparison->measurement);
+    for (int i = 0; i < comparison->model_count; i++)
+        weft_measurement_free(&comparison->model[i].texture);
+    weft_slices_free(&comparison->slices);
     weft_leave_one_out_free(&comparison->left_out);
     weft_scenes_free(&comparison->scenes);
 }

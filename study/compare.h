@@ -1,4 +1,4 @@
-/* Dataset, material and analytic cloth side by side: one HTML page (docs/compare.md). */
+/* Dataset, material, analytic cloth and BARD side by side: one HTML page (docs/compare.md). */
 #ifndef WEFT_STUDY_COMPARE_H
 #define WEFT_STUDY_COMPARE_H
 
@@ -6,11 +6,13 @@
 #include "study/leave_one_out.h"
 #include "study/measurement.h"
 #include "study/scenes.h"
+#include "study/slices.h"
 
 typedef struct weft_compare_options {
     const char *dataset;     /* NAME.btf.h5 */
     const char *material;    /* NAME.weft, fitted to it */
     const char *weave;       /* CLOTH.wv, or NULL */
+    const char *bard;        /* NAME.bard.h5 as `weft bard` writes it, or NULL */
     double tiles_u, tiles_v; /* of the weave for one material; 0 = as many as the virtual rig would lay out */
     const char *folder;      /* for the page and its pictures */
 } weft_compare_options;
@@ -18,9 +20,20 @@ typedef struct weft_compare_options {
 /* A dataset of fewer images than these is also fitted with each of them left out. */
 enum { WEFT_LEAVE_ONE_OUT_LIMIT = 30 };
 
+/* A model against the data. */
+typedef struct weft_compared_model {
+    const char *name;           /* "compressed", "analytic", "BARD" */
+    weft_measurement texture;   /* sample by sample */
+    weft_prediction_error mean; /* of the mean BRDF over the directions of the images */
+} weft_compared_model;
+
 /* What was measured. Freed with weft_comparison_free. */
 typedef struct weft_comparison {
-    weft_measurement measurement;
+    int model_count;
+    weft_compared_model model[WEFT_CONTENDER_COUNT - 1]; /* the first is the material */
+    char weave_name[128];                                /* of the analytic cloth, empty without one */
+    double tiles_u, tiles_v;                             /* of it across the material */
+    weft_slices slices;
     weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
     double dataset_bytes, half_float_bytes, material_bytes;
     weft_scenes scenes;

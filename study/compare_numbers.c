@@ -21,7 +21,7 @@ static void print_tile(weft_page *page, const char *label, const char *format, .
 
 void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison)
 {
-    const weft_prediction_error *all = &comparison->measurement.all;
+    const weft_prediction_error *all = &comparison->model[0].texture.all;
     fprintf(page->html, "<p>%d \u00d7 %d texels of %.4g mm, %d images from %d views; lights and cameras %s.</p>\n",
             layout->width, layout->height, layout->texel_pitch_mm, layout->image_count, layout->view_count,
             layout->distance == WEFT_NEAR ? "near, their directions differ from texel to texel" : "far away");
@@ -35,6 +35,41 @@ void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const
                    comparison->left_out.mean_median_relative);
     }
     fputs("</div>\n", page->html);
+}
+
+static void print_weave(weft_page *page, const weft_comparison *comparison)
+{
+    if (comparison->weave_name[0] == 0)
+        return;
+    fprintf(page->html, " The analytic cloth is the weave \u201c");
+    weft_page_text(page, comparison->weave_name);
+    fprintf(page->html, "\u201d as its file gives it, %.4g \u00d7 %.4g tiles across the material.", comparison->tiles_u,
+            comparison->tiles_v);
+}
+
+static void print_model_error(weft_page *page, const char *name, const weft_prediction_error *e)
+{
+    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td><td>%.2f %%</td></tr>\n", name,
+            e->count, e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
+}
+
+void weft_page_models(weft_page *page, const weft_comparison *comparison)
+{
+    fputs("<h2 id=\"models\">Models against the data</h2>\n<table><tr><th>every sample of every texel</th><th>values"
+          "</th><th>relative RMSE</th><th>median relative</th><th>80th percentile</th></tr>\n",
+          page->html);
+    for (int i = 0; i < comparison->model_count; i++)
+        print_model_error(page, comparison->model[i].name, &comparison->model[i].texture.all);
+    fputs("<tr><th>mean BRDF of the material</th><th></th><th></th><th></th><th></th></tr>\n", page->html);
+    for (int i = 0; i < comparison->model_count; i++)
+        print_model_error(page, comparison->model[i].name, &comparison->model[i].mean);
+    fputs("</table>\n<p class=\"note\">Relative RMSE: \u221a(mean (p \u2212 s)\u00b2 / mean s\u00b2). Relative: |p "
+          "\u2212 s| / s, where s counts as at least 1e-4 of the largest sample. Samples in the quantity of the "
+          "dataset, the analytic cloth averaged over each texel and without its noise; mean BRDFs over the directions "
+          "of the images, as <code>weft eval</code> gives them without texture coordinates.",
+          page->html);
+    print_weave(page, comparison);
+    fputs("</p>\n", page->html);
 }
 
 static void print_levels(weft_page *page, const weft_material *material)
@@ -132,9 +167,9 @@ static void print_times(weft_page *page, const weft_scenes *scenes)
     if (!scenes->drawn)
         return;
     fputs("<h2>Time</h2>\n<table>\n", page->html);
-    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
-        if (scenes->has[mode])
-            weft_page_fact(page, weft_mode_name((weft_mode)mode), "%.2f ms a frame", scenes->frame_ms[mode]);
+    for (int model = 0; model < WEFT_SCENE_MODELS; model++) {
+        if (scenes->has[model])
+            weft_page_fact(page, weft_scenes_model_name(model), "%.2f ms a frame", scenes->frame_ms[model]);
     }
     fputs("</table>\n", page->html);
     fprintf(
@@ -162,9 +197,9 @@ void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const
                        const weft_comparison *comparison)
 {
     print_levels(page, material);
-    print_directions(page, layout, &comparison->measurement);
+    print_directions(page, layout, &comparison->model[0].texture);
     print_sizes(page, comparison);
     print_fit(page, material);
     print_times(page, &comparison->scenes);
-    print_masks(page, &comparison->measurement);
+    print_masks(page, &comparison->model[0].texture);
 }

@@ -8,6 +8,12 @@
 /* The few numbers that matter most, and what the dataset is. */
 void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison);
 
+/* The errors of every model against the data, of the samples and of the mean BRDF. */
+void weft_page_models(weft_page *page, const weft_comparison *comparison);
+
+/* A row of hemispheres for the data and for each model; writes slices.csv and slices-ROW.png. */
+weft_code weft_page_slices(weft_page *page, const weft_slices *slices, weft_error *error);
+
 /* Error of the levels as stored, error over all and by ring as measured, sizes, times, masks. */
 void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
                        const weft_comparison *comparison);
@@ -15,8 +21,9 @@ void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const
 /* Every scene in every mode, and the differences to the dataset. Errors: WEFT_SYSTEM from writing pictures. */
 weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_error *error);
 
-/* Sample, prediction and difference of every pair, flat. Errors: WEFT_SYSTEM from writing pictures. */
-weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, const weft_measurement *measurement,
+/* A few photographs, flat, with the prediction of every model and its difference. Errors: WEFT_SYSTEM from writing
+ * pictures. */
+weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison,
                           weft_error *error);
 
 /* Photograph, prediction and difference of every photograph left out, and the table of their errors. */

@@ -50,19 +50,43 @@ static void explain_pictures(weft_page *page)
           page->html);
 }
 
-weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, const weft_measurement *measurement,
+/* The photograph, then what each model makes of it. */
+static weft_code put_models(weft_page *page, int index, const weft_comparison *comparison, weft_error *error)
+{
+    const weft_image_pair *photograph = &comparison->model[0].texture.pair[index];
+    double exposure = weft_picture_exposure(&photograph->sample, photograph->mask);
+    char name[32], caption[64];
+    weft_image picture;
+    snprintf(name, sizeof name, "texels-%d", index);
+    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);
+    WEFT_TRY(weft_picture_encode(&photograph->sample, photograph->mask, exposure, &picture, error));
+    WEFT_TRY(put_picture(page, name, "sample", &picture, "photograph", error));
+    for (int i = 0; i < comparison->model_count; i++) {
+        const weft_image_pair *pair = &comparison->model[i].texture.pair[index];
+        const char *model = comparison->model[i].name;
+        WEFT_TRY(weft_picture_encode(&pair->prediction, NULL, exposure, &picture, error));
+        WEFT_TRY(put_picture(page, name, model, &picture, model, error));
+        WEFT_TRY(weft_picture_difference(&pair->sample, &pair->prediction, pair->mask, exposure, &picture, error));
+        char what[64];
+        snprintf(what, sizeof what, "%s-difference", model);
+        snprintf(caption, sizeof caption, "%s minus photograph", model);
+        WEFT_TRY(put_picture(page, name, what, &picture, caption, error));
+    }
+    fputs("</div>\n", page->html);
+    return WEFT_OK;
+}
+
+weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison,
                           weft_error *error)
 {
+    const weft_measurement *material = &comparison->model[0].texture;
     fputs("<h2 id=\"texels\">Texels</h2>\n", page->html);
     explain_pictures(page);
-    for (int i = 0; i < measurement->pair_count; i++) {
-        char name[32], caption[160];
-        weft_image_angles at = weft_image_angles_of(layout, measurement->pair[i].image);
-        snprintf(name, sizeof name, "texels-%d", i);
-        snprintf(caption, sizeof caption,
-                 "Image %d: view %.0f\u00b0 (azimuth %.0f\u00b0), light %.0f\u00b0 (azimuth %.0f\u00b0)",
-                 measurement->pair[i].image, at.theta_view_deg, at.phi_view_deg, at.theta_light_deg, at.phi_light_deg);
-        WEFT_TRY(weft_page_pair(page, name, &measurement->pair[i], caption, error));
+    for (int i = 0; i < material->pair_count; i++) {
+        weft_image_angles at = weft_image_angles_of(layout, material->pair[i].image);
+        fprintf(page->html, "<h3>Image %d: view %.0f\u00b0 (azimuth %.0f\u00b0), light %.0f\u00b0 (azimuth %.0f\u00b0)",
+                material->pair[i].image, at.theta_view_deg, at.phi_view_deg, at.theta_light_deg, at.phi_light_deg);
+        WEFT_TRY(put_models(page, i, comparison, error));
     }
     return WEFT_OK;
 }

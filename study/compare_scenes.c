@@ -18,14 +18,17 @@ static weft_code put_picture(weft_page *page, int scene, const char *name, weft_
     return code;
 }
 
-static weft_code put_difference(weft_page *page, int index, const weft_scene_pictures *scene, weft_mode mode,
+static weft_code put_difference(weft_page *page, int index, const weft_scene_pictures *scene, int model,
                                 double exposure, weft_error *error)
 {
-    char name[64], caption[64];
-    snprintf(name, sizeof name, "%s-minus-raw", weft_mode_name(mode));
-    snprintf(caption, sizeof caption, "%s minus raw", weft_mode_name(mode));
+    char name[64], caption[160];
+    const weft_prediction_error *e = &scene->error[model];
+    snprintf(name, sizeof name, "%s-minus-raw", weft_scenes_model_name(model));
+    snprintf(caption, sizeof caption,
+             "%s minus raw: relative RMSE %.4f, median relative %.2f %%, 80th percentile %.2f %%",
+             weft_scenes_model_name(model), e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
     weft_image picture;
-    WEFT_TRY(weft_picture_difference(&scene->picture[WEFT_MODE_RAW], &scene->picture[mode], NULL, exposure, &picture,
+    WEFT_TRY(weft_picture_difference(&scene->picture[WEFT_MODE_RAW], &scene->picture[model], NULL, exposure, &picture,
                                      error));
     return put_picture(page, index, name, &picture, caption, error);
 }
@@ -37,17 +40,18 @@ static weft_code put_scene(weft_page *page, int index, const weft_scenes *scenes
     fputs("<h3>", page->html);
     weft_page_text(page, scene->caption);
     fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);
-    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
-        if (!scenes->has[mode])
+    for (int model = 0; model < WEFT_SCENE_MODELS; model++) {
+        if (!scenes->has[model])
             continue;
         weft_image picture;
-        const char *name = weft_mode_name((weft_mode)mode);
-        WEFT_TRY(weft_picture_encode(&scene->picture[mode], NULL, exposure, &picture, error));
+        const char *name = weft_scenes_model_name(model);
+        WEFT_TRY(weft_picture_encode(&scene->picture[model], NULL, exposure, &picture, error));
         WEFT_TRY(put_picture(page, index, name, &picture, name, error));
     }
-    WEFT_TRY(put_difference(page, index, scene, WEFT_MODE_COMPRESSED, exposure, error));
-    if (scenes->has[WEFT_MODE_ANALYTIC])
-        WEFT_TRY(put_difference(page, index, scene, WEFT_MODE_ANALYTIC, exposure, error));
+    for (int model = WEFT_MODE_COMPRESSED; model < WEFT_SCENE_MODELS; model++) {
+        if (scenes->has[model])
+            WEFT_TRY(put_difference(page, index, scene, model, exposure, error));
+    }
     fputs("</div>\n", page->html);
     return WEFT_OK;
 }
@@ -64,6 +68,8 @@ weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_erro
     fputs("<p class=\"note\">Raw: the dataset, interpolated. Compressed: the material. ", page->html);
     if (scenes->has[WEFT_MODE_ANALYTIC])
         fputs("Analytic: the weave without its noise. ", page->html);
+    if (scenes->has[WEFT_SCENE_BARD])
+        fputs("BARD: predicted from the photographs under one light. ", page->html);
     if (scenes->near_lights)
         fputs("The lights of this dataset are near: raw is drawn with their directions at its centre, so its borders "
               "do not meet. ",
@@ -71,7 +77,8 @@ weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_erro
     if (scenes->skipped_levels > 0)
         fprintf(page->html, "The dataset did not fit into graphics memory: its finest %d levels are left out. ",
                 scenes->skipped_levels);
-    fputs("Differences: see <a href=\"#texels\">Texels</a>.</p>\n", page->html);
+    fputs("Errors are those of the lit pixels of the mesh. Differences: see <a href=\"#texels\">Texels</a>.</p>\n",
+          page->html);
     for (int i = 0; i < WEFT_SCENE_COUNT; i++)
         WEFT_TRY(put_scene(page, i, scenes, error));
     return WEFT_OK;

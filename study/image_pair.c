@@ -1,18 +1,6 @@
 #include "study/image_pair.h"
 
-#include "reflectance/lafortune.h"
-
 #include <stdlib.h>
-
-weft_rgb weft_predict_sample(const weft_material *material, const weft_triangulation *views,
-                             const weft_dataset_layout *layout, int image, int x, int y)
-{
-    weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
-    weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
-    weft_rgba value = weft_material_texel(material, views, 0, x, y, light, view);
-    double cosine = layout->values == WEFT_REFLECTANCE_COSINE ? light.z : 1;
-    return (weft_rgb){cosine * value.r, cosine * value.g, cosine * value.b};
-}
 
 weft_code weft_image_pair_create(const weft_dataset_layout *layout, int image, weft_image_pair *pair, weft_error *error)
 {
@@ -39,9 +27,8 @@ static void store_prediction(weft_image *image, size_t texel, weft_rgb value)
     image->pixels[3 * texel + 2] = (float)value.b;
 }
 
-void weft_image_pair_fill(weft_image_pair *pair, const weft_dataset_layout *layout, const weft_material *material,
-                          const weft_triangulation *views, int y, int rows, const weft_half *samples,
-                          const uint8_t *mask)
+void weft_image_pair_fill(weft_image_pair *pair, const weft_dataset_layout *layout, const weft_predictor *predictor,
+                          int y, int rows, const weft_half *samples, const uint8_t *mask)
 {
     size_t width = (size_t)layout->width, images = (size_t)layout->image_count;
     for (size_t t = 0; t < (size_t)rows * width; t++) {
@@ -49,8 +36,8 @@ void weft_image_pair_fill(weft_image_pair *pair, const weft_dataset_layout *layo
         pair->mask[texel] = mask[index];
         for (size_t c = 0; c < 3; c++)
             pair->sample.pixels[3 * texel + c] = weft_float_of_half(samples[3 * index + c]);
-        weft_rgb prediction =
-            weft_predict_sample(material, views, layout, pair->image, (int)(t % width), y + (int)(t / width));
+        weft_rgb prediction;
+        weft_predictor_predict(predictor, (int)(t % width), y + (int)(t / width), &pair->image, 1, &prediction);
         store_prediction(&pair->prediction, texel, prediction);
     }
 }

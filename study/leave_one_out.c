@@ -22,8 +22,7 @@ static void name_photograph(const json_t *provenance, int image, char name[64])
 /* ---- One photograph ---- */
 
 /* Fills a pair from the dataset, a band of rows at a time. */
-static weft_code read_pair(weft_dataset *dataset, const weft_material *material, const weft_triangulation *views,
-                           weft_image_pair *pair, weft_error *error)
+static weft_code read_pair(weft_dataset *dataset, weft_predictor *predictor, weft_image_pair *pair, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     int band = weft_band_height(layout);
@@ -35,7 +34,9 @@ static weft_code read_pair(weft_dataset *dataset, const weft_material *material,
         int rows = band < layout->height - y ? band : layout->height - y;
         code = weft_dataset_read_block(dataset, 0, y, layout->width, rows, samples, mask, error);
         if (code == WEFT_OK)
-            weft_image_pair_fill(pair, layout, material, views, y, rows, samples, mask);
+            code = weft_predictor_prepare_rows(predictor, y, rows, error);
+        if (code == WEFT_OK)
+            weft_image_pair_fill(pair, layout, predictor, y, rows, samples, mask);
     }
     free(samples);
     free(mask);
@@ -45,11 +46,10 @@ static weft_code read_pair(weft_dataset *dataset, const weft_material *material,
 static weft_code predict(weft_dataset *dataset, const weft_material *material, weft_left_out *photograph,
                          weft_error *error)
 {
-    weft_triangulation *views = NULL;
-    if (material->view_count > 0)
-        WEFT_TRY(weft_triangulation_build(material->view, material->view_count, &views, error));
-    weft_code code = read_pair(dataset, material, views, &photograph->pair, error);
-    weft_triangulation_free(views);
+    weft_predictor *predictor;
+    WEFT_TRY(weft_predictor_of_material(dataset, material, &predictor, error));
+    weft_code code = read_pair(dataset, predictor, &photograph->pair, error);
+    weft_predictor_free(predictor);
     return code == WEFT_OK ? weft_image_pair_error(&photograph->pair, &photograph->error, error) : code;
 }
 

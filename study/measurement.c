@@ -9,12 +9,14 @@
 static const long enough_samples = 2000000;
 static const uint8_t no_ring = 0xff;
 
+enum { IMAGES_AT_ONCE = 512 };
+
 /* What the pass over the rows carries along. */
 typedef struct measuring {
     weft_dataset *dataset;
     const weft_dataset_layout *layout;
-    const weft_material *material;
-    weft_triangulation *views;
+    weft_predictor *predictor;
+    int *every_image; /* [image_count] 0, 1, 2, ... */
     weft_measurement *measurement;
     int band_height, band_y; /* the rows held now */
     weft_half *samples;      /* [band_height][width][image_count][3] */
@@ -51,14 +53,13 @@ static weft_rgb sample_at(const measuring *pass, int x, int y, int image)
 }
 
 /* The three channels of a sample; `value` is untouched where it does not count. */
-static void measure_sample(const measuring *pass, int image, int x, int y, weft_prediction value[3])
+static void measure_sample(const measuring *pass, int image, int x, int y, weft_rgb p, weft_prediction value[3])
 {
     const weft_dataset_layout *layout = pass->layout;
     weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
     weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
     if (pass->mask[index_of(pass, x, y, image)] || !(light.z > 0 && view.z > 0))
         return;
-    weft_rgb p = weft_predict_sample(pass->material, pass->views, layout, image, x, y);
     weft_rgb s = sample_at(pass, x, y, image);
     uint8_t view_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(view).theta_rad);
     uint8_t light_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(light).theta_rad);
@@ -73,27 +74,33 @@ static void measure_texel(const measuring *pass, long texel)
     int images = pass->layout->image_count, x = (int)(texel % pass->layout->width),
         y = (int)(texel / pass->layout->width);
     weft_prediction *slot = pass->value + texel / pass->stride * 3 * images;
-    for (int image = 0; image < images; image++)
-        measure_sample(pass, image, x, y, slot + 3 * image);
+    weft_rgb prediction[IMAGES_AT_ONCE];
+    for (int first = 0; first < images; first += IMAGES_AT_ONCE) {
+        int count = images - first < IMAGES_AT_ONCE ? images - first : IMAGES_AT_ONCE;
+        weft_predictor_predict(pass->predictor, x, y, pass->every_image + first, count, prediction);
+        for (int i = 0; i < count; i++)
+            measure_sample(pass, first + i, x, y, prediction[i], slot + 3 * (first + i));
+    }
 }
 
-static weft_code read_bands(measuring *pass, const weft_progress *progress, weft_error *error)
+static weft_code read_bands(measuring *pass, const char *what, const weft_progress *progress, weft_error *error)
 {
     const weft_dataset_layout *layout = pass->layout;
     for (pass->band_y = 0; pass->band_y < layout->height; pass->band_y += pass->band_height) {
         int left = layout->height - pass->band_y, rows = pass->band_height < left ? pass->band_height : left;
         WEFT_TRY(weft_dataset_read_block(pass->dataset, 0, pass->band_y, layout->width, rows, pass->samples, pass->mask,
                                          error));
+        WEFT_TRY(weft_predictor_prepare_rows(pass->predictor, pass->band_y, rows, error));
         count_masks(pass, rows);
         for (int i = 0; i < pass->measurement->pair_count; i++)
-            weft_image_pair_fill(&pass->measurement->pair[i], layout, pass->material, pass->views, pass->band_y, rows,
+            weft_image_pair_fill(&pass->measurement->pair[i], layout, pass->predictor, pass->band_y, rows,
                                  pass->samples, pass->mask);
         long first = (long)pass->band_y * layout->width, end = first + (long)rows * layout->width;
         first = (first + pass->stride - 1) / pass->stride * pass->stride;
 #pragma omp parallel for schedule(dynamic, 1)
         for (long texel = first; texel < end; texel += pass->stride)
             measure_texel(pass, texel);
-        weft_progress_report(progress, "measuring the material", pass->band_y + rows, layout->height);
+        weft_progress_report(progress, what, pass->band_y + rows, layout->height);
     }
     return WEFT_OK;
 }
@@ -153,50 +160,38 @@ static weft_code allocate(measuring *pass, weft_error *error)
     pass->samples = malloc(3 * band * sizeof *pass->samples);
     pass->mask = malloc(band);
     pass->value = malloc((size_t)pass->value_count * sizeof *pass->value);
-    if (!pass->samples || !pass->mask || !pass->value)
+    pass->every_image = malloc((size_t)layout->image_count * sizeof *pass->every_image);
+    if (!pass->samples || !pass->mask || !pass->value || !pass->every_image)
         return weft_fail_memory(error, "samples", (size_t)pass->value_count * sizeof *pass->value + 7 * band);
     for (long i = 0; i < pass->value_count; i++)
         pass->value[i].view_ring = no_ring;
+    for (int i = 0; i < layout->image_count; i++)
+        pass->every_image[i] = i;
     return WEFT_OK;
 }
 
-static weft_code check_size(const weft_dataset *dataset, const weft_material *material, weft_error *error)
-{
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    if (material->level[0].width != layout->width || material->level[0].height != layout->height)
-        return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' has %d x %d texels, but the material %d x %d: it is not made from it",
-                         weft_dataset_path(dataset), layout->width, layout->height, material->level[0].width,
-                         material->level[0].height);
-    return WEFT_OK;
-}
-
-weft_code weft_measurement_make(weft_dataset *dataset, const weft_material *material, const int *image, int image_count,
-                                const weft_progress *progress, weft_measurement *measurement, weft_error *error)
+weft_code weft_measurement_make(weft_dataset *dataset, weft_predictor *predictor, const char *what, const int *image,
+                                int image_count, const weft_progress *progress, weft_measurement *measurement,
+                                weft_error *error)
 {
     *measurement = (weft_measurement){0};
-    WEFT_TRY(check_size(dataset, material, error));
     measuring pass = {.dataset = dataset,
                       .layout = weft_dataset_get_layout(dataset),
-                      .material = material,
+                      .predictor = predictor,
                       .measurement = measurement};
-    weft_code code = WEFT_OK;
-    if (material->view_count > 0)
-        code = weft_triangulation_build(material->view, material->view_count, &pass.views, error);
-    if (code == WEFT_OK)
-        code = create_pairs(&pass, image, image_count, error);
+    weft_code code = create_pairs(&pass, image, image_count, error);
     if (code == WEFT_OK)
         code = allocate(&pass, error);
     if (code == WEFT_OK)
-        code = read_bands(&pass, progress, error);
+        code = read_bands(&pass, what, progress, error);
     if (code == WEFT_OK) {
         drop_empty_slots(&pass);
         code = summarise(&pass, error);
     }
-    weft_triangulation_free(pass.views);
     free(pass.samples);
     free(pass.mask);
     free(pass.value);
+    free(pass.every_image);
     if (code != WEFT_OK)
         weft_measurement_free(measurement);
     return code;

@@ -1,9 +1,8 @@
-/* A material measured against its dataset in one pass over the samples. */
+/* A model measured against a dataset in one pass over the samples. */
 #ifndef WEFT_STUDY_MEASUREMENT_H
 #define WEFT_STUDY_MEASUREMENT_H
 
 #include "btf/dataset.h"
-#include "btf/material.h"
 #include "btf/progress.h"
 #include "study/image_pair.h"
 
@@ -21,10 +20,11 @@ typedef struct weft_measurement {
 } weft_measurement;
 
 /* Measures the error over all texels, or over an even choice of them where the samples would be more than about two
- * million; makes the pairs of the given images [image_count]. The material must have the size of the dataset. Errors:
- * WEFT_BAD_INPUT for another size or a dataset that cannot be read. */
-weft_code weft_measurement_make(weft_dataset *dataset, const weft_material *material, const int *image, int image_count,
-                                const weft_progress *progress, weft_measurement *measurement, weft_error *error);
+ * million; makes the pairs of the given images [image_count]. `what` names the step for the progress. Errors:
+ * WEFT_BAD_INPUT for a dataset that cannot be read. */
+weft_code weft_measurement_make(weft_dataset *dataset, weft_predictor *predictor, const char *what, const int *image,
+                                int image_count, const weft_progress *progress, weft_measurement *measurement,
+                                weft_error *error);
 void weft_measurement_free(weft_measurement *measurement);
 
 #endif

@@ -17,7 +17,7 @@ static const char *const style =
     ".tiles{display:flex;flex-wrap:wrap;gap:12px}.tiles div{border:1px solid #ccc;border-radius:6px;padding:.5em "
     ".9em;background:#fff;"
     "font-size:.85em;color:#555}.tiles b{display:block;font-size:1.7em;color:#1c1c1c}"
-    ".row{display:flex;flex-wrap:wrap;gap:12px}figure{margin:0}figcaption{font-size:.85em;color:#555;max-width:420px}"
+    ".row{display:flex;flex-wrap:wrap;gap:12px}figure{margin:0}figcaption{font-size:.85em;color:#555;max-width:262px}"
     "img{display:block;image-rendering:pixelated;background:#ddd;max-width:100%}p.note{color:#555;font-size:.92em}";
 
 weft_code weft_page_begin(const char *folder, const char *title, weft_page *page, weft_error *error)

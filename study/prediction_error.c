@@ -32,13 +32,19 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double median(float *value, long count)
+/* Of sorted values. */
+static double median(const float *value, long count)
 {
     if (count == 0)
         return 0;
-    qsort(value, (size_t)count, sizeof *value, ascending);
     double middle = (double)value[count / 2];
     return count % 2 ? middle : 0.5 * (middle + (double)value[count / 2 - 1]);
+}
+
+/* The smallest of sorted values that four fifths of them do not exceed. */
+static double percentile80(const float *value, long count)
+{
+    return count == 0 ? 0 : (double)value[(4 * count + 4) / 5 - 1];
 }
 
 weft_code weft_prediction_error_of(const weft_prediction *value, long count, weft_prediction_choice choice,
@@ -59,7 +65,9 @@ weft_code weft_prediction_error_of(const weft_prediction *value, long count, wef
     }
     if (squared_sample > 0)
         result->relative_rmse = sqrt(squared_error / squared_sample);
+    qsort(relative, (size_t)result->count, sizeof *relative, ascending);
     result->median_relative = median(relative, result->count);
+    result->percentile80_relative = percentile80(relative, result->count);
     free(relative);
     return WEFT_OK;
 }

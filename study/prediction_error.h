@@ -7,9 +7,10 @@
 #include <stdint.h>
 
 typedef struct weft_prediction_error {
-    long count;             /* sample values (channels counted one by one) */
-    double relative_rmse;   /* sqrt(mean (p - s)^2 / mean s^2) */
-    double median_relative; /* median of |p - s| / max(s, floor), floor = 1e-4 of the largest sample */
+    long count;                   /* sample values (channels counted one by one) */
+    double relative_rmse;         /* sqrt(mean (p - s)^2 / mean s^2) */
+    double median_relative;       /* median of |p - s| / max(s, floor), floor = 1e-4 of the largest sample */
+    double percentile80_relative; /* its 80th percentile */
 } weft_prediction_error;
 
 /* One value of one channel, and where it was seen and lit from. */

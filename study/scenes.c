@@ -1,9 +1,10 @@
 #include "study/scenes.h"
 
-#include "capture/virtual_cloth.h"
 #include "player/context.h"
+#include "study/visible_error.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <time.h>
 
 enum { PICTURE_SIZE = 400, PICTURE_SAMPLES = 3, PLANE_REPEATS = 1 };
@@ -19,6 +20,11 @@ static const setting settings[WEFT_SCENE_COUNT] = {
     {"drape", "Drape, light low from the right", 65, -10, 0, 0},
     {"plane", "Plane seen at 60\u00b0 from its normal, light at 45\u00b0 opposite", 45, 90, -90, 30},
 };
+
+const char *weft_scenes_model_name(int model)
+{
+    return model == WEFT_SCENE_BARD ? "BARD" : weft_mode_name((weft_mode)model);
+}
 
 static weft_scene scene_of(const setting *s, weft_mode mode)
 {
@@ -74,27 +80,14 @@ static weft_code set_mesh(weft_player *player, const char *name, weft_error *err
     return code;
 }
 
-static weft_code set_weave(weft_player *player, const weft_scenes_request *request, weft_error *error)
-{
-    weft_rig_settings layout = weft_rig_settings_default();
-    layout.tiles_x = request->tiles_u;
-    layout.tiles_y = request->tiles_v;
-    layout.cloth_noise = 0;
-    weft_virtual_cloth cloth;
-    char warning[WEFT_MESSAGE_SIZE];
-    WEFT_TRY(weft_virtual_cloth_read(request->weave, &layout, 0, &cloth, warning, error));
-    weft_code code = weft_player_set_weave(player, &cloth.weave, cloth.tiles_x, cloth.tiles_y, error);
-    weft_virtual_cloth_free(&cloth);
-    return code;
-}
-
 static weft_code set_models(weft_player *player, const weft_scenes_request *request, const weft_progress *progress,
                             weft_scenes *scenes, weft_error *error)
 {
     WEFT_TRY(weft_player_set_material(player, request->material, error));
     WEFT_TRY(weft_player_set_dataset(player, request->dataset, progress, &scenes->skipped_levels, error));
-    if (request->weave)
-        WEFT_TRY(set_weave(player, request, error));
+    if (request->cloth)
+        WEFT_TRY(weft_player_set_weave(player, &request->cloth->weave, request->cloth->tiles_x, request->cloth->tiles_y,
+                                       error));
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++)
         scenes->has[mode] = weft_player_has(player, (weft_mode)mode);
     return WEFT_OK;
@@ -117,6 +110,44 @@ static weft_code draw_scene(weft_player *player, int index, weft_scenes *scenes,
     return WEFT_OK;
 }
 
+/* The models beside the data in one scene, over the pixels that the mesh covers. */
+static weft_code measure_scene(weft_player *player, int index, weft_scenes *scenes, weft_error *error)
+{
+    weft_scene_pictures *pictures = &scenes->scene[index];
+    weft_scene scene = scene_of(&settings[index], WEFT_MODE_RAW);
+    weft_surface_sample *surface;
+    WEFT_TRY(weft_player_read_surface(player, &scene, WEFT_MODE_RAW, PICTURE_SIZE, PICTURE_SIZE, &surface, error));
+    weft_code code = WEFT_OK;
+    for (int model = 0; model < WEFT_SCENE_MODELS && code == WEFT_OK; model++) {
+        if (scenes->has[model] && model != WEFT_MODE_RAW)
+            code = weft_visible_error_of(&pictures->picture[WEFT_MODE_RAW], &pictures->picture[model], surface,
+                                         &pictures->error[model], error);
+    }
+    free(surface);
+    return code;
+}
+
+/* BARD takes the place of the data in the player. */
+static weft_code draw_bard(weft_player *player, const char *path, const weft_progress *progress, weft_scenes *scenes,
+                           weft_error *error)
+{
+    weft_dataset *bard;
+    int skipped_levels;
+    WEFT_TRY(weft_dataset_open(path, &bard, error));
+    weft_code code = weft_player_set_dataset(player, bard, progress, &skipped_levels, error);
+    weft_dataset_close(bard);
+    for (int i = 0; i < WEFT_SCENE_COUNT && code == WEFT_OK; i++) {
+        weft_scene scene = scene_of(&settings[i], WEFT_MODE_RAW);
+        double elapsed_ms;
+        code = set_mesh(player, settings[i].mesh, error);
+        if (code == WEFT_OK)
+            code =
+                draw(player, &scene, PICTURE_SAMPLES, &scenes->scene[i].picture[WEFT_SCENE_BARD], &elapsed_ms, error);
+    }
+    scenes->has[WEFT_SCENE_BARD] = code == WEFT_OK;
+    return code;
+}
+
 static weft_code draw_all(weft_player *player, const weft_scenes_request *request, const weft_progress *progress,
                           weft_scenes *scenes, weft_error *error)
 {
@@ -127,6 +158,12 @@ static weft_code draw_all(weft_player *player, const weft_scenes_request *reques
     for (int i = 0; i < WEFT_SCENE_COUNT; i++) {
         WEFT_TRY(draw_scene(player, i, scenes, error));
         weft_progress_report(progress, "drawing scenes", i + 1, WEFT_SCENE_COUNT);
+    }
+    if (request->bard)
+        WEFT_TRY(draw_bard(player, request->bard, progress, scenes, error));
+    for (int i = 0; i < WEFT_SCENE_COUNT; i++) {
+        WEFT_TRY(set_mesh(player, settings[i].mesh, error));
+        WEFT_TRY(measure_scene(player, i, scenes, error));
     }
     scenes->drawn = true;
     return WEFT_OK;
@@ -157,8 +194,8 @@ weft_code weft_scenes_draw(const weft_scenes_request *request, const weft_progre
 void weft_scenes_free(weft_scenes *scenes)
 {
     for (int i = 0; i < WEFT_SCENE_COUNT; i++) {
-        for (int mode = 0; mode < WEFT_MODE_COUNT; mode++)
-            weft_image_free(&scenes->scene[i].picture[mode]);
+        for (int model = 0; model < WEFT_SCENE_MODELS; model++)
+            weft_image_free(&scenes->scene[i].picture[model]);
     }
     *scenes = (weft_scenes){0};
 }

@@ -6,14 +6,21 @@
 #include "btf/image.h"
 #include "btf/material.h"
 #include "btf/progress.h"
+#include "capture/virtual_cloth.h"
 #include "player/player.h"
+#include "study/prediction_error.h"
 
-enum { WEFT_SCENE_COUNT = 3 };
+/* What is drawn: the modes of the player, and BARD as a dataset in mode raw. */
+enum { WEFT_SCENE_COUNT = 3, WEFT_SCENE_BARD = WEFT_MODE_COUNT, WEFT_SCENE_MODELS };
 
-/* One scene: linear pictures by mode, those of absent modes empty. */
+/* "raw", "compressed", "analytic", "BARD". Pure. */
+const char *weft_scenes_model_name(int model);
+
+/* One scene: linear pictures by model, those of absent models empty. */
 typedef struct weft_scene_pictures {
     const char *caption;
-    weft_image picture[WEFT_MODE_COUNT];
+    weft_image picture[WEFT_SCENE_MODELS];
+    weft_prediction_error error[WEFT_SCENE_MODELS]; /* against raw, over the lit pixels of the mesh */
 } weft_scene_pictures;
 
 /* Freed with weft_scenes_free. */
@@ -21,23 +28,23 @@ typedef struct weft_scenes {
     bool drawn; /* false where there is no OpenGL: `why_not` says so */
     char why_not[WEFT_MESSAGE_SIZE];
     char renderer[128]; /* name of the OpenGL driver's renderer */
-    bool has[WEFT_MODE_COUNT];
-    int width, height;                /* of the pictures, pixels */
-    bool near_lights;                 /* the dataset is then drawn with the directions of its centre */
-    int skipped_levels;               /* finest levels of the dataset that did not fit into graphics memory */
-    double frame_ms[WEFT_MODE_COUNT]; /* of the first scene */
+    bool has[WEFT_SCENE_MODELS];
+    int width, height;                  /* of the pictures, pixels */
+    bool near_lights;                   /* the dataset is then drawn with the directions of its centre */
+    int skipped_levels;                 /* finest levels of the dataset that did not fit into graphics memory */
+    double frame_ms[WEFT_SCENE_MODELS]; /* of the first scene; 0 for BARD, which is drawn as raw is */
     weft_scene_pictures scene[WEFT_SCENE_COUNT];
 } weft_scenes;
 
-/* What to draw; `weave` may be NULL. */
+/* What to draw; `cloth` and `bard` may be NULL. */
 typedef struct weft_scenes_request {
     weft_dataset *dataset;
     const weft_material *material;
-    const char *weave;
-    double tiles_u, tiles_v; /* of the weave for one material; 0 = as many as the virtual rig would lay out */
+    const weft_virtual_cloth *cloth; /* a weave and its tiles for one material */
+    const char *bard;                /* a dataset as `weft bard` writes it */
 } weft_scenes_request;
 
-/* Draws without a window. Having no OpenGL is not an error. Errors: WEFT_BAD_INPUT from reading dataset or weave;
+/* Draws without a window. Having no OpenGL is not an error. Errors: WEFT_BAD_INPUT from reading a dataset;
  * WEFT_SYSTEM. */
 weft_code weft_scenes_draw(const weft_scenes_request *request, const weft_progress *progress, weft_scenes *scenes,
                            weft_error *error);

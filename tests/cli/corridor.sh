@@ -37,6 +37,23 @@ expect_ok render cloth.weft --raw cloth.btf.h5 --weave "$assets/weaves/wool_gaba
 expect_ok render cloth.weft --mesh sphere --size 64x64 -o sphere.exr
 expect_ok compare cloth.btf.h5 cloth.weft --weave "$assets/weaves/wool_gabardine.wv" -o report
 grep -q "<img" report/index.html || fail "the comparison has no pictures"
+for model in compressed analytic; do
+    printed=$(sed -n "s/^$model, mean BRDF: relative RMSE \([0-9.]*\),.*/\1/p" out.log)
+    grep -q "<td>$model</td>.*<td>$printed</td>" report/index.html || fail "page and command differ on the error of $model"
+done
+# The table of the slices goes through eval as it is: columns 7 to 9 are the data, the next threes the models.
+slices_agree() {
+    expect_ok eval "$1" --at report/slices.csv
+    awk -F, -v first="$2" 'NR > 1 {
+        for (c = 0; c < 3; c++) {
+            difference = $(first + c) - $(NF - 2 + c)
+            if (difference > 1e-6 || difference < -1e-6) exit 1
+        }
+    } END { if (NR < 1000) exit 1 }' out.log || fail "eval $1 does not say what the slices say"
+}
+slices_agree cloth.btf.h5 7
+slices_agree cloth.weft 10
+slices_agree "$assets/weaves/wool_gabardine.wv" 13
 for command in capture register import compress bard render play compare eval info verify; do
     expect_says "xample" "$command" --help
 done

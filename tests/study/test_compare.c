@@ -53,7 +53,36 @@ static weft_prediction_error expected_error(int ring)
     }
     qsort(relative, (size_t)count, sizeof *relative, ascending);
     double median = 0.5 * (relative[count / 2] + relative[(count - 1) / 2]);
-    return (weft_prediction_error){count, sqrt(errors / squares), median};
+    double percentile80 = relative[(4 * count + 4) / 5 - 1];
+    return (weft_prediction_error){count, sqrt(errors / squares), median, percentile80};
+}
+
+/* The same of the means over the texels, without the cosine. */
+static weft_prediction_error expected_mean_error(void)
+{
+    static double relative[361 * 3];
+    long count = 0;
+    double squares = 0, errors = 0;
+    for (int pair = 0; pair < 19 * 19; pair++) {
+        weft_vec3 view = weft_direction_of_angles(weft_ubo81_angles(pair / 19));
+        weft_vec3 light = weft_direction_of_angles(weft_ubo81_angles(pair % 19));
+        double sample[3] = {0}, prediction[3] = {0};
+        for (int texel = 0; texel < WIDTH * HEIGHT; texel++) {
+            weft_rgb s = glossy(texel % WIDTH, texel / WIDTH, light, view), p = flat(texel % WIDTH, texel / WIDTH);
+            double valid = pair == 0 && texel == 0 ? 0 : 1;
+            sample[0] += valid * s.r, sample[1] += valid * s.g, sample[2] += valid * s.b;
+            prediction[0] += p.r, prediction[1] += p.g, prediction[2] += p.b;
+        }
+        for (int c = 0; c < 3; c++) {
+            double s = sample[c] / (WIDTH * HEIGHT - (pair == 0)), p = prediction[c] / (WIDTH * HEIGHT);
+            squares += s * s;
+            errors += (s - p) * (s - p);
+            relative[count++] = fabs(s - p) / s;
+        }
+    }
+    qsort(relative, (size_t)count, sizeof *relative, ascending);
+    return (weft_prediction_error){count, sqrt(errors / squares), relative[count / 2],
+                                   relative[(4 * count + 4) / 5 - 1]};
 }
 
 static char *read_page(const char *path)
@@ -70,6 +99,8 @@ static void expect_error(const weft_prediction_error *measured, const weft_predi
     assert_int_equal(measured->count, expected->count);
     assert_float_equal(measured->relative_rmse, expected->relative_rmse, 2e-3 * expected->relative_rmse);
     assert_float_equal(measured->median_relative, expected->median_relative, 5e-3 * expected->median_relative);
+    assert_float_equal(measured->percentile80_relative, expected->percentile80_relative,
+                       5e-3 * expected->percentile80_relative);
 }
 
 static void the_page_tells_the_errors_that_the_functions_have(void **state)
@@ -82,21 +113,83 @@ static void the_page_tells_the_errors_that_the_functions_have(void **state)
     weft_comparison comparison;
     weft_error error = {0};
     expect_ok(weft_compare(&options, NULL, &comparison, &error), &error);
-    weft_prediction_error all = expected_error(-1), ring = expected_error(2);
-    expect_error(&comparison.measurement.all, &all);
-    expect_error(&comparison.measurement.by_view[2], &ring);
-    assert_int_equal(comparison.measurement.by_view[4].count, 0);
-    assert_int_equal(comparison.measurement.saturated, 1);
+    weft_prediction_error all = expected_error(-1), ring = expected_error(2), mean = expected_mean_error();
+    assert_int_equal(comparison.model_count, 1);
+    expect_error(&comparison.model[0].mean, &mean);
+    expect_error(&comparison.model[0].texture.all, &all);
+    expect_error(&comparison.model[0].texture.by_view[2], &ring);
+    assert_int_equal(comparison.model[0].texture.by_view[4].count, 0);
+    assert_int_equal(comparison.model[0].texture.saturated, 1);
     assert_int_equal(comparison.left_out.count, 0);
     char *page = read_page("compare-report/index.html"), row[128];
-    const weft_prediction_error *m = &comparison.measurement.all;
+    const weft_prediction_error *m = &comparison.model[0].texture.all;
     snprintf(row, sizeof row, "<td>all</td><td>%ld</td><td>%.2f %%</td><td>%.4f</td>", m->count,
              100 * m->median_relative, m->relative_rmse);
     assert_non_null(strstr(page, row));
-    assert_int_equal(access("compare-report/texels-2-difference.png", R_OK), 0);
+    assert_int_equal(access("compare-report/texels-2-compressed-difference.png", R_OK), 0);
     assert_true((strstr(page, "There are no pictures of scenes") != NULL) == !comparison.scenes.drawn);
     free(page);
     weft_comparison_free(&comparison);
+}
+
+/* A row of the table of models. */
+static void expect_model_row(const char *page, const char *name, const weft_prediction_error *e)
+{
+    char row[160];
+    snprintf(row, sizeof row, "<td>%s</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td><td>%.2f %%</td>", name, e->count,
+             e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
+    if (!strstr(page, row))
+        fail_msg("the page has no row %s", row);
+}
+
+/* The dataset itself in place of a prediction has no error; a weave that is not its cloth has. */
+static void the_page_compares_every_model_that_is_given(void **state)
+{
+    (void)state;
+    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 3, glossy, 1);
+    fixture_diffuse_material("compare.weft", WIDTH, HEIGHT, flat);
+    const weft_compare_options options = {.dataset = "compare.btf.h5",
+                                          .material = "compare.weft",
+                                          .weave = WEFT_ASSETS "/weaves/cotton_denim.wv",
+                                          .bard = "compare.btf.h5",
+                                          .folder = "compare-report"};
+    weft_comparison comparison;
+    weft_error error = {0};
+    expect_ok(weft_compare(&options, NULL, &comparison, &error), &error);
+    char *page = read_page("compare-report/index.html");
+    assert_int_equal(comparison.model_count, 3);
+    for (int i = 0; i < 3; i++) {
+        expect_model_row(page, comparison.model[i].name, &comparison.model[i].texture.all);
+        expect_model_row(page, comparison.model[i].name, &comparison.model[i].mean);
+    }
+    assert_true(comparison.model[1].texture.all.relative_rmse > 0.1);
+    assert_true(comparison.model[1].mean.relative_rmse > 0.1);
+    assert_true(comparison.model[2].texture.all.relative_rmse == 0);
+    assert_float_equal(comparison.model[2].mean.relative_rmse, 0, 1e-6);
+    if (comparison.scenes.drawn) {
+        assert_true(comparison.scenes.scene[0].error[WEFT_SCENE_BARD].relative_rmse == 0);
+        assert_true(comparison.scenes.scene[0].error[WEFT_MODE_ANALYTIC].relative_rmse > 0.1);
+    }
+    assert_non_null(strstr(page, "as its file gives it"));
+    assert_int_equal(access("compare-report/slices-3.png", R_OK), 0);
+    assert_int_equal(access("compare-report/texels-1-BARD-difference.png", R_OK), 0);
+    free(page);
+    weft_comparison_free(&comparison);
+}
+
+static void a_prediction_of_another_dataset_is_refused(void **state)
+{
+    (void)state;
+    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 2, glossy, 0);
+    fixture_far_dataset("other.btf.h5", WIDTH + 1, HEIGHT, 2, glossy, 0);
+    fixture_diffuse_material("compare.weft", WIDTH, HEIGHT, flat);
+    const weft_compare_options options = {
+        .dataset = "compare.btf.h5", .material = "compare.weft", .bard = "other.btf.h5", .folder = "no-report"};
+    weft_comparison comparison;
+    weft_error error = {0};
+    assert_int_equal(weft_compare(&options, NULL, &comparison, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "other.btf.h5"));
+    assert_int_not_equal(access("no-report/index.html", F_OK), 0);
 }
 
 static weft_rgb matt(int x, int y, weft_vec3 light, weft_vec3 view)
@@ -124,7 +217,7 @@ static void a_matt_plane_is_predicted_from_the_other_photographs(void **state)
     assert_int_equal(comparison.left_out.count, 6);
     assert_true(comparison.left_out.mean_relative_rmse < 0.05);
     assert_true(comparison.left_out.mean_median_relative < 0.05);
-    assert_float_equal(comparison.measurement.all.relative_rmse, 1, 1e-6);
+    assert_float_equal(comparison.model[0].texture.all.relative_rmse, 1, 1e-6);
     double mean = 0;
     for (int i = 0; i < 6; i++)
         mean += comparison.left_out.photograph[i].error.relative_rmse / 6;
@@ -151,6 +244,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_tells_the_errors_that_the_functions_have),
+        cmocka_unit_test(the_page_compares_every_model_that_is_given),
+        cmocka_unit_test(a_prediction_of_another_dataset_is_refused),
         cmocka_unit_test(a_matt_plane_is_predicted_from_the_other_photographs),
         cmocka_unit_test(a_material_of_another_size_is_refused),
     };
