@@ -77,10 +77,36 @@ static void nothing_gives_zeros(void **state)
     weft_error_tally_free(tally);
 }
 
+static void entries_keep_every_count(void **state)
+{
+    (void)state;
+    weft_error_tally *tally, *copy;
+    const weft_error_sums sums = {1000, 500, 5};
+    uint32_t seed = 2;
+    assert_int_equal(weft_error_tally_create(&tally, NULL), WEFT_OK);
+    assert_int_equal(weft_error_tally_create(&copy, NULL), WEFT_OK);
+    for (int i = 0; i < 1000; i++) {
+        float value = (float)exp(20 * pseudo_random(&seed) - 15);
+        weft_error_tally_add(tally, value, value * (float)pseudo_random(&seed));
+    }
+    size_t count = weft_error_tally_entries(tally, NULL);
+    uint32_t(*entry)[2] = calloc(count, sizeof *entry);
+    assert_int_equal(weft_error_tally_entries(tally, entry), count);
+    assert_true(weft_error_tally_add_entries(copy, entry, count));
+    weft_material_error one = weft_error_result(tally, &sums), two = weft_error_result(copy, &sums);
+    assert_memory_equal(&one, &two, sizeof one);
+    entry[0][0] = UINT32_MAX;
+    assert_false(weft_error_tally_add_entries(copy, entry, 1));
+    free(entry);
+    weft_error_tally_free(tally);
+    weft_error_tally_free(copy);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(percentiles_agree_with_sorted_values),
+        cmocka_unit_test(entries_keep_every_count),
         cmocka_unit_test(dark_and_negative_samples_do_not_count_as_relative_errors),
         cmocka_unit_test(nothing_gives_zeros),
     };
