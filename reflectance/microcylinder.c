@@ -3,6 +3,7 @@
 
 #define MAX_TILT (89.9 * WEFT_PI / 180)
 #define MIN_COS_THETA_DIFFERENCE 1e-6
+#define MIN_PLANE_SQUARED 1e-36
 #define INVERSE_SQRT_PI 0.56418958354775628695
 
 weft_thread_tangent weft_thread_tangent_of(weft_thread_axis axis, weft_real tilt_rad)
@@ -28,11 +29,12 @@ typedef struct plane_angle {
     weft_real cosine, sine;
 } plane_angle;
 
-/* Angle of (x, y), 0 for the null vector; *length is that of (x, y). */
+/* Angle of (x, y), 0 for one whose square has no digits left in single precision; *length is that of (x, y). */
 static plane_angle plane_angle_of(weft_real x, weft_real y, weft_real *length)
 {
-    *length = sqrt(x * x + y * y);
-    return *length > 0 ? (plane_angle){x / *length, y / *length} : (plane_angle){1, 0};
+    weft_real square = x * x + y * y;
+    *length = sqrt(square);
+    return square > (weft_real)MIN_PLANE_SQUARED ? (plane_angle){x / *length, y / *length} : (plane_angle){1, 0};
 }
 
 static weft_real absolute_difference(plane_angle a, plane_angle b)

@@ -3,6 +3,7 @@
 
 const float THREAD_MAX_TILT = 89.9 * 3.14159265358979 / 180.0;
 const float THREAD_MIN_COS_THETA_DIFFERENCE = 1e-6;
+const float THREAD_MIN_PLANE_SQUARED = 1e-36;
 const float THREAD_INVERSE_SQRT_PI = 0.564189583547756;
 const float CLOTH_MIN_LIGHT_COSINE = 1e-6;
 
@@ -32,11 +33,12 @@ ThreadTangent thread_tangent_of(int axis, float tilt_rad)
     return ThreadTangent(axis, cos(tilt), sin(tilt));
 }
 
-// Cosine and sine of the angle of (x, y), 0 for the null vector; size is the length of (x, y).
+// Cosine and sine of the angle of (x, y), 0 for one whose square has no digits left; size is the length of (x, y).
 vec2 plane_angle_of(float x, float y, out float size)
 {
-    size = sqrt(x * x + y * y);
-    return size > 0.0 ? vec2(x, y) / size : vec2(1.0, 0.0);
+    float square = x * x + y * y;
+    size = sqrt(square);
+    return square > THREAD_MIN_PLANE_SQUARED ? vec2(x, y) / size : vec2(1.0, 0.0);
 }
 
 // atan(0, 0) is undefined in GLSL.

@@ -1,6 +1,6 @@
 #include "reflectance/quadrature.h"
 
-enum { FIRST_PANELS = 6, MAX_DEPTH = 40, PAIRS = 7 };
+enum { FIRST_PANELS = 6, MAX_DEPTH = 40, MAX_HALVINGS = 2000, PAIRS = 7 };
 
 #define RELATIVE_TOLERANCE 1e-9
 
@@ -23,7 +23,9 @@ typedef struct problem {
     integrand_function function;
     const void *context;
     weft_real low, high;
+    weft_real relative;  /* tolerance of a panel relative to itself */
     weft_real tolerance; /* absolute, per panel */
+    int halvings;        /* left: a function that is all rounding (a spine that ends in a spike) would never end */
 } problem;
 
 typedef struct estimate {
@@ -58,12 +60,14 @@ static estimate gauss_kronrod(const problem *p, weft_real low, weft_real high)
     return (estimate){kronrod * radius, fabs(kronrod - gauss) * radius};
 }
 
-static weft_real refine(const problem *p, weft_real low, weft_real high, estimate whole, int depth)
+static weft_real refine(problem *p, weft_real low, weft_real high, estimate whole, int depth)
 {
-    /* A panel cannot know itself better than its own rounding, whatever the first estimate of the whole was. */
-    weft_real enough = fmax(p->tolerance, 8 * (weft_real)WEFT_REAL_EPSILON * fabs(whole.value));
-    if (!(whole.error > enough) || depth == MAX_DEPTH)
+    /* Integrands are not negative, so that a relative error of every panel is one of the whole. It ends the refinement
+     * also where the first panels missed a peak and the tolerance is below the rounding of what was found later. */
+    weft_real enough = fmax(p->tolerance, p->relative * fabs(whole.value));
+    if (!(whole.error > enough) || depth == MAX_DEPTH || p->halvings == 0)
         return whole.value;
+    p->halvings--;
     weft_real centre = (low + high) / 2;
     return refine(p, low, centre, gauss_kronrod(p, low, centre), depth + 1) +
            refine(p, centre, high, gauss_kronrod(p, centre, high), depth + 1);
@@ -76,7 +80,8 @@ static weft_real panel_edge(int panel)
 
 weft_real integrate(integrand_function function, const void *context, weft_real low, weft_real high)
 {
-    problem p = {.function = function, .context = context, .low = low, .high = high};
+    problem p = {.function = function, .context = context, .low = low, .high = high, .halvings = MAX_HALVINGS};
+    p.relative = fmax((weft_real)RELATIVE_TOLERANCE, 8 * (weft_real)WEFT_REAL_EPSILON);
     estimate first[FIRST_PANELS];
     weft_real total = 0;
     for (int i = 0; i < FIRST_PANELS; i++) {

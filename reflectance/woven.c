@@ -155,6 +155,7 @@ weft_real weft_prepared_texture(const weft_prepared_segment *prepared, weft_real
     bool inside = prepared->admissible && fabs(x) <= segment->width / 2 && fabs(y) <= segment->length / 2;
     if (!inside || !half_vector(light, view, &half))
         return 0;
+    umax = fmin(umax, (weft_real)(WEFT_PI / 2));
     if (prepared->filament)
         return filament_texture(prepared, umax, x, y, half, light, view);
     return staple_texture(prepared, umax, x, y, half, light, view);

@@ -148,6 +148,7 @@ float prepared_texture(Segment segment, float umax, vec2 place, vec3 light, vec3
     bool inside = abs(place.x) <= 0.5 * segment.width && abs(place.y) <= 0.5 * segment.size;
     if (!inside || !(light.z > 0.0 && view.z > 0.0 && dot(halfway, halfway) >= WOVEN_MIN_HALF_SQUARED))
         return 0.0;
+    umax = min(umax, 0.5 * WOVEN_PI);
     if (segment.inverse_sin_psi == 0.0)
         return filament_texture(segment, umax, place, halfway, light, view);
     return staple_texture(segment, umax, place, halfway, light, view);

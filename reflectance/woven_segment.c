@@ -7,7 +7,7 @@
 /* Where the power series of I0 hands over to the asymptotic one: there the smallest term is exp(-2 * 20). */
 #define BESSEL_SWITCH 20
 
-/* Decimal files round pi/2 up. */
+/* Decimal files round pi/2 up; the spine then ends at pi/2. */
 #define UMAX_SLACK 1e-7
 
 static bool within(weft_real x, weft_real low, weft_real high)
@@ -66,6 +66,7 @@ static weft_real end_factor(weft_real kappa, weft_real shape, weft_real sin_umax
 
 weft_spine weft_segment_spine(const weft_segment *segment, weft_real umax)
 {
+    umax = fmin(umax, (weft_real)(WEFT_PI / 2));
     weft_spine spine = {.umax = umax, .sin_umax = sin(umax), .cos_umax = fmax(cos(umax), 0)};
     spine.shape = 1 + segment->kappa * (1 + spine.cos_umax / spine.sin_umax);
     weft_real half_length = (segment->length - segment->width * spine.sin_umax) / 2;

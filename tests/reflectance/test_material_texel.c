@@ -3,13 +3,13 @@
 #include "reflectance/lafortune.h"
 #include "tests/btf/cmocka_all.h"
 
-enum { WIDTH = 5, HEIGHT = 3, LOBES = 2, VIEWS = 7 };
+enum { WIDTH = 5, HEIGHT = 3, LOBES = 2, VIEWS = 7, LIGHTS = 9 };
 
 static const weft_vec3 light = {0.36, 0.48, 0.8}, view = {-0.48, 0.36, 0.8};
 
 typedef struct model {
     weft_material material;
-    weft_triangulation *views;
+    weft_table_directions directions;
 } model;
 
 static void fill_level(weft_material_level *level, int number)
@@ -31,6 +31,9 @@ static void fill_level(weft_material_level *level, int number)
         for (int v = 0; v < VIEWS; v++)
             for (int i = 0; i < 4; i++)
                 level->table[4 * (v * texels + t) + i] = (uint8_t)(40 + 11 * v + 7 * t + 23 * i + number);
+        for (int l = 0; l < LIGHTS; l++)
+            for (int i = 0; i < 4; i++)
+                level->light_table[4 * (l * texels + t) + i] = (uint8_t)(70 + 13 * l + 5 * t + 17 * i + number);
     }
 }
 
@@ -38,12 +41,14 @@ static int make_model(void **state)
 {
     static model m;
     weft_error error = {0};
-    assert_int_equal(weft_material_create(WIDTH, HEIGHT, LOBES, VIEWS, 1, &m.material, &error), WEFT_OK);
+    assert_int_equal(weft_material_create(WIDTH, HEIGHT, LOBES, VIEWS, LIGHTS, 1, &m.material, &error), WEFT_OK);
     for (int i = 0; i < m.material.level_count; i++)
         fill_level(&m.material.level[i], i);
     for (int i = 0; i < VIEWS; i++)
         m.material.view[i] = weft_direction_of_angles(weft_ubo81_angles(i));
-    assert_int_equal(weft_triangulation_build(m.material.view, VIEWS, &m.views, &error), WEFT_OK);
+    for (int i = 0; i < LIGHTS; i++)
+        m.material.light[i] = weft_direction_of_angles(weft_ubo81_angles(i));
+    assert_int_equal(weft_table_directions_create(&m.material, &m.directions, &error), WEFT_OK);
     *state = &m;
     return 0;
 }
@@ -51,7 +56,7 @@ static int make_model(void **state)
 static int free_model(void **state)
 {
     model *m = *state;
-    weft_triangulation_free(m->views);
+    weft_table_directions_free(&m->directions);
     weft_material_free(&m->material);
     return 0;
 }
@@ -71,7 +76,7 @@ static void assert_same_colour(weft_rgba a, weft_rgba b)
 
 static weft_rgba texel(const model *m, int level, int x, int y)
 {
-    return weft_material_texel(&m->material, m->views, level, x, y, light, view);
+    return weft_material_texel(&m->material, &m->directions, level, x, y, light, view);
 }
 
 /* Equations 1 and 2 written out for the green channel of one texel. */
@@ -91,14 +96,21 @@ static void texel_is_the_equation_of_its_codes(void **state)
             a += weft_float_of_half(code[i]) * l[i] * v[i];
         sum += pow(fmax(a, 0), weft_float_of_half(code[3]));
     }
-    weft_barycentric corner = weft_triangulation_lookup(m->views, view);
+    weft_barycentric corner = weft_triangulation_lookup(m->directions.views, view);
     double table = 0, opacity = 0;
     for (int i = 0; i < 3 && corner.index[i] >= 0; i++) {
         const uint8_t *code = level->table + 4 * (corner.index[i] * WIDTH * HEIGHT + t);
         table += corner.weight[i] * (code[1] / 255.0) * (code[1] / 255.0);
         opacity += corner.weight[i] * code[3] / 255.0;
     }
-    assert_near(texel(m, 0, x, y).g, sum * table);
+    weft_barycentric lit = weft_triangulation_lookup(m->directions.lights, light);
+    double light_table = 0;
+    for (int i = 0; i < 3 && lit.index[i] >= 0; i++) {
+        double code = level->light_table[4 * (lit.index[i] * WIDTH * HEIGHT + t) + 1] / 255.0;
+        light_table += lit.weight[i] * code * code;
+    }
+    assert_true(light_table > 0 && light_table < 0.9);
+    assert_near(texel(m, 0, x, y).g, sum * table * light_table);
     assert_near(texel(m, 0, x, y).a, opacity);
 }
 
@@ -106,14 +118,15 @@ static void below_the_horizon_there_is_nothing(void **state)
 {
     const model *m = *state;
     const weft_vec3 below = {0.6, 0, -0.8};
-    assert_same_colour(weft_material_texel(&m->material, m->views, 0, 0, 0, below, view), (weft_rgba){0});
-    assert_same_colour(weft_material_sample(&m->material, m->views, 0, 0, 0, light, below), (weft_rgba){0});
-    assert_same_colour(weft_material_sample(&m->material, m->views, 0, (weft_real)NAN, 0, light, view), (weft_rgba){0});
+    assert_same_colour(weft_material_texel(&m->material, &m->directions, 0, 0, 0, below, view), (weft_rgba){0});
+    assert_same_colour(weft_material_sample(&m->material, &m->directions, 0, 0, 0, light, below), (weft_rgba){0});
+    assert_same_colour(weft_material_sample(&m->material, &m->directions, 0, (weft_real)NAN, 0, light, view),
+                       (weft_rgba){0});
 }
 
 static weft_rgba sample(const model *m, double level, double u, double v)
 {
-    return weft_material_sample(&m->material, m->views, level, u, v, light, view);
+    return weft_material_sample(&m->material, &m->directions, level, u, v, light, view);
 }
 
 static void sample_at_a_texel_centre_is_the_texel(void **state)
