@@ -21,16 +21,18 @@ static int chain_length(int width, int height)
 }
 
 weft_code weft_material_set_shape(weft_material *material, int width, int height, int level_count, int lobe_count,
-                                  int view_count, weft_error *error)
+                                  int view_count, int light_count, weft_error *error)
 {
     WEFT_TRY(check_count("width of the material", width, 1, WEFT_FORMAT_MAX_SIDE, error));
     WEFT_TRY(check_count("height of the material", height, 1, WEFT_FORMAT_MAX_SIDE, error));
     WEFT_TRY(check_count("number of lobes", lobe_count, 0, WEFT_MATERIAL_MAX_LOBES, error));
     WEFT_TRY(check_count("number of views", view_count, 0, WEFT_MATERIAL_MAX_VIEWS, error));
+    WEFT_TRY(check_count("number of lights", light_count, 0, WEFT_MATERIAL_MAX_LIGHTS, error));
     int chain = chain_length(width, height);
     WEFT_TRY(check_count("number of levels", level_count, 0, chain, error));
     material->lobe_count = lobe_count;
     material->view_count = view_count;
+    material->light_count = light_count;
     material->level_count = level_count > 0 ? level_count : chain;
     for (int k = 0; k < material->level_count; k++) {
         material->level[k].width = width;
@@ -54,15 +56,24 @@ static weft_code allocate_array(const weft_material *material, weft_section_kind
 static weft_code allocate_level(weft_material *material, int k, weft_error *error)
 {
     weft_material_level *level = &material->level[k];
-    void *array[4] = {0};
+    void *array[5] = {0};
     weft_code code = WEFT_OK;
-    for (int i = 0; i < 4 && code == WEFT_OK; i++)
+    for (int i = 0; i < 5 && code == WEFT_OK; i++)
         code = allocate_array(material, (weft_section_kind)(WEFT_SECTION_FRAM + i), k, &array[i], error);
     level->frame = array[0];
     level->diffuse = array[1];
     level->lobe = array[2];
     level->table = array[3];
+    level->light_table = array[4];
     return code;
+}
+
+static weft_code allocate_directions(int count, weft_vec3 **directions, weft_error *error)
+{
+    if (count == 0)
+        return WEFT_OK;
+    *directions = calloc((size_t)count, sizeof **directions);
+    return *directions ? WEFT_OK : weft_fail_memory(error, "directions", (size_t)count * sizeof **directions);
 }
 
 static weft_code allocate_all(weft_material *material, weft_error *error)
@@ -70,11 +81,8 @@ static weft_code allocate_all(weft_material *material, weft_error *error)
     material->metadata = strdup("{}");
     if (!material->metadata)
         return weft_fail_memory(error, "material", 3);
-    if (material->view_count > 0) {
-        material->view = calloc((size_t)material->view_count, sizeof *material->view);
-        if (!material->view)
-            return weft_fail_memory(error, "views", (size_t)material->view_count * sizeof *material->view);
-    }
+    WEFT_TRY(allocate_directions(material->view_count, &material->view, error));
+    WEFT_TRY(allocate_directions(material->light_count, &material->light, error));
     for (int k = 0; k < material->level_count; k++)
         WEFT_TRY(allocate_level(material, k, error));
     return WEFT_OK;
@@ -88,11 +96,12 @@ weft_code weft_material_allocate(weft_material *material, weft_error *error)
     return code;
 }
 
-weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int with_levels,
+weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int light_count, int with_levels,
                                weft_material *material, weft_error *error)
 {
     *material = (weft_material){.texel_pitch_mm = 1};
-    WEFT_TRY(weft_material_set_shape(material, width, height, with_levels ? 0 : 1, lobe_count, view_count, error));
+    WEFT_TRY(weft_material_set_shape(material, width, height, with_levels ? 0 : 1, lobe_count, view_count, light_count,
+                                     error));
     return weft_material_allocate(material, error);
 }
 
@@ -103,8 +112,10 @@ void weft_material_free(weft_material *material)
         free(material->level[k].diffuse);
         free(material->level[k].lobe);
         free(material->level[k].table);
+        free(material->level[k].light_table);
     }
     free(material->view);
+    free(material->light);
     free(material->metadata);
     *material = (weft_material){0};
 }

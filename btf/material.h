@@ -1,8 +1,8 @@
 /* The material NAME.weft: what compress writes and the player and other renderers read.
  * The file format is docs/weft-format.md; this is its image in memory, laid out as it is uploaded to a GPU.
  *
- * Value of a texel (Daubert et al. 2001, eq. 1 and 2), as BRDF x pi:
- *     f(l, v) = T(v) (rho + sum_i max(0, l' . diag(Cx, Cy, Cz)_i . v')^N_i)
+ * Value of a texel (Daubert et al. 2001, eq. 1 and 2), as BRDF x pi, with a table of lights beside the one of views:
+ *     f(l, v) = T(v) S(l) (rho + sum_i max(0, l' . diag(Cx, Cy, Cz)_i . v')^N_i)
  * l', v' in the frame of the texel. Multiplied by l_z it is the dataset's reflectance times cosine. */
 #ifndef WEFT_BTF_MATERIAL_H
 #define WEFT_BTF_MATERIAL_H
@@ -13,7 +13,12 @@
 
 #include <stdint.h>
 
-enum { WEFT_MATERIAL_MAX_LOBES = 3, WEFT_MATERIAL_MAX_LEVELS = 16, WEFT_MATERIAL_MAX_VIEWS = 4096 };
+enum {
+    WEFT_MATERIAL_MAX_LOBES = 3,
+    WEFT_MATERIAL_MAX_LEVELS = 16,
+    WEFT_MATERIAL_MAX_VIEWS = 4096,
+    WEFT_MATERIAL_MAX_LIGHTS = 4096
+};
 
 /* What was measured when the material was written: decoded material against the dataset, over its valid samples. */
 typedef struct weft_material_error {
@@ -33,6 +38,8 @@ typedef struct weft_material_level {
     weft_half *lobe;    /* [lobe_count][channel 3][height][width][4]: Cx, Cy, Cz, N */
     uint8_t *table; /* [view_count][height][width][4]: r, g, b square-root coded, T = (code/255)^2; alpha = code/255.
                        NULL where the material has no table (T = 1) */
+    uint8_t *light_table; /* [light_count][height][width][4]: r, g, b coded alike, S = (code/255)^2; 255 unused.
+                             NULL where the material has none (S = 1) */
     weft_material_error error;
 } weft_material_level;
 
@@ -40,20 +47,22 @@ typedef struct weft_material {
     int lobe_count;        /* 0..WEFT_MATERIAL_MAX_LOBES */
     int level_count;       /* level k + 1 has ceil half the size of level k, down to 1 x 1 */
     int view_count;        /* directions of T; 0 without a table */
+    int light_count;       /* directions of S; 0 without a light table */
     double texel_pitch_mm; /* of level 0 */
-    weft_vec3 *view;       /* [view_count], unit */
+    weft_vec3 *view;       /* [view_count], unit, upper hemisphere */
+    weft_vec3 *light;      /* [light_count], unit, upper hemisphere */
     weft_material_level level[WEFT_MATERIAL_MAX_LEVELS];
     char *metadata; /* JSON text: provenance, fit settings; never NULL once read */
 } weft_material;
 
 /* Allocates all arrays of a material (zeroed) for a level 0 of width x height; full mip chain when
  * `with_levels`, else one level. metadata = "{}". Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. */
-weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int with_levels,
+weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int light_count, int with_levels,
                                weft_material *material, weft_error *error);
 void weft_material_free(weft_material *material);
 
 /* Writes atomically. Errors: WEFT_BAD_USAGE for contents that could not be read back (not finite, negative diffuse
- * terms or exponents, views that are no unit vectors of the upper hemisphere, metadata that is no JSON object),
+ * terms or exponents, directions that are no unit vectors of the upper hemisphere, metadata that is no JSON object),
  * WEFT_SYSTEM. */
 weft_code weft_material_write(const char *path, const weft_material *material, weft_error *error);
 

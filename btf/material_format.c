@@ -4,7 +4,8 @@
 
 const unsigned char weft_format_magic[8] = {0x89, 'W', 'E', 'F', 'T', '\r', '\n', 0x1a};
 
-const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "FRAM", "RHO ", "LOBE", "TABL", "ERRO"};
+const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ",
+                                                       "LOBE", "TABL", "STAB", "ERRO"};
 
 weft_section_kind weft_section_kind_of(const char type[5])
 {
@@ -21,10 +22,14 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind)
         return 1;
     case WEFT_SECTION_VIEW:
         return material->view_count > 0;
+    case WEFT_SECTION_LITE:
+        return material->light_count > 0;
     case WEFT_SECTION_LOBE:
         return material->lobe_count > 0 ? material->level_count : 0;
     case WEFT_SECTION_TABL:
         return material->view_count > 0 ? material->level_count : 0;
+    case WEFT_SECTION_STAB:
+        return material->light_count > 0 ? material->level_count : 0;
     default:
         return material->level_count;
     }
@@ -36,6 +41,8 @@ uint64_t weft_section_size(const weft_material *material, weft_section_kind kind
     switch (kind) {
     case WEFT_SECTION_VIEW:
         return (uint64_t)material->view_count * 3 * sizeof(float);
+    case WEFT_SECTION_LITE:
+        return (uint64_t)material->light_count * 3 * sizeof(float);
     case WEFT_SECTION_FRAM:
         return texels * 3 * sizeof(int16_t);
     case WEFT_SECTION_RHO:
@@ -44,6 +51,8 @@ uint64_t weft_section_size(const weft_material *material, weft_section_kind kind
         return (uint64_t)material->lobe_count * 3 * texels * 4 * sizeof(weft_half);
     case WEFT_SECTION_TABL:
         return (uint64_t)material->view_count * texels * 4;
+    case WEFT_SECTION_STAB:
+        return (uint64_t)material->light_count * texels * 4;
     case WEFT_SECTION_ERRO:
         return WEFT_FORMAT_ERRORS * sizeof(double);
     default:
@@ -63,6 +72,8 @@ void *weft_section_texels(const weft_material *material, weft_section_kind kind,
         return at->lobe;
     case WEFT_SECTION_TABL:
         return at->table;
+    case WEFT_SECTION_STAB:
+        return at->light_table;
     default:
         return NULL;
     }
@@ -81,12 +92,12 @@ static const char *fault_of_halves(weft_section_kind kind, const weft_half *half
     return NULL;
 }
 
-static const char *fault_of_views(const float *view, size_t count)
+static const char *fault_of_directions(const float *xyz, size_t count)
 {
     for (size_t i = 0; i + 2 < count; i += 3) {
-        weft_vec3 direction = {view[i], view[i + 1], view[i + 2]};
+        weft_vec3 direction = {xyz[i], xyz[i + 1], xyz[i + 2]};
         if (!(fabs(weft_length(direction) - 1) < 1e-3) || direction.z < -1e-6)
-            return "holds a view that is no unit vector of the upper hemisphere";
+            return "holds a direction that is no unit vector of the upper hemisphere";
     }
     return NULL;
 }
@@ -104,7 +115,8 @@ const char *weft_section_fault(weft_section_kind kind, const void *bytes, size_t
 {
     switch (kind) {
     case WEFT_SECTION_VIEW:
-        return fault_of_views(bytes, size / sizeof(float));
+    case WEFT_SECTION_LITE:
+        return fault_of_directions(bytes, size / sizeof(float));
     case WEFT_SECTION_RHO:
     case WEFT_SECTION_LOBE:
         return fault_of_halves(kind, bytes, size / sizeof(weft_half));

@@ -28,10 +28,12 @@ typedef enum weft_codec { WEFT_CODEC_NONE = 0, WEFT_CODEC_ZSTD = 1 } weft_codec;
 typedef enum weft_section_kind {
     WEFT_SECTION_META,
     WEFT_SECTION_VIEW,
+    WEFT_SECTION_LITE,
     WEFT_SECTION_FRAM,
     WEFT_SECTION_RHO,
     WEFT_SECTION_LOBE,
     WEFT_SECTION_TABL,
+    WEFT_SECTION_STAB,
     WEFT_SECTION_ERRO,
     WEFT_SECTION_KINDS /* their number; stands for an unknown type */
 } weft_section_kind;
@@ -54,17 +56,17 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind);
 /* Decoded bytes of a section, from the counts and level sizes only; 0 for META, whose size is free. Pure. */
 uint64_t weft_section_size(const weft_material *material, weft_section_kind kind, int level);
 
-/* The texels of FRAM, RHO, LOBE and TABL in memory; NULL for the other kinds. */
+/* The texels of FRAM, RHO, LOBE, TABL and STAB in memory; NULL for the other kinds. */
 void *weft_section_texels(const weft_material *material, weft_section_kind kind, int level);
 
 /* What is wrong with decoded contents ("holds ..."), NULL where they are fine: numbers that are not finite, negative
- * diffuse terms or exponents, views that are no unit vectors of the upper hemisphere. Pure. */
+ * diffuse terms or exponents, directions that are no unit vectors of the upper hemisphere. Pure. */
 const char *weft_section_fault(weft_section_kind kind, const void *bytes, size_t size);
 
 /* Checks the counts and sets the sizes of all levels; allocates nothing. level_count 0 asks for the full chain.
  * Errors: WEFT_BAD_USAGE naming the number out of range. */
 weft_code weft_material_set_shape(weft_material *material, int width, int height, int level_count, int lobe_count,
-                                  int view_count, weft_error *error);
+                                  int view_count, int light_count, weft_error *error);
 
 /* Allocates the arrays of a material whose shape is set. On failure everything is freed. Errors: WEFT_SYSTEM. */
 weft_code weft_material_allocate(weft_material *material, weft_error *error);

@@ -75,16 +75,16 @@ static weft_code read_shape(const file_image *file, weft_material *material, wef
     const unsigned char *b = file->bytes;
     int level_count = limited_int(u32_at(b + 32));
     weft_error cause = {0};
-    weft_code code =
-        weft_material_set_shape(material, limited_int(u32_at(b + 24)), limited_int(u32_at(b + 28)), level_count,
-                                limited_int(u32_at(b + 36)), limited_int(u32_at(b + 40)), &cause);
+    weft_code code = weft_material_set_shape(material, limited_int(u32_at(b + 24)), limited_int(u32_at(b + 28)),
+                                             level_count, limited_int(u32_at(b + 36)), limited_int(u32_at(b + 40)),
+                                             limited_int(u32_at(b + 44)), &cause);
     if (code == WEFT_OK && level_count == 0)
         code = weft_fail(&cause, WEFT_BAD_INPUT, "number of levels is 0");
     memcpy(&material->texel_pitch_mm, b + 48, sizeof material->texel_pitch_mm);
     if (code == WEFT_OK && !(material->texel_pitch_mm > 0 && isfinite(material->texel_pitch_mm)))
         code = weft_fail(&cause, WEFT_BAD_INPUT, "texel pitch is %g mm", material->texel_pitch_mm);
-    if (code == WEFT_OK && (u32_at(b + 44) != 0 || u32_at(b + 56) != 0))
-        code = weft_fail(&cause, WEFT_BAD_INPUT, "reserved fields are not zero");
+    if (code == WEFT_OK && u32_at(b + 56) != 0)
+        code = weft_fail(&cause, WEFT_BAD_INPUT, "the reserved field is not zero");
     return code == WEFT_OK ? WEFT_OK
                            : weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: %s", file->path, cause.message);
 }
@@ -236,16 +236,16 @@ static weft_code read_metadata(const file_image *file, const weft_section *secti
     return valid ? WEFT_OK : fail_section(file, section, error, "no JSON object");
 }
 
-static weft_code read_views(const file_image *file, const weft_section *section, weft_material *material,
-                            weft_error *error)
+static weft_code read_directions(const file_image *file, const weft_section *section, int count, weft_vec3 *direction,
+                                 weft_error *error)
 {
-    float *view = malloc(section->decoded_size);
-    if (!view)
-        return weft_fail_memory(error, "views", section->decoded_size);
-    weft_code code = decode(file, section, view, error);
-    for (int i = 0; i < material->view_count && code == WEFT_OK; i++)
-        material->view[i] = weft_unit(weft_vec3_of(view[3 * i], view[3 * i + 1], view[3 * i + 2]));
-    free(view);
+    float *xyz = malloc(section->decoded_size);
+    if (!xyz)
+        return weft_fail_memory(error, "directions", section->decoded_size);
+    weft_code code = decode(file, section, xyz, error);
+    for (int i = 0; i < count && code == WEFT_OK; i++)
+        direction[i] = weft_unit(weft_vec3_of(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]));
+    free(xyz);
     return code;
 }
 
@@ -266,7 +266,9 @@ static weft_code read_section(const file_image *file, weft_material *material, w
     case WEFT_SECTION_META:
         return read_metadata(file, section, material, error);
     case WEFT_SECTION_VIEW:
-        return read_views(file, section, material, error);
+        return read_directions(file, section, material->view_count, material->view, error);
+    case WEFT_SECTION_LITE:
+        return read_directions(file, section, material->light_count, material->light, error);
     case WEFT_SECTION_ERRO:
         return read_error(file, section, &material->level[k].error, error);
     default:

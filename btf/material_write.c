@@ -73,7 +73,7 @@ static void put_header(const file_image *file, const weft_material *material)
     put_u32(&at, (uint32_t)material->level_count);
     put_u32(&at, (uint32_t)material->lobe_count);
     put_u32(&at, (uint32_t)material->view_count);
-    put_u32(&at, 0);
+    put_u32(&at, (uint32_t)material->light_count);
     put(&at, &material->texel_pitch_mm, sizeof material->texel_pitch_mm);
     put_u32(&at, 0);
     size_t before = (size_t)(at - file->bytes);
@@ -101,7 +101,7 @@ static weft_code add_section(file_image *file, weft_section_kind kind, int level
                          weft_section_type[kind], level, fault);
     size_t offset = aligned(file->size), bound = ZSTD_compressBound(size);
     unsigned char *stored = file->bytes + offset;
-    bool is_texels = kind >= WEFT_SECTION_FRAM && kind <= WEFT_SECTION_TABL;
+    bool is_texels = kind >= WEFT_SECTION_FRAM && kind <= WEFT_SECTION_STAB;
     size_t packed = is_texels ? compress_section(stored, bound, bytes, size) : 0;
     size_t stored_size = packed > 0 ? packed : size;
     if (packed == 0)
@@ -120,19 +120,20 @@ static weft_code add_section(file_image *file, weft_section_kind kind, int level
     return WEFT_OK;
 }
 
-static weft_code add_views(file_image *file, const weft_material *material, weft_error *error)
+static weft_code add_directions(file_image *file, weft_section_kind kind, const weft_vec3 *direction, int count,
+                                weft_error *error)
 {
-    size_t size = (size_t)material->view_count * 3 * sizeof(float);
-    float *view = malloc(size);
-    if (!view)
-        return weft_fail_memory(error, "views", size);
-    for (int i = 0; i < material->view_count; i++) {
-        view[3 * i] = (float)material->view[i].x;
-        view[3 * i + 1] = (float)material->view[i].y;
-        view[3 * i + 2] = (float)material->view[i].z;
+    size_t size = (size_t)count * 3 * sizeof(float);
+    float *xyz = malloc(size);
+    if (!xyz)
+        return weft_fail_memory(error, "directions", size);
+    for (int i = 0; i < count; i++) {
+        xyz[3 * i] = (float)direction[i].x;
+        xyz[3 * i + 1] = (float)direction[i].y;
+        xyz[3 * i + 2] = (float)direction[i].z;
     }
-    weft_code code = add_section(file, WEFT_SECTION_VIEW, 0, view, size, error);
-    free(view);
+    weft_code code = add_section(file, kind, 0, xyz, size, error);
+    free(xyz);
     return code;
 }
 
@@ -146,7 +147,9 @@ static weft_code add_level_section(file_image *file, const weft_material *materi
     case WEFT_SECTION_META:
         return add_section(file, kind, 0, material->metadata, strlen(material->metadata), error);
     case WEFT_SECTION_VIEW:
-        return add_views(file, material, error);
+        return add_directions(file, kind, material->view, material->view_count, error);
+    case WEFT_SECTION_LITE:
+        return add_directions(file, kind, material->light, material->light_count, error);
     case WEFT_SECTION_ERRO:
         return add_section(file, kind, k, errors, sizeof errors, error);
     default:

@@ -71,8 +71,8 @@ static weft_code create_material(const weft_dataset_layout *layout, const weft_c
                                  const weft_compress_report *report, weft_material *material, weft_error *error)
 {
     int views = report->model == WEFT_COMPRESS_TABLE ? layout->view_count : 0;
-    WEFT_TRY(weft_material_create(layout->width, layout->height, report->lobe_count, views, options->levels, material,
-                                  error));
+    WEFT_TRY(weft_material_create(layout->width, layout->height, report->lobe_count, views, 0, options->levels,
+                                  material, error));
     material->texel_pitch_mm = layout->texel_pitch_mm;
     for (int view = 0; view < views; view++)
         material->view[view] = weft_unit(layout->view[view]);

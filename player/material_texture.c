@@ -42,28 +42,42 @@ static weft_code upload_lobes(const weft_material *material, weft_material_textu
     return weft_gl_check("uploading lobes", error);
 }
 
-static weft_code upload_table(const weft_material *material, weft_material_texture *t, weft_error *error)
+static const uint8_t *codes_of(const weft_material_level *level, bool of_lights)
 {
-    const weft_mip_layout *layout = &t->layout;
-    int views = t->has_table ? material->view_count : 1, columns = t->table_columns;
-    WEFT_TRY(weft_gl_texture(table_format, layout->width * columns, layout->height, (views + columns - 1) / columns,
-                             NULL, &t->table, error));
-    for (int k = 0; t->has_table && k < layout->level_count; k++) {
+    return of_lights ? level->light_table : level->table;
+}
+
+/* A table that is not there gets one layer that is never fetched. */
+static weft_code upload_table(const weft_material *material, const weft_mip_layout *layout, bool of_lights,
+                              weft_table_texture *table, weft_error *error)
+{
+    int count = of_lights ? material->light_count : material->view_count, most = weft_gl_max_layers();
+    int columns = count > 0 ? (count + most - 1) / most : 1, layers = count > 0 ? (count + columns - 1) / columns : 1;
+    *table = (weft_table_texture){.count = count, .columns = columns};
+    WEFT_TRY(weft_gl_texture(table_format, layout->width * columns, layout->height, layers, NULL, &table->name, error));
+    for (int k = 0; count > 0 && k < layout->level_count; k++) {
         weft_mip_area a = layout->area[k];
-        for (int view = 0; view < views; view++)
-            glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, a.x + view % columns * layout->width, a.y, view / columns, a.width,
+        const uint8_t *code = codes_of(&material->level[k], of_lights);
+        for (int i = 0; i < count; i++)
+            glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, a.x + i % columns * layout->width, a.y, i / columns, a.width,
                             a.height, 1, table_format.layout, table_format.type,
-                            material->level[k].table + (size_t)view * (size_t)a.width * (size_t)a.height * 4);
+                            code + (size_t)i * (size_t)a.width * (size_t)a.height * 4);
     }
-    return weft_gl_check("uploading the view table", error);
+    return weft_gl_check(of_lights ? "uploading the light table" : "uploading the view table", error);
+}
+
+static weft_code add_directions(weft_direction_map *map, const weft_vec3 *direction, int count, weft_error *error)
+{
+    const weft_vec3 zenith = {0, 0, 1};
+    return weft_direction_map_add(map, count > 0 ? direction : &zenith, NULL, count > 0 ? count : 1, error);
 }
 
 static weft_code upload_directions(const weft_material *material, weft_material_texture *t, weft_error *error)
 {
-    const weft_vec3 zenith = {0, 0, 1};
     weft_direction_map map = {0};
-    weft_code code = weft_direction_map_add(&map, t->has_table ? material->view : &zenith, NULL,
-                                            t->has_table ? material->view_count : 1, error);
+    weft_code code = add_directions(&map, material->view, material->view_count, error);
+    if (code == WEFT_OK)
+        code = add_directions(&map, material->light, material->light_count, error);
     if (code == WEFT_OK)
         code = weft_direction_texture_upload(&map, &t->directions, error);
     weft_direction_map_free(&map);
@@ -85,18 +99,16 @@ static bool is_opaque(const weft_material *material)
 
 weft_code weft_material_texture_upload(const weft_material *material, weft_material_texture *t, weft_error *error)
 {
-    int layers = weft_gl_max_layers();
     *t = (weft_material_texture){
         .layout = weft_mip_layout_of(material->level[0].width, material->level[0].height, material->level_count, 0),
         .lobe_count = material->lobe_count,
-        .has_table = material->view_count > 0 && material->level[0].table,
         .opaque = is_opaque(material),
-        .table_columns = material->view_count > 0 ? (material->view_count + layers - 1) / layers : 1,
     };
     WEFT_TRY(upload_frames(material, t, error));
     WEFT_TRY(upload_diffuse(material, t, error));
     WEFT_TRY(upload_lobes(material, t, error));
-    WEFT_TRY(upload_table(material, t, error));
+    WEFT_TRY(upload_table(material, &t->layout, false, &t->table, error));
+    WEFT_TRY(upload_table(material, &t->layout, true, &t->light_table, error));
     return upload_directions(material, t, error);
 }
 
@@ -105,7 +117,8 @@ void weft_material_texture_free(weft_material_texture *t)
     glDeleteTextures(1, &t->frame);
     glDeleteTextures(1, &t->diffuse);
     glDeleteTextures(1, &t->lobe);
-    glDeleteTextures(1, &t->table);
+    glDeleteTextures(1, &t->table.name);
+    glDeleteTextures(1, &t->light_table.name);
     weft_direction_texture_free(&t->directions);
     *t = (weft_material_texture){0};
 }
@@ -115,12 +128,15 @@ void weft_material_texture_bind(const weft_material_texture *t, GLuint program)
     weft_gl_bind(program, "material_frame", 0, GL_TEXTURE_2D, t->frame);
     weft_gl_bind(program, "material_diffuse", 1, GL_TEXTURE_2D, t->diffuse);
     weft_gl_bind(program, "material_lobe", 2, GL_TEXTURE_2D_ARRAY, t->lobe);
-    weft_gl_bind(program, "material_table", 3, GL_TEXTURE_2D_ARRAY, t->table);
-    weft_direction_texture_bind(&t->directions, program, 4);
+    weft_gl_bind(program, "material_table", 3, GL_TEXTURE_2D_ARRAY, t->table.name);
+    weft_gl_bind(program, "material_light_table", 4, GL_TEXTURE_2D_ARRAY, t->light_table.name);
+    weft_direction_texture_bind(&t->directions, program, 5);
     weft_gl_set_int(program, "lobe_count", t->lobe_count);
-    weft_gl_set_int(program, "has_table", t->has_table);
+    weft_gl_set_int(program, "has_table", t->table.count > 0);
+    weft_gl_set_int(program, "has_light_table", t->light_table.count > 0);
     weft_gl_set_int(program, "opaque", t->opaque);
     weft_gl_set_int(program, "level_count", t->layout.level_count);
-    glUniform2i(glGetUniformLocation(program, "table_tiles"), t->table_columns, t->layout.width);
+    glUniform2i(glGetUniformLocation(program, "table_tiles"), t->table.columns, t->layout.width);
+    glUniform2i(glGetUniformLocation(program, "light_table_tiles"), t->light_table.columns, t->layout.width);
     glUniform4iv(glGetUniformLocation(program, "level_area"), t->layout.level_count, &t->layout.area[0].x);
 }

@@ -8,17 +8,24 @@
 
 #include <stdbool.h>
 
+/* T or S: a picture of all levels for each direction. */
+typedef struct weft_table_texture {
+    GLuint name;
+    int count;   /* of directions; 0 without the table */
+    int columns; /* directions side by side in a layer */
+} weft_table_texture;
+
 typedef struct weft_material_texture {
-    GLuint frame, diffuse, lobe, table;
-    weft_direction_texture directions;
+    GLuint frame, diffuse, lobe;
+    weft_table_texture table, light_table;
+    weft_direction_texture directions; /* set 0: views, set 1: lights */
     weft_mip_layout layout;
     int lobe_count;
-    bool has_table, opaque;
-    int table_columns; /* views side by side in a layer */
+    bool opaque;
 } weft_material_texture;
 
 /* Uploads all levels as they are. Errors: WEFT_SYSTEM where the driver's textures are too small; WEFT_BAD_INPUT for
- * views that cannot be triangulated. The caller frees with weft_material_texture_free, also on failure. */
+ * directions that cannot be triangulated. The caller frees with weft_material_texture_free, also on failure. */
 weft_code weft_material_texture_upload(const weft_material *material, weft_material_texture *texture,
                                        weft_error *error);
 void weft_material_texture_free(weft_material_texture *texture);

@@ -40,15 +40,26 @@ weft_rgba weft_view_table_interpolate(const weft_rgba *values, const weft_baryce
 
 /* ---- A texel of a material ---- */
 
+/* Where the tables of a material know their values; a member is NULL without its table. */
+typedef struct weft_table_directions {
+    weft_triangulation *views, *lights;
+} weft_table_directions;
+
+/* Triangulates material->view and material->light. The caller frees. Errors: WEFT_BAD_INPUT for directions that cannot
+ * be triangulated, WEFT_SYSTEM; then nothing is left to free. */
+weft_code weft_table_directions_create(const weft_material *material, weft_table_directions *directions,
+                                       weft_error *error);
+void weft_table_directions_free(weft_table_directions *directions);
+
 /* BRDF x pi (r, g, b) and opacity of texel (x, y) of a level, for light and view in the frame of the surface; 0 where
- * either is below the horizon. `views` triangulates material->view (unused without a table). The reference of the
+ * either is below the horizon. `directions` are those of the material. The reference of the
  * player's shader. */
-weft_rgba weft_material_texel(const weft_material *material, const weft_triangulation *views, int level, int x, int y,
-                              weft_vec3 light, weft_vec3 view);
+weft_rgba weft_material_texel(const weft_material *material, const weft_table_directions *directions, int level, int x,
+                              int y, weft_vec3 light, weft_vec3 view);
 
 /* The same at texture coordinates (u, v), repeated; bilinear between evaluated texels, trilinear between evaluated
  * levels (level >= 0 may be fractional; it is clamped to the last). */
-weft_rgba weft_material_sample(const weft_material *material, const weft_triangulation *views, weft_real level,
+weft_rgba weft_material_sample(const weft_material *material, const weft_table_directions *directions, weft_real level,
                                weft_real u, weft_real v, weft_vec3 light, weft_vec3 view);
 
 #endif

@@ -26,54 +26,86 @@ static weft_real channel_value(const weft_material *material, const weft_materia
     return weft_lafortune(rho_of(level, texel, channel), lobes, material->lobe_count, light, view);
 }
 
-static weft_rgba table_value(const weft_material_level *level, size_t texel, int view)
+static weft_rgba table_value(const uint8_t *table, const weft_material_level *level, size_t texel, int direction)
 {
     size_t texels = (size_t)level->width * (size_t)level->height;
-    const uint8_t *code = level->table + 4 * ((size_t)view * texels + texel);
+    const uint8_t *code = table + 4 * ((size_t)direction * texels + texel);
     weft_real r = code[0] / (weft_real)255, g = code[1] / (weft_real)255, b = code[2] / (weft_real)255;
     return (weft_rgba){r * r, g * g, b * b, code[3] / (weft_real)255};
 }
 
-/* T and opacity for a view of which the corners are known; 1 without a table. */
-static weft_rgba table_at(const weft_material_level *level, size_t texel, const weft_barycentric *corners)
+/* T and opacity, or S, for a direction of which the corners are known; 1 without a table. */
+static weft_rgba table_at(const uint8_t *table, const weft_material_level *level, size_t texel,
+                          const weft_barycentric *corners)
 {
     weft_rgba value[3];
     weft_barycentric own = *corners;
-    if (!level->table)
+    if (!table)
         return (weft_rgba){1, 1, 1, 1};
     for (int i = 0; i < 3 && corners->index[i] >= 0; i++) {
-        value[i] = table_value(level, texel, corners->index[i]);
+        value[i] = table_value(table, level, texel, corners->index[i]);
         own.index[i] = i;
     }
     return weft_view_table_interpolate(value, &own);
 }
 
+/* What is the same for all texels under one light and view. */
+typedef struct table_corners {
+    weft_barycentric view, light;
+} table_corners;
+
 static weft_rgba texel_value(const weft_material *material, const weft_material_level *level,
-                             const weft_barycentric *corners, size_t texel, weft_vec3 light, weft_vec3 view)
+                             const table_corners *corners, size_t texel, weft_vec3 light, weft_vec3 view)
 {
     weft_frame frame = weft_frame_decode(level->frame + 3 * texel);
     weft_vec3 l = weft_frame_local(&frame, light), v = weft_frame_local(&frame, view);
-    weft_rgba value = table_at(level, texel, corners);
-    value.r *= channel_value(material, level, texel, 0, l, v);
-    value.g *= channel_value(material, level, texel, 1, l, v);
-    value.b *= channel_value(material, level, texel, 2, l, v);
+    weft_rgba lit = table_at(level->light_table, level, texel, &corners->light);
+    weft_rgba value = table_at(level->table, level, texel, &corners->view);
+    value.r *= lit.r * channel_value(material, level, texel, 0, l, v);
+    value.g *= lit.g * channel_value(material, level, texel, 1, l, v);
+    value.b *= lit.b * channel_value(material, level, texel, 2, l, v);
     return value;
 }
 
-static weft_barycentric corners_of(const weft_material *material, const weft_triangulation *views, weft_vec3 view)
+static table_corners corners_of(const weft_material *material, const weft_table_directions *directions, weft_vec3 light,
+                                weft_vec3 view)
 {
-    if (material->view_count == 0)
-        return (weft_barycentric){{-1, -1, -1}, {0, 0, 0}};
-    return weft_triangulation_lookup(views, view);
+    table_corners corners = {{{-1, -1, -1}, {0, 0, 0}}, {{-1, -1, -1}, {0, 0, 0}}};
+    if (material->view_count > 0)
+        corners.view = weft_triangulation_lookup(directions->views, view);
+    if (material->light_count > 0)
+        corners.light = weft_triangulation_lookup(directions->lights, light);
+    return corners;
 }
 
-weft_rgba weft_material_texel(const weft_material *material, const weft_triangulation *views, int level, int x, int y,
-                              weft_vec3 light, weft_vec3 view)
+weft_code weft_table_directions_create(const weft_material *material, weft_table_directions *directions,
+                                       weft_error *error)
+{
+    *directions = (weft_table_directions){0};
+    weft_code code = WEFT_OK;
+    if (material->view_count > 0)
+        code = weft_triangulation_build(material->view, material->view_count, &directions->views, error);
+    if (code == WEFT_OK && material->light_count > 0)
+        code = weft_triangulation_build(material->light, material->light_count, &directions->lights, error);
+    if (code != WEFT_OK)
+        weft_table_directions_free(directions);
+    return code;
+}
+
+void weft_table_directions_free(weft_table_directions *directions)
+{
+    weft_triangulation_free(directions->views);
+    weft_triangulation_free(directions->lights);
+    *directions = (weft_table_directions){0};
+}
+
+weft_rgba weft_material_texel(const weft_material *material, const weft_table_directions *directions, int level, int x,
+                              int y, weft_vec3 light, weft_vec3 view)
 {
     const weft_material_level *at = &material->level[level];
     if (!(light.z > 0 && view.z > 0))
         return (weft_rgba){0};
-    weft_barycentric corners = corners_of(material, views, view);
+    table_corners corners = corners_of(material, directions, light, view);
     return texel_value(material, at, &corners, (size_t)y * (size_t)at->width + (size_t)x, light, view);
 }
 
@@ -98,7 +130,7 @@ static neighbours neighbours_of(weft_real coordinate, int count)
     return (neighbours){(size_t)low, (size_t)((low + 1) % count), position - cell};
 }
 
-static weft_rgba level_value(const weft_material *material, const weft_barycentric *corners, int level, weft_real u,
+static weft_rgba level_value(const weft_material *material, const table_corners *corners, int level, weft_real u,
                              weft_real v, weft_vec3 light, weft_vec3 view)
 {
     const weft_material_level *at = &material->level[level];
@@ -111,13 +143,13 @@ static weft_rgba level_value(const weft_material *material, const weft_barycentr
     return mix(upper, lower, row.share);
 }
 
-weft_rgba weft_material_sample(const weft_material *material, const weft_triangulation *views, weft_real level,
+weft_rgba weft_material_sample(const weft_material *material, const weft_table_directions *directions, weft_real level,
                                weft_real u, weft_real v, weft_vec3 light, weft_vec3 view)
 {
     bool finite = isfinite(u) && isfinite(v);
     if (!(light.z > 0 && view.z > 0 && finite))
         return (weft_rgba){0};
-    weft_barycentric corners = corners_of(material, views, view);
+    table_corners corners = corners_of(material, directions, light, view);
     weft_real clamped = level > 0 ? fmin(level, (weft_real)(material->level_count - 1)) : 0;
     int fine = (int)clamped;
     weft_rgba value = level_value(material, &corners, fine, u, v, light, view);

@@ -58,10 +58,11 @@ static json_t *describe_material(const char *path, const weft_material *material
     json_t *levels = json_array();
     for (int i = 0; i < material->level_count; i++)
         json_array_append_new(levels, describe_level(&material->level[i]));
-    return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
+    return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
                      file_size(path), "texels", material->level[0].width, material->level[0].height, "lobes",
-                     material->lobe_count, "views_in_table", material->view_count, "texel_pitch_mm",
-                     material->texel_pitch_mm, "levels", levels, "metadata", parsed(material->metadata));
+                     material->lobe_count, "views_in_table", material->view_count, "lights_in_table",
+                     material->light_count, "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata",
+                     parsed(material->metadata));
 }
 
 static weft_code inspect_material(const char *path, json_t **result, weft_error *error)

@@ -11,7 +11,7 @@ struct weft_model {
     weft_file_kind kind;
     uint64_t noise_seed;
     weft_material material;
-    weft_triangulation *views; /* of the material; NULL without a table */
+    weft_table_directions directions; /* of the material */
     weft_dataset *dataset;
     weft_raw_btf *raw;
     weft_weave weave;
@@ -22,9 +22,7 @@ struct weft_model {
 static weft_code open_material(weft_model *model, const char *path, weft_error *error)
 {
     WEFT_TRY(weft_material_read(path, &model->material, error));
-    if (model->material.view_count == 0)
-        return WEFT_OK;
-    return weft_triangulation_build(model->material.view, model->material.view_count, &model->views, error);
+    return weft_table_directions_create(&model->material, &model->directions, error);
 }
 
 static weft_code open_dataset(weft_model *model, const char *path, weft_error *error)
@@ -66,7 +64,7 @@ void weft_model_close(weft_model *model)
         return;
     weft_raw_btf_free(model->raw);
     weft_dataset_close(model->dataset);
-    weft_triangulation_free(model->views);
+    weft_table_directions_free(&model->directions);
     weft_material_free(&model->material);
     weft_weave_free(&model->weave);
     free(model);
@@ -78,7 +76,8 @@ void weft_model_close(weft_model *model)
 static void add_row(const weft_model *model, int level, int y, const weft_query *query, double sum[3])
 {
     for (int x = 0; x < model->material.level[level].width; x++) {
-        weft_rgba value = weft_material_texel(&model->material, model->views, level, x, y, query->light, query->view);
+        weft_rgba value =
+            weft_material_texel(&model->material, &model->directions, level, x, y, query->light, query->view);
         sum[0] += value.r;
         sum[1] += value.g;
         sum[2] += value.b;
@@ -120,7 +119,7 @@ static weft_rgb material_brdf(const weft_model *model, const weft_query *query)
 {
     weft_rgb value;
     if (query->has_place) {
-        weft_rgba sample = weft_material_sample(&model->material, model->views, query->level, query->u, query->v,
+        weft_rgba sample = weft_material_sample(&model->material, &model->directions, query->level, query->u, query->v,
                                                 query->light, query->view);
         value = (weft_rgb){sample.r, sample.g, sample.b};
     } else {

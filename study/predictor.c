@@ -11,7 +11,7 @@ struct weft_predictor {
     predict_function *predict;
     const weft_dataset_layout *layout;
     const weft_material *material;
-    weft_triangulation *views; /* of the material; NULL without a table */
+    weft_table_directions directions; /* of the material */
     const weft_weave *weave;
     double tiles_u, tiles_v;
     weft_dataset *other;
@@ -35,7 +35,7 @@ void weft_predictor_free(weft_predictor *predictor)
 {
     if (!predictor)
         return;
-    weft_triangulation_free(predictor->views);
+    weft_table_directions_free(&predictor->directions);
     weft_dataset_close(predictor->other);
     free(predictor->samples);
     free(predictor->mask);
@@ -68,7 +68,7 @@ static void predict_by_material(const weft_predictor *predictor, int x, int y, c
     for (int i = 0; i < image_count; i++) {
         weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
         weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image[i]], x, y);
-        weft_rgba value = weft_material_texel(predictor->material, predictor->views, 0, x, y, light, view);
+        weft_rgba value = weft_material_texel(predictor->material, &predictor->directions, 0, x, y, light, view);
         prediction[i] = scaled(quantity(layout, light), (weft_rgb){value.r, value.g, value.b});
     }
 }
@@ -84,9 +84,7 @@ weft_code weft_predictor_of_material(const weft_dataset *dataset, const weft_mat
                          material->level[0].height);
     WEFT_TRY(create(dataset, predict_by_material, result, error));
     (*result)->material = material;
-    if (material->view_count == 0)
-        return WEFT_OK;
-    weft_code code = weft_triangulation_build(material->view, material->view_count, &(*result)->views, error);
+    weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
     if (code != WEFT_OK)
         weft_predictor_free(*result);
     return code;

@@ -10,7 +10,7 @@ import zlib
 
 def read_header(data):
     assert data[:8] == bytes.fromhex("89574546540D0A1A"), "magic"
-    names = "version sections size width height levels lobes views reserved pitch reserved2 checksum".split()
+    names = "version sections size width height levels lobes views lights pitch reserved2 checksum".split()
     header = dict(zip(names, struct.unpack("<IIQIIIIIIdII", data[8:64])))
     table_end = 64 + 40 * header["sections"]
     assert header["version"] == 1 and header["size"] == len(data), "size"
@@ -32,8 +32,8 @@ def read_sections(data, header, end):
 
 
 def expected_size(kind, header, texels):
-    lobes, views = header["lobes"], header["views"]
-    return {"FRAM": 6, "RHO": 8, "LOBE": 24 * lobes, "TABL": 4 * views}[kind] * texels
+    lobes, views, lights = header["lobes"], header["views"], header["lights"]
+    return {"FRAM": 6, "RHO": 8, "LOBE": 24 * lobes, "TABL": 4 * views, "STAB": 4 * lights}[kind] * texels
 
 
 def texel_of(kind, body):
@@ -42,6 +42,8 @@ def texel_of(kind, body):
         return {"normal": (x, y, math.sqrt(max(0, 1 - x * x - y * y))), "azimuth_rad": math.pi * azimuth}
     if kind == "TABL":
         return {"T": tuple((code / 255) ** 2 for code in body[:3]), "opacity": body[3] / 255}
+    if kind == "STAB":
+        return {"S": tuple((code / 255) ** 2 for code in body[:3])}
     return struct.unpack_from("<4e", body)
 
 
@@ -52,7 +54,8 @@ def main(path):
     print(header, json.loads(sections["META", 0][0]))
     width, height = header["width"], header["height"]
     for level in range(header["levels"]):
-        for kind in ["FRAM", "RHO"] + ["LOBE"] * (header["lobes"] > 0) + ["TABL"] * (header["views"] > 0):
+        optional = [("LOBE", "lobes"), ("TABL", "views"), ("STAB", "lights")]
+        for kind in ["FRAM", "RHO"] + [kind for kind, count in optional if header[count] > 0]:
             body, decoded = sections[kind, level]
             assert decoded == expected_size(kind, header, width * height), kind
             print(level, kind, texel_of(kind, body) if body else "compressed")

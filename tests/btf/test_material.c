@@ -37,14 +37,30 @@ static void assert_levels_equal(const weft_material *a, const weft_material *b, 
         assert_memory_equal(p->lobe, q->lobe, texels * lobes * 12 * sizeof *p->lobe);
     if (views > 0)
         assert_memory_equal(p->table, q->table, texels * views * 4);
+    if (a->light_count > 0)
+        assert_memory_equal(p->light_table, q->light_table, texels * (size_t)a->light_count * 4);
+    else
+        assert_null(p->light_table);
     assert_memory_equal(&p->error, &q->error, sizeof p->error);
+}
+
+static void fill_directions(weft_vec3 *direction, int count)
+{
+    for (int i = 0; i < count; i++)
+        direction[i] = weft_unit(weft_vec3_of(rand() % 100 - 50, rand() % 100 - 50, 1 + rand() % 100));
+}
+
+static void assert_same_directions(const weft_vec3 *a, const weft_vec3 *b, int count)
+{
+    for (int i = 0; i < count; i++)
+        assert_true(weft_length(weft_subtract(a[i], b[i])) < 1e-7);
 }
 
 static void fill_randomly(weft_material *material)
 {
     srand(1);
-    for (int i = 0; i < material->view_count; i++)
-        material->view[i] = weft_unit(weft_vec3_of(rand() % 100 - 50, rand() % 100 - 50, 1 + rand() % 100));
+    fill_directions(material->view, material->view_count);
+    fill_directions(material->light, material->light_count);
     for (int k = 0; k < material->level_count; k++) {
         weft_material_level *level = &material->level[k];
         for (size_t i = 0; i < level_texels(level) * 3; i++)
@@ -55,6 +71,8 @@ static void fill_randomly(weft_material *material)
             level->lobe[i] = (weft_half)(rand() % 0x7c00);
         for (size_t i = 0; i < level_texels(level) * 4 * (size_t)material->view_count; i++)
             level->table[i] = (uint8_t)(rand() % 8);
+        for (size_t i = 0; i < level_texels(level) * 4 * (size_t)material->light_count; i++)
+            level->light_table[i] = (uint8_t)(rand() % 8);
         level->error = (weft_material_error){k, 1, 2, 3, INFINITY};
     }
 }
@@ -62,13 +80,14 @@ static void fill_randomly(weft_material *material)
 static void a_material_of_any_shape_reads_back_as_written(void **state)
 {
     (void)state;
-    static const int shape[6][5] = {{1, 1, 0, 0, 1},  {7, 5, 0, 0, 1},    {16, 16, 1, 0, 1},
-                                    {33, 2, 3, 1, 0}, {64, 48, 2, 81, 1}, {3, 100, 0, 9, 1}};
-    for (int i = 0; i < 6; i++) {
+    static const int shape[8][6] = {{1, 1, 0, 0, 0, 1},  {7, 5, 0, 0, 0, 1},    {16, 16, 1, 0, 0, 1},
+                                    {33, 2, 3, 1, 0, 0}, {64, 48, 2, 81, 0, 1}, {3, 100, 0, 9, 0, 1},
+                                    {4, 9, 2, 5, 81, 1}, {6, 2, 1, 0, 7, 0}};
+    for (int i = 0; i < 8; i++) {
         weft_material written;
-        assert_int_equal(
-            weft_material_create(shape[i][0], shape[i][1], shape[i][2], shape[i][3], shape[i][4], &written, NULL),
-            WEFT_OK);
+        assert_int_equal(weft_material_create(shape[i][0], shape[i][1], shape[i][2], shape[i][3], shape[i][4],
+                                              shape[i][5], &written, NULL),
+                         WEFT_OK);
         fill_randomly(&written);
         written.texel_pitch_mm = 0.1 + i;
         assert_int_equal(weft_material_write("shape.weft", &written, NULL), WEFT_OK);
@@ -78,8 +97,9 @@ static void a_material_of_any_shape_reads_back_as_written(void **state)
         assert_int_equal(read.view_count, written.view_count);
         assert_true(read.texel_pitch_mm == written.texel_pitch_mm);
         assert_string_equal(read.metadata, "{}");
-        for (int view = 0; view < read.view_count; view++)
-            assert_true(weft_length(weft_subtract(read.view[view], written.view[view])) < 1e-7);
+        assert_int_equal(read.light_count, written.light_count);
+        assert_same_directions(read.view, written.view, read.view_count);
+        assert_same_directions(read.light, written.light, read.light_count);
         for (int k = 0; k < read.level_count; k++)
             assert_levels_equal(&read, &written, k);
         weft_material_free(&read);
@@ -93,7 +113,7 @@ static void levels_halve_rounding_up_to_one_texel(void **state)
     (void)state;
     static const int width[4] = {5, 3, 2, 1}, height[4] = {3, 2, 1, 1};
     weft_material material;
-    assert_int_equal(weft_material_create(5, 3, 0, 0, 1, &material, NULL), WEFT_OK);
+    assert_int_equal(weft_material_create(5, 3, 0, 0, 0, 1, &material, NULL), WEFT_OK);
     assert_int_equal(material.level_count, 4);
     for (int k = 0; k < 4; k++) {
         assert_int_equal(material.level[k].width, width[k]);
@@ -105,13 +125,15 @@ static void levels_halve_rounding_up_to_one_texel(void **state)
 static void impossible_shapes_are_refused(void **state)
 {
     (void)state;
-    static const int shape[7][4] = {{0, 1, 0, 0},  {1, -1, 0, 0},   {16385, 1, 0, 0}, {1, 1, 4, 0},
-                                    {1, 1, -1, 0}, {1, 1, 0, 4097}, {1, 1, 0, -1}};
-    for (int i = 0; i < 7; i++) {
+    static const int shape[9][5] = {{0, 1, 0, 0, 0},  {1, -1, 0, 0, 0},   {16385, 1, 0, 0, 0},
+                                    {1, 1, 4, 0, 0},  {1, 1, -1, 0, 0},   {1, 1, 0, 4097, 0},
+                                    {1, 1, 0, -1, 0}, {1, 1, 0, 0, 4097}, {1, 1, 0, 0, -1}};
+    for (int i = 0; i < 9; i++) {
         weft_material material;
         weft_error error = {0};
-        assert_int_equal(weft_material_create(shape[i][0], shape[i][1], shape[i][2], shape[i][3], 1, &material, &error),
-                         WEFT_BAD_USAGE);
+        assert_int_equal(
+            weft_material_create(shape[i][0], shape[i][1], shape[i][2], shape[i][3], shape[i][4], 1, &material, &error),
+            WEFT_BAD_USAGE);
         assert_non_null(strstr(error.message, "must be"));
     }
 }
@@ -129,7 +151,7 @@ static void an_all_black_material_is_no_bomb(void **state)
 {
     (void)state;
     weft_material black;
-    assert_int_equal(weft_material_create(128, 128, 2, 81, 0, &black, NULL), WEFT_OK);
+    assert_int_equal(weft_material_create(128, 128, 2, 81, 0, 0, &black, NULL), WEFT_OK);
     for (int i = 0; i < black.view_count; i++)
         black.view[i] = weft_vec3_of(0, 0, 1);
     assert_int_equal(weft_material_write("black.weft", &black, NULL), WEFT_OK);
@@ -187,7 +209,7 @@ static void a_file_cut_at_a_section_boundary_is_refused_though_its_header_agrees
     size_t size;
     unsigned char *bytes = scratch_load(path, &size);
     int sections = (int)weft_bytes_u32(bytes + 12);
-    assert_int_equal(sections, 2 + 5 * 4);
+    assert_int_equal(sections, 3 + 6 * 4);
     for (int i = 0; i < sections; i++) {
         const unsigned char *entry = weft_bytes_entry(bytes, i);
         uint64_t start = weft_bytes_u64(entry + ENTRY_OFFSET);
@@ -249,13 +271,15 @@ static void impossible_headers_are_refused_with_right_checksums(void **state)
         {32, 5, "number of levels is 5"},
         {36, 4, "lobes"},
         {40, 4097, "views"},
-        {44, 1, "reserved"},
+        {44, 4097, "lights"},
         {52, 0x7ff80000, "pitch"},
         {52, 0xbff00000, "pitch"},
         {56, 1, "reserved"},
         {24, 6, "size does not fit"},
         {36, 3, "size does not fit"},
         {40, 0, "no such section"},
+        {44, 4, "size does not fit"},
+        {44, 0, "no such section"},
         {32, 3, "no such section"},
     };
     size_t size;
@@ -294,6 +318,10 @@ static void impossible_sections_are_refused_with_right_checksums(void **state)
         {"TABL", 0, ENTRY_DECODED + 4, 1, ""},
         {"META", 0, ENTRY_LEVEL, 1, "no such section"},
         {"VIEW", 0, ENTRY_LEVEL, 1, "no such section"},
+        {"LITE", 0, ENTRY_TYPE, 0x58585858, "LITE of level 0 is missing"},
+        {"LITE", 0, ENTRY_LEVEL, 1, "no such section"},
+        {"STAB", 2, ENTRY_TYPE, 0x58585858, "STAB of level 2 is missing"},
+        {"STAB", 1, ENTRY_DECODED + 4, 1, ""},
     };
     size_t size;
     unsigned char *bytes = scratch_load(path, &size);
@@ -332,7 +360,7 @@ static void a_section_that_decodes_to_another_size_is_refused(void **state)
 {
     (void)state;
     weft_material flat;
-    assert_int_equal(weft_material_create(64, 64, 0, 0, 0, &flat, NULL), WEFT_OK);
+    assert_int_equal(weft_material_create(64, 64, 0, 0, 0, 0, &flat, NULL), WEFT_OK);
     assert_int_equal(weft_material_write("flat.weft", &flat, NULL), WEFT_OK);
     weft_material_free(&flat);
     size_t size;
@@ -365,6 +393,7 @@ static void contents_that_are_not_finite_or_negative_are_refused(void **state)
     } edit[] = {{"RHO ", 3, 1, 0x7e00, "not finite"},
                 {"RHO ", 3, 0, 0xbc00, "negative"},
                 {"VIEW", 0, 1, 0x7fc0, "unit vector"},
+                {"LITE", 0, 3, 0x7fc0, "unit vector"},
                 {"ERRO", 0, 3, 0x7ff8, "NaN"}};
     for (size_t i = 0; i < sizeof edit / sizeof edit[0]; i++) {
         size_t size;
@@ -447,9 +476,11 @@ static void what_could_not_be_read_is_not_written(void **state)
 {
     (void)state;
     weft_material material;
-    assert_int_equal(weft_material_create(4, 4, 1, 1, 0, &material, NULL), WEFT_OK);
+    assert_int_equal(weft_material_create(4, 4, 1, 1, 1, 0, &material, NULL), WEFT_OK);
     assert_not_written(&material, "unit vector");
     material.view[0] = weft_vec3_of(0, 0, 1);
+    assert_not_written(&material, "LITE");
+    material.light[0] = weft_vec3_of(0, 0, 1);
     material.level[0].lobe[3] = weft_half_of_float(-1);
     assert_not_written(&material, "negative");
     material.level[0].lobe[3] = 0;

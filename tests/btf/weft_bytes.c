@@ -73,17 +73,21 @@ static void fill_level(weft_material *material, int k)
         level->lobe[i] = weft_half_of_float((float)(i % 4 == 3 ? 1 + i % 60 : i % 11 - 5) / 4);
     for (int i = 0; i < material->view_count * 4 * texels; i++)
         level->table[i] = (uint8_t)(i * 7 + k);
+    for (int i = 0; i < material->light_count * 4 * texels; i++)
+        level->light_table[i] = (uint8_t)(i * 5 + 3 * k);
     level->error = (weft_material_error){0.01 + k, 0.02 + k, 0.03 + k, 0.04 + k, 50.0 + k};
 }
 
 void weft_bytes_write_example(const char *path)
 {
     weft_material material;
-    if (weft_material_create(5, 3, 2, 4, 1, &material, NULL) != WEFT_OK)
+    if (weft_material_create(5, 3, 2, 4, 3, 1, &material, NULL) != WEFT_OK)
         abort();
     material.texel_pitch_mm = 0.125;
     for (int i = 0; i < material.view_count; i++)
         material.view[i] = weft_direction_of_angles(weft_ubo81_angles(i));
+    for (int i = 0; i < material.light_count; i++)
+        material.light[i] = weft_direction_of_angles(weft_ubo81_angles(i + 1));
     for (int k = 0; k < material.level_count; k++)
         fill_level(&material, k);
     free(material.metadata);

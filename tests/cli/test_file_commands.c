@@ -47,7 +47,7 @@ static void write_text(const char *path, const char *text)
 static void write_material(const char *path)
 {
     weft_material material;
-    assert_int_equal(weft_material_create(2, 2, 0, 0, 1, &material, NULL), WEFT_OK);
+    assert_int_equal(weft_material_create(2, 2, 0, 0, 0, 1, &material, NULL), WEFT_OK);
     material.texel_pitch_mm = 1;
     for (int level = 0; level < material.level_count; level++) {
         for (int i = 0; i < material.level[level].width * material.level[level].height * 4; i++)

@@ -67,15 +67,15 @@ static void levels_report_what_the_stored_texels_leave(void **state)
     weft_material material = compress_file("errors.btf.h5", &options, NULL);
     assert_int_equal(material.level_count, 3);
     weft_dataset_layout layout = full_layout(3, 2);
-    weft_triangulation *views = NULL;
-    assert_int_equal(weft_triangulation_build(material.view, material.view_count, &views, NULL), WEFT_OK);
+    weft_table_directions directions;
+    assert_int_equal(weft_table_directions_create(&material, &directions, NULL), WEFT_OK);
     float *samples = calloc(3 * (size_t)layout.image_count, sizeof *samples);
     double square = 0, square_error = 0;
     for (int texel = 0; texel < 6; texel++) {
         fill_ward(&layout, texel % 3, texel / 3, samples, NULL);
         for (int image = 0; image < layout.image_count; image++) {
             weft_vec3 light = layout.light[image], view = layout.view[layout.view_of_image[image]];
-            weft_rgba value = weft_material_texel(&material, views, 0, texel % 3, texel / 3, light, view);
+            weft_rgba value = weft_material_texel(&material, &directions, 0, texel % 3, texel / 3, light, view);
             const double rgb[3] = {value.r, value.g, value.b};
             for (int k = 0; k < 3; k++) {
                 double sample = (double)samples[3 * image + k];
@@ -88,7 +88,7 @@ static void levels_report_what_the_stored_texels_leave(void **state)
     assert_float_equal(material.level[0].error.relative_rmse / relative, 1, 2e-3);
     assert_true(material.level[0].error.relative_rmse < 0.3);
     free(samples);
-    weft_triangulation_free(views);
+    weft_table_directions_free(&directions);
     weft_dataset_layout_free(&layout);
     weft_material_free(&material);
 }
@@ -106,17 +106,17 @@ static void mip_texels_are_fits_of_the_mean_of_their_children(void **state)
         assert_float_equal(child->relative_rmse / parent->relative_rmse, 1, 0.01);
         assert_float_equal(child->median_relative / parent->median_relative, 1, 0.05);
     }
-    weft_triangulation *views = NULL;
-    assert_int_equal(weft_triangulation_build(parents.view, parents.view_count, &views, NULL), WEFT_OK);
+    weft_table_directions directions;
+    assert_int_equal(weft_table_directions_create(&parents, &directions, NULL), WEFT_OK);
     uint64_t seed = 5;
     for (int i = 0; i < 100; i++) {
         weft_vec3 light = weft_unit(weft_vec3_of(synthetic_uniform(&seed) - 0.5, synthetic_uniform(&seed) - 0.5, 0.6));
         weft_vec3 view = weft_unit(weft_vec3_of(synthetic_uniform(&seed) - 0.5, synthetic_uniform(&seed) - 0.5, 0.6));
-        weft_rgba a = weft_material_texel(&children, views, 1, i % 2, i / 2 % 2, light, view);
-        weft_rgba b = weft_material_texel(&parents, views, 0, i % 2, i / 2 % 2, light, view);
+        weft_rgba a = weft_material_texel(&children, &directions, 1, i % 2, i / 2 % 2, light, view);
+        weft_rgba b = weft_material_texel(&parents, &directions, 0, i % 2, i / 2 % 2, light, view);
         assert_float_equal(a.g / b.g, 1, 0.05);
     }
-    weft_triangulation_free(views);
+    weft_table_directions_free(&directions);
     weft_material_free(&children);
     weft_material_free(&parents);
 }
@@ -192,15 +192,15 @@ static void masked_samples_are_counted_and_not_used(void **state)
     assert_int_equal(report.empty_texel_count, 1);
     assert_in_range(report.masked_count, 6561 + 3 * (656 + 72), 6561 + 3 * (657 + 81));
     assert_true(masked.level[0].error.relative_rmse < 1.1 * whole.level[0].error.relative_rmse);
-    weft_triangulation *views = NULL;
-    assert_int_equal(weft_triangulation_build(whole.view, whole.view_count, &views, NULL), WEFT_OK);
+    weft_table_directions directions;
+    assert_int_equal(weft_table_directions_create(&whole, &directions, NULL), WEFT_OK);
     weft_vec3 light = weft_unit(weft_vec3_of(0.3, 0.1, 0.9));
-    weft_rgba a = weft_material_texel(&whole, views, 0, 0, 0, light, whole.view[17]);
-    weft_rgba b = weft_material_texel(&masked, views, 0, 0, 0, light, whole.view[17]);
+    weft_rgba a = weft_material_texel(&whole, &directions, 0, 0, 0, light, whole.view[17]);
+    weft_rgba b = weft_material_texel(&masked, &directions, 0, 0, 0, light, whole.view[17]);
     assert_true(b.g > 0.3 * a.g && b.g < 3 * a.g);
-    weft_rgba black = weft_material_texel(&masked, views, 0, 1, 1, light, whole.view[3]);
+    weft_rgba black = weft_material_texel(&masked, &directions, 0, 1, 1, light, whole.view[3]);
     assert_true(black.r == 0 && black.g == 0 && black.b == 0);
-    weft_triangulation_free(views);
+    weft_table_directions_free(&directions);
     weft_material_free(&whole);
     weft_material_free(&masked);
 }

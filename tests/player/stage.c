@@ -78,16 +78,23 @@ static void set_stripe_texel(weft_material *m, int k, int x, int y, uint64_t *ra
             code[c] = (uint8_t)(140 + 115 * stage_uniform(random));
         code[3] = stage_uniform(random) < 0.02 ? 128 : 255;
     }
+    for (int light = 0; light < m->light_count; light++) {
+        uint8_t *code = level->light_table + 4 * ((size_t)light * texels + at);
+        for (int c = 0; c < 3; c++)
+            code[c] = (uint8_t)(140 + 115 * stage_uniform(random));
+    }
 }
 
-void stage_material(int width, int height, int lobes, int views, weft_material *material)
+void stage_material(int width, int height, int lobes, int views, int lights, weft_material *material)
 {
     weft_error error = {0};
     uint64_t random = 7;
-    expect_ok(weft_material_create(width, height, lobes, views, true, material, &error), &error);
+    expect_ok(weft_material_create(width, height, lobes, views, lights, true, material, &error), &error);
     material->texel_pitch_mm = 0.5;
     for (int v = 0; v < views; v++)
         material->view[v] = weft_direction_of_angles(weft_ubo81_angles(v));
+    for (int l = 0; l < lights; l++)
+        material->light[l] = weft_direction_of_angles(weft_ubo81_angles(WEFT_UBO81_COUNT - 1 - l));
     for (int k = 0; k < material->level_count; k++) {
         for (int y = 0; y < material->level[k].height; y++) {
             for (int x = 0; x < material->level[k].width; x++)
@@ -117,7 +124,7 @@ static void set_checker_texel(weft_material_level *level, size_t at, double shar
 void stage_checker(int size, weft_material *material)
 {
     weft_error error = {0};
-    expect_ok(weft_material_create(size, size, 1, 0, true, material, &error), &error);
+    expect_ok(weft_material_create(size, size, 1, 0, 0, true, material, &error), &error);
     material->texel_pitch_mm = 0.5;
     for (int k = 0; k < material->level_count; k++) {
         weft_material_level *level = &material->level[k];

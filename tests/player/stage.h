@@ -23,8 +23,8 @@ int stage_close(void **state);
 double stage_uniform(uint64_t *state);
 
 /* Woven stripes: turned frames, two lobes of the given exponents, a table over the first `views` directions of ubo81
- * (0: none), with opacity below 1 here and there. All levels. */
-void stage_material(int width, int height, int lobes, int views, weft_material *material);
+ * (0: none), with opacity below 1 here and there, and a light table over the last `lights`. All levels. */
+void stage_material(int width, int height, int lobes, int views, int lights, weft_material *material);
 
 /* A checkerboard of a dark matt and a bright shining cloth with one texel a field, whose mip levels are exact means:
  * the lobes of all texels have the same shape. */

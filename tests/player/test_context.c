@@ -57,7 +57,7 @@ static void set_everything(weft_player *player, const char *dataset_path)
     expect_ok(weft_mesh_plane(&mesh, &error), &error);
     expect_ok(weft_player_set_mesh(player, &mesh, &error), &error);
     weft_mesh_free(&mesh);
-    stage_material(8, 8, 1, 7, &material);
+    stage_material(8, 8, 1, 7, 0, &material);
     expect_ok(weft_player_set_material(player, &material, &error), &error);
     weft_material_free(&material);
     expect_ok(weft_dataset_open(dataset_path, &dataset, &error), &error);

@@ -17,7 +17,7 @@ static void make_files(const char *folder)
     weft_error error = {0};
     weft_material material;
     expect_ok(weft_make_folder(folder, &error), &error);
-    stage_material(24, 24, 2, 81, &material);
+    stage_material(24, 24, 2, 81, 0, &material);
     snprintf(path, sizeof path, "%s/cloth.weft", folder);
     expect_ok(weft_material_write(path, &material, &error), &error);
     weft_material_free(&material);

@@ -38,7 +38,7 @@ static void expect_small(const char *what, stage_difference difference)
 
 typedef struct material_model {
     weft_material material;
-    weft_triangulation *views;
+    weft_table_directions directions;
 } material_model;
 
 static weft_rgba evaluate_material(void *context, const weft_surface_sample *at)
@@ -46,38 +46,37 @@ static weft_rgba evaluate_material(void *context, const weft_surface_sample *at)
     material_model *model = context;
     /* Opacity does not depend on the light, but the evaluator has none for a light below the horizon. */
     weft_vec3 light = vector(at->light), above = light.z > 0 ? light : weft_vec3_of(0, 0, 1);
-    weft_rgba value = weft_material_sample(&model->material, model->views, (weft_real)at->level, (weft_real)at->u,
+    weft_rgba value = weft_material_sample(&model->material, &model->directions, (weft_real)at->level, (weft_real)at->u,
                                            (weft_real)at->v, above, vector(at->view));
     return lit((weft_rgb){value.r, value.g, value.b}, light, value.a);
 }
 
-static void compare_material(void **state, const char *what, int lobes, int views, weft_scene scene)
+static void compare_material(void **state, const char *what, int lobes, int views, int lights, weft_scene scene)
 {
     stage *s = *state;
     weft_error error = {0};
     material_model model = {0};
-    stage_material(20, 13, lobes, views, &model.material);
-    if (views > 0)
-        expect_ok(weft_triangulation_build(model.material.view, views, &model.views, &error), &error);
+    stage_material(20, 13, lobes, views, lights, &model.material);
+    expect_ok(weft_table_directions_create(&model.material, &model.directions, &error), &error);
     expect_ok(weft_player_set_material(s->player, &model.material, &error), &error);
     expect_small(what, stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_material, &model));
-    weft_triangulation_free(model.views);
+    weft_table_directions_free(&model.directions);
     weft_material_free(&model.material);
 }
 
 static void compressed_equals_c_with_two_lobes_and_81_views(void **state)
 {
-    compare_material(state, "2 lobes, 81 views", 2, 81, weft_scene_default());
+    compare_material(state, "2 lobes, 81 views", 2, 81, 0, weft_scene_default());
 }
 
 static void compressed_equals_c_between_levels(void **state)
 {
     weft_scene scene = weft_scene_default();
     scene.repeat = 37;
-    compare_material(state, "minified", 2, 81, scene);
+    compare_material(state, "minified", 2, 81, 0, scene);
     scene.level_choice = WEFT_LEVEL_FIXED;
     scene.level = 1.37;
-    compare_material(state, "level 1.37", 2, 81, scene);
+    compare_material(state, "level 1.37", 2, 81, 0, scene);
 }
 
 static void compressed_equals_c_under_grazing_light_from_behind(void **state)
@@ -85,14 +84,24 @@ static void compressed_equals_c_under_grazing_light_from_behind(void **state)
     weft_scene scene = weft_scene_default();
     scene.light = (weft_angles){weft_rad_of_deg(85), weft_rad_of_deg(100)};
     scene.exposure = 3;
-    compare_material(state, "grazing", 3, 37, scene);
+    compare_material(state, "grazing", 3, 37, 0, scene);
 }
 
 static void compressed_equals_c_without_lobes_or_table(void **state)
 {
-    compare_material(state, "no lobes, no table", 0, 0, weft_scene_default());
-    compare_material(state, "1 lobe, 1 view", 1, 1, weft_scene_default());
-    compare_material(state, "1 lobe, 2 views", 1, 2, weft_scene_default());
+    compare_material(state, "no lobes, no table", 0, 0, 0, weft_scene_default());
+    compare_material(state, "1 lobe, 1 view", 1, 1, 0, weft_scene_default());
+    compare_material(state, "1 lobe, 2 views", 1, 2, 0, weft_scene_default());
+}
+
+static void compressed_equals_c_with_a_light_table(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    compare_material(state, "81 views, 81 lights", 2, 81, 81, scene);
+    compare_material(state, "33 lights, no views", 1, 0, 33, scene);
+    scene.light = (weft_angles){weft_rad_of_deg(70), weft_rad_of_deg(200)};
+    scene.repeat = 37;
+    compare_material(state, "81 views, 60 lights, minified", 2, 81, 60, scene);
 }
 
 /* ---- Raw ---- */
@@ -284,6 +293,7 @@ int main(void)
         cmocka_unit_test(compressed_equals_c_between_levels),
         cmocka_unit_test(compressed_equals_c_under_grazing_light_from_behind),
         cmocka_unit_test(compressed_equals_c_without_lobes_or_table),
+        cmocka_unit_test(compressed_equals_c_with_a_light_table),
         cmocka_unit_test(raw_equals_c_interpolation_in_views_and_lights),
         cmocka_unit_test(raw_with_a_shared_exponent_equals_c_too),
         cmocka_unit_test(the_last_raw_level_is_the_mean_of_all_texels),

@@ -92,7 +92,7 @@ void fixture_diffuse_material(const char *path, int width, int height, weft_rgb 
 {
     weft_material material;
     weft_error error = {0};
-    expect_ok(weft_material_create(width, height, 0, 0, 0, &material, &error), &error);
+    expect_ok(weft_material_create(width, height, 0, 0, 0, 0, &material, &error), &error);
     material.texel_pitch_mm = 1;
     for (int i = 0; i < width * height; i++) {
         weft_rgb rho = value(i % width, i / width);

@@ -89,7 +89,7 @@ static void a_material_with_infinite_light_is_refused(void **state)
     (void)state;
     weft_material material;
     weft_error error = {0};
-    expect_ok(weft_material_create(3, 2, 1, 0, 0, &material, &error), &error);
+    expect_ok(weft_material_create(3, 2, 1, 0, 0, 0, &material, &error), &error);
     material.texel_pitch_mm = 1;
     material.level[0].diffuse[4 * 4 + 1] = 0x7c00;
     weft_code written = weft_material_write("inspect.weft", &material, &error);
