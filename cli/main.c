@@ -17,6 +17,7 @@ static const command commands[] = {
     {"import", command_import, "turn foreign photographs into a dataset"},
     {"compress", command_compress, "fit lobes and a view table to a dataset"},
     {"bard", command_bard, "predict a dataset from the photographs under one light"},
+    {"fit-weave", command_fit_weave, "fit a weave to a dataset"},
     {"render", command_render, "draw a material to an image file"},
     {"play", command_play, "draw a material in a window"},
     {"compare", command_compare, "put dataset, material and analytic cloth side by side"},

@@ -31,6 +31,8 @@ pkg_check_modules(GLFW REQUIRED IMPORTED_TARGET glfw3)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 find_package(embree 3 REQUIRED)
+find_package(Ceres REQUIRED)
+pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt)
 find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video aruco)
 
 # weft_room(NAME SOURCES file... LINKS target...): the static library of one room. A room sees only the

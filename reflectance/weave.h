@@ -51,6 +51,13 @@ weft_code weft_weave_parse(const char *text, const char *path, const weft_weave_
                            int parameter_count, weft_weave *weave, char warning[WEFT_MESSAGE_SIZE], weft_error *error);
 void weft_weave_free(weft_weave *weave);
 
+/* Derives again what follows from the segments, colours and areas of the yarns, after they have been changed. */
+void weft_weave_update(weft_weave *weave);
+
+/* Writes a weave as a file that weft_weave_read reads back to the same numbers; `comment` (may be NULL; without the end
+ * of a comment in it) comes first. Atomic. Errors: WEFT_SYSTEM. */
+weft_code weft_weave_write(const char *path, const weft_weave *weave, const char *comment, weft_error *error);
+
 /* The constant s (0 where no segment is admissible) by a deterministic quadrature: the same value for any number of
  * threads. Part of weft_weave_read. */
 weft_real weft_weave_specular_scale(const weft_weave *weave);

@@ -14,6 +14,12 @@ weft_code weft_weave_parse(const char *text, const char *path, const weft_weave_
     return WEFT_OK;
 }
 
+void weft_weave_update(weft_weave *weave)
+{
+    weave_derive(weave, NULL, NULL);
+    weave->specular_scale = weft_weave_specular_scale(weave);
+}
+
 /* Reads to the end rather than by a size asked beforehand, so that pipes work too. */
 static weft_code read_stream(FILE *file, const char *path, char *text, weft_error *error)
 {

@@ -1,0 +1,164 @@
+#include "study/fit_weave.h"
+#include "cli/arguments.h"
+#include "cli/command.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct fit_weave_command {
+    common_options common;
+    const char *input, *weave, *output;
+} fit_weave_command;
+
+enum { KEY_WEAVE = 0x2000 };
+
+static const struct argp_option option_table[] = {
+    {"weave", KEY_WEAVE, "START.wv", 0, "Pattern, kinds and sizes of the yarns, and where the search begins", 0},
+    {"output", 'o', "FITTED.wv", 0, "The weave to write", 0},
+    {0},
+};
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    fit_weave_command *command = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &command->common;
+        return 0;
+    case KEY_WEAVE:
+        command->weave = argument;
+        return 0;
+    case 'o':
+        command->output = argument;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (command->input)
+            argp_error(state, "one dataset at a time: '%s' is one too many", argument);
+        command->input = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!command->input || !command->weave || !command->output)
+            argp_error(state, "needs NAME.btf.h5, --weave START.wv and -o FITTED.wv");
+        refuse_same_file(command->output, command->input, state);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
+
+static const struct argp parser = {option_table,
+                                   parse_option,
+                                   "NAME.btf.h5 --weave START.wv -o FITTED.wv",
+                                   "Example: weft fit-weave denim.btf.h5 --weave twill.wv -o denim.wv\n\n"
+                                   "Finds twist, inclination and curvature of the yarns, scattering of the fibres and "
+                                   "colours so that the weave reflects like the mean of the dataset. Pattern and sizes "
+                                   "stay as they are in START.wv.",
+                                   children,
+                                   NULL,
+                                   NULL};
+
+static void say_errors(const fit_weave_command *command, const weft_fit_weave_report *report)
+{
+    command_say(&command->common,
+                "relative error of the mean BRDF, median / 80th percentile: %.1f %% / %.1f %% before, "
+                "%.1f %% / %.1f %% after",
+                100 * report->before.median_relative, 100 * report->before.percentile80_relative,
+                100 * report->after.median_relative, 100 * report->after.percentile80_relative);
+    char event[400];
+    snprintf(event, sizeof event,
+             "{\"event\":\"fit\",\"images\":%d,\"median_relative_before\":%.6g,\"percentile80_relative_before\":%.6g,"
+             "\"median_relative\":%.6g,\"percentile80_relative\":%.6g,\"alpha\":%.9g,\"beta\":%.9g,\"seconds\":%.3g}",
+             report->image_count, report->before.median_relative, report->before.percentile80_relative,
+             report->after.median_relative, report->after.percentile80_relative, report->alpha, report->beta,
+             report->seconds);
+    command_event(&command->common, event);
+}
+
+/* "30.12 +- 0.04", or that the data do not say. */
+static void print_value(char *text, size_t size, double value, double deviation)
+{
+    if (isfinite(deviation))
+        snprintf(text, size, "%.4g +- %.2g", value, deviation);
+    else
+        snprintf(text, size, "%.4g (undetermined)", value);
+}
+
+static void say_group(const fit_weave_command *command, const weft_fit_weave_group *group, const weft_weave *weave)
+{
+    char psi[64] = "0 (filament)", umax[64], kappa[64];
+    weft_rgb ks = weave->yarn[group->yarn].ks;
+    if (group->staple)
+        print_value(psi, sizeof psi, group->psi_deg, group->psi_deviation);
+    print_value(umax, sizeof umax, group->umax_deg, group->umax_deviation);
+    print_value(kappa, sizeof kappa, group->kappa, group->kappa_deviation);
+    command_say(&command->common, "%s (yarn %d): psi %s, umax %s degrees, kappa %s, ks %.4g %.4g %.4g",
+                group->warp ? "warp" : "weft", group->yarn + 1, psi, umax, kappa, (double)ks.r, (double)ks.g,
+                (double)ks.b);
+    char event[256];
+    snprintf(event, sizeof event,
+             "{\"event\":\"yarn\",\"type\":\"%s\",\"yarn\":%d,\"psi_deg\":%.9g,\"umax_deg\":%.9g,\"kappa\":%.9g}",
+             group->warp ? "warp" : "weft", group->yarn + 1, group->psi_deg, group->umax_deg, group->kappa);
+    command_event(&command->common, event);
+}
+
+static void say_report(const fit_weave_command *command, const weft_weave *weave, const weft_fit_weave_report *report)
+{
+    char alpha[64], beta[64];
+    print_value(alpha, sizeof alpha, report->alpha, report->alpha_deviation);
+    print_value(beta, sizeof beta, report->beta, report->beta_deviation);
+    command_say(&command->common, "%s: fitted to the mean of %d images in %.1f s", command->output, report->image_count,
+                report->seconds);
+    for (int group = 0; group < report->group_count; group++)
+        say_group(command, &report->group[group], weave);
+    command_say(&command->common, "fibres: alpha %s, beta %s", alpha, beta);
+    say_errors(command, report);
+}
+
+static weft_code write_weave(const fit_weave_command *command, const weft_weave *weave,
+                             const weft_fit_weave_report *report, weft_error *error)
+{
+    char comment[256];
+    snprintf(
+        comment, sizeof comment,
+        "Fitted to the mean of %d images; relative error of the mean BRDF: median %.2f %%, 80th percentile %.2f %%",
+        report->image_count, 100 * report->after.median_relative, 100 * report->after.percentile80_relative);
+    return weft_weave_write(command->output, weave, comment, error);
+}
+
+static weft_code fit(const fit_weave_command *command, weft_weave *weave, weft_dataset *dataset, weft_error *error)
+{
+    weft_progress progress = command_progress(&command->common);
+    weft_mean_brdf mean;
+    weft_fit_weave_report report;
+    WEFT_TRY(weft_mean_brdf_of(dataset, &progress, &mean, error));
+    weft_code code = weft_fit_weave(&mean, weave, &progress, &report, error);
+    weft_mean_brdf_free(&mean);
+    if (code == WEFT_OK)
+        code = write_weave(command, weave, &report, error);
+    if (code == WEFT_OK)
+        say_report(command, weave, &report);
+    return code;
+}
+
+int command_fit_weave(int argc, char **argv)
+{
+    fit_weave_command command = {0};
+    command_parse(&parser, argc, argv, &command, &command.common);
+    weft_error error = {0};
+    weft_dataset *dataset = NULL;
+    weft_weave weave = {0};
+    char warning[WEFT_MESSAGE_SIZE];
+    weft_code code = weft_weave_read(command.weave, NULL, 0, &weave, warning, &error);
+    if (code == WEFT_OK && warning[0])
+        command_say(&command.common, "%s", warning);
+    if (code == WEFT_OK)
+        code = weft_dataset_open(command.input, &dataset, &error);
+    if (code == WEFT_OK)
+        code = fit(&command, &weave, dataset, &error);
+    weft_dataset_close(dataset);
+    weft_weave_free(&weave);
+    return command_exit("fit-weave", &command.common, code, &error);
+}

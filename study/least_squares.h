@@ -1,0 +1,36 @@
+/* Small least-squares problems with bounds: non-linear ones by Ceres Solver (trust region, Levenberg-Marquardt), linear
+ * ones by NLopt. Ceres stops early where a linear solution lies on a bound, NLopt does not. */
+#ifndef WEFT_STUDY_LEAST_SQUARES_H
+#define WEFT_STUDY_LEAST_SQUARES_H
+
+#include "btf/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* residuals [residual_count] at parameters [parameter_count]; all finite. Called from one thread. */
+typedef void weft_residual_function(void *context, const double *parameters, double *residuals);
+
+typedef struct weft_least_squares {
+    int parameter_count, residual_count;
+    const double *low, *high; /* [parameter_count] */
+    weft_residual_function *residuals;
+    void *context;
+} weft_least_squares;
+
+/* Minimises the sum of squares between the bounds from `parameters`, both start and result; derivatives by forward
+ * differences. `deviation` [parameter_count] receives the standard error of each parameter as the residuals suggest it,
+ * INFINITY where they do not determine it. Errors: WEFT_SYSTEM where the solver fails. */
+weft_code weft_least_squares_solve(const weft_least_squares *problem, double *parameters, double *deviation,
+                                   weft_error *error);
+
+/* x >= 0 [columns] that minimises |A x - b|^2, A [rows][columns]. Start and result in `x`. Errors: WEFT_SYSTEM. */
+weft_code weft_non_negative_least_squares(int rows, int columns, const double *a, const double *b, double *x,
+                                          weft_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

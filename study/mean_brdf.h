@@ -1,0 +1,22 @@
+/* The mean BRDF of a dataset: what a reflectance model without texture has to explain. */
+#ifndef WEFT_STUDY_MEAN_BRDF_H
+#define WEFT_STUDY_MEAN_BRDF_H
+
+#include "btf/dataset.h"
+#include "btf/direction.h"
+#include "btf/progress.h"
+
+/* Owned by the caller. */
+typedef struct weft_mean_brdf {
+    int count;               /* images with a valid texel, light and view above the horizon */
+    weft_vec3 *light, *view; /* [count] as the centre of the material sees them */
+    weft_rgb *value;         /* [count] 1/sr, mean over the valid texels */
+} weft_mean_brdf;
+
+/* Reads the whole dataset, block by block. Errors: WEFT_BAD_INPUT where nothing is valid; those of reading;
+ * WEFT_SYSTEM for memory. */
+weft_code weft_mean_brdf_of(weft_dataset *dataset, const weft_progress *progress, weft_mean_brdf *mean,
+                            weft_error *error);
+void weft_mean_brdf_free(weft_mean_brdf *mean);
+
+#endif

@@ -1,0 +1,197 @@
+/* Weaves found again from what they reflect. */
+#include "tests/btf/cmocka_all.h"
+
+#include "btf/direction.h"
+#include "study/fit_weave.h"
+#include "study/least_squares.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { VIEW_STEP = 16 }; /* six views are enough, and quick */
+
+static weft_weave read_fabric(const char *name)
+{
+    char path[512], warning[WEFT_MESSAGE_SIZE];
+    weft_weave weave;
+    weft_error error;
+    snprintf(path, sizeof path, "%s/weaves/%s.wv", WEFT_ASSETS, name);
+    if (weft_weave_read(path, NULL, 0, &weave, warning, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    return weave;
+}
+
+/* Normal noise from a counter (Box and Muller 1958). */
+static double normal_noise(uint32_t index)
+{
+    uint32_t a = (index * 2654435761u) ^ 0x9e3779b9u, b = (index + 77777u) * 2246822519u;
+    a = (a ^ a >> 15) * 0x2c1b3c6du;
+    b = (b ^ b >> 13) * 0x297a2d39u;
+    double u = ((a ^ a >> 16) + 0.5) / 4294967296.0, v = ((b ^ b >> 16) + 0.5) / 4294967296.0;
+    return sqrt(-2 * log(u)) * cos(2 * WEFT_PI * v);
+}
+
+/* What `weave` reflects on average under 81 lights seen from every `step`th of 81 views, with 1 % noise. */
+static weft_mean_brdf photograph(const weft_weave *weave, int step)
+{
+    weft_vec3 direction[WEFT_UBO81_COUNT];
+    for (int i = 0; i < WEFT_UBO81_COUNT; i++)
+        direction[i] = weft_direction_of_angles(weft_ubo81_angles(i));
+    weft_mean_brdf mean = {.light = calloc(6561, sizeof(weft_vec3)),
+                           .view = calloc(6561, sizeof(weft_vec3)),
+                           .value = calloc(6561, sizeof(weft_rgb))};
+    for (int v = 0; v < WEFT_UBO81_COUNT; v += step) {
+        for (int l = 0; l < WEFT_UBO81_COUNT; l++) {
+            int i = mean.count++;
+            double noise = 1 + 0.01 * normal_noise((uint32_t)i);
+            weft_rgb value = weft_weave_mean_brdf(weave, direction[l], direction[v]);
+            mean.light[i] = direction[l];
+            mean.view[i] = direction[v];
+            mean.value[i] = (weft_rgb){value.r * noise, value.g * noise, value.b * noise};
+        }
+    }
+    return mean;
+}
+
+/* Every shape and scattering parameter 30 % off, up and down in turn; colours of another cloth. */
+static void spoil(weft_weave *weave)
+{
+    for (int i = 0; i < weave->yarn_count; i++) {
+        weft_yarn *yarn = &weave->yarn[i];
+        double up = yarn->warp ? 1.3 : 0.7, down = yarn->warp ? 0.7 : 1.3;
+        double largest = 0.98 * yarn->segment.length / yarn->segment.width;
+        double umax = yarn->segment.umax * up;
+        yarn->segment.alpha *= 1.3;
+        yarn->segment.beta *= 0.7;
+        if (!yarn->admissible)
+            continue;
+        yarn->segment.umax = largest < 1 && sin(umax) > largest ? asin(largest) : umax;
+        yarn->segment.psi *= down;
+        yarn->segment.kappa *= up;
+        yarn->kd = (weft_rgb){0.2, 0.1, 0.3};
+        yarn->ks = (weft_rgb){0.05, 0.2, 0.1};
+    }
+    weft_weave_update(weave);
+}
+
+static void assert_recovered(const char *name, int step)
+{
+    weft_weave truth = read_fabric(name), start = read_fabric(name);
+    weft_mean_brdf mean = photograph(&truth, step);
+    weft_fit_weave_report report;
+    weft_error error;
+    spoil(&start);
+    if (weft_fit_weave(&mean, &start, NULL, &report, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    print_message("%s: median %.2f %% -> %.2f %%, 80th percentile %.2f %%, %.1f s\n", name,
+                  100 * report.before.median_relative, 100 * report.after.median_relative,
+                  100 * report.after.percentile80_relative, report.seconds);
+    for (int group = 0; group < report.group_count; group++) {
+        const weft_fit_weave_group *found = &report.group[group];
+        const weft_segment *true_segment = &truth.yarn[found->yarn].segment;
+        print_message("  %s: psi %.2f (%.2f), umax %.2f (%.2f), kappa %.2f (%.2f)\n", found->warp ? "warp" : "weft",
+                      found->psi_deg, weft_deg_of_rad(true_segment->psi), found->umax_deg,
+                      weft_deg_of_rad(true_segment->umax), found->kappa, true_segment->kappa);
+        assert_true(fabs(found->psi_deg - weft_deg_of_rad(true_segment->psi)) < 2);
+        assert_true(fabs(found->umax_deg - weft_deg_of_rad(true_segment->umax)) < 2);
+    }
+    assert_true(report.after.median_relative < 0.05);
+    weft_mean_brdf_free(&mean);
+    weft_weave_free(&truth);
+    weft_weave_free(&start);
+}
+
+static void staple_fabrics_are_found_again_from_30_percent_off(void **state)
+{
+    (void)state;
+    assert_recovered("wool_gabardine", VIEW_STEP);
+}
+
+static void filament_fabrics_are_found_again_from_30_percent_off(void **state)
+{
+    (void)state;
+    assert_recovered("polyester_lining", VIEW_STEP);
+    assert_recovered("silk_charmeuse", VIEW_STEP);
+}
+
+static void non_negative_solutions_are_exact_and_stop_at_zero(void **state)
+{
+    (void)state;
+    const double a[8] = {1, 2, 0, 1, 3, 1, 1, 1};
+    double b[4], x[2] = {0}, truth[2] = {0.5, 2};
+    weft_error error;
+    for (int row = 0; row < 4; row++)
+        b[row] = a[2 * row] * truth[0] + a[2 * row + 1] * truth[1];
+    assert_int_equal(weft_non_negative_least_squares(4, 2, a, b, x, &error), WEFT_OK);
+    assert_true(fabs(x[0] - 0.5) < 1e-9 && fabs(x[1] - 2) < 1e-9);
+    /* The free solution would be (-1, 2): at the bound the other solves alone. */
+    for (int row = 0; row < 4; row++)
+        b[row] = -a[2 * row] + 2 * a[2 * row + 1];
+    assert_int_equal(weft_non_negative_least_squares(4, 2, a, b, x, &error), WEFT_OK);
+    double product = 0, square = 0;
+    for (int row = 0; row < 4; row++) {
+        product += a[2 * row + 1] * b[row];
+        square += a[2 * row + 1] * a[2 * row + 1];
+    }
+    assert_true(fabs(x[0]) < 1e-9 && fabs(x[1] - product / square) < 1e-6);
+}
+
+static void a_written_weave_reads_back_to_the_same_numbers(void **state)
+{
+    (void)state;
+    char warning[WEFT_MESSAGE_SIZE];
+    weft_weave first = read_fabric("silk_shantung"), second;
+    weft_error error;
+    assert_int_equal(weft_weave_write("written.wv", &first, "as fitted", &error), WEFT_OK);
+    if (weft_weave_read("written.wv", NULL, 0, &second, warning, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    unlink("written.wv");
+    assert_int_equal(first.yarn_count, second.yarn_count);
+    assert_string_equal(first.name, second.name);
+    assert_memory_equal(first.pattern, second.pattern,
+                        (size_t)first.tile_width * (size_t)first.tile_height * sizeof *first.pattern);
+    for (int i = 0; i < first.yarn_count; i++) {
+        assert_true(fabs(first.yarn[i].segment.umax - second.yarn[i].segment.umax) < 1e-14);
+        assert_true(first.yarn[i].segment.kappa == second.yarn[i].segment.kappa);
+        assert_true(first.yarn[i].ks.g == second.yarn[i].ks.g && first.yarn[i].kd.b == second.yarn[i].kd.b);
+        assert_true(first.yarn[i].center_u == second.yarn[i].center_u);
+    }
+    assert_true(fabs(first.specular_scale / second.specular_scale - 1) < 1e-12);
+    weft_weave_free(&first);
+    weft_weave_free(&second);
+}
+
+static void a_weave_without_highlights_or_too_few_images_are_refused(void **state)
+{
+    (void)state;
+    weft_weave weave = read_fabric("wool_gabardine");
+    weft_mean_brdf mean = photograph(&weave, 40);
+    weft_fit_weave_report report;
+    weft_error error;
+    mean.count = 3;
+    assert_int_equal(weft_fit_weave(&mean, &weave, NULL, &report, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "3 images are too few"));
+    mean.count = 200;
+    for (int i = 0; i < weave.yarn_count; i++)
+        weave.yarn[i].segment.width = 1000;
+    weft_weave_update(&weave);
+    assert_int_equal(weft_fit_weave(&mean, &weave, NULL, &report, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "no segment with a highlight"));
+    weft_mean_brdf_free(&mean);
+    weft_weave_free(&weave);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(staple_fabrics_are_found_again_from_30_percent_off),
+        cmocka_unit_test(filament_fabrics_are_found_again_from_30_percent_off),
+        cmocka_unit_test(non_negative_solutions_are_exact_and_stop_at_zero),
+        cmocka_unit_test(a_written_weave_reads_back_to_the_same_numbers),
+        cmocka_unit_test(a_weave_without_highlights_or_too_few_images_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
