@@ -35,7 +35,7 @@ static void fill(const weft_dataset_layout *layout, int x, int y, float *samples
     if (!texel[kind]) {
         texel[kind] = calloc(count, sizeof *texel[kind]);
         assert_non_null(texel[kind]);
-        synthetic_texel(layout, (synthetic_kind)(kind % SYNTHETIC_KINDS), (uint64_t)(64 * kind), 0.01, texel[kind]);
+        synthetic_texel(layout, (synthetic_kind)(kind % SYNTHETIC_KINDS), 64 * (uint64_t)kind, 0.01, texel[kind]);
     }
     float gain = 0.5f + 0.02f * (float)x + 0.01f * (float)((7 * y) % 11);
     for (size_t i = 0; i < count; i++)

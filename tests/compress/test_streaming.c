@@ -29,7 +29,8 @@ static void check_plan(int width, int height, int side_level)
 {
     weft_block_plan plan;
     int top = chain_top(width, height);
-    int *covered = calloc((size_t)(width * height), sizeof *covered);
+    int *covered = calloc((size_t)width * (size_t)height, sizeof *covered);
+    assert_non_null(covered);
     assert_int_equal(weft_block_plan_create(width, height, side_level, top, &plan, NULL), WEFT_OK);
     for (size_t i = 0; i < plan.count; i++) {
         weft_block_place own = weft_block_place_at(&plan.place[i], 0);
