@@ -16,7 +16,7 @@ typedef struct compress_command {
     weft_compress_options options;
 } compress_command;
 
-enum { KEY_LOBES = 0x2000, KEY_TABLE, KEY_LEVELS, KEY_FRAMES, KEY_MAX_EXPONENT, KEY_MEMORY };
+enum { KEY_LOBES = 0x2000, KEY_TABLE, KEY_LEVELS, KEY_FRAMES, KEY_MAX_EXPONENT, KEY_ERROR, KEY_MEMORY };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "NAME.weft", 0, "The material to write", 0},
@@ -27,6 +27,11 @@ static const struct argp_option option_table[] = {
      "Turn the frame of each texel where that helps; off: the frame of the surface everywhere, faster (default: on)",
      0},
     {"max-exponent", KEY_MAX_EXPONENT, "N", 0, "Largest exponent of a lobe (default: 8192)", 0},
+    {"error", KEY_ERROR, "PERCENT", 0,
+     "Give each texel the smallest model whose relative RMSE is at most this: a diffuse term, lobes, T; the whole "
+     "model "
+     "where none is (default: the whole model everywhere)",
+     0},
     {"memory", KEY_MEMORY, "MB", 0, "Never take more memory than this (default: a quarter of what there is)", 0},
     {0},
 };
@@ -56,6 +61,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_MAX_EXPONENT:
         options->max_exponent = parse_number("max-exponent", argument, 1, 60000, state);
+        return 0;
+    case KEY_ERROR:
+        options->target_error = parse_number("error", argument, 0.001, 100, state) / 100;
         return 0;
     case KEY_MEMORY:
         options->memory_bytes = 1000000 * parse_whole("memory", argument, 1, 1000000000, state);
@@ -115,6 +123,13 @@ static void say_model(const compress_command *command, const weft_dataset_layout
     command_say(common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
                 100.0 * (double)report->turned_frame_count / (double)report->texel_count,
                 100.0 * (double)report->second_start_count / (double)report->texel_count);
+}
+
+static void say_target(const compress_command *command, const weft_compress_report *report)
+{
+    if (command->options.target_error > 0)
+        command_say(&command->common, "relative RMSE above %g %% with the whole model: %ld of %ld texels",
+                    100 * command->options.target_error, report->missed_texel_count, report->texel_count);
 }
 
 static void say_errors(const common_options *common, const weft_material *material)
@@ -189,6 +204,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
         const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
         unlink(partial_path);
         say_model(command, layout, &report);
+        say_target(command, &report);
         say_errors(&command->common, &material);
         say_sizes(command, layout, &report);
     }

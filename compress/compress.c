@@ -42,6 +42,8 @@ static weft_code check_options(const weft_dataset *dataset, const weft_compress_
                          WEFT_MATERIAL_MAX_LOBES);
     if (!(options->max_exponent >= 1 && options->max_exponent <= 60000))
         return weft_fail(error, WEFT_BAD_USAGE, "largest exponent is %g, must be 1 to 60000", options->max_exponent);
+    if (!(options->target_error >= 0 && options->target_error <= 1))
+        return weft_fail(error, WEFT_BAD_USAGE, "target error is %g, must be 0 to 1", options->target_error);
     if (used_images(weft_dataset_get_layout(dataset), options->held_out) == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "'%s': every image is held out", weft_dataset_path(dataset));
     return WEFT_OK;
@@ -141,6 +143,10 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
         "masked_samples", (json_int_t)report->masked_count, "texels", (json_int_t)report->texel_count, "empty_texels",
         (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,
         "retro_reflective_starts", (double)report->second_start_count / texels);
+    if (fit && options->target_error > 0) {
+        json_object_set_new(fit, "target_error", json_real(options->target_error));
+        json_object_set_new(fit, "texels_above_target", json_integer((json_int_t)report->missed_texel_count));
+    }
     if (fit && report->model == WEFT_COMPRESS_SPARSE) {
         json_object_set_new(fit, "largest_exponent", json_real(setting->largest_exponent));
         json_object_set_new(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
@@ -192,9 +198,10 @@ static weft_code identify(const weft_dataset *dataset, const weft_compress_optio
              "layout %08" PRIx32 ", samples %08" PRIx32 ", %lld bytes of %lld.%09ld", fingerprint->layout,
              fingerprint->samples, (long long)status.st_size, (long long)status.st_mtim.tv_sec,
              (long)status.st_mtim.tv_nsec);
-    snprintf(text->options, sizeof text->options, "%s, %d lobes, frames %d, N <= %.17g, levels %d, held out %08lx",
-             model_name[report->model], report->lobe_count, options->frames, options->max_exponent, options->levels,
-             held_out);
+    snprintf(text->options, sizeof text->options,
+             "%s, %d lobes, frames %d, N <= %.17g, error <= %.17g, levels %d, held out %08lx",
+             model_name[report->model], report->lobe_count, options->frames, options->max_exponent,
+             options->target_error, options->levels, held_out);
     return WEFT_OK;
 }
 
@@ -225,7 +232,8 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
     weft_texel_source source = {.layout = weft_dataset_get_layout(of->dataset),
                                 .held_out = options->held_out,
                                 .options = weft_fit_default_options(),
-                                .fit_frames = options->frames};
+                                .fit_frames = options->frames,
+                                .target_error = options->target_error};
     source.options.lobe_count = report->lobe_count;
     source.options.table = report->model == WEFT_COMPRESS_TABLE;
     source.options.max_exponent = options->max_exponent;
@@ -251,6 +259,10 @@ static uint64_t sparse_bytes(const weft_dataset_layout *layout)
 
 static weft_code fit_sparse(fitting *of, weft_material *material, weft_compress_report *report, weft_error *error)
 {
+    if (of->options->target_error > 0)
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "'%s' has too few images to choose a model for each texel: leave out the target error",
+                         weft_dataset_path(of->dataset));
     uint64_t bytes = weft_memory_budget_taken(&of->budget) + sparse_bytes(weft_dataset_get_layout(of->dataset));
     if (bytes > of->budget.limit)
         return weft_fail(error, WEFT_BAD_USAGE,
@@ -276,6 +288,7 @@ static weft_code fit_material(fitting *of, weft_material *material, weft_compres
     report->empty_texel_count = of->counts.empty;
     report->turned_frame_count = of->counts.turned;
     report->second_start_count = of->counts.second_start;
+    report->missed_texel_count = of->counts.missed;
     report->sample_count = (long)layout->width * layout->height * used_images(layout, of->options->held_out);
     WEFT_TRY(fill_opacity(of->dataset, material, error));
     return write_metadata(layout, &of->fingerprint, describe_fit(of->options, report, &of->setting), material, error);

@@ -15,6 +15,7 @@ typedef struct weft_compress_options {
     bool levels;             /* mip levels, each fitted to the mean samples of its groups of texels */
     bool frames;             /* fit normal and tangent of every texel too; else all have the frame of the surface */
     double max_exponent;     /* N <= this */
+    double target_error;     /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
     uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */
@@ -41,6 +42,7 @@ typedef struct weft_compress_report {
     long empty_texel_count;  /* without any valid sample; they are black */
     long turned_frame_count; /* texels whose frame was fitted rather than the surface's own */
     long second_start_count; /* texels whose fit began with a lobe thrown back to the light rather than mirrored */
+    long missed_texel_count; /* that no model brings to the target error */
     double seconds;
     long block_count;         /* of a dense model */
     long resumed_block_count; /* of these, taken from the checkpoint */

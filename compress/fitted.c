@@ -96,6 +96,7 @@ void weft_fitted_add_counts(weft_texel_counts *to, const weft_texel_counts *from
     to->empty += from->empty;
     to->turned += from->turned;
     to->second_start += from->second_start;
+    to->missed += from->missed;
 }
 
 void weft_fitted_end_block(weft_fitted *fitted)

@@ -1,6 +1,7 @@
 #include "compress/texel.h"
 
 #include "compress/kernels.h"
+#include "compress/model_ladder.h"
 #include "compress/pack.h"
 
 #include <math.h>
@@ -25,9 +26,13 @@ struct weft_texel_fitter {
     weft_samples samples;
     weft_fit_workspace *workspace;
     grey_fit upright, turned;
-    double *table; /* of one channel */
-    uint8_t *code;
-    float *decoded; /* T as it will be read */
+    bool turns;                        /* the last model's frame was turned */
+    double *table;                     /* of one channel */
+    weft_packed packed[WEFT_CHANNELS]; /* the last model that was fitted */
+    weft_fit as_read[WEFT_CHANNELS];   /* the same as it will be read */
+    int16_t frame[3];                  /* its code */
+    uint8_t *code;                     /* [channel][view_count] its T */
+    float *decoded;                    /* T of one channel as it will be read */
     const weft_fit_kernels *kernels;
     weft_error_tally *tally;
 };
@@ -50,7 +55,7 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
         code = weft_error_tally_create(&fitter->tally, error);
     if (code == WEFT_OK) {
         fitter->upright.table = calloc(3 * views, sizeof *fitter->table);
-        fitter->code = calloc(views, 1);
+        fitter->code = calloc(WEFT_CHANNELS * views, 1);
         fitter->decoded = calloc(views, sizeof *fitter->decoded);
         if (!fitter->upright.table || !fitter->code || !fitter->decoded)
             code = weft_fail_memory(error, "view tables of a texel", 3 * views * sizeof *fitter->table);
@@ -102,14 +107,13 @@ int weft_texel_group(const weft_dataset_layout *layout, int level, int x, int y,
 /* ---- The frame, by fits of the grey samples on a quarter of the lights ---- */
 
 /* Which of two fits the channels start from: in the frame of the surface, or in one that was free to turn. */
-static const grey_fit *choose_frame(weft_texel_fitter *fitter, const weft_fit_options *options,
-                                    weft_texel_counts *counts)
+static const grey_fit *choose_frame(weft_texel_fitter *fitter, const weft_fit_options *options)
 {
     grey_fit *upright = &fitter->upright, *turned = &fitter->turned;
     weft_frame frame = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
     weft_fit_cold(&fitter->bundle, &fitter->samples, WEFT_GREY, options, fitter->workspace, &frame, &upright->fit,
                   upright->table);
-    counts->second_start += upright->fit.start > 0;
+    fitter->turns = false;
     if (options->lobe_count == 0 || !fitter->source->fit_frames)
         return upright;
     weft_fit_options turning = *options;
@@ -118,9 +122,8 @@ static const grey_fit *choose_frame(weft_texel_fitter *fitter, const weft_fit_op
     memcpy(turned->table, upright->table, (size_t)fitter->bundle.view_count * sizeof *turned->table);
     weft_fit_refine(&fitter->bundle, &fitter->samples, WEFT_GREY, &turning, fitter->workspace, &turned->fit,
                     turned->table);
-    bool turn = turned->fit.residual < WORTHWHILE * upright->fit.residual;
-    counts->turned += turn;
-    return turn ? turned : upright;
+    fitter->turns = turned->fit.residual < WORTHWHILE * upright->fit.residual;
+    return fitter->turns ? turned : upright;
 }
 
 /* ---- Storing and measuring ---- */
@@ -162,40 +165,93 @@ static void tally_channel(weft_texel_fitter *fitter, int channel, const float *m
     }
 }
 
-/* The material as it will be read, against the samples. */
-static void measure_channel(weft_texel_fitter *fitter, int channel, const weft_fit *fit, bool table, bool tallied,
-                            weft_error_sums *sums)
+/* The last model as it will be read, against the samples. */
+static weft_error_sums measure_model(weft_texel_fitter *fitter, bool tallied)
 {
     const weft_bundle *bundle = &fitter->bundle;
-    const float *model = weft_fit_evaluate(bundle, &fitter->samples, fitter->workspace, fit);
-    for (int view = 0; view < bundle->view_count; view++)
-        fitter->decoded[view] = table ? (float)weft_table_of_code(fitter->code[view]) : 1;
-    fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, sums);
-    if (tallied)
-        tally_channel(fitter, channel, model, fitter->decoded);
+    weft_error_sums sums = {0};
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
+        const uint8_t *code = fitter->code + (size_t)channel * (size_t)bundle->view_count;
+        const float *model = weft_fit_evaluate(bundle, &fitter->samples, fitter->workspace, &fitter->as_read[channel]);
+        for (int view = 0; view < bundle->view_count; view++)
+            fitter->decoded[view] = (float)weft_table_of_code(code[view]);
+        fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, &sums);
+        if (tallied)
+            tally_channel(fitter, channel, model, fitter->decoded);
+    }
+    return sums;
 }
 
-static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, const grey_fit *start,
-                        const weft_frame *frame, weft_material *material, int level, int x, int y,
-                        weft_error_sums *sums)
+static void store_model(const weft_texel_fitter *fitter, weft_material *material, int level, int x, int y)
 {
+    size_t texel = (size_t)y * (size_t)material->level[level].width + (size_t)x;
+    memcpy(material->level[level].frame + 3 * texel, fitter->frame, sizeof fitter->frame);
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+        weft_texel_store(material, level, x, y, channel, &fitter->packed[channel],
+                         fitter->code + (size_t)channel * (size_t)fitter->bundle.view_count);
+}
+
+/* ---- One model ---- */
+
+static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, const grey_fit *start,
+                        const weft_frame *frame)
+{
+    size_t views = (size_t)fitter->bundle.view_count;
+    uint8_t *code = fitter->code + (size_t)channel * views;
     weft_fit fit = start->fit;
-    weft_packed packed;
     fit.frame = *frame;
-    memcpy(fitter->table, start->table, (size_t)fitter->bundle.view_count * sizeof *fitter->table);
+    memcpy(fitter->table, start->table, views * sizeof *fitter->table);
+    memset(code, 255, views);
     weft_fit_refine(&fitter->bundle, &fitter->samples, channel, options, fitter->workspace, &fit, fitter->table);
     weft_pack_channel(&fitter->bundle, &fitter->samples, channel, options, fitter->workspace, &fit, fitter->table,
-                      &packed, fitter->code);
-    weft_texel_store(material, level, x, y, channel, &packed, options->table ? fitter->code : NULL);
-    fit = weft_unpack(&packed, options->lobe_count, frame, fitter->samples.scale);
-    measure_channel(fitter, channel, &fit, options->table, is_tallied(&material->level[level], x, y), sums);
+                      &fitter->packed[channel], code);
+    fitter->as_read[channel] = weft_unpack(&fitter->packed[channel], options->lobe_count, frame, fitter->samples.scale);
+}
+
+/* Fits and packs one model; `fitter` holds the result. */
+static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options)
+{
+    weft_fit_options coarse = *options;
+    coarse.coarse = true;
+    coarse.tolerance = COARSE_TOLERANCE;
+    const grey_fit *start = choose_frame(fitter, &coarse);
+    weft_frame frame = weft_pack_frame(&start->fit.frame, fitter->frame);
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+        fit_channel(fitter, options, channel, start, &frame);
+}
+
+/* ---- The model that suffices ---- */
+
+/* The largest model that the samples can carry. */
+static weft_fit_options whole_model(const weft_texel_fitter *fitter)
+{
+    weft_fit_options options = fitter->source->options;
+    options.lobe_count =
+        weft_fit_affordable_lobes(&fitter->bundle, &fitter->samples, options.lobe_count, options.table);
+    return options;
+}
+
+/* Climbs from the smallest model to the whole one until the target is met; returns whether it is. */
+static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whole)
+{
+    double target = fitter->source->target_error;
+    weft_model_ladder ladder = weft_model_ladder_make(whole, fitter->bundle.view_count);
+    for (int rung = 0; rung < ladder.count; rung++) {
+        weft_fit_options options = *whole;
+        options.lobe_count = ladder.model[rung].lobe_count;
+        options.table = ladder.model[rung].table;
+        fit_model(fitter, &options);
+        weft_error_sums sums = measure_model(fitter, false);
+        if (sums.square_error <= target * target * sums.square)
+            return true;
+    }
+    return false;
 }
 
 void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int level, int x, int y, const float *sum,
                     const float *count, weft_texel_counts *counts)
 {
     const weft_dataset_layout *layout = fitter->source->layout;
-    weft_fit_options options = fitter->source->options;
     int extent[4], group = weft_texel_group(layout, level, x, y, extent);
     if (layout->distance == WEFT_NEAR) {
         double x_mm, y_mm;
@@ -203,16 +259,16 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         weft_bundle_aim(&fitter->bundle, layout, x_mm, y_mm);
     }
     weft_samples_gather(&fitter->bundle, layout->values, sum, count, group, &fitter->samples);
-    options.lobe_count =
-        weft_fit_affordable_lobes(&fitter->bundle, &fitter->samples, options.lobe_count, options.table);
-    weft_fit_options coarse = options;
-    coarse.coarse = true;
-    coarse.tolerance = COARSE_TOLERANCE;
-    const grey_fit *start = choose_frame(fitter, &coarse, counts);
+    weft_fit_options whole = whole_model(fitter);
+    if (fitter->source->target_error > 0)
+        counts->missed += !fit_smallest(fitter, &whole);
+    else
+        fit_model(fitter, &whole);
+    weft_error_sums sums = measure_model(fitter, is_tallied(&material->level[level], x, y));
+    weft_error_sums_add(&counts->sums, &sums);
+    store_model(fitter, material, level, x, y);
     counts->texels++;
     counts->empty += fitter->samples.valid_count == 0;
-    size_t texel = (size_t)y * (size_t)material->level[level].width + (size_t)x;
-    weft_frame frame = weft_pack_frame(&start->fit.frame, material->level[level].frame + 3 * texel);
-    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
-        fit_channel(fitter, &options, channel, start, &frame, material, level, x, y, &counts->sums);
+    counts->turned += fitter->turns;
+    counts->second_start += fitter->upright.fit.start > 0;
 }

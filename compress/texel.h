@@ -16,11 +16,15 @@ typedef struct weft_texel_source {
     const uint8_t *held_out;
     weft_fit_options options;
     bool fit_frames; /* turn the frame of a texel where that helps; else all have that of the surface */
+    /* Each texel has the smallest model (compress/model_ladder.h) whose RMSE over the rms of its samples is at most
+     * this; the whole of `options` where none is. 0: the whole everywhere. */
+    double target_error;
 } weft_texel_source;
 
 /* What happened to some texels. */
 typedef struct weft_texel_counts {
     long texels, empty, turned, second_start;
+    long missed; /* texels that no model brings to the target */
     weft_error_sums sums;
 } weft_texel_counts;
 

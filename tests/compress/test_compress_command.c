@@ -72,6 +72,13 @@ static void a_dataset_becomes_a_material_with_a_table_of_errors(void **state)
     weft_material_free(&material);
 }
 
+static void a_target_error_says_how_many_texels_miss_it(void **state)
+{
+    (void)state;
+    expect("command.btf.h5 -o target.weft --error 90", 0, "0 of 9 texels");
+    expect("command.btf.h5 -o target.weft --error 0.1", 0, "9 of 9 texels");
+}
+
 static void wrong_usage_is_2(void **state)
 {
     (void)state;
@@ -79,6 +86,7 @@ static void wrong_usage_is_2(void **state)
     expect("command.btf.h5 -o a.weft --lobes 4", 2, "'4'");
     expect("command.btf.h5 -o a.weft --table maybe", 2, "'maybe'");
     expect("command.btf.h5 -o a.weft --max-exponent 0", 2, "'0'");
+    expect("command.btf.h5 -o a.weft --error 0", 2, "'0'");
     expect("command.btf.h5 other.btf.h5 -o a.weft", 2, "other.btf.h5");
     expect("--help", 0, "Example: weft compress");
 }
@@ -113,6 +121,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dataset_becomes_a_material_with_a_table_of_errors),
+        cmocka_unit_test(a_target_error_says_how_many_texels_miss_it),
         cmocka_unit_test(wrong_usage_is_2),
         cmocka_unit_test(bad_input_is_1_and_leaves_nothing),
         cmocka_unit_test(a_full_disk_is_3_and_leaves_nothing),
