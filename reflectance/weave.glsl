@@ -118,7 +118,8 @@ Segment weave_segment(sampler2D table, int yarn)
     vec4 a = weave_yarn_texel(table, yarn, 0);
     vec4 b = weave_yarn_texel(table, yarn, 1);
     vec4 c = weave_yarn_texel(table, yarn, 2);
-    return Segment(a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z);
+    float radius_share = weave_yarn_texel(table, yarn, 5).w;
+    return Segment(a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, radius_share);
 }
 
 // intensity aw T; light and view in the frame of the cloth.

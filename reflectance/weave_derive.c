@@ -36,7 +36,7 @@ static bool same_segment(const weft_segment *a, const weft_segment *b)
 {
     return a->alpha == b->alpha && a->beta == b->beta && a->delta == b->delta && a->psi == b->psi &&
            a->umax == b->umax && a->kappa == b->kappa && a->width == b->width && a->length == b->length &&
-           a->highlight_width == b->highlight_width;
+           a->highlight_width == b->highlight_width && a->frozen_radius == b->frozen_radius;
 }
 
 /* A weave has few kinds of segments, however many yarns. */

@@ -10,7 +10,7 @@
 /* Numbers of the weave block, as in the file. */
 typedef struct weave_values {
     double tile_width, tile_height, alpha, beta, delta, highlight_width, warp_area, weft_area;
-    double inclination_noise[4], fineness, period;
+    double inclination_noise[4], fineness, period, frozen_radius;
 } weave_values;
 
 /* Numbers of a yarn block, as in the file: degrees, tile units. */
@@ -33,6 +33,7 @@ static const block_field weave_fields[] = {
     {"dWeftUmaxOverDWeft", offsetof(weave_values, inclination_noise[3]), 1, true, -90, 90},
     {"fineness", offsetof(weave_values, fineness), 1, true, 0, LARGE},
     {"period", offsetof(weave_values, period), 1, true, 0, LARGE},
+    {"frozenRadius", offsetof(weave_values, frozen_radius), 1, true, 0, 1},
 };
 
 static const block_field yarn_fields[] = {
@@ -200,6 +201,7 @@ static void store_values(weft_weave *weave, const weave_values *values)
         segment->beta = (weft_real)values->beta;
         segment->delta = (weft_real)values->delta;
         segment->highlight_width = (weft_real)values->highlight_width;
+        segment->frozen_radius = values->frozen_radius > 0;
     }
 }
 

@@ -30,7 +30,7 @@ static void put_yarn(const weft_yarn *yarn, weft_real scale, float (*texel)[4])
     put(texel[2], segment->width, segment->length, segment->highlight_width, yarn->admissible ? yarn->area_weight : 0);
     put(texel[3], yarn->center_u, yarn->center_v, yarn->warp, yarn->min_umax);
     put(texel[4], yarn->kd.r, yarn->kd.g, yarn->kd.b, yarn->max_umax);
-    put(texel[5], yarn->ks.r * scale, yarn->ks.g * scale, yarn->ks.b * scale, 0);
+    put(texel[5], yarn->ks.r * scale, yarn->ks.g * scale, yarn->ks.b * scale, prepared->radius_share);
 }
 
 void weft_weave_table(const weft_weave *weave, float *rgba, int *width, int *height)

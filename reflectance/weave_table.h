@@ -13,7 +13,8 @@
  *             + 2       width, length (cells), highlight width, area weight (0 where there is no such segment)
  *             + 3       center u, center v (tile units), 1 = warp or 0 = weft, least umax under noise (rad)
  *             + 4       kd r, g, b; largest umax under noise (rad)
- *             + 5       ks r, g, b times the specular scale s; 0
+ *             + 5       ks r, g, b times the specular scale s; share of umax where the
+ *                       spine that gives the radius ends
  *     3 + 6 yarns + j   pattern cells 4 j .. 4 j + 3, row by row from the top: index of the yarn */
 enum { WEFT_WEAVE_TABLE_WIDTH = 256, WEFT_WEAVE_TABLE_HEADER = 3, WEFT_WEAVE_TABLE_YARN = 6 };
 

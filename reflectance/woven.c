@@ -15,8 +15,7 @@ static weft_yarn_point dark_point(const weft_prepared_segment *prepared, weft_re
 {
     const weft_spine *spine = &prepared->spine;
     weft_real on_spine = weft_clamp(u, -spine->umax, spine->umax);
-    weft_real radius =
-        spine_radius(&prepared->segment, spine, spine->umax - fabs(on_spine), sin(on_spine), cos(on_spine));
+    weft_real radius = filament_radius(prepared, spine, on_spine, sin(on_spine), cos(on_spine));
     return (weft_yarn_point){.radius = radius, .phase = phase};
 }
 
@@ -140,7 +139,7 @@ static weft_real filament_texture(const weft_prepared_segment *prepared, weft_re
     if (!faces_both(&at, light, view))
         return 0;
     weft_spine spine = spine_for(prepared, umax);
-    weft_real radius = spine_radius(segment, &spine, umax - fabs(u), at.sin_u, at.cos_u);
+    weft_real radius = filament_radius(prepared, &spine, u, at.sin_u, at.cos_u);
     weft_real attenuation = at.light_share * at.view_share * at.cosine_sum * filament_fade(segment->delta, umax, u);
     weft_real integrand =
         yarn_area(segment, radius, at.cos_v) / across * attenuation * prepared_phase(prepared, light, view);

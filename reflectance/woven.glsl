@@ -2,6 +2,7 @@
 // Common subset of GLSL 3.30 core and GLSL ES 3.00; needs highp float.
 
 const float WOVEN_PI = 3.14159265358979;
+const float WOVEN_MIN_UMAX = 1e-7;
 const float WOVEN_MIN_HALF_SQUARED = 1e-12;
 const float WOVEN_MIN_ACROSS = 1e-15;
 const float WOVEN_MIN_COSINE_SUM = 1e-30;
@@ -13,6 +14,7 @@ struct Segment {
     float umax, kappa;
     float width, size; // size = length of the segment
     float highlight_width;
+    float radius_share; // of umax where the spine that gives the radius of a filament ends
 };
 
 struct Spine {
@@ -45,6 +47,15 @@ float spine_radius(Segment segment, Spine spine, float inside, float sin_u, floa
                   ? (sin(max(inside, 0.0)) + end * sin_abs_u) / spine.sin_umax * (cos_u - spine.shape * sin_abs_u)
                   : cos_u * cos_u + spine.shape * spine.shape * sin_u * sin_u;
     return spine.scale / (e * sqrt(e));
+}
+
+float filament_radius(Segment segment, Spine spine, float u, float sin_u, float cos_u)
+{
+    if (!(segment.radius_share < 1.0))
+        return spine_radius(segment, spine, spine.umax - abs(u), sin_u, cos_u);
+    float end = max(spine.umax * segment.radius_share, WOVEN_MIN_UMAX);
+    float at = min(abs(u), end);
+    return spine_radius(segment, segment_spine(segment, end), end - at, sin(at), cos(at));
 }
 
 // Whether n(u, v) is on the upper half of the yarn and faces both directions; fills the shares.
@@ -135,7 +146,7 @@ float filament_texture(Segment segment, float umax, vec2 place, vec3 halfway, ve
     if (!faces_both(at, light, view))
         return 0.0;
     Spine spine = segment_spine(segment, umax);
-    float radius = spine_radius(segment, spine, umax - abs(u), at.sin_u, at.cos_u);
+    float radius = filament_radius(segment, spine, u, at.sin_u, at.cos_u);
     float attenuation = at.light_share * at.view_share * at.cosine_sum * filament_fade(segment.delta, umax, u);
     float integrand = yarn_area(segment, radius, at.cos_v) / across * attenuation * prepared_phase(segment, light, view);
     return WOVEN_PI * integrand / segment.highlight_width;

@@ -17,6 +17,8 @@ typedef struct weft_segment {
     weft_real kappa;           /* curvature of the spine, > -1 */
     weft_real width, length;   /* of the segment rectangle, cells; width sin(umax) < length */
     weft_real highlight_width; /* of width or length, 0 < highlight_width <= 1 */
+    bool frozen_radius; /* filament: R of a spine that ends at (1 - delta) umax, constant beyond. Renderers do so, the
+                           article does not */
 } weft_segment;
 
 /* Beyond these a segment counts as inadmissible: they keep every value finite in single precision. */
@@ -71,6 +73,7 @@ typedef struct weft_prepared_segment {
     bool admissible, filament;
     weft_real cot_psi, inverse_sin_psi; /* cot psi, 1 / |sin psi|; staple only */
     weft_real phase_scale;              /* 1 / (2 pi exp(-|beta|) I0(beta)) */
+    weft_real radius_share;             /* of umax where the spine that gives R ends: 1, or 1 - delta (frozen_radius) */
     weft_spine spine;
 } weft_prepared_segment;
 

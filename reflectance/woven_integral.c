@@ -180,7 +180,7 @@ static weft_real filament_reflectance(const weft_prepared_segment *prepared, wef
         return 0;
     filament_problem problem = {.light = light, .view = view, .segment = &prepared->segment, .sin_u = at.sin_u};
     problem.cos_u = at.cos_u;
-    problem.radius = spine_radius(&prepared->segment, spine, spine->umax - fabs(u), at.sin_u, at.cos_u);
+    problem.radius = filament_radius(prepared, spine, u, at.sin_u, at.cos_u);
     interval range = cut_to_visible(cut_to_visible((interval){-quarter, quarter}, &at, light), &at, view);
     if (!(range.low < range.high))
         return 0;

@@ -73,6 +73,10 @@ static inline weft_real filament_mirror(weft_vec3 half, mirror *at)
 weft_real spine_radius(const weft_segment *segment, const weft_spine *spine, weft_real inside, weft_real sin_u,
                        weft_real cos_u);
 
+/* The same at the highlight of a filament, whose radius may be frozen toward the ends of `spine`. */
+weft_real filament_radius(const weft_prepared_segment *prepared, const weft_spine *spine, weft_real u, weft_real sin_u,
+                          weft_real cos_u);
+
 /* fc for x = -light . view. */
 static inline weft_real prepared_phase(const weft_prepared_segment *prepared, weft_vec3 light, weft_vec3 view)
 {

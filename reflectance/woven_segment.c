@@ -92,6 +92,17 @@ weft_real spine_radius(const weft_segment *segment, const weft_spine *spine, wef
     return spine->scale / (e * sqrt(e));
 }
 
+weft_real filament_radius(const weft_prepared_segment *prepared, const weft_spine *spine, weft_real u, weft_real sin_u,
+                          weft_real cos_u)
+{
+    if (!(prepared->radius_share < 1))
+        return spine_radius(&prepared->segment, spine, spine->umax - fabs(u), sin_u, cos_u);
+    weft_real end = fmax(spine->umax * prepared->radius_share, (weft_real)WEFT_SEGMENT_MIN_UMAX);
+    weft_real at = fmin(fabs(u), end);
+    weft_spine shorter = weft_segment_spine(&prepared->segment, end);
+    return spine_radius(&prepared->segment, &shorter, end - at, sin(at), cos(at));
+}
+
 weft_real weft_spine_radius(const weft_segment *segment, weft_real u)
 {
     if (!weft_segment_admissible(segment) || !(fabs(u) <= segment->umax))
@@ -114,6 +125,7 @@ weft_prepared_segment weft_segment_prepare(const weft_segment *segment)
         prepared.segment.delta = 0;
     }
     prepared.phase_scale = phase_scale(segment->beta);
+    prepared.radius_share = prepared.filament && segment->frozen_radius ? 1 - prepared.segment.delta : 1;
     prepared.spine = weft_segment_spine(segment, segment->umax);
     return prepared;
 }

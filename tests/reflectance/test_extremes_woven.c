@@ -59,7 +59,8 @@ static weft_segment extreme_segment(uint64_t *random)
                             .delta = EXTREMES_PICK(random, 0, 1e-9, 0.5, 1),
                             .psi = extreme_psi(random),
                             .umax = extreme_umax(random),
-                            .highlight_width = EXTREMES_PICK(random, 1e-4, 0.3, 0.5, 1)};
+                            .highlight_width = EXTREMES_PICK(random, 1e-4, 0.3, 0.5, 1),
+                            .frozen_radius = random_bits(random) % 4 == 0};
     segment.kappa = extreme_kappa(random, segment.umax);
     segment.width = EXTREMES_PICK(random, 1e-3, 0.5, 1, 1, 2, 1e4);
     weft_real shortest = segment.width * sin(segment.umax);

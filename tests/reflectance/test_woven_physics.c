@@ -139,6 +139,48 @@ static void small_twist_tends_to_the_filament(void **state)
     }
 }
 
+/* R of the spine that ends at (1 - delta) umax, and its last value beyond; off, and for staple, R of the yarn. */
+static void frozen_radius_is_that_of_the_shorter_spine(void **state)
+{
+    (void)state;
+    uint64_t random = 6;
+    int beyond = 0;
+    for (int i = 0; i < 20000; i++) {
+        weft_segment s = random_segment(&random, i % 4 == 0), shorter = s;
+        weft_vec3 light = random_direction(&random), view = random_direction(&random);
+        weft_yarn_point plain = weft_yarn_highlight(&s, 0, light, view);
+        s.frozen_radius = true;
+        weft_yarn_point frozen = weft_yarn_highlight(&s, 0, light, view);
+        shorter.umax *= 1 - s.delta;
+        weft_real u = s.psi != 0 ? 0 : weft_clamp(atan2(light.y + view.y, light.z + view.z), -s.umax, s.umax);
+        weft_real at = weft_clamp(u, -shorter.umax, shorter.umax);
+        double expected = s.psi != 0 ? plain.radius : weft_spine_radius(&shorter, at);
+        assert_true(fabs((double)frozen.radius / expected - 1) < 1e4 * same);
+        beyond += fabs(u) > shorter.umax && s.psi == 0;
+    }
+    assert_true(beyond > 1000);
+}
+
+static void mean_of_a_texture_with_frozen_radius_is_the_reflectance(void **state)
+{
+    (void)state;
+    const weft_vec3 light = weft_unit(weft_vec3_of((weft_real)0.1, (weft_real)-0.2, 1));
+    const weft_vec3 view = weft_unit(weft_vec3_of((weft_real)-0.2, (weft_real)0.9, 1));
+    weft_segment s = {.alpha = (weft_real)0.02,
+                      .beta = 3,
+                      .delta = (weft_real)0.5,
+                      .umax = (weft_real)0.7,
+                      .kappa = (weft_real)-0.3,
+                      .width = 1,
+                      .length = 3,
+                      .highlight_width = (weft_real)0.25};
+    double plain = weft_segment_reflectance(&s, light, view);
+    s.frozen_radius = true;
+    double frozen = weft_segment_reflectance(&s, light, view);
+    assert_true(fabs(frozen / plain - 1) > 0.1);
+    assert_true(fabs(texture_mean(&s, light, view) / frozen - 1) < 5e-4);
+}
+
 static void directions_that_are_no_directions_give_no_light(void **state)
 {
     (void)state;
@@ -198,6 +240,8 @@ int main(void)
         cmocka_unit_test(texture_keeps_mirror_symmetry),
         cmocka_unit_test(mean_of_the_texture_is_the_reflectance),
         cmocka_unit_test(small_twist_tends_to_the_filament),
+        cmocka_unit_test(frozen_radius_is_that_of_the_shorter_spine),
+        cmocka_unit_test(mean_of_a_texture_with_frozen_radius_is_the_reflectance),
         cmocka_unit_test(directions_that_are_no_directions_give_no_light),
         cmocka_unit_test(inadmissible_segments_reflect_nothing),
         cmocka_unit_test(phase_function_integrates_over_a_circle_to_one_plus_alpha),
