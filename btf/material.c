@@ -56,15 +56,16 @@ static weft_code allocate_array(const weft_material *material, weft_section_kind
 static weft_code allocate_level(weft_material *material, int k, weft_error *error)
 {
     weft_material_level *level = &material->level[k];
-    void *array[5] = {0};
+    void *array[6] = {0};
     weft_code code = WEFT_OK;
-    for (int i = 0; i < 5 && code == WEFT_OK; i++)
+    for (int i = 0; i < 6 && code == WEFT_OK; i++)
         code = allocate_array(material, (weft_section_kind)(WEFT_SECTION_FRAM + i), k, &array[i], error);
     level->frame = array[0];
     level->diffuse = array[1];
     level->lobe = array[2];
     level->table = array[3];
     level->light_table = array[4];
+    level->model = array[5];
     return code;
 }
 
@@ -105,6 +106,18 @@ weft_code weft_material_create(int width, int height, int lobe_count, int view_c
     return weft_material_allocate(material, error);
 }
 
+weft_code weft_material_add_models(weft_material *material, weft_error *error)
+{
+    material->has_models = true;
+    weft_code code = WEFT_OK;
+    for (int k = 0; k < material->level_count && code == WEFT_OK; k++) {
+        void *model = NULL;
+        code = allocate_array(material, WEFT_SECTION_MODL, k, &model, error);
+        material->level[k].model = model;
+    }
+    return code;
+}
+
 void weft_material_free(weft_material *material)
 {
     for (int k = 0; k < material->level_count; k++) {
@@ -113,9 +126,39 @@ void weft_material_free(weft_material *material)
         free(material->level[k].lobe);
         free(material->level[k].table);
         free(material->level[k].light_table);
+        free(material->level[k].model);
     }
     free(material->view);
     free(material->light);
     free(material->metadata);
     *material = (weft_material){0};
+}
+
+/* ---- Codes ---- */
+
+static const int bits_of_code[4] = {0, 4, 6, 8};
+
+static unsigned code_of_bits(int bits)
+{
+    unsigned code = 0;
+    while (code < 3 && bits_of_code[code] < bits)
+        code++;
+    return code;
+}
+
+uint8_t weft_model_encode(weft_model_parts parts)
+{
+    unsigned table = code_of_bits(parts.table_bits), light_table = code_of_bits(parts.light_table_bits);
+    return (uint8_t)((unsigned)parts.lobe_count | table << 2 | light_table << 4);
+}
+
+weft_model_parts weft_model_decode(uint8_t code)
+{
+    return (weft_model_parts){code & 3, bits_of_code[code >> 2 & 3], bits_of_code[code >> 4 & 3]};
+}
+
+uint8_t weft_table_code_rounded(uint8_t code, int bits)
+{
+    int steps = (1 << bits) - 1, step = (code * steps * 2 + 255) / 510;
+    return (uint8_t)((step * 255 * 2 + steps) / (2 * steps));
 }

@@ -11,6 +11,7 @@
 #include "btf/status.h"
 #include "btf/vector.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -40,6 +41,7 @@ typedef struct weft_material_level {
                        NULL where the material has no table (T = 1) */
     uint8_t *light_table; /* [light_count][height][width][4]: r, g, b coded alike, S = (code/255)^2; 255 unused.
                              NULL where the material has none (S = 1) */
+    uint8_t *model; /* [height][width]: which model each texel has, see weft_model_code; NULL where all have the same */
     weft_material_error error;
 } weft_material_level;
 
@@ -48,6 +50,7 @@ typedef struct weft_material {
     int level_count;       /* level k + 1 has ceil half the size of level k, down to 1 x 1 */
     int view_count;        /* directions of T; 0 without a table */
     int light_count;       /* directions of S; 0 without a light table */
+    bool has_models;       /* every level says which model each texel has */
     double texel_pitch_mm; /* of level 0 */
     weft_vec3 *view;       /* [view_count], unit, upper hemisphere */
     weft_vec3 *light;      /* [light_count], unit, upper hemisphere */
@@ -61,16 +64,37 @@ weft_code weft_material_create(int width, int height, int lobe_count, int view_c
                                weft_material *material, weft_error *error);
 void weft_material_free(weft_material *material);
 
+/* Adds maps of models, all 0. Errors: WEFT_SYSTEM. */
+weft_code weft_material_add_models(weft_material *material, weft_error *error);
+
 /* Writes atomically. Errors: WEFT_BAD_USAGE for contents that could not be read back (not finite, negative diffuse
  * terms or exponents, directions that are no unit vectors of the upper hemisphere, metadata that is no JSON object),
  * WEFT_SYSTEM. */
 weft_code weft_material_write(const char *path, const weft_material *material, weft_error *error);
+
+/* Bytes of the file that weft_material_write would write. Errors: as there. */
+weft_code weft_material_size(const weft_material *material, uint64_t *size, weft_error *error);
 
 /* Reads and checks all of a file: every size against the file before anything is allocated, every checksum.
  * Errors: WEFT_BAD_INPUT naming the file and the section. The caller frees with weft_material_free. */
 weft_code weft_material_read(const char *path, weft_material *material, weft_error *error);
 
 /* ---- Codes of single values. Pure. ---- */
+
+/* The model of a texel: what it has of lobes, T and S. What it does not have is stored as what changes nothing. */
+typedef struct weft_model_parts {
+    int lobe_count;
+    int table_bits;       /* of T, per entry: 0 (T = 1), 4, 6 or 8 */
+    int light_table_bits; /* of S, alike */
+} weft_model_parts;
+
+enum { WEFT_MODEL_CODES = 64 };
+uint8_t weft_model_encode(weft_model_parts parts);
+weft_model_parts weft_model_decode(uint8_t code);
+
+/* The nearest code of a table entry among 2^bits evenly spaced ones. */
+uint8_t weft_table_code_rounded(uint8_t code, int bits);
+
 typedef struct weft_frame {
     weft_vec3 normal, tangent, bitangent; /* orthonormal, right-handed: bitangent = normal x tangent */
 } weft_frame;

@@ -5,7 +5,7 @@
 const unsigned char weft_format_magic[8] = {0x89, 'W', 'E', 'F', 'T', '\r', '\n', 0x1a};
 
 const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ",
-                                                       "LOBE", "TABL", "STAB", "ERRO"};
+                                                       "LOBE", "TABL", "STAB", "MODL", "ERRO"};
 
 weft_section_kind weft_section_kind_of(const char type[5])
 {
@@ -30,6 +30,8 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind)
         return material->view_count > 0 ? material->level_count : 0;
     case WEFT_SECTION_STAB:
         return material->light_count > 0 ? material->level_count : 0;
+    case WEFT_SECTION_MODL:
+        return material->has_models ? material->level_count : 0;
     default:
         return material->level_count;
     }
@@ -53,6 +55,8 @@ uint64_t weft_section_size(const weft_material *material, weft_section_kind kind
         return (uint64_t)material->view_count * texels * 4;
     case WEFT_SECTION_STAB:
         return (uint64_t)material->light_count * texels * 4;
+    case WEFT_SECTION_MODL:
+        return texels;
     case WEFT_SECTION_ERRO:
         return WEFT_FORMAT_ERRORS * sizeof(double);
     default:
@@ -74,6 +78,8 @@ void *weft_section_texels(const weft_material *material, weft_section_kind kind,
         return at->table;
     case WEFT_SECTION_STAB:
         return at->light_table;
+    case WEFT_SECTION_MODL:
+        return at->model;
     default:
         return NULL;
     }
@@ -111,6 +117,15 @@ static const char *fault_of_errors(const double *value, size_t count)
     return NULL;
 }
 
+static const char *fault_of_models(const uint8_t *model, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (model[i] >= WEFT_MODEL_CODES)
+            return "holds an unknown model";
+    }
+    return NULL;
+}
+
 const char *weft_section_fault(weft_section_kind kind, const void *bytes, size_t size)
 {
     switch (kind) {
@@ -120,6 +135,8 @@ const char *weft_section_fault(weft_section_kind kind, const void *bytes, size_t
     case WEFT_SECTION_RHO:
     case WEFT_SECTION_LOBE:
         return fault_of_halves(kind, bytes, size / sizeof(weft_half));
+    case WEFT_SECTION_MODL:
+        return fault_of_models(bytes, size);
     case WEFT_SECTION_ERRO:
         return fault_of_errors(bytes, size / sizeof(double));
     default:

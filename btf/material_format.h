@@ -34,6 +34,7 @@ typedef enum weft_section_kind {
     WEFT_SECTION_LOBE,
     WEFT_SECTION_TABL,
     WEFT_SECTION_STAB,
+    WEFT_SECTION_MODL,
     WEFT_SECTION_ERRO,
     WEFT_SECTION_KINDS /* their number; stands for an unknown type */
 } weft_section_kind;
@@ -56,7 +57,7 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind);
 /* Decoded bytes of a section, from the counts and level sizes only; 0 for META, whose size is free. Pure. */
 uint64_t weft_section_size(const weft_material *material, weft_section_kind kind, int level);
 
-/* The texels of FRAM, RHO, LOBE, TABL and STAB in memory; NULL for the other kinds. */
+/* The texels of FRAM, RHO, LOBE, TABL, STAB and MODL in memory; NULL for the other kinds. */
 void *weft_section_texels(const weft_material *material, weft_section_kind kind, int level);
 
 /* What is wrong with decoded contents ("holds ..."), NULL where they are fine: numbers that are not finite, negative

@@ -137,12 +137,14 @@ static weft_code check_codec(const file_image *file, const weft_section *section
     return WEFT_OK;
 }
 
-static weft_code note_section(file_image *file, int index, const weft_material *material, weft_error *error)
+/* One map of models announces those of all levels. */
+static weft_code note_section(file_image *file, int index, weft_material *material, weft_error *error)
 {
     const weft_section *section = &file->section[index];
     weft_section_kind kind = weft_section_kind_of(section->type);
     if (kind == WEFT_SECTION_KINDS)
         return WEFT_OK;
+    material->has_models = material->has_models || kind == WEFT_SECTION_MODL;
     if (section->level >= (uint32_t)weft_section_levels(material, kind))
         return fail_section(file, section, error, "the material has no such section");
     if (file->found[kind][section->level])
@@ -167,7 +169,7 @@ static weft_code check_complete(const file_image *file, const weft_material *mat
     return WEFT_OK;
 }
 
-static weft_code read_table(file_image *file, const weft_material *material, weft_error *error)
+static weft_code read_table(file_image *file, weft_material *material, weft_error *error)
 {
     file->section_count = (int)u32_at(file->bytes + 12);
     file->section = calloc((size_t)file->section_count, sizeof *file->section);

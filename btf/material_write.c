@@ -101,7 +101,7 @@ static weft_code add_section(file_image *file, weft_section_kind kind, int level
                          weft_section_type[kind], level, fault);
     size_t offset = aligned(file->size), bound = ZSTD_compressBound(size);
     unsigned char *stored = file->bytes + offset;
-    bool is_texels = kind >= WEFT_SECTION_FRAM && kind <= WEFT_SECTION_STAB;
+    bool is_texels = kind >= WEFT_SECTION_FRAM && kind <= WEFT_SECTION_MODL;
     size_t packed = is_texels ? compress_section(stored, bound, bytes, size) : 0;
     size_t stored_size = packed > 0 ? packed : size;
     if (packed == 0)
@@ -216,6 +216,17 @@ weft_code weft_material_write(const char *path, const weft_material *material, w
     weft_code code = fill(&file, material, error);
     if (code == WEFT_OK)
         code = weft_write_file(path, file.bytes, file.size, error);
+    free(file.bytes);
+    return code;
+}
+
+weft_code weft_material_size(const weft_material *material, uint64_t *size, weft_error *error)
+{
+    file_image file = {.path = "the material"};
+    weft_code code = check_header(file.path, material, error);
+    if (code == WEFT_OK)
+        code = fill(&file, material, error);
+    *size = file.size;
     free(file.bytes);
     return code;
 }

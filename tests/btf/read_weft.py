@@ -33,7 +33,7 @@ def read_sections(data, header, end):
 
 def expected_size(kind, header, texels):
     lobes, views, lights = header["lobes"], header["views"], header["lights"]
-    return {"FRAM": 6, "RHO": 8, "LOBE": 24 * lobes, "TABL": 4 * views, "STAB": 4 * lights}[kind] * texels
+    return {"FRAM": 6, "RHO": 8, "LOBE": 24 * lobes, "TABL": 4 * views, "STAB": 4 * lights, "MODL": 1}[kind] * texels
 
 
 def texel_of(kind, body):
@@ -44,6 +44,9 @@ def texel_of(kind, body):
         return {"T": tuple((code / 255) ** 2 for code in body[:3]), "opacity": body[3] / 255}
     if kind == "STAB":
         return {"S": tuple((code / 255) ** 2 for code in body[:3])}
+    if kind == "MODL":
+        bits = (0, 4, 6, 8)
+        return {"lobes": body[0] & 3, "bits of T": bits[body[0] >> 2 & 3], "bits of S": bits[body[0] >> 4 & 3]}
     return struct.unpack_from("<4e", body)
 
 
@@ -53,9 +56,10 @@ def main(path):
     sections = read_sections(data, header, table_end)
     print(header, json.loads(sections["META", 0][0]))
     width, height = header["width"], header["height"]
+    models = ["MODL"] if ("MODL", 0) in sections else []
     for level in range(header["levels"]):
         optional = [("LOBE", "lobes"), ("TABL", "views"), ("STAB", "lights")]
-        for kind in ["FRAM", "RHO"] + [kind for kind, count in optional if header[count] > 0]:
+        for kind in ["FRAM", "RHO"] + [kind for kind, count in optional if header[count] > 0] + models:
             body, decoded = sections[kind, level]
             assert decoded == expected_size(kind, header, width * height), kind
             print(level, kind, texel_of(kind, body) if body else "compressed")

@@ -41,6 +41,9 @@ static void assert_levels_equal(const weft_material *a, const weft_material *b, 
         assert_memory_equal(p->light_table, q->light_table, texels * (size_t)a->light_count * 4);
     else
         assert_null(p->light_table);
+    assert_int_equal(a->has_models, b->has_models);
+    if (a->has_models)
+        assert_memory_equal(p->model, q->model, texels);
     assert_memory_equal(&p->error, &q->error, sizeof p->error);
 }
 
@@ -73,6 +76,8 @@ static void fill_randomly(weft_material *material)
             level->table[i] = (uint8_t)(rand() % 8);
         for (size_t i = 0; i < level_texels(level) * 4 * (size_t)material->light_count; i++)
             level->light_table[i] = (uint8_t)(rand() % 8);
+        for (size_t i = 0; level->model && i < level_texels(level); i++)
+            level->model[i] = (uint8_t)(rand() % WEFT_MODEL_CODES);
         level->error = (weft_material_error){k, 1, 2, 3, INFINITY};
     }
 }
@@ -88,10 +93,17 @@ static void a_material_of_any_shape_reads_back_as_written(void **state)
         assert_int_equal(weft_material_create(shape[i][0], shape[i][1], shape[i][2], shape[i][3], shape[i][4],
                                               shape[i][5], &written, NULL),
                          WEFT_OK);
+        if (i % 2)
+            assert_int_equal(weft_material_add_models(&written, NULL), WEFT_OK);
         fill_randomly(&written);
         written.texel_pitch_mm = 0.1 + i;
         assert_int_equal(weft_material_write("shape.weft", &written, NULL), WEFT_OK);
         weft_material read = read_material("shape.weft");
+        struct stat status;
+        uint64_t size;
+        assert_int_equal(stat("shape.weft", &status), 0);
+        assert_int_equal(weft_material_size(&written, &size, NULL), WEFT_OK);
+        assert_int_equal(size, status.st_size);
         assert_int_equal(read.level_count, written.level_count);
         assert_int_equal(read.lobe_count, written.lobe_count);
         assert_int_equal(read.view_count, written.view_count);
@@ -120,6 +132,24 @@ static void levels_halve_rounding_up_to_one_texel(void **state)
         assert_int_equal(material.level[k].height, height[k]);
     }
     weft_material_free(&material);
+}
+
+static void models_and_fewer_bits_are_coded_without_loss(void **state)
+{
+    (void)state;
+    for (int code = 0; code < WEFT_MODEL_CODES; code++)
+        assert_int_equal(weft_model_encode(weft_model_decode((uint8_t)code)), code);
+    for (int bits = 4; bits <= 8; bits += 2) {
+        int distinct = 0, steps = (1 << bits) - 1;
+        for (int code = 0; code < 256; code++) {
+            int rounded = weft_table_code_rounded((uint8_t)code, bits);
+            distinct += rounded == code;
+            assert_true(abs(rounded - code) <= (255 + steps) / (2 * steps));
+            assert_int_equal(weft_table_code_rounded((uint8_t)rounded, bits), rounded);
+        }
+        assert_int_equal(distinct, steps + 1);
+        assert_int_equal(weft_table_code_rounded(255, bits), 255);
+    }
 }
 
 static void impossible_shapes_are_refused(void **state)
@@ -209,7 +239,7 @@ static void a_file_cut_at_a_section_boundary_is_refused_though_its_header_agrees
     size_t size;
     unsigned char *bytes = scratch_load(path, &size);
     int sections = (int)weft_bytes_u32(bytes + 12);
-    assert_int_equal(sections, 3 + 6 * 4);
+    assert_int_equal(sections, 3 + 7 * 4);
     for (int i = 0; i < sections; i++) {
         const unsigned char *entry = weft_bytes_entry(bytes, i);
         uint64_t start = weft_bytes_u64(entry + ENTRY_OFFSET);
@@ -322,6 +352,8 @@ static void impossible_sections_are_refused_with_right_checksums(void **state)
         {"LITE", 0, ENTRY_LEVEL, 1, "no such section"},
         {"STAB", 2, ENTRY_TYPE, 0x58585858, "STAB of level 2 is missing"},
         {"STAB", 1, ENTRY_DECODED + 4, 1, ""},
+        {"MODL", 3, ENTRY_TYPE, 0x58585858, "MODL of level 3 is missing"},
+        {"MODL", 0, ENTRY_LEVEL, 4, "no such section"},
     };
     size_t size;
     unsigned char *bytes = scratch_load(path, &size);
@@ -390,11 +422,9 @@ static void contents_that_are_not_finite_or_negative_are_refused(void **state)
         int index;
         weft_half value;
         const char *cause;
-    } edit[] = {{"RHO ", 3, 1, 0x7e00, "not finite"},
-                {"RHO ", 3, 0, 0xbc00, "negative"},
-                {"VIEW", 0, 1, 0x7fc0, "unit vector"},
-                {"LITE", 0, 3, 0x7fc0, "unit vector"},
-                {"ERRO", 0, 3, 0x7ff8, "NaN"}};
+    } edit[] = {{"RHO ", 3, 1, 0x7e00, "not finite"},    {"RHO ", 3, 0, 0xbc00, "negative"},
+                {"VIEW", 0, 1, 0x7fc0, "unit vector"},   {"LITE", 0, 3, 0x7fc0, "unit vector"},
+                {"MODL", 1, 0, 0x4000, "unknown model"}, {"ERRO", 0, 3, 0x7ff8, "NaN"}};
     for (size_t i = 0; i < sizeof edit / sizeof edit[0]; i++) {
         size_t size;
         unsigned char *bytes = scratch_load(path, &size);
@@ -412,14 +442,15 @@ static void unknown_sections_are_skipped(void **state)
     unsigned char *bytes = scratch_load(path, &size);
     int sections = (int)weft_bytes_u32(bytes + 12);
     size_t table = WEFT_BYTES_HEADER + (size_t)sections * WEFT_BYTES_ENTRY;
-    size_t first = weft_bytes_u64(weft_bytes_entry(bytes, 0) + ENTRY_OFFSET), start = (size + 63) / 64 * 64 + 64;
+    size_t first = weft_bytes_u64(weft_bytes_entry(bytes, 0) + ENTRY_OFFSET);
+    size_t shift = (table + WEFT_BYTES_ENTRY + 63) / 64 * 64 - first, start = (size + 63) / 64 * 64 + shift;
     unsigned char *longer = calloc(1, start + 5);
     assert_non_null(longer);
     memcpy(longer, bytes, table);
-    memcpy(longer + first + 64, bytes + first, size - first);
+    memcpy(longer + first + shift, bytes + first, size - first);
     for (int i = 0; i < sections; i++) {
         unsigned char *entry = weft_bytes_entry(longer, i);
-        weft_bytes_put_u64(entry + ENTRY_OFFSET, weft_bytes_u64(entry + ENTRY_OFFSET) + 64);
+        weft_bytes_put_u64(entry + ENTRY_OFFSET, weft_bytes_u64(entry + ENTRY_OFFSET) + shift);
     }
     unsigned char *added = weft_bytes_entry(longer, sections);
     memcpy(added, "NEW!", 4);
@@ -509,6 +540,7 @@ int main(void)
         cmocka_unit_test(a_material_of_any_shape_reads_back_as_written),
         cmocka_unit_test(levels_halve_rounding_up_to_one_texel),
         cmocka_unit_test(impossible_shapes_are_refused),
+        cmocka_unit_test(models_and_fewer_bits_are_coded_without_loss),
         cmocka_unit_test(metadata_and_errors_of_the_fit_are_kept),
         cmocka_unit_test(an_all_black_material_is_no_bomb),
         cmocka_unit_test(missing_files_and_folders_are_refused),

@@ -75,13 +75,16 @@ static void fill_level(weft_material *material, int k)
         level->table[i] = (uint8_t)(i * 7 + k);
     for (int i = 0; i < material->light_count * 4 * texels; i++)
         level->light_table[i] = (uint8_t)(i * 5 + 3 * k);
+    for (int i = 0; i < texels; i++)
+        level->model[i] = (uint8_t)(i % WEFT_MODEL_CODES);
     level->error = (weft_material_error){0.01 + k, 0.02 + k, 0.03 + k, 0.04 + k, 50.0 + k};
 }
 
 void weft_bytes_write_example(const char *path)
 {
     weft_material material;
-    if (weft_material_create(5, 3, 2, 4, 3, 1, &material, NULL) != WEFT_OK)
+    if (weft_material_create(5, 3, 2, 4, 3, 1, &material, NULL) != WEFT_OK ||
+        weft_material_add_models(&material, NULL) != WEFT_OK)
         abort();
     material.texel_pitch_mm = 0.125;
     for (int i = 0; i < material.view_count; i++)
