@@ -12,9 +12,6 @@
 /* Rays start this far above the surface, in cells of the grid. */
 #define RAY_OFFSET 1e-3
 
-/* Visibility at a vertex is found this far above it, in cells, where the facets round it do not hide grazing lights. */
-#define VERTEX_OFFSET 0.05
-
 /* A path that carries less than this part of the light is over. */
 #define NEGLIGIBLE 1e-4
 
@@ -24,7 +21,8 @@ struct weft_illumination {
     weft_illumination_options options;
     int light_count;
     weft_vec3 *light;
-    uint8_t *lit_vertex; /* [vertex_count][light_count] 1 where the light is seen; NULL when not needed */
+    uint8_t
+        *lit; /* [triangle_count][light_count] 1 where the middle of a triangle sees a light; NULL when not needed */
 };
 
 /* A vertex of a path. */
@@ -40,30 +38,39 @@ static weft_vec3 vertex_vector(const float *from)
     return weft_vec3_of(from[0], from[1], from[2]);
 }
 
-static weft_vec3 above(const weft_tile_mesh *mesh, weft_vec3 at, weft_vec3 normal, weft_real cells)
+static weft_vec3 above(const weft_tile_mesh *mesh, weft_vec3 at, weft_vec3 normal)
 {
-    return weft_add(at, weft_scale(normal, cells * (weft_real)mesh->cell));
+    return weft_add(at, weft_scale(normal, (weft_real)RAY_OFFSET * (weft_real)mesh->cell));
+}
+
+/* Which lights lie on the outer side of a surface. */
+static void mark_lights_above(const weft_illumination *illumination, weft_vec3 normal, uint8_t *above_surface)
+{
+    for (int i = 0; i < illumination->light_count; i++)
+        above_surface[i] = weft_dot(normal, illumination->light[i]) > 0;
+}
+
+/* Which lights are seen from just above a place of the surface. */
+static void find_lights(const weft_illumination *illumination, weft_vec3 at, weft_vec3 normal, uint8_t *lit)
+{
+    uint8_t wanted[WEFT_ILLUMINATION_MAX_LIGHTS];
+    mark_lights_above(illumination, normal, wanted);
+    weft_vec3 from = above(ray_scene_mesh(illumination->scene), at, normal);
+    ray_scene_lit(illumination->scene, from, illumination->light, illumination->light_count, wanted, lit);
 }
 
 static weft_code find_visibility(weft_illumination *illumination, weft_error *error)
 {
     const weft_tile_mesh *mesh = ray_scene_mesh(illumination->scene);
-    size_t lights = (size_t)illumination->light_count, size = lights * (size_t)mesh->vertex_count;
-    uint8_t *wanted = malloc(lights);
-    illumination->lit_vertex = malloc(size);
-    if (!wanted || !illumination->lit_vertex) {
-        free(wanted);
+    size_t lights = (size_t)illumination->light_count, size = lights * (size_t)mesh->triangle_count;
+    illumination->lit = malloc(size);
+    if (!illumination->lit)
         return weft_fail_memory(error, "visibility of the lights", size);
-    }
-    memset(wanted, 1, lights);
 #pragma omp parallel for schedule(dynamic, 64)
-    for (int i = 0; i < mesh->vertex_count; i++) {
-        weft_vec3 from =
-            above(mesh, vertex_vector(mesh->position[i]), vertex_vector(mesh->normal[i]), (weft_real)VERTEX_OFFSET);
-        ray_scene_lit(illumination->scene, from, illumination->light, illumination->light_count, wanted,
-                      illumination->lit_vertex + (size_t)i * lights);
+    for (int i = 0; i < mesh->triangle_count; i++) {
+        ray_hit middle = ray_scene_middle(illumination->scene, i);
+        find_lights(illumination, middle.at, middle.normal, illumination->lit + (size_t)i * lights);
     }
-    free(wanted);
     return WEFT_OK;
 }
 
@@ -113,7 +120,7 @@ void weft_illumination_free(weft_illumination *illumination)
         return;
     ray_scene_free(illumination->scene);
     free(illumination->light);
-    free(illumination->lit_vertex);
+    free(illumination->lit);
     free(illumination);
 }
 
@@ -146,48 +153,30 @@ static bool find_vertex(const weft_illumination *illumination, weft_vec3 from, w
     return true;
 }
 
-static void add_light(const weft_illumination *illumination, const path_vertex *vertex, int light, weft_real visible,
-                      weft_rgb throughput, float radiance[3])
+static void add_light(const weft_illumination *illumination, const path_vertex *vertex, int light, weft_rgb throughput,
+                      float radiance[3])
 {
     weft_vec3 direction = illumination->light[light];
     weft_rgb f = weft_fibre_brdf(&vertex->seen, direction);
-    weft_real arriving = (weft_real)WEFT_PI * visible * weft_dot(vertex->hit.normal, direction);
+    weft_real arriving = (weft_real)WEFT_PI * weft_dot(vertex->hit.normal, direction);
     radiance[0] += (float)(throughput.r * f.r * arriving);
     radiance[1] += (float)(throughput.g * f.g * arriving);
     radiance[2] += (float)(throughput.b * f.b * arriving);
 }
 
-/* Light straight from the lights, by shadow rays. */
-static void add_lights_exactly(const weft_illumination *illumination, const path_vertex *vertex, weft_rgb throughput,
-                               float (*radiance)[3])
+/* Light straight from the lights: by shadow rays, or `roughly`, by what the middle of the triangle sees. */
+static void add_lights(const weft_illumination *illumination, const path_vertex *vertex, weft_rgb throughput,
+                       bool roughly, float (*radiance)[3])
 {
-    uint8_t wanted[WEFT_ILLUMINATION_MAX_LIGHTS], lit[WEFT_ILLUMINATION_MAX_LIGHTS];
-    for (int i = 0; i < illumination->light_count; i++)
-        wanted[i] = weft_dot(vertex->hit.normal, illumination->light[i]) > 0;
-    weft_vec3 from =
-        above(ray_scene_mesh(illumination->scene), vertex->hit.at, vertex->hit.normal, (weft_real)RAY_OFFSET);
-    ray_scene_lit(illumination->scene, from, illumination->light, illumination->light_count, wanted, lit);
+    uint8_t found[WEFT_ILLUMINATION_MAX_LIGHTS];
+    const uint8_t *lit = found;
+    if (roughly)
+        lit = illumination->lit + (size_t)vertex->hit.triangle * (size_t)illumination->light_count;
+    else
+        find_lights(illumination, vertex->hit.at, vertex->hit.normal, found);
     for (int i = 0; i < illumination->light_count; i++)
         if (lit[i])
-            add_light(illumination, vertex, i, 1, throughput, radiance[i]);
-}
-
-/* The same with visibility interpolated between the vertices of the triangle. */
-static void add_lights_by_vertices(const weft_illumination *illumination, const path_vertex *vertex,
-                                   weft_rgb throughput, float (*radiance)[3])
-{
-    const weft_tile_mesh *mesh = ray_scene_mesh(illumination->scene);
-    const uint8_t *lit[3];
-    for (int k = 0; k < 3; k++)
-        lit[k] = illumination->lit_vertex +
-                 (size_t)mesh->triangle[vertex->hit.triangle][k] * (size_t)illumination->light_count;
-    for (int i = 0; i < illumination->light_count; i++) {
-        weft_real visible = 0;
-        for (int k = 0; k < 3; k++)
-            visible += lit[k][i] ? vertex->hit.weight[k] : 0;
-        if (visible > 0 && weft_dot(vertex->hit.normal, illumination->light[i]) > 0)
-            add_light(illumination, vertex, i, visible, throughput, radiance[i]);
-    }
+            add_light(illumination, vertex, i, throughput, radiance[i]);
 }
 
 /* A direction whose density is the cosine to the normal over pi. */
@@ -213,8 +202,7 @@ static bool bounce(const weft_illumination *illumination, path_vertex *vertex, w
     throughput->b *= f.b * (weft_real)WEFT_PI;
     if (!(fmax(throughput->r, fmax(throughput->g, throughput->b)) > NEGLIGIBLE))
         return false;
-    weft_vec3 from =
-        above(ray_scene_mesh(illumination->scene), vertex->hit.at, vertex->hit.normal, (weft_real)RAY_OFFSET);
+    weft_vec3 from = above(ray_scene_mesh(illumination->scene), vertex->hit.at, vertex->hit.normal);
     return find_vertex(illumination, from, direction, vertex);
 }
 
@@ -238,14 +226,11 @@ bool weft_illumination_path(const weft_illumination *illumination, weft_vec3 pla
         *first = (weft_first_hit){vertex.hit.at, weft_unit(interpolate(mesh, &vertex.hit, mesh->normal)),
                                   vertex.tangent, yarn_at(mesh, &vertex.hit)};
     }
-    add_lights_exactly(illumination, &vertex, throughput, radiance);
+    add_lights(illumination, &vertex, throughput, false, radiance);
     for (int i = 0; i < illumination->options.bounces; i++) {
         if (!bounce(illumination, &vertex, &throughput, sequence_key(key, (uint64_t)i), index))
             break;
-        if (illumination->lit_vertex)
-            add_lights_by_vertices(illumination, &vertex, throughput, radiance);
-        else
-            add_lights_exactly(illumination, &vertex, throughput, radiance);
+        add_lights(illumination, &vertex, throughput, illumination->lit != NULL, radiance);
     }
     return true;
 }

@@ -4,9 +4,9 @@
  * A path starts where a view ray first meets the cloth and goes on by directions drawn with the cosine of the normal
  * (Kajiya 1986); at each of its vertices every light is looked for, so that one path serves all lights. The normal of
  * the triangles is used throughout: with that and a symmetric reflectance, light is neither made nor lost, and
- * exchanging light and view changes nothing. After the first vertex, which lights a place sees is interpolated between
- * the vertices of its triangle, where it was found once (visibility computed beforehand, as by Heidrich et al. 2000 and
- * Daubert et al. 2001, section 4), unless `exact` asks for a shadow ray each. */
+ * exchanging light and view changes nothing. After the first vertex, a place sees the lights that the middle of its
+ * triangle sees, which is found once (visibility computed beforehand, as by Heidrich et al. 2000 and Daubert et al.
+ * 2001, section 4), unless `exact` asks for a shadow ray each. */
 #ifndef WEFT_GEOMETRY_ILLUMINATION_H
 #define WEFT_GEOMETRY_ILLUMINATION_H
 

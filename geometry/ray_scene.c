@@ -167,18 +167,19 @@ static weft_vec3 vertex(const weft_tile_mesh *mesh, int triangle, int corner)
     return weft_vec3_of(at[0], at[1], at[2]);
 }
 
-static void describe_hit(const ray_scene *scene, const struct RTCRayHit *found, weft_real travelled, ray_hit *hit)
+static ray_hit describe_hit(const ray_scene *scene, int triangle, weft_real u, weft_real v, weft_real distance)
 {
-    hit->triangle = (int)found->hit.primID;
-    hit->weight[1] = found->hit.u;
-    hit->weight[2] = found->hit.v;
-    hit->weight[0] = 1 - hit->weight[1] - hit->weight[2];
-    weft_vec3 a = vertex(scene->mesh, hit->triangle, 0), b = vertex(scene->mesh, hit->triangle, 1);
-    weft_vec3 c = vertex(scene->mesh, hit->triangle, 2);
-    hit->at =
-        weft_add(weft_scale(a, hit->weight[0]), weft_add(weft_scale(b, hit->weight[1]), weft_scale(c, hit->weight[2])));
-    hit->normal = weft_unit(weft_cross(weft_subtract(b, a), weft_subtract(c, a)));
-    hit->distance = travelled + found->ray.tfar;
+    weft_vec3 a = vertex(scene->mesh, triangle, 0), b = vertex(scene->mesh, triangle, 1);
+    weft_vec3 c = vertex(scene->mesh, triangle, 2);
+    ray_hit hit = {.triangle = triangle, .weight = {1 - u - v, u, v}, .distance = distance};
+    hit.at = weft_add(weft_scale(a, hit.weight[0]), weft_add(weft_scale(b, u), weft_scale(c, v)));
+    hit.normal = weft_unit(weft_cross(weft_subtract(b, a), weft_subtract(c, a)));
+    return hit;
+}
+
+ray_hit ray_scene_middle(const ray_scene *scene, int triangle)
+{
+    return describe_hit(scene, triangle, (weft_real)1 / 3, (weft_real)1 / 3, 0);
 }
 
 bool ray_scene_trace(const ray_scene *scene, weft_vec3 origin, weft_vec3 direction, ray_hit *hit)
@@ -193,7 +194,7 @@ bool ray_scene_trace(const ray_scene *scene, weft_vec3 origin, weft_vec3 directi
         rtcInitIntersectContext(&context);
         rtcIntersect1(scene->block, &context, &found);
         if (found.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
-            describe_hit(scene, &found, travelled, hit);
+            *hit = describe_hit(scene, (int)found.hit.primID, found.hit.u, found.hit.v, travelled + found.ray.tfar);
             return true;
         }
         if (leaves)
@@ -243,7 +244,6 @@ static void trace_packet(const ray_scene *scene, shadow_packet *packet, weft_vec
 {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     for (int i = packet->count; i < PACKET; i++)
         packet->valid[i] = 0;
     rtcOccluded16(packet->valid, scene->block, &context, &packet->ray);
@@ -260,9 +260,8 @@ static void trace_packet(const ray_scene *scene, shadow_packet *packet, weft_vec
 void ray_scene_lit(const ray_scene *scene, weft_vec3 place, const weft_vec3 *light, int light_count,
                    const uint8_t *wanted, uint8_t *lit)
 {
-    _Alignas(64) shadow_packet packet;
+    _Alignas(64) shadow_packet packet = {0};
     weft_vec3 origin = wrap_place(scene, place);
-    packet.count = 0;
     for (int i = 0; i < light_count; i++) {
         lit[i] = 0;
         if (!wanted[i])

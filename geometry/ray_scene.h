@@ -29,6 +29,9 @@ const weft_tile_mesh *ray_scene_mesh(const ray_scene *scene);
  * its normal then points along the ray. Thread-safe. */
 bool ray_scene_trace(const ray_scene *scene, weft_vec3 origin, weft_vec3 direction, ray_hit *hit);
 
+/* The middle of a triangle, as if a ray had met it there (distance 0). */
+ray_hit ray_scene_middle(const ray_scene *scene, int triangle);
+
 /* lit[i] = 1 where the ray from `origin` toward light[i] leaves the cloth, for i with wanted[i] != 0; else 0. Shadow
  * rays travel in packets. Thread-safe. */
 void ray_scene_lit(const ray_scene *scene, weft_vec3 origin, const weft_vec3 *light, int light_count,
