@@ -217,7 +217,7 @@ static size_t block_texels(const weft_dataset_layout *layout, int side_level)
 static uint64_t packed_bytes(const weft_material *material)
 {
     return sizeof(int16_t) * 3 + sizeof(weft_half) * 4 * (1 + 3 * (uint64_t)material->lobe_count) +
-           4 * (uint64_t)material->view_count;
+           4 * ((uint64_t)material->view_count + (uint64_t)material->light_count) + material->has_models;
 }
 
 static long all_texels(const weft_material *material)
