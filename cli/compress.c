@@ -16,12 +16,23 @@ typedef struct compress_command {
     weft_compress_options options;
 } compress_command;
 
-enum { KEY_LOBES = 0x2000, KEY_TABLE, KEY_LEVELS, KEY_FRAMES, KEY_MAX_EXPONENT, KEY_ERROR, KEY_MEMORY };
+enum {
+    KEY_LOBES = 0x2000,
+    KEY_TABLE,
+    KEY_LIGHT_TABLE,
+    KEY_LEVELS,
+    KEY_FRAMES,
+    KEY_MAX_EXPONENT,
+    KEY_ERROR,
+    KEY_MEMORY
+};
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "NAME.weft", 0, "The material to write", 0},
     {"lobes", KEY_LOBES, "0..3", 0, "Lafortune lobes a texel and channel, at most (default: 2)", 0},
     {"table", KEY_TABLE, "on|off", 0, "View table T, where the samples can carry it (default: on)", 0},
+    {"light-table", KEY_LIGHT_TABLE, "on|off", 0,
+     "Light table S beside T, as large and several times the time; where lights repeat (default: off)", 0},
     {"levels", KEY_LEVELS, "on|off", 0, "Mip levels (default: on)", 0},
     {"frames", KEY_FRAMES, "on|off", 0,
      "Turn the frame of each texel where that helps; off: the frame of the surface everywhere, faster (default: on)",
@@ -52,6 +63,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_TABLE:
         options->table = parse_switch("table", argument, state);
+        return 0;
+    case KEY_LIGHT_TABLE:
+        options->light_table = parse_switch("light-table", argument, state);
         return 0;
     case KEY_LEVELS:
         options->levels = parse_switch("levels", argument, state);
@@ -105,8 +119,8 @@ static void say_model(const compress_command *command, const weft_dataset_layout
 {
     const common_options *common = &command->common;
     const char *table = report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "";
-    command_say(common, "%d x %d texels, %d images, %d lobes%s", layout->width, layout->height, layout->image_count,
-                report->lobe_count, table);
+    command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height, layout->image_count,
+                report->lobe_count, table, report->light_count > 0 ? " and a light table" : "");
     if (report->model == WEFT_COMPRESS_SPARSE)
         command_say(common,
                     "%d images cannot carry lobes in every texel: exponents and normals are shared with the "

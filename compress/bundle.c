@@ -144,27 +144,69 @@ static bool same_light(weft_vec3 a, weft_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Labels by image; where fewer than four images share a light on average there is nothing to learn about one. */
+/* A light that few images have, because a rig moved it aside for them, takes the label of the nearest common one. Fills
+ * merged [labels]; `distinct` then holds the common lights alone. Returns their number. */
+static int merge_rare_lights(weft_vec3 *distinct, const int *uses, int labels, int *merged)
+{
+    int most = 0, common = 0;
+    for (int i = 0; i < labels; i++)
+        most = uses[i] > most ? uses[i] : most;
+    for (int i = 0; i < labels; i++)
+        merged[i] = 4 * uses[i] >= most ? common++ : -1;
+    for (int i = 0; i < labels; i++) {
+        double nearest = -2;
+        for (int j = 0, label = 0; merged[i] < 0 && j < labels; j++) {
+            if (4 * uses[j] < most)
+                continue;
+            double cosine = weft_dot(distinct[i], distinct[j]);
+            if (cosine > nearest) {
+                nearest = cosine;
+                merged[i] = -2 - label;
+            }
+            label++;
+        }
+    }
+    for (int i = 0, label = 0; i < labels; i++) {
+        if (merged[i] >= 0)
+            distinct[label++] = distinct[i];
+        else
+            merged[i] = -2 - merged[i];
+    }
+    return common;
+}
+
+/* Labels by image, from entries sorted by light; returns the number of distinct lights. */
+static int label_images(const entry *entries, int count, weft_vec3 *distinct, int *uses, int *label)
+{
+    int labels = 0;
+    for (int i = 0; i < count; i++) {
+        if (labels == 0 || !same_light(entries[i].light, distinct[labels - 1]))
+            distinct[labels++] = entries[i].light;
+        label[entries[i].image] = labels - 1;
+        uses[labels - 1]++;
+    }
+    return labels;
+}
+
+/* Where fewer than four images share a light on average there is nothing to learn about one. */
 static weft_code label_lights(weft_bundle *bundle, const weft_dataset_layout *layout, entry *entries, weft_error *error)
 {
     if (layout->distance == WEFT_NEAR || bundle->image_count == 0)
         return WEFT_OK;
-    int *label = calloc((size_t)layout->image_count, sizeof *label), labels = 0;
-    bundle->distinct = calloc((size_t)bundle->image_count, sizeof *bundle->distinct);
+    size_t images = (size_t)layout->image_count;
+    int *label = calloc(3 * images, sizeof *label), *uses = label + images, *merged = uses + images;
+    bundle->distinct = calloc(images, sizeof *bundle->distinct);
     bundle->light_of = calloc((size_t)bundle->sample_count, sizeof *bundle->light_of);
     if (!label || !bundle->distinct || !bundle->light_of) {
         free(label);
-        return weft_fail_memory(error, "labels of lights", (size_t)layout->image_count * sizeof *label);
+        return weft_fail_memory(error, "labels of lights", 3 * images * sizeof *label);
     }
     qsort(entries, (size_t)bundle->image_count, sizeof *entries, compare_entry_lights);
-    for (int i = 0; i < bundle->image_count; i++) {
-        if (labels == 0 || !same_light(entries[i].light, bundle->distinct[labels - 1]))
-            bundle->distinct[labels++] = entries[i].light;
-        label[entries[i].image] = labels - 1;
-    }
+    int labels = label_images(entries, bundle->image_count, bundle->distinct, uses, label);
+    int common = merge_rare_lights(bundle->distinct, uses, labels, merged);
     for (int i = 0; i < bundle->sample_count; i++)
-        bundle->light_of[i] = bundle->image[i] < 0 ? 0 : label[bundle->image[i]];
-    bundle->light_count = 4 * labels <= bundle->image_count ? labels : 0;
+        bundle->light_of[i] = bundle->image[i] < 0 ? 0 : merged[label[bundle->image[i]]];
+    bundle->light_count = 4 * common <= bundle->image_count ? common : 0;
     free(label);
     return WEFT_OK;
 }

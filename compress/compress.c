@@ -69,16 +69,38 @@ static void plan(const weft_dataset_layout *layout, const weft_compress_options 
     }
 }
 
+/* The directions of S: those that the bundle of the fit labels. */
+static weft_code find_lights(const weft_dataset_layout *layout, const weft_compress_options *options,
+                             const weft_compress_report *report, weft_bundle *bundle, weft_error *error)
+{
+    *bundle = (weft_bundle){0};
+    if (!options->light_table || report->model == WEFT_COMPRESS_SPARSE)
+        return WEFT_OK;
+    WEFT_TRY(weft_bundle_create(layout, options->held_out, bundle, error));
+    int parameters = 1 + 4 * report->lobe_count + bundle->light_count +
+                     (report->model == WEFT_COMPRESS_TABLE ? layout->view_count : 0);
+    if (bundle->image_count < SAMPLES_PER_PARAMETER * parameters || bundle->light_count > WEFT_MATERIAL_MAX_VIEWS)
+        bundle->light_count = 0;
+    return WEFT_OK;
+}
+
 static weft_code create_material(const weft_dataset_layout *layout, const weft_compress_options *options,
                                  const weft_compress_report *report, weft_material *material, weft_error *error)
 {
     int views = report->model == WEFT_COMPRESS_TABLE ? layout->view_count : 0;
-    WEFT_TRY(weft_material_create(layout->width, layout->height, report->lobe_count, views, 0, options->levels,
-                                  material, error));
-    material->texel_pitch_mm = layout->texel_pitch_mm;
-    for (int view = 0; view < views; view++)
-        material->view[view] = weft_unit(layout->view[view]);
-    return WEFT_OK;
+    weft_bundle bundle;
+    WEFT_TRY(find_lights(layout, options, report, &bundle, error));
+    weft_code code = weft_material_create(layout->width, layout->height, report->lobe_count, views, bundle.light_count,
+                                          options->levels, material, error);
+    if (code == WEFT_OK) {
+        material->texel_pitch_mm = layout->texel_pitch_mm;
+        for (int view = 0; view < views; view++)
+            material->view[view] = weft_unit(layout->view[view]);
+        for (int light = 0; light < bundle.light_count; light++)
+            material->light[light] = weft_unit(bundle.distinct[light]);
+    }
+    weft_bundle_free(&bundle);
+    return code;
 }
 
 /* ---- Opacity ---- */
@@ -199,9 +221,9 @@ static weft_code identify(const weft_dataset *dataset, const weft_compress_optio
              fingerprint->samples, (long long)status.st_size, (long long)status.st_mtim.tv_sec,
              (long)status.st_mtim.tv_nsec);
     snprintf(text->options, sizeof text->options,
-             "%s, %d lobes, frames %d, N <= %.17g, error <= %.17g, levels %d, held out %08lx",
-             model_name[report->model], report->lobe_count, options->frames, options->max_exponent,
-             options->target_error, options->levels, held_out);
+             "%s, %d lobes, lights %d, frames %d, N <= %.17g, error <= %.17g, levels %d, held out %08lx",
+             model_name[report->model], report->lobe_count, options->light_table, options->frames,
+             options->max_exponent, options->target_error, options->levels, held_out);
     return WEFT_OK;
 }
 
@@ -232,6 +254,7 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
     weft_texel_source source = {.layout = weft_dataset_get_layout(of->dataset),
                                 .held_out = options->held_out,
                                 .options = weft_fit_default_options(),
+                                .light_table = material->light_count > 0,
                                 .fit_frames = options->frames,
                                 .target_error = options->target_error};
     source.options.lobe_count = report->lobe_count;
@@ -241,6 +264,7 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
     /* What is free is given back to the system, so that writing the material has room. */
     malloc_trim(0);
     of->counts = result.counts;
+    report->light_count = material->light_count;
     report->masked_count = result.masked;
     report->block_count = (long)result.block_count;
     report->resumed_block_count = (long)result.resumed_block_count;

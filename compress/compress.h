@@ -12,6 +12,7 @@
 typedef struct weft_compress_options {
     int lobe_count;          /* at most; 0..3 */
     bool table;              /* T(v), where the samples can carry it */
+    bool light_table;        /* S(l) beside T, where lights repeat and the samples can carry it */
     bool levels;             /* mip levels, each fitted to the mean samples of its groups of texels */
     bool frames;             /* fit normal and tangent of every texel too; else all have the frame of the surface */
     double max_exponent;     /* N <= this */
@@ -36,6 +37,7 @@ typedef enum weft_compress_model {
 typedef struct weft_compress_report {
     weft_compress_model model;
     int lobe_count;          /* of the material */
+    int light_count;         /* directions of S; 0 without */
     long sample_count;       /* of level 0: texels times images that were not held out */
     long masked_count;       /* of these, not used: masked, not finite, or light below the horizon */
     long texel_count;        /* of all levels */

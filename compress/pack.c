@@ -82,12 +82,6 @@ static double choose_scale(const weft_fit *fit, double sample_scale, double larg
     return growth < 2 ? largest_t * growth : largest_t;
 }
 
-static uint8_t code_of_table(double t)
-{
-    double code = 255 * sqrt(fmax(t, 0)) + 0.5;
-    return code < 255 ? (uint8_t)code : 255;
-}
-
 /* The T that becomes code 255. Nearly always the largest; but one view in which the model almost vanishes must not cost
  * the others their resolution, so that smaller ones are tried and judged by the squared error they leave. */
 static double largest_table(const weft_bundle *bundle, const double *table, const double *energy)
@@ -98,7 +92,7 @@ static double largest_table(const weft_bundle *bundle, const double *table, cons
     for (int halvings = 0; halvings < 6 && largest > 0; halvings++) {
         double candidate = ldexp(largest, -halvings), loss = 0;
         for (int view = 0; view < bundle->view_count; view++) {
-            double t = weft_table_of_code(code_of_table(table[view] / candidate)) * candidate;
+            double t = weft_table_of_code(weft_code_of_table(table[view] / candidate)) * candidate;
             loss += energy[view] * (t - table[view]) * (t - table[view]);
         }
         if (loss < least) {
@@ -150,7 +144,7 @@ static void code_table(const weft_bundle *bundle, const weft_trial *trial, const
 {
     weft_trial_table(bundle, trial, rounded, decoded);
     for (int view = 0; view < bundle->view_count; view++) {
-        code[view] = code_of_table(decoded[view]);
+        code[view] = weft_code_of_table(decoded[view]);
         decoded[view] = weft_table_of_code(code[view]);
     }
 }

@@ -4,6 +4,8 @@
 
 #include "compress/fit.h"
 
+#include <math.h>
+
 /* One channel of one texel. */
 typedef struct weft_packed {
     weft_half diffuse;
@@ -34,6 +36,13 @@ void weft_pack_rounded(const weft_fit *fit, double scale, weft_packed *packed);
 /* The reader's view of it: lobes in scaled units (divided by samples->scale), c with its largest component +-1. Pure.
  */
 weft_fit weft_unpack(const weft_packed *packed, int lobe_count, const weft_frame *frame, double scale);
+
+/* The nearest code of T or S. */
+static inline uint8_t weft_code_of_table(double t)
+{
+    double code = 255 * sqrt(fmax(t, 0)) + 0.5;
+    return code < 255 ? (uint8_t)code : 255;
+}
 
 /* (code / 255)^2. */
 static inline double weft_table_of_code(uint8_t code)

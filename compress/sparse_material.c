@@ -70,7 +70,7 @@ static void store_texel(const weft_sparse_field *field, const weft_sparse_texel 
         weft_fit fit = fit_of_texel(from, material->lobe_count, channel);
         weft_packed packed;
         weft_pack_rounded(&fit, 1, &packed);
-        weft_texel_store(material, level, x, y, channel, &packed, NULL);
+        weft_texel_store(material, level, x, y, channel, &packed, NULL, NULL);
         fit = weft_unpack(&packed, material->lobe_count, &frame, 1);
         measure_texel(field, texel, channel, &fit, tally, &counts->sums);
     }

@@ -1,6 +1,7 @@
 #include "compress/texel.h"
 
 #include "compress/kernels.h"
+#include "compress/light.h"
 #include "compress/model_ladder.h"
 #include "compress/pack.h"
 
@@ -33,9 +34,27 @@ struct weft_texel_fitter {
     int16_t frame[3];                  /* its code */
     uint8_t *code;                     /* [channel][view_count] its T */
     float *decoded;                    /* T of one channel as it will be read */
+    int light_count;                   /* of S; 0 without */
+    double *light, *decoded_light;     /* S of one channel, and as it will be read */
+    uint8_t *light_code;               /* [channel][light_count] */
+    float *cosine;                     /* with S */
     const weft_fit_kernels *kernels;
     weft_error_tally *tally;
 };
+
+static weft_code create_light(weft_texel_fitter *fitter, weft_error *error)
+{
+    size_t lights = (size_t)fitter->bundle.light_count;
+    size_t bytes = ((size_t)fitter->bundle.sample_count + WEFT_STRIP_LANES) * sizeof *fitter->cosine;
+    fitter->light_count = fitter->bundle.light_count;
+    fitter->light = calloc(2 * lights + 1, sizeof *fitter->light);
+    fitter->light_code = calloc(WEFT_CHANNELS * lights + 1, 1);
+    fitter->cosine = aligned_alloc(64, bytes);
+    if (!fitter->light || !fitter->light_code || !fitter->cosine)
+        return weft_fail_memory(error, "light table of a texel", bytes);
+    fitter->decoded_light = fitter->light + lights;
+    return WEFT_OK;
+}
 
 weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_fitter **result, weft_error *error)
 {
@@ -60,6 +79,8 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
         if (!fitter->upright.table || !fitter->code || !fitter->decoded)
             code = weft_fail_memory(error, "view tables of a texel", 3 * views * sizeof *fitter->table);
     }
+    if (code == WEFT_OK && source->light_table)
+        code = create_light(fitter, error);
     if (code != WEFT_OK) {
         weft_texel_fitter_free(fitter);
         return code;
@@ -81,6 +102,9 @@ void weft_texel_fitter_free(weft_texel_fitter *fitter)
     free(fitter->upright.table);
     free(fitter->code);
     free(fitter->decoded);
+    free(fitter->light);
+    free(fitter->light_code);
+    free(fitter->cosine);
     free(fitter);
 }
 
@@ -129,7 +153,7 @@ static const grey_fit *choose_frame(weft_texel_fitter *fitter, const weft_fit_op
 /* ---- Storing and measuring ---- */
 
 void weft_texel_store(weft_material *material, int level, int x, int y, int channel, const weft_packed *packed,
-                      const uint8_t *code)
+                      const uint8_t *code, const uint8_t *light_code)
 {
     weft_material_level *to = &material->level[level];
     size_t texels = (size_t)to->width * (size_t)to->height, texel = (size_t)y * (size_t)to->width + (size_t)x;
@@ -140,6 +164,8 @@ void weft_texel_store(weft_material *material, int level, int x, int y, int chan
     }
     for (int view = 0; code && view < material->view_count; view++)
         to->table[((size_t)view * texels + texel) * 4 + (size_t)channel] = code[view];
+    for (int light = 0; light_code && light < material->light_count; light++)
+        to->light_table[((size_t)light * texels + texel) * 4 + (size_t)channel] = light_code[light];
 }
 
 /* In a level of many texels this share of them is enough for percentiles. */
@@ -165,6 +191,17 @@ static void tally_channel(weft_texel_fitter *fitter, int channel, const float *m
     }
 }
 
+/* The samples of a channel with S as it will be read on their cosines. */
+static weft_samples samples_as_lit(weft_texel_fitter *fitter, int channel)
+{
+    if (fitter->light_count == 0)
+        return fitter->samples;
+    const uint8_t *code = fitter->light_code + (size_t)channel * (size_t)fitter->light_count;
+    for (int l = 0; l < fitter->light_count; l++)
+        fitter->decoded_light[l] = weft_table_of_code(code[l]);
+    return weft_light_apply(&fitter->bundle, &fitter->samples, fitter->decoded_light, fitter->cosine);
+}
+
 /* The last model as it will be read, against the samples. */
 static weft_error_sums measure_model(weft_texel_fitter *fitter, bool tallied)
 {
@@ -172,7 +209,8 @@ static weft_error_sums measure_model(weft_texel_fitter *fitter, bool tallied)
     weft_error_sums sums = {0};
     for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
         const uint8_t *code = fitter->code + (size_t)channel * (size_t)bundle->view_count;
-        const float *model = weft_fit_evaluate(bundle, &fitter->samples, fitter->workspace, &fitter->as_read[channel]);
+        weft_samples lit = samples_as_lit(fitter, channel);
+        const float *model = weft_fit_evaluate(bundle, &lit, fitter->workspace, &fitter->as_read[channel]);
         for (int view = 0; view < bundle->view_count; view++)
             fitter->decoded[view] = (float)weft_table_of_code(code[view]);
         fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, &sums);
@@ -188,13 +226,35 @@ static void store_model(const weft_texel_fitter *fitter, weft_material *material
     memcpy(material->level[level].frame + 3 * texel, fitter->frame, sizeof fitter->frame);
     for (int channel = 0; channel < WEFT_CHANNELS; channel++)
         weft_texel_store(material, level, x, y, channel, &fitter->packed[channel],
-                         fitter->code + (size_t)channel * (size_t)fitter->bundle.view_count);
+                         fitter->code + (size_t)channel * (size_t)fitter->bundle.view_count,
+                         fitter->light_count ? fitter->light_code + channel * fitter->light_count : NULL);
 }
 
 /* ---- One model ---- */
 
-static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, const grey_fit *start,
-                        const weft_frame *frame)
+/* S goes on from that of the channel before. Its largest value becomes 1: what it is divided by goes into rho and the
+ * amplitudes when the fit is refined once more for S as it will be read. */
+static void refine_with_light(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, weft_fit *fit)
+{
+    const weft_bundle *bundle = &fitter->bundle;
+    uint8_t *code = fitter->light_code + (size_t)channel * (size_t)fitter->light_count;
+    weft_fit_options once = *options;
+    double largest = 0;
+    for (int l = 0; channel == 0 && l < fitter->light_count; l++)
+        fitter->light[l] = 1;
+    weft_light_refine(bundle, &fitter->samples, channel, options, fitter->workspace, fitter->cosine, fit, fitter->table,
+                      fitter->light);
+    for (int l = 0; l < fitter->light_count; l++)
+        largest = fmax(largest, fitter->light[l]);
+    for (int l = 0; l < fitter->light_count; l++)
+        code[l] = weft_code_of_table(largest > 0 ? fitter->light[l] / largest : 1);
+    weft_samples lit = samples_as_lit(fitter, channel);
+    once.max_passes = 1;
+    weft_fit_refine(bundle, &lit, channel, &once, fitter->workspace, fit, fitter->table);
+}
+
+static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, int channel,
+                        const grey_fit *start, const weft_frame *frame)
 {
     size_t views = (size_t)fitter->bundle.view_count;
     uint8_t *code = fitter->code + (size_t)channel * views;
@@ -202,14 +262,20 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
     fit.frame = *frame;
     memcpy(fitter->table, start->table, views * sizeof *fitter->table);
     memset(code, 255, views);
-    weft_fit_refine(&fitter->bundle, &fitter->samples, channel, options, fitter->workspace, &fit, fitter->table);
-    weft_pack_channel(&fitter->bundle, &fitter->samples, channel, options, fitter->workspace, &fit, fitter->table,
+    if (fitter->light_count > 0)
+        memset(fitter->light_code + (size_t)channel * (size_t)fitter->light_count, 255, (size_t)fitter->light_count);
+    if (light)
+        refine_with_light(fitter, options, channel, &fit);
+    else
+        weft_fit_refine(&fitter->bundle, &fitter->samples, channel, options, fitter->workspace, &fit, fitter->table);
+    weft_samples lit = samples_as_lit(fitter, channel);
+    weft_pack_channel(&fitter->bundle, &lit, channel, options, fitter->workspace, &fit, fitter->table,
                       &fitter->packed[channel], code);
     fitter->as_read[channel] = weft_unpack(&fitter->packed[channel], options->lobe_count, frame, fitter->samples.scale);
 }
 
-/* Fits and packs one model; `fitter` holds the result. */
-static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options)
+/* Fits and packs one model, with S or without; `fitter` holds the result. */
+static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light)
 {
     weft_fit_options coarse = *options;
     coarse.coarse = true;
@@ -217,7 +283,7 @@ static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options
     const grey_fit *start = choose_frame(fitter, &coarse);
     weft_frame frame = weft_pack_frame(&start->fit.frame, fitter->frame);
     for (int channel = 0; channel < WEFT_CHANNELS; channel++)
-        fit_channel(fitter, options, channel, start, &frame);
+        fit_channel(fitter, options, light, channel, start, &frame);
 }
 
 /* ---- The model that suffices ---- */
@@ -240,7 +306,7 @@ static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whol
         weft_fit_options options = *whole;
         options.lobe_count = ladder.model[rung].lobe_count;
         options.table = ladder.model[rung].table;
-        fit_model(fitter, &options);
+        fit_model(fitter, &options, fitter->light_count > 0 && rung == ladder.count - 1);
         weft_error_sums sums = measure_model(fitter, false);
         if (sums.square_error <= target * target * sums.square)
             return true;
@@ -263,7 +329,7 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
     if (fitter->source->target_error > 0)
         counts->missed += !fit_smallest(fitter, &whole);
     else
-        fit_model(fitter, &whole);
+        fit_model(fitter, &whole, fitter->light_count > 0);
     weft_error_sums sums = measure_model(fitter, is_tallied(&material->level[level], x, y));
     weft_error_sums_add(&counts->sums, &sums);
     store_model(fitter, material, level, x, y);

@@ -15,7 +15,8 @@ typedef struct weft_texel_source {
     const weft_dataset_layout *layout;
     const uint8_t *held_out;
     weft_fit_options options;
-    bool fit_frames; /* turn the frame of a texel where that helps; else all have that of the surface */
+    bool light_table; /* fit S(l), where lights have labels */
+    bool fit_frames;  /* turn the frame of a texel where that helps; else all have that of the surface */
     /* Each texel has the smallest model (compress/model_ladder.h) whose RMSE over the rms of its samples is at most
      * this; the whole of `options` where none is. 0: the whole everywhere. */
     double target_error;
@@ -44,8 +45,8 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
  * border. Its extent goes to x0..y1. Pure. */
 int weft_texel_group(const weft_dataset_layout *layout, int level, int x, int y, int extent[4]);
 
-/* Stores one packed channel. `code` [view_count] or NULL. */
+/* Stores one packed channel: T `code` [view_count] and S `light_code` [light_count], NULL where there is none. */
 void weft_texel_store(weft_material *material, int level, int x, int y, int channel, const weft_packed *packed,
-                      const uint8_t *code);
+                      const uint8_t *code, const uint8_t *light_code);
 
 #endif
