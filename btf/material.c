@@ -133,32 +133,3 @@ void weft_material_free(weft_material *material)
     free(material->metadata);
     *material = (weft_material){0};
 }
-
-/* ---- Codes ---- */
-
-static const int bits_of_code[4] = {0, 4, 6, 8};
-
-static unsigned code_of_bits(int bits)
-{
-    unsigned code = 0;
-    while (code < 3 && bits_of_code[code] < bits)
-        code++;
-    return code;
-}
-
-uint8_t weft_model_encode(weft_model_parts parts)
-{
-    unsigned table = code_of_bits(parts.table_bits), light_table = code_of_bits(parts.light_table_bits);
-    return (uint8_t)((unsigned)parts.lobe_count | table << 2 | light_table << 4);
-}
-
-weft_model_parts weft_model_decode(uint8_t code)
-{
-    return (weft_model_parts){code & 3, bits_of_code[code >> 2 & 3], bits_of_code[code >> 4 & 3]};
-}
-
-uint8_t weft_table_code_rounded(uint8_t code, int bits)
-{
-    int steps = (1 << bits) - 1, step = (code * steps * 2 + 255) / 510;
-    return (uint8_t)((step * 255 * 2 + steps) / (2 * steps));
-}

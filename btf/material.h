@@ -41,7 +41,7 @@ typedef struct weft_material_level {
                        NULL where the material has no table (T = 1) */
     uint8_t *light_table; /* [light_count][height][width][4]: r, g, b coded alike, S = (code/255)^2; 255 unused.
                              NULL where the material has none (S = 1) */
-    uint8_t *model; /* [height][width]: which model each texel has, see weft_model_code; NULL where all have the same */
+    uint8_t *model;       /* [height][width]: its model, see btf/material_models.h; NULL where all have the same */
     weft_material_error error;
 } weft_material_level;
 
@@ -80,20 +80,6 @@ weft_code weft_material_size(const weft_material *material, uint64_t *size, weft
 weft_code weft_material_read(const char *path, weft_material *material, weft_error *error);
 
 /* ---- Codes of single values. Pure. ---- */
-
-/* The model of a texel: what it has of lobes, T and S. What it does not have is stored as what changes nothing. */
-typedef struct weft_model_parts {
-    int lobe_count;
-    int table_bits;       /* of T, per entry: 0 (T = 1), 4, 6 or 8 */
-    int light_table_bits; /* of S, alike */
-} weft_model_parts;
-
-enum { WEFT_MODEL_CODES = 64 };
-uint8_t weft_model_encode(weft_model_parts parts);
-weft_model_parts weft_model_decode(uint8_t code);
-
-/* The nearest code of a table entry among 2^bits evenly spaced ones. */
-uint8_t weft_table_code_rounded(uint8_t code, int bits);
 
 typedef struct weft_frame {
     weft_vec3 normal, tangent, bitangent; /* orthonormal, right-handed: bitangent = normal x tangent */

@@ -1,5 +1,7 @@
 #include "btf/material_format.h"
 
+#include "btf/material_models.h"
+
 #include <string.h>
 
 const unsigned char weft_format_magic[8] = {0x89, 'W', 'E', 'F', 'T', '\r', '\n', 0x1a};

@@ -1,7 +1,7 @@
 #include "study/inspect.h"
 
 #include "btf/dataset.h"
-#include "btf/material.h"
+#include "btf/material_models.h"
 #include "btf/session.h"
 #include "reflectance/weave.h"
 #include "study/file_kind.h"
@@ -44,20 +44,36 @@ static json_t *parsed(const char *text)
 
 /* ---- Material ---- */
 
-static json_t *describe_level(const weft_material_level *level)
+/* Texels of a level with each model, by its name; NULL without a map. */
+static json_t *describe_models(const weft_material *material, int k)
 {
+    long count[WEFT_MODEL_CODES];
+    json_t *models = material->has_models ? json_object() : NULL;
+    weft_material_count_models(material, k, count);
+    for (int code = 0; code < WEFT_MODEL_CODES; code++) {
+        char name[WEFT_MODEL_NAME];
+        weft_model_print(weft_model_decode((uint8_t)code), name);
+        if (count[code] > 0)
+            json_object_set_new(models, name, json_integer((json_int_t)count[code]));
+    }
+    return models;
+}
+
+static json_t *describe_level(const weft_material *material, int k)
+{
+    const weft_material_level *level = &material->level[k];
     const weft_material_error *e = &level->error;
-    return json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f}", "texels", level->width, level->height,
+    return json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f, s:o*}", "texels", level->width, level->height,
                      "median_relative_error", e->median_relative, "percentile80_relative_error",
                      e->percentile80_relative, "rmse", e->rmse, "relative_rmse", e->relative_rmse, "psnr_db",
-                     isfinite(e->psnr_db) ? e->psnr_db : 0);
+                     isfinite(e->psnr_db) ? e->psnr_db : 0, "texels_by_model", describe_models(material, k));
 }
 
 static json_t *describe_material(const char *path, const weft_material *material)
 {
     json_t *levels = json_array();
     for (int i = 0; i < material->level_count; i++)
-        json_array_append_new(levels, describe_level(&material->level[i]));
+        json_array_append_new(levels, describe_level(material, i));
     return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
                      file_size(path), "texels", material->level[0].width, material->level[0].height, "lobes",
                      material->lobe_count, "views_in_table", material->view_count, "lights_in_table",

@@ -1,4 +1,4 @@
-#include "btf/material.h"
+#include "btf/material_models.h"
 #include "tests/btf/cmocka_all.h"
 #include "tests/btf/scratch_folder.h"
 #include "tests/btf/weft_bytes.h"
@@ -150,6 +150,41 @@ static void models_and_fewer_bits_are_coded_without_loss(void **state)
         assert_int_equal(distinct, steps + 1);
         assert_int_equal(weft_table_code_rounded(255, bits), 255);
     }
+}
+
+static void put_table_codes(uint8_t *table, size_t texel, size_t texels, int count, int bits)
+{
+    for (int i = 0; i < count; i++) {
+        for (size_t c = 0; c < 3; c++)
+            table[4 * ((size_t)i * texels + texel) + c] = weft_table_code_rounded((uint8_t)(17 * i + 3), bits);
+    }
+}
+
+static void models_are_found_from_what_is_stored(void **state)
+{
+    (void)state;
+    static const weft_model_parts parts[6] = {{0, 0, 0}, {1, 0, 0}, {2, 4, 0}, {0, 6, 4}, {2, 8, 8}, {0, 0, 6}};
+    weft_material material;
+    long count[WEFT_MODEL_CODES];
+    assert_int_equal(weft_material_create(3, 2, 2, 5, 7, 0, &material, NULL), WEFT_OK);
+    weft_material_level *level = &material.level[0];
+    memset(level->table, 255, 4 * 6 * 5);
+    memset(level->light_table, 255, 4 * 6 * 7);
+    for (size_t texel = 0; texel < 6; texel++) {
+        for (size_t lobe = 0; lobe < (size_t)parts[texel].lobe_count; lobe++)
+            level->lobe[4 * ((3 * lobe + texel % 3) * 6 + texel) + 1] = weft_half_of_float(-0.5f);
+        if (parts[texel].table_bits > 0)
+            put_table_codes(level->table, texel, 6, 5, parts[texel].table_bits);
+        if (parts[texel].light_table_bits > 0)
+            put_table_codes(level->light_table, texel, 6, 7, parts[texel].light_table_bits);
+    }
+    assert_int_equal(weft_material_find_models(&material, NULL), WEFT_OK);
+    weft_material_count_models(&material, 0, count);
+    for (int texel = 0; texel < 6; texel++) {
+        assert_int_equal(level->model[texel], weft_model_encode(parts[texel]));
+        assert_int_equal(count[level->model[texel]], 1);
+    }
+    weft_material_free(&material);
 }
 
 static void impossible_shapes_are_refused(void **state)
@@ -539,6 +574,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_material_of_any_shape_reads_back_as_written),
         cmocka_unit_test(levels_halve_rounding_up_to_one_texel),
+        cmocka_unit_test(models_are_found_from_what_is_stored),
         cmocka_unit_test(impossible_shapes_are_refused),
         cmocka_unit_test(models_and_fewer_bits_are_coded_without_loss),
         cmocka_unit_test(metadata_and_errors_of_the_fit_are_kept),

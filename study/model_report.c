@@ -1,0 +1,153 @@
+#include "study/model_report.h"
+
+#include "btf/material_models.h"
+#include "player/font.h"
+#include "player/mip_layout.h"
+#include "study/page.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { WANTED_SIDE = 512, LEGEND_WIDTH = 300, LINE_HEIGHT = 14, SWATCH = 10 };
+
+void weft_model_colour(uint8_t code, float rgb[3])
+{
+    /* Rows: bits of T, columns: bits of S; greys without tables, blues with T, oranges with S, greens with both. */
+    static const float base[4][3] = {{0.9f, 0.9f, 0.9f}, {0.45f, 0.65f, 1}, {1, 0.65f, 0.3f}, {0.45f, 0.9f, 0.5f}};
+    weft_model_parts parts = weft_model_decode(code);
+    int bits = parts.table_bits + parts.light_table_bits;
+    const float *hue = base[(parts.table_bits > 0) + 2 * (parts.light_table_bits > 0)];
+    float brightness = 1 - 0.22f * (float)parts.lobe_count, pale = bits > 0 ? 0.5f - 0.5f * (float)bits / 16 : 0;
+    for (int c = 0; c < 3; c++)
+        rgb[c] = brightness * (hue[c] + pale * (1 - hue[c]));
+}
+
+static void fill_square(weft_image *image, int x, int y, int width, int height, const float rgb[3])
+{
+    for (int row = y; row < y + height && row < image->height; row++) {
+        for (int column = x; column < x + width && column < image->width; column++)
+            memcpy(image->pixels + 3 * ((size_t)row * (size_t)image->width + (size_t)column), rgb, 3 * sizeof *rgb);
+    }
+}
+
+static void write_text(weft_image *image, int x, int y, const char *text)
+{
+    const float black[3] = {0};
+    for (int i = 0; text[i]; i++) {
+        const uint8_t *glyph = weft_font[text[i] - WEFT_FONT_FIRST];
+        for (int row = 0; row < WEFT_FONT_ROWS; row++) {
+            for (int column = 0; column < WEFT_FONT_COLUMNS; column++) {
+                if (glyph[row] >> (WEFT_FONT_COLUMNS - 1 - column) & 1)
+                    fill_square(image, x + i * WEFT_FONT_CELL_WIDTH + column, y + row, 1, 1, black);
+            }
+        }
+    }
+}
+
+static void draw_level(weft_image *image, const weft_material_level *level, weft_mip_area area, int scale)
+{
+    for (int i = 0; i < level->width * level->height; i++) {
+        float rgb[3];
+        weft_model_colour(level->model[i], rgb);
+        fill_square(image, (area.x + i % level->width) * scale, (area.y + i / level->width) * scale, scale, scale, rgb);
+    }
+}
+
+/* The models that occur in any level, with their number in each. */
+typedef struct model_counts {
+    long count[WEFT_MATERIAL_MAX_LEVELS][WEFT_MODEL_CODES];
+    int used[WEFT_MODEL_CODES], used_count;
+} model_counts;
+
+static model_counts count_models(const weft_material *material)
+{
+    model_counts counts = {0};
+    for (int k = 0; k < material->level_count; k++)
+        weft_material_count_models(material, k, counts.count[k]);
+    for (int code = 0; code < WEFT_MODEL_CODES; code++) {
+        long all = 0;
+        for (int k = 0; k < material->level_count; k++)
+            all += counts.count[k][code];
+        if (all > 0)
+            counts.used[counts.used_count++] = code;
+    }
+    return counts;
+}
+
+static double percent_of(const weft_material_level *level, long count)
+{
+    return 100.0 * (double)count / ((double)level->width * level->height);
+}
+
+static void draw_legend(weft_image *image, const weft_material *material, const model_counts *counts, int top)
+{
+    for (int i = 0; i < counts->used_count; i++) {
+        char name[WEFT_MODEL_NAME], line[WEFT_MODEL_NAME + 16];
+        float rgb[3];
+        int code = counts->used[i], y = top + 4 + i * LINE_HEIGHT;
+        weft_model_print(weft_model_decode((uint8_t)code), name);
+        snprintf(line, sizeof line, "%s: %.1f %%", name, percent_of(&material->level[0], counts->count[0][code]));
+        weft_model_colour((uint8_t)code, rgb);
+        fill_square(image, 4, y, SWATCH, SWATCH, rgb);
+        write_text(image, 4 + SWATCH + 6, y + 2, line);
+    }
+}
+
+weft_code weft_model_picture(const weft_material *material, weft_image *image, weft_error *error)
+{
+    const float white[3] = {1, 1, 1};
+    if (!material->has_models)
+        return weft_fail(error, WEFT_BAD_USAGE, "the material does not say which model its texels have");
+    weft_mip_layout layout =
+        weft_mip_layout_of(material->level[0].width, material->level[0].height, material->level_count, 0);
+    model_counts counts = count_models(material);
+    int largest = layout.width > layout.height ? layout.width : layout.height;
+    int scale = largest < WANTED_SIDE ? WANTED_SIDE / largest : 1, top = layout.height * scale;
+    int width = layout.width * scale > LEGEND_WIDTH ? layout.width * scale : LEGEND_WIDTH;
+    WEFT_TRY(weft_image_create(width, top + 8 + counts.used_count * LINE_HEIGHT, image, error));
+    fill_square(image, 0, 0, image->width, image->height, white);
+    for (int k = 0; k < material->level_count; k++)
+        draw_level(image, &material->level[k], layout.area[k], scale);
+    draw_legend(image, material, &counts, top);
+    return WEFT_OK;
+}
+
+static void write_numbers(weft_page *page, const weft_material *material)
+{
+    model_counts counts = count_models(material);
+    fprintf(page->html, "<table>\n<tr><th>level</th><th>texels</th>");
+    for (int i = 0; i < counts.used_count; i++) {
+        char name[WEFT_MODEL_NAME];
+        weft_model_print(weft_model_decode((uint8_t)counts.used[i]), name);
+        fprintf(page->html, "<th>%s</th>", name);
+    }
+    fprintf(page->html, "<th>relative RMSE</th></tr>\n");
+    for (int k = 0; k < material->level_count; k++) {
+        const weft_material_level *level = &material->level[k];
+        fprintf(page->html, "<tr><td>%d</td><td>%d x %d</td>", k, level->width, level->height);
+        for (int i = 0; i < counts.used_count; i++)
+            fprintf(page->html, "<td>%.1f %%</td>", percent_of(level, counts.count[k][counts.used[i]]));
+        fprintf(page->html, "<td>%.4f</td></tr>\n", level->error.relative_rmse);
+    }
+    fprintf(page->html, "</table>\n");
+}
+
+weft_code weft_model_report_write(const char *folder, const weft_material *material, weft_error *error)
+{
+    weft_page page;
+    weft_image image = {0};
+    WEFT_TRY(weft_model_picture(material, &image, error));
+    weft_code code = weft_page_begin(folder, "The model of each texel", &page, error);
+    if (code == WEFT_OK) {
+        code = weft_page_picture(&page, "models", &image, image.width,
+                                 "Every level; the legend gives shares of level 0", error);
+        if (code == WEFT_OK) {
+            write_numbers(&page, material);
+            code = weft_page_finish(&page, error);
+        } else {
+            weft_page_abandon(&page);
+        }
+    }
+    weft_image_free(&image);
+    return code;
+}
