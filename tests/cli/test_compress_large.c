@@ -210,6 +210,21 @@ static void killed_again_and_again_it_ends_with_the_same_bytes(void **state)
     expect_done(&got, "going on after");
 }
 
+/* Whatever a texel may have must be in the checkpoint. */
+static void other_models_go_on_as_well(void **state)
+{
+    (void)state;
+    const char *const option[4] = {"--error", "25"};
+    outcome got = compress_dataset(dataset_path, "large-chosen.weft", no_limit, option);
+    expect_says(&got, 0, "fitted in");
+    got = compress_dataset(dataset_path, path, (limits){.kill_at = 900000}, option);
+    assert_true(WIFSIGNALED(got.status));
+    got = compress_dataset(dataset_path, path, no_limit, option);
+    expect_says(&got, 0, "going on after");
+    expect_same_bytes(path, "large-chosen.weft");
+    unlink(path);
+}
+
 static void a_checkpoint_cut_anywhere_goes_on(void **state)
 {
     (void)state;
@@ -336,6 +351,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(killed_again_and_again_it_ends_with_the_same_bytes),
+        cmocka_unit_test(other_models_go_on_as_well),
         cmocka_unit_test(a_checkpoint_cut_anywhere_goes_on),
         cmocka_unit_test(a_damaged_checkpoint_is_discarded),
         cmocka_unit_test(a_checkpoint_of_other_options_or_another_dataset_is_discarded),
