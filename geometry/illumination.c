@@ -25,6 +25,13 @@ struct weft_illumination {
         *lit; /* [triangle_count][light_count] 1 where the middle of a triangle sees a light; NULL when not needed */
 };
 
+/* How a path went on from a vertex. */
+typedef enum path_end {
+    PATH_GOES_ON, /* to another vertex */
+    PATH_LEFT,    /* the cloth */
+    PATH_LOST     /* it carries nothing any more, or slipped inside a yarn through a crease */
+} path_end;
+
 /* A vertex of a path. */
 typedef struct path_vertex {
     ray_hit hit;
@@ -139,18 +146,20 @@ static int yarn_at(const weft_tile_mesh *mesh, const ray_hit *hit)
     return mesh->yarn[mesh->triangle[hit->triangle][largest]];
 }
 
-/* Next vertex along a ray; false where it leaves the cloth, or slips inside through a crease. */
-static bool find_vertex(const weft_illumination *illumination, weft_vec3 from, weft_vec3 direction, path_vertex *vertex)
+/* Next vertex along a ray. */
+static path_end find_vertex(const weft_illumination *illumination, weft_vec3 from, weft_vec3 direction,
+                            path_vertex *vertex)
 {
     const weft_tile_mesh *mesh = ray_scene_mesh(illumination->scene);
-    if (!ray_scene_trace(illumination->scene, from, direction, &vertex->hit) ||
-        weft_dot(vertex->hit.normal, direction) >= 0)
-        return false;
+    if (!ray_scene_trace(illumination->scene, from, direction, &vertex->hit))
+        return PATH_LEFT;
+    if (weft_dot(vertex->hit.normal, direction) >= 0)
+        return PATH_LOST;
     weft_frame frame = weft_frame_of_vectors(vertex->hit.normal, interpolate(mesh, &vertex->hit, mesh->tangent));
     vertex->tangent = frame.tangent;
     vertex->fibre = &illumination->stitch->yarn[yarn_at(mesh, &vertex->hit)].fibre;
     vertex->seen = weft_fibre_seen_from(vertex->fibre, frame.tangent, frame.normal, weft_scale(direction, -1));
-    return true;
+    return PATH_GOES_ON;
 }
 
 static void add_light(const weft_illumination *illumination, const path_vertex *vertex, int light, weft_rgb throughput,
@@ -189,9 +198,9 @@ static weft_vec3 cosine_direction(const path_vertex *vertex, const double point[
     return weft_unit(weft_add(flat, weft_scale(vertex->hit.normal, sqrt(1 - point[0]))));
 }
 
-/* Moves the path to its next vertex; false where it ends. */
-static bool bounce(const weft_illumination *illumination, path_vertex *vertex, weft_rgb *throughput, uint64_t key,
-                   uint32_t index)
+/* Moves the path to its next vertex. */
+static path_end bounce(const weft_illumination *illumination, path_vertex *vertex, weft_rgb *throughput, uint64_t key,
+                       uint32_t index)
 {
     double point[2];
     sequence_point(key, index, point);
@@ -201,7 +210,7 @@ static bool bounce(const weft_illumination *illumination, path_vertex *vertex, w
     throughput->g *= f.g * (weft_real)WEFT_PI;
     throughput->b *= f.b * (weft_real)WEFT_PI;
     if (!(fmax(throughput->r, fmax(throughput->g, throughput->b)) > NEGLIGIBLE))
-        return false;
+        return PATH_LOST;
     weft_vec3 from = above(ray_scene_mesh(illumination->scene), vertex->hit.at, vertex->hit.normal);
     return find_vertex(illumination, from, direction, vertex);
 }
@@ -214,23 +223,46 @@ static weft_vec3 ray_start(const weft_illumination *illumination, weft_vec3 plac
     return weft_add(place, weft_scale(view, rise / view.z));
 }
 
+static void add_uniform_light(const weft_illumination *illumination, weft_rgb throughput, float (*radiance)[3])
+{
+    if (!illumination->options.uniform_light)
+        return;
+    float *sum = radiance[illumination->light_count];
+    sum[0] += (float)throughput.r;
+    sum[1] += (float)throughput.g;
+    sum[2] += (float)throughput.b;
+}
+
+/* All vertices of a path after its first. The uniform light is met one ray after the last bounce. */
+static void follow(const weft_illumination *illumination, path_vertex *vertex, uint64_t key, uint32_t index,
+                   float (*radiance)[3])
+{
+    weft_rgb throughput = {1, 1, 1};
+    int rays = illumination->options.bounces + illumination->options.uniform_light;
+    for (int i = 0; i < rays; i++) {
+        path_end end = bounce(illumination, vertex, &throughput, sequence_key(key, (uint64_t)i), index);
+        if (end == PATH_LEFT)
+            add_uniform_light(illumination, throughput, radiance);
+        if (end != PATH_GOES_ON)
+            return;
+        if (i < illumination->options.bounces)
+            add_lights(illumination, vertex, throughput, illumination->lit != NULL, radiance);
+    }
+}
+
 bool weft_illumination_path(const weft_illumination *illumination, weft_vec3 place, weft_vec3 view, uint64_t key,
                             uint32_t index, float (*radiance)[3], weft_first_hit *first)
 {
     path_vertex vertex;
-    weft_rgb throughput = {1, 1, 1};
-    if (!find_vertex(illumination, ray_start(illumination, place, view), weft_scale(view, -1), &vertex))
+    weft_vec3 start = ray_start(illumination, place, view);
+    if (find_vertex(illumination, start, weft_scale(view, -1), &vertex) != PATH_GOES_ON)
         return false;
     if (first) {
         const weft_tile_mesh *mesh = ray_scene_mesh(illumination->scene);
         *first = (weft_first_hit){vertex.hit.at, weft_unit(interpolate(mesh, &vertex.hit, mesh->normal)),
                                   vertex.tangent, yarn_at(mesh, &vertex.hit)};
     }
-    add_lights(illumination, &vertex, throughput, false, radiance);
-    for (int i = 0; i < illumination->options.bounces; i++) {
-        if (!bounce(illumination, &vertex, &throughput, sequence_key(key, (uint64_t)i), index))
-            break;
-        add_lights(illumination, &vertex, throughput, illumination->lit != NULL, radiance);
-    }
+    add_lights(illumination, &vertex, (weft_rgb){1, 1, 1}, false, radiance);
+    follow(illumination, &vertex, key, index, radiance);
     return true;
 }

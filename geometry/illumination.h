@@ -17,8 +17,10 @@
 enum { WEFT_ILLUMINATION_MAX_LIGHTS = 4096, WEFT_ILLUMINATION_MAX_BOUNCES = 256 };
 
 typedef struct weft_illumination_options {
-    int bounces; /* 0: direct light only */
-    bool exact;  /* shadow rays at every vertex of a path */
+    int bounces;        /* 0: direct light only */
+    bool exact;         /* shadow rays at every vertex of a path */
+    bool uniform_light; /* one more light after the others: radiance 1 from everywhere, met by paths that leave the
+                           cloth */
 } weft_illumination_options;
 
 typedef struct weft_illumination weft_illumination;

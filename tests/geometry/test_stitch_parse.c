@@ -68,7 +68,7 @@ static void mistakes_are_named_with_line_and_column(void **state)
                  "plain.stitch:6:14: the radius 0.18 mm of this yarn is less than 1.5 "
                  "cells of 0.4 mm");
     expect_error("{1, 0.5, 0.2}", "{0, 0.5, 0}", "plain.stitch:6:27: two control points in one place");
-    expect_error("fibreTwist", "fibretwist", "plain.stitch:4:53: unknown key 'fibretwist'");
+    expect_error("fibreTwist", "fibretwist", "plain.stitch:4:51: unknown key 'fibretwist'");
     expect_error("points { {0.5", "points { 0.5", "plain.stitch:9:14: expected '{', found '0.5'");
     expect_error("stitch {", "weave {", "plain.stitch:1:1: expected 'stitch', found 'weave'");
     expect_error("tile = {2, 1}, ", "", "'tile' is missing in the block that ends here");
