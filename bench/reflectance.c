@@ -1,8 +1,9 @@
 /* Evaluations per second on one core of the functions that the stages call most. Usage: bench_reflectance [WEAVE.wv
  * ...] */
 #include "btf/direction.h"
+#include "btf/processor.h"
 #include "reflectance/lafortune.h"
-#include "reflectance/weave.h"
+#include "reflectance/woven_batch.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -74,6 +75,33 @@ static double specular_rate(const weft_weave *weave, const sample *samples, doub
     return (double)ROUNDS * SAMPLES / seconds;
 }
 
+/* The same in batches, with and without filling them. */
+static double batch_rate(const weft_weave *weave, const sample *samples, bool filled_once)
+{
+    weft_woven_table *table;
+    weft_error error = {0};
+    if (weft_woven_table_create(weave, &table, &error) != WEFT_OK)
+        return 0;
+    weft_weave_batch batch = {.count = 0};
+    float sum = 0;
+    double start = now_s();
+    for (int i = 0; i < ROUNDS * SAMPLES / WEFT_BATCH_SIZE; i++) {
+        int first = i * WEFT_BATCH_SIZE % SAMPLES;
+        if (!filled_once || i == 0) {
+            batch.count = 0;
+            for (int k = 0; k < WEFT_BATCH_SIZE; k++)
+                weft_weave_batch_put(&batch, &samples[first + k].point, samples[first + k].light,
+                                     samples[first + k].view);
+        }
+        weft_weave_specular_batch(table, &batch);
+        sum += batch.specular[i % WEFT_BATCH_SIZE];
+    }
+    double seconds = now_s() - start;
+    sink = (weft_real)sum;
+    weft_woven_table_free(table);
+    return (double)ROUNDS * SAMPLES / seconds;
+}
+
 static double locate_rate(const weft_weave *weave, const sample *samples, uint64_t noise_seed)
 {
     weft_real sum = 0;
@@ -85,15 +113,45 @@ static double locate_rate(const weft_weave *weave, const sample *samples, uint64
     return (double)ROUNDS * SAMPLES / (now_s() - start);
 }
 
-static double mean_rate(const weft_weave *weave, const sample *samples)
+/* Reflectances of one segment, and means over the tile, per second. */
+typedef struct reflectance_rates {
+    double exact, fast, tile_exact, tile_fast;
+} reflectance_rates;
+
+static double rate_since(double start, int count)
 {
-    enum { FEW = 64 };
+    return count / (now_s() - start);
+}
+
+static reflectance_rates measure_reflectances(const weft_weave *weave, const sample *samples)
+{
+    enum { FEW = 128, MANY = 4096 };
+    static weft_vec3 light[MANY], view[MANY];
+    static weft_real value[MANY];
+    const weft_prepared_segment *prepared = &weave->yarn[0].prepared;
+    reflectance_rates rates = {0};
+    weft_error error = {0};
     weft_real sum = 0;
+    for (int i = 0; i < MANY; i++) {
+        light[i] = samples[i].light;
+        view[i] = samples[i].view;
+    }
     double start = now_s();
     for (int i = 0; i < FEW; i++)
-        sum += weft_weave_mean_specular(weave, samples[i].light, samples[i].view);
-    sink = sum;
-    return FEW / (now_s() - start);
+        sum += weft_prepared_reflectance(prepared, light[i], view[i]);
+    rates.exact = rate_since(start, FEW);
+    start = now_s();
+    weft_prepared_reflectance_batch(prepared, MANY, light, view, value);
+    rates.fast = rate_since(start, MANY);
+    start = now_s();
+    for (int i = 0; i < FEW; i++)
+        sum += weft_weave_mean_specular(weave, light[i], view[i]);
+    rates.tile_exact = rate_since(start, FEW);
+    start = now_s();
+    if (weft_weave_mean_specular_batch(weave, MANY, light, view, value, &error) == WEFT_OK)
+        rates.tile_fast = rate_since(start, MANY);
+    sink = sum + value[0];
+    return rates;
 }
 
 static int bench_weave(const char *path)
@@ -112,9 +170,15 @@ static int bench_weave(const char *path)
     double plain_rate = specular_rate(&weave, plain, &lit), noisy_rate = specular_rate(&weave, noisy, &lit_noisy);
     printf(
         "%-24s load %5.3f s (this thread)   texture %6.2f M/s (%2.0f %% lit)   with noise %6.2f M/s (%2.0f %% lit)   "
-        "locate %6.1f M/s   with noise %6.1f M/s   tile mean %6.0f /s\n",
+        "locate %6.1f M/s   with noise %6.1f M/s\n",
         weave.name, load_s, plain_rate / 1e6, 100 * lit, noisy_rate / 1e6, 100 * lit_noisy,
-        locate_rate(&weave, plain, 0) / 1e6, locate_rate(&weave, plain, 1) / 1e6, mean_rate(&weave, plain));
+        locate_rate(&weave, plain, 0) / 1e6, locate_rate(&weave, plain, 1) / 1e6);
+    reflectance_rates r = measure_reflectances(&weave, plain);
+    printf("  in batches (%s): texture %6.2f M/s   filled %6.2f M/s   with noise, filled %6.2f M/s\n"
+           "  reflectance %6.0f /s, in batches %7.3f M/s   tile mean %6.0f /s, in batches %7.3f M/s\n",
+           weft_instruction_set_name(weft_processor_instruction_set()), batch_rate(&weave, plain, true) / 1e6,
+           batch_rate(&weave, plain, false) / 1e6, batch_rate(&weave, noisy, false) / 1e6, r.exact, r.fast / 1e6,
+           r.tile_exact, r.tile_fast / 1e6);
     free(plain);
     free(noisy);
     weft_weave_free(&weave);

@@ -78,6 +78,9 @@ weft_weave_point weft_weave_locate(const weft_weave *weave, weft_real U, weft_re
  * cloth. */
 weft_real weft_weave_specular(const weft_weave *weave, const weft_weave_point *point, weft_vec3 light, weft_vec3 view);
 
+/* kd/pi + ks s times a specular value of that yarn: the BRDF, 1/sr, where both directions are above the horizon. */
+weft_rgb weft_weave_shade(const weft_weave *weave, const weft_yarn *yarn, weft_real specular);
+
 /* BRDF in 1/sr: kd/pi + ks s aw T; 0 where either direction is below the horizon. */
 weft_rgb weft_weave_brdf(const weft_weave *weave, const weft_weave_point *point, weft_vec3 light, weft_vec3 view);
 

@@ -11,7 +11,7 @@ static bool above_horizon(weft_vec3 light, weft_vec3 view)
     return light.z > 0 && view.z > 0;
 }
 
-static weft_rgb shaded(const weft_weave *weave, const weft_yarn *yarn, weft_real specular)
+weft_rgb weft_weave_shade(const weft_weave *weave, const weft_yarn *yarn, weft_real specular)
 {
     const weft_real diffuse = 1 / (weft_real)WEFT_PI, scale = weave->specular_scale * specular;
     return (weft_rgb){yarn->kd.r * diffuse + yarn->ks.r * scale, yarn->kd.g * diffuse + yarn->ks.g * scale,
@@ -31,7 +31,7 @@ weft_rgb weft_weave_brdf(const weft_weave *weave, const weft_weave_point *point,
 {
     if (!above_horizon(light, view))
         return (weft_rgb){0};
-    return shaded(weave, &weave->yarn[point->yarn], weft_weave_specular(weave, point, light, view));
+    return weft_weave_shade(weave, &weave->yarn[point->yarn], weft_weave_specular(weave, point, light, view));
 }
 
 enum { RECENT = 8 };
@@ -82,7 +82,7 @@ weft_rgb weft_weave_mean_brdf(const weft_weave *weave, weft_vec3 light, weft_vec
         return sum;
     for (int i = 0; i < weave->yarn_count; i++) {
         const weft_yarn *yarn = &weave->yarn[i];
-        weft_rgb value = shaded(weave, yarn, mean_specular_of(weave, i, &recent, light, view));
+        weft_rgb value = weft_weave_shade(weave, yarn, mean_specular_of(weave, i, &recent, light, view));
         sum.r += yarn->cell_fraction * value.r;
         sum.g += yarn->cell_fraction * value.g;
         sum.b += yarn->cell_fraction * value.b;
