@@ -1,5 +1,5 @@
 #include "btf/atomic_file.h"
-#include "btf/material_format.h"
+#include "btf/material_compact.h"
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -149,11 +149,24 @@ static weft_code note_section(file_image *file, int index, weft_material *materi
         return fail_section(file, section, error, "the material has no such section");
     if (file->found[kind][section->level])
         return fail_section(file, section, error, "occurs twice");
-    uint64_t expected = weft_section_size(material, kind, (int)section->level);
-    if (kind == WEFT_SECTION_META ? section->decoded_size > WEFT_FORMAT_MAX_METADATA
-                                  : section->decoded_size != expected)
+    if (kind == WEFT_SECTION_META && section->decoded_size > WEFT_FORMAT_MAX_METADATA)
         return fail_section(file, section, error, "its size does not fit the material");
     file->found[kind][section->level] = index + 1;
+    return WEFT_OK;
+}
+
+/* Of a compact section the exact size is known only once the map of its level is; until then that it is smaller, and
+ * that a small file does not claim a large material. */
+static weft_code check_size(const file_image *file, const weft_material *material, weft_section_kind kind, int k,
+                            weft_error *error)
+{
+    const weft_section *section = &file->section[file->found[kind][k] - 1];
+    uint64_t whole = weft_section_size(material, kind, k);
+    bool compact = weft_section_may_be_compact(material, kind) && section->decoded_size < whole;
+    if (kind != WEFT_SECTION_META && section->decoded_size != whole && !compact)
+        return fail_section(file, section, error, "its size does not fit the material");
+    if (compact && whole > file->size * WEFT_FORMAT_MAX_RATIO + WEFT_FORMAT_FREE_RATIO)
+        return fail_section(file, section, error, "claims to expand to more than 1024 times the size of the file");
     return WEFT_OK;
 }
 
@@ -164,6 +177,7 @@ static weft_code check_complete(const file_image *file, const weft_material *mat
             if (!file->found[kind][k])
                 return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: section %s of level %d is missing",
                                  file->path, weft_section_type[kind], k);
+            WEFT_TRY(check_size(file, material, (weft_section_kind)kind, k, error));
         }
     }
     return WEFT_OK;
@@ -260,6 +274,21 @@ static weft_code read_error(const file_image *file, const weft_section *section,
     return WEFT_OK;
 }
 
+static weft_code read_compact(const file_image *file, const weft_section *section, const weft_material *material,
+                              weft_section_kind kind, int k, weft_error *error)
+{
+    if (section->decoded_size != weft_section_compact_size(material, kind, k))
+        return fail_section(file, section, error, "its size does not fit the models of its level");
+    uint8_t *bytes = malloc(section->decoded_size + 1);
+    if (!bytes)
+        return weft_fail_memory(error, "compact section", section->decoded_size + 1);
+    weft_code code = decode(file, section, bytes, error);
+    if (code == WEFT_OK)
+        weft_section_expand(material, kind, k, bytes);
+    free(bytes);
+    return code;
+}
+
 static weft_code read_section(const file_image *file, weft_material *material, weft_section_kind kind, int k,
                               weft_error *error)
 {
@@ -274,15 +303,26 @@ static weft_code read_section(const file_image *file, weft_material *material, w
     case WEFT_SECTION_ERRO:
         return read_error(file, section, &material->level[k].error, error);
     default:
+        if (section->decoded_size < weft_section_size(material, kind, k))
+            return read_compact(file, section, material, kind, k, error);
         return decode(file, section, weft_section_texels(material, kind, k), error);
     }
 }
 
+static weft_code read_kind(const file_image *file, weft_material *material, weft_section_kind kind, weft_error *error)
+{
+    for (int k = 0; k < weft_section_levels(material, kind); k++)
+        WEFT_TRY(read_section(file, material, kind, k, error));
+    return WEFT_OK;
+}
+
+/* The maps of models come first: they say what compact sections hold. */
 static weft_code read_sections(const file_image *file, weft_material *material, weft_error *error)
 {
+    WEFT_TRY(read_kind(file, material, WEFT_SECTION_MODL, error));
     for (int kind = 0; kind < WEFT_SECTION_KINDS; kind++) {
-        for (int k = 0; k < weft_section_levels(material, (weft_section_kind)kind); k++)
-            WEFT_TRY(read_section(file, material, (weft_section_kind)kind, k, error));
+        if (kind != WEFT_SECTION_MODL)
+            WEFT_TRY(read_kind(file, material, (weft_section_kind)kind, error));
     }
     return WEFT_OK;
 }

@@ -1,5 +1,5 @@
 #include "btf/atomic_file.h"
-#include "btf/material_format.h"
+#include "btf/material_compact.h"
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -137,6 +137,26 @@ static weft_code add_directions(file_image *file, weft_section_kind kind, const 
     return code;
 }
 
+/* Compact where that is smaller and says all there is, and where a reader will believe it. */
+static weft_code add_texels(file_image *file, const weft_material *material, weft_section_kind kind, int k,
+                            weft_error *error)
+{
+    const void *texels = weft_section_texels(material, kind, k);
+    uint64_t whole = weft_section_size(material, kind, k), size = whole;
+    if (weft_section_may_be_compact(material, kind) &&
+        whole <= file->size * (uint64_t)WEFT_FORMAT_MAX_RATIO + WEFT_FORMAT_FREE_RATIO)
+        size = weft_section_compact_size(material, kind, k);
+    if (size == whole)
+        return add_section(file, kind, k, texels, whole, error);
+    uint8_t *bytes = malloc(size + 1);
+    if (!bytes)
+        return weft_fail_memory(error, "compact section", size + 1);
+    weft_code code = weft_section_compact(material, kind, k, bytes) ? add_section(file, kind, k, bytes, size, error)
+                                                                    : add_section(file, kind, k, texels, whole, error);
+    free(bytes);
+    return code;
+}
+
 static weft_code add_level_section(file_image *file, const weft_material *material, weft_section_kind kind, int k,
                                    weft_error *error)
 {
@@ -153,8 +173,7 @@ static weft_code add_level_section(file_image *file, const weft_material *materi
     case WEFT_SECTION_ERRO:
         return add_section(file, kind, k, errors, sizeof errors, error);
     default:
-        return add_section(file, kind, k, weft_section_texels(material, kind, k), weft_section_size(material, kind, k),
-                           error);
+        return add_texels(file, material, kind, k, error);
     }
 }
 

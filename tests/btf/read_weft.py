@@ -36,6 +36,14 @@ def expected_size(kind, header, texels):
     return {"FRAM": 6, "RHO": 8, "LOBE": 24 * lobes, "TABL": 4 * views, "STAB": 4 * lights, "MODL": 1}[kind] * texels
 
 
+def compact_size(kind, header, models):
+    """Bytes of a section that leaves out the texels without such a part."""
+    if kind == "LOBE":
+        return sum(24 * min(model & 3, header["lobes"]) for model in models)
+    shift, count = {"TABL": (2, header["views"]), "STAB": (4, header["lights"])}[kind]
+    return sum(4 * count for model in models if model >> shift & 3)
+
+
 def texel_of(kind, body):
     if kind == "FRAM":
         x, y, azimuth = (code / 32767 for code in struct.unpack_from("<3h", body))
@@ -61,8 +69,10 @@ def main(path):
         optional = [("LOBE", "lobes"), ("TABL", "views"), ("STAB", "lights")]
         for kind in ["FRAM", "RHO"] + [kind for kind, count in optional if header[count] > 0] + models:
             body, decoded = sections[kind, level]
-            assert decoded == expected_size(kind, header, width * height), kind
-            print(level, kind, texel_of(kind, body) if body else "compressed")
+            if decoded != expected_size(kind, header, width * height):
+                assert decoded == compact_size(kind, header, sections["MODL", level][0]), kind
+                kind += ", compact"
+            print(level, kind, texel_of(kind.split(",")[0], body) if body else "compressed")
         print(level, "ERRO", struct.unpack("<5d", sections["ERRO", level][0]))
         width, height = (width + 1) // 2, (height + 1) // 2
 
