@@ -34,6 +34,8 @@ static void write_head(FILE *out, const weft_weave *weave)
     write_number(out, "  ", "beta", fibre->beta);
     write_number(out, "  ", "ss", fibre->delta);
     write_number(out, "  ", "hWidth", fibre->highlight_width);
+    if (fibre->frozen_radius)
+        write_number(out, "  ", "frozenRadius", 1);
     write_number(out, "  ", "warpArea", weave->warp_area);
     write_number(out, "  ", "weftArea", weave->weft_area);
     write_number(out, "  ", "fineness", weave->fineness);
