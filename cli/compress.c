@@ -2,6 +2,7 @@
 #include "btf/atomic_file.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "study/model_report.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -12,7 +13,7 @@
 
 typedef struct compress_command {
     common_options common;
-    const char *input, *output;
+    const char *input, *output, *report;
     weft_compress_options options;
 } compress_command;
 
@@ -24,6 +25,8 @@ enum {
     KEY_FRAMES,
     KEY_MAX_EXPONENT,
     KEY_ERROR,
+    KEY_BUDGET,
+    KEY_REPORT,
     KEY_MEMORY
 };
 
@@ -43,6 +46,13 @@ static const struct argp_option option_table[] = {
      "model "
      "where none is (default: the whole model everywhere)",
      0},
+    {"budget", KEY_BUDGET, "MB", 0,
+     "Choose the model of each texel so that the error is least and the file no larger; tables may have fewer bits. "
+     "Fits "
+     "every model first, without a checkpoint",
+     0},
+    {"report", KEY_REPORT, "DIR", 0,
+     "With --error or --budget: a page with a map of the models that were chosen, and their shares by level", 0},
     {"memory", KEY_MEMORY, "MB", 0, "Never take more memory than this (default: a quarter of what there is)", 0},
     {0},
 };
@@ -79,6 +89,12 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_ERROR:
         options->target_error = parse_number("error", argument, 0.001, 100, state) / 100;
         return 0;
+    case KEY_BUDGET:
+        options->budget_bytes = (uint64_t)(1e6 * parse_number("budget", argument, 1e-3, 1e9, state));
+        return 0;
+    case KEY_REPORT:
+        command->report = argument;
+        return 0;
     case KEY_MEMORY:
         options->memory_bytes = 1000000 * parse_whole("memory", argument, 1, 1000000000, state);
         return 0;
@@ -90,6 +106,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (!command->input || !command->output)
             argp_error(state, "needs NAME.btf.h5 and -o NAME.weft");
+        if (options->target_error > 0 && options->budget_bytes > 0)
+            argp_error(state, "give --error or --budget, not both");
+        if (command->report && !(options->target_error > 0 || options->budget_bytes > 0))
+            argp_error(state, "--report needs --error or --budget: else all texels have the same model");
         refuse_same_file(command->output, command->input, state);
         return 0;
     default:
@@ -214,6 +234,8 @@ static weft_code compress_dataset(const compress_command *command, const char *p
         code = weft_compress(dataset, &options, &progress, &material, &report, error);
     if (code == WEFT_OK)
         code = weft_material_write(command->output, &material, error);
+    if (code == WEFT_OK && command->report)
+        code = weft_model_report_write(command->report, &material, error);
     if (code == WEFT_OK) {
         const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
         unlink(partial_path);

@@ -1,8 +1,9 @@
 #include "compress/compress.h"
 
 #include "btf/dataset_fingerprint.h"
+#include "btf/material_models.h"
 #include "btf/processor.h"
-#include "compress/dense.h"
+#include "compress/budget.h"
 #include "compress/memory.h"
 #include "compress/sparse_material.h"
 
@@ -17,7 +18,10 @@
 #include <time.h>
 #include <zlib.h>
 
-enum { SAMPLES_PER_PARAMETER = 4 };
+enum {
+    SAMPLES_PER_PARAMETER = 4,
+    METADATA_BYTES = 2048 /* besides the provenance */
+};
 
 static const char *const model_name[3] = {"lobes and view table", "lobes", "sparse"};
 
@@ -44,6 +48,8 @@ static weft_code check_options(const weft_dataset *dataset, const weft_compress_
         return weft_fail(error, WEFT_BAD_USAGE, "largest exponent is %g, must be 1 to 60000", options->max_exponent);
     if (!(options->target_error >= 0 && options->target_error <= 1))
         return weft_fail(error, WEFT_BAD_USAGE, "target error is %g, must be 0 to 1", options->target_error);
+    if (options->target_error > 0 && options->budget_bytes > 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "a target error and a budget exclude each other");
     if (used_images(weft_dataset_get_layout(dataset), options->held_out) == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "'%s': every image is held out", weft_dataset_path(dataset));
     return WEFT_OK;
@@ -169,6 +175,8 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
         json_object_set_new(fit, "target_error", json_real(options->target_error));
         json_object_set_new(fit, "texels_above_target", json_integer((json_int_t)report->missed_texel_count));
     }
+    if (fit && options->budget_bytes > 0)
+        json_object_set_new(fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
     if (fit && report->model == WEFT_COMPRESS_SPARSE) {
         json_object_set_new(fit, "largest_exponent", json_real(setting->largest_exponent));
         json_object_set_new(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
@@ -240,6 +248,18 @@ typedef struct fitting {
     weft_texel_counts counts;
 } fitting;
 
+/* With a target or a budget: which model each texel has is part of the material. */
+static weft_code fit_chosen(fitting *of, const weft_texel_source *source, const weft_dense_job *job,
+                            weft_material *material, weft_dense_result *result, weft_error *error)
+{
+    weft_budget_plan plan = {.bytes = of->options->budget_bytes,
+                             .reserve = METADATA_BYTES + strlen(source->layout->provenance)};
+    if (plan.bytes > 0)
+        return weft_budget_fit(of->dataset, source, job, &plan, material, result, error);
+    WEFT_TRY(weft_dense_fit(of->dataset, source, job, material, result, error));
+    return source->target_error > 0 ? weft_material_find_models(material, error) : WEFT_OK;
+}
+
 static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     const weft_compress_options *options = of->options;
@@ -260,7 +280,7 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
     source.options.lobe_count = report->lobe_count;
     source.options.table = report->model == WEFT_COMPRESS_TABLE;
     source.options.max_exponent = options->max_exponent;
-    WEFT_TRY(weft_dense_fit(of->dataset, &source, &job, material, &result, error));
+    WEFT_TRY(fit_chosen(of, &source, &job, material, &result, error));
     /* What is free is given back to the system, so that writing the material has room. */
     malloc_trim(0);
     of->counts = result.counts;
@@ -283,9 +303,9 @@ static uint64_t sparse_bytes(const weft_dataset_layout *layout)
 
 static weft_code fit_sparse(fitting *of, weft_material *material, weft_compress_report *report, weft_error *error)
 {
-    if (of->options->target_error > 0)
+    if (of->options->target_error > 0 || of->options->budget_bytes > 0)
         return weft_fail(error, WEFT_BAD_USAGE,
-                         "'%s' has too few images to choose a model for each texel: leave out the target error",
+                         "'%s' has too few images to choose a model for each texel: leave out the target or the budget",
                          weft_dataset_path(of->dataset));
     uint64_t bytes = weft_memory_budget_taken(&of->budget) + sparse_bytes(weft_dataset_get_layout(of->dataset));
     if (bytes > of->budget.limit)
@@ -302,6 +322,7 @@ static weft_code fit_material(fitting *of, weft_material *material, weft_compres
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(of->dataset);
     WEFT_TRY(weft_dataset_fingerprint_take(of->dataset, &of->fingerprint, error));
+    WEFT_TRY(fill_opacity(of->dataset, material, error));
     if (report->model == WEFT_COMPRESS_SPARSE)
         WEFT_TRY(fit_sparse(of, material, report, error));
     else
@@ -314,7 +335,6 @@ static weft_code fit_material(fitting *of, weft_material *material, weft_compres
     report->second_start_count = of->counts.second_start;
     report->missed_texel_count = of->counts.missed;
     report->sample_count = (long)layout->width * layout->height * used_images(layout, of->options->held_out);
-    WEFT_TRY(fill_opacity(of->dataset, material, error));
     return write_metadata(layout, &of->fingerprint, describe_fit(of->options, report, &of->setting), material, error);
 }
 

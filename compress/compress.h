@@ -10,13 +10,14 @@
 #include <stdbool.h>
 
 typedef struct weft_compress_options {
-    int lobe_count;          /* at most; 0..3 */
-    bool table;              /* T(v), where the samples can carry it */
-    bool light_table;        /* S(l) beside T, where lights repeat and the samples can carry it */
-    bool levels;             /* mip levels, each fitted to the mean samples of its groups of texels */
-    bool frames;             /* fit normal and tangent of every texel too; else all have the frame of the surface */
-    double max_exponent;     /* N <= this */
-    double target_error;     /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
+    int lobe_count;        /* at most; 0..3 */
+    bool table;            /* T(v), where the samples can carry it */
+    bool light_table;      /* S(l) beside T, where lights repeat and the samples can carry it */
+    bool levels;           /* mip levels, each fitted to the mean samples of its groups of texels */
+    bool frames;           /* fit normal and tangent of every texel too; else all have the frame of the surface */
+    double max_exponent;   /* N <= this */
+    double target_error;   /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
+    uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
     uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */
@@ -56,9 +57,11 @@ typedef struct weft_compress_report {
 /* Fits `material`, which the caller frees with weft_material_free; errors by level are in it. `report` may be NULL. The
  * result depends neither on the number of threads (OpenMP) nor on the order of the images, the memory allowed or
  * whether a checkpoint was used. The sparse model holds all samples and keeps no checkpoint. Nothing else may use the
- * dataset meanwhile. Errors: WEFT_BAD_USAGE for options out of range, where every image is held out, or where the
- * memory allowed does not suffice; WEFT_BAD_INPUT for a dataset without any valid sample; those of reading; WEFT_SYSTEM
- * for memory and for a checkpoint that cannot be opened or written, which then keeps what is in it. */
+ * dataset meanwhile. With a target or a budget the material says which model each texel has.
+ * Errors: WEFT_BAD_USAGE for options out of range, a target and a budget together, a budget that nothing fits into,
+ * where every image is held out, or where the memory allowed does not suffice; WEFT_BAD_INPUT for a dataset without any
+ * valid sample; those of reading; WEFT_SYSTEM for memory and for a checkpoint that cannot be opened or written, which
+ * then keeps what is in it. */
 weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *options, const weft_progress *progress,
                         weft_material *material, weft_compress_report *report, weft_error *error);
 

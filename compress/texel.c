@@ -286,6 +286,50 @@ static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options
         fit_channel(fitter, options, light, channel, start, &frame);
 }
 
+/* ---- Models that are given ---- */
+
+static void load_channel(weft_texel_fitter *fitter, const weft_candidate *from, const weft_material_level *level,
+                         size_t texel, int channel, const weft_frame *frame)
+{
+    const weft_material *material = from->material;
+    size_t texels = (size_t)level->width * (size_t)level->height, c = (size_t)channel;
+    size_t views = (size_t)fitter->bundle.view_count, lights = (size_t)fitter->light_count;
+    weft_packed *packed = &fitter->packed[channel];
+    packed->diffuse = level->diffuse[4 * texel + c];
+    for (size_t i = 0; i < (size_t)material->lobe_count; i++)
+        memcpy(packed->lobe[i], level->lobe + 4 * ((3 * i + c) * texels + texel), sizeof packed->lobe[i]);
+    fitter->as_read[channel] = weft_unpack(packed, material->lobe_count, frame, fitter->samples.scale);
+    for (size_t view = 0; view < views; view++)
+        fitter->code[c * views + view] =
+            level->table
+                ? weft_table_code_rounded(level->table[4 * (view * texels + texel) + c], from->parts.table_bits)
+                : 255;
+    for (size_t l = 0; l < lights; l++)
+        fitter->light_code[c * lights + l] =
+            level->light_table ? weft_table_code_rounded(level->light_table[4 * (l * texels + texel) + c],
+                                                         from->parts.light_table_bits)
+                               : 255;
+}
+
+/* Measures every candidate; returns the sums of the last. */
+static weft_error_sums judge_texel(weft_texel_fitter *fitter, int level, int x, int y)
+{
+    const weft_judgement *judgement = fitter->source->judgement;
+    weft_error_sums sums = {0};
+    for (int i = 0; i < judgement->count; i++) {
+        const weft_candidate *candidate = &judgement->candidate[i];
+        const weft_material_level *at = &candidate->material->level[level];
+        size_t texel = (size_t)y * (size_t)at->width + (size_t)x;
+        weft_frame frame = weft_frame_decode(at->frame + 3 * texel);
+        for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+            load_channel(fitter, candidate, at, texel, channel, &frame);
+        sums = measure_model(fitter, judgement->count == 1 && is_tallied(at, x, y));
+        if (judgement->square_error[level])
+            judgement->square_error[level][texel * (size_t)judgement->count + (size_t)i] = (float)sums.square_error;
+    }
+    return sums;
+}
+
 /* ---- The model that suffices ---- */
 
 /* The largest model that the samples can carry. */
@@ -297,16 +341,18 @@ static weft_fit_options whole_model(const weft_texel_fitter *fitter)
     return options;
 }
 
-/* Climbs from the smallest model to the whole one until the target is met; returns whether it is. */
+/* Climbs from the smallest model to the whole one, at last with S, until the target is met; returns whether it is. */
 static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whole)
 {
     double target = fitter->source->target_error;
     weft_model_ladder ladder = weft_model_ladder_make(whole, fitter->bundle.view_count);
-    for (int rung = 0; rung < ladder.count; rung++) {
+    for (int rung = 0; rung < ladder.count + (fitter->light_count > 0); rung++) {
+        bool light = rung == ladder.count;
+        weft_texel_model model = ladder.model[light ? rung - 1 : rung];
         weft_fit_options options = *whole;
-        options.lobe_count = ladder.model[rung].lobe_count;
-        options.table = ladder.model[rung].table;
-        fit_model(fitter, &options, fitter->light_count > 0 && rung == ladder.count - 1);
+        options.lobe_count = model.lobe_count;
+        options.table = model.table;
+        fit_model(fitter, &options, light);
         weft_error_sums sums = measure_model(fitter, false);
         if (sums.square_error <= target * target * sums.square)
             return true;
@@ -325,6 +371,13 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         weft_bundle_aim(&fitter->bundle, layout, x_mm, y_mm);
     }
     weft_samples_gather(&fitter->bundle, layout->values, sum, count, group, &fitter->samples);
+    counts->texels++;
+    counts->empty += fitter->samples.valid_count == 0;
+    if (fitter->source->judgement) {
+        weft_error_sums judged = judge_texel(fitter, level, x, y);
+        weft_error_sums_add(&counts->sums, &judged);
+        return;
+    }
     weft_fit_options whole = whole_model(fitter);
     if (fitter->source->target_error > 0)
         counts->missed += !fit_smallest(fitter, &whole);
@@ -333,8 +386,6 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
     weft_error_sums sums = measure_model(fitter, is_tallied(&material->level[level], x, y));
     weft_error_sums_add(&counts->sums, &sums);
     store_model(fitter, material, level, x, y);
-    counts->texels++;
-    counts->empty += fitter->samples.valid_count == 0;
     counts->turned += fitter->turns;
     counts->second_start += fitter->upright.fit.start > 0;
 }

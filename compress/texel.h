@@ -2,6 +2,7 @@
 #ifndef WEFT_COMPRESS_TEXEL_H
 #define WEFT_COMPRESS_TEXEL_H
 
+#include "compress/candidate.h"
 #include "compress/fit.h"
 #include "compress/measure.h"
 #include "compress/pack.h"
@@ -20,6 +21,7 @@ typedef struct weft_texel_source {
     /* Each texel has the smallest model (compress/model_ladder.h) whose RMSE over the rms of its samples is at most
      * this; the whole of `options` where none is. 0: the whole everywhere. */
     double target_error;
+    const weft_judgement *judgement; /* not NULL: nothing is fitted and stored, these candidates are measured */
 } weft_texel_source;
 
 /* What happened to some texels. */
