@@ -36,6 +36,7 @@ int command_exit(const char *command, const common_options *common, weft_code co
 
 /* Every subcommand: its file is cli/NAME.c. argv[0] is "weft NAME". */
 int command_capture(int argc, char **argv);
+int command_simulate(int argc, char **argv);
 int command_register(int argc, char **argv);
 int command_import(int argc, char **argv);
 int command_compress(int argc, char **argv);

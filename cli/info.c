@@ -7,7 +7,7 @@ int command_info(int argc, char **argv)
     const char *path =
         parse_one_file(argc, argv,
                        "Example: weft info silk.weft\n\n"
-                       "Says what a material (.weft), a dataset (.btf.h5), a weave (.wv) or a session folder holds.",
+                       "Says what a material (.weft), a dataset (.btf.h5), a weave (.wv), a stitch (.stitch) or a session folder holds.",
                        &common);
     weft_error error = {0};
     json_t *description;

@@ -13,6 +13,7 @@ typedef struct command {
 
 static const command commands[] = {
     {"capture", command_capture, "photograph a sample under all views and lights"},
+    {"simulate", command_simulate, "make a dataset of cloth from the geometry of its yarns"},
     {"register", command_register, "turn the photographs of a session into a dataset"},
     {"import", command_import, "turn foreign photographs into a dataset"},
     {"compress", command_compress, "fit lobes and a view table to a dataset"},

@@ -3,6 +3,7 @@
 #include "btf/dataset.h"
 #include "btf/material_models.h"
 #include "btf/session.h"
+#include "geometry/tile_mesh.h"
 #include "reflectance/weave.h"
 #include "study/file_kind.h"
 #include "study/verify.h"
@@ -155,6 +156,25 @@ static weft_code inspect_weave(const char *path, json_t **result, weft_error *er
     return WEFT_OK;
 }
 
+/* ---- Stitch ---- */
+
+static weft_code inspect_stitch(const char *path, json_t **result, weft_error *error)
+{
+    weft_stitch stitch;
+    weft_tile_mesh mesh;
+    WEFT_TRY(weft_stitch_read(path, &stitch, error));
+    weft_code code = weft_tile_mesh_create(&stitch, 0, path, &mesh, error);
+    if (code == WEFT_OK) {
+        *result = json_pack("{s:s, s:s, s:s, s:[ff], s:i, s:i, s:f, s:i, s:i}", "file", path, "kind", "stitch", "name",
+                            stitch.name, "tile_mm", stitch.width, stitch.height, "yarns", stitch.yarn_count,
+                            "resolution", stitch.resolution, "thickness_mm", (double)mesh.top - (double)mesh.bottom,
+                            "vertices", mesh.vertex_count, "triangles", mesh.triangle_count);
+        weft_tile_mesh_free(&mesh);
+    }
+    weft_stitch_free(&stitch);
+    return code;
+}
+
 /* ---- Any ---- */
 
 static weft_code inspect_any(const char *path, const weft_progress *progress, bool all, json_t **result,
@@ -170,6 +190,8 @@ static weft_code inspect_any(const char *path, const weft_progress *progress, bo
         code = inspect_dataset(path, progress, all, result, error);
     else if (kind == WEFT_FILE_SESSION)
         code = inspect_session(path, progress, all, result, error);
+    else if (kind == WEFT_FILE_STITCH)
+        code = inspect_stitch(path, result, error);
     else
         code = inspect_weave(path, result, error);
     if (code == WEFT_OK && !*result)

@@ -7,9 +7,9 @@
 
 #include <jansson.h>
 
-/* Describes a .weft, .btf.h5, .wv file or a session folder from its headers: kind, dimensions, provenance, errors,
- * sizes. *result is a JSON object for which the caller calls json_decref. Errors: WEFT_BAD_INPUT for a file that its
- * reader refuses. */
+/* Describes a .weft, .btf.h5, .wv or .stitch file or a session folder from its headers: kind, dimensions, provenance,
+ * errors, sizes. *result is a JSON object for which the caller calls json_decref. Errors: WEFT_BAD_INPUT for a file
+ * that its reader refuses. */
 weft_code weft_inspect(const char *path, json_t **result, weft_error *error);
 
 /* Reads all of it: every checksum of a material and every number in it; every sample of a dataset; every photograph of

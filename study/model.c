@@ -45,6 +45,9 @@ weft_code weft_model_open(const char *path, const weft_model_options *options, w
     weft_code code = weft_file_kind_of(path, &model->kind, error);
     if (code == WEFT_OK && model->kind == WEFT_FILE_SESSION)
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder, not a model (.weft, .btf.h5 or .wv)", path);
+    else if (code == WEFT_OK && model->kind == WEFT_FILE_STITCH)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a stitch, not a model; weft simulate makes a .btf.h5 of it",
+                         path);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_MATERIAL)
         code = open_material(model, path, error);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_DATASET)
