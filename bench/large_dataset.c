@@ -95,7 +95,7 @@ static weft_code write_cloth(const char *path, int size, weft_error *error)
 int main(int argc, char **argv)
 {
     int size = argc > 2 ? atoi(argv[2]) : 256;
-    if (argc < 2 || argc > 3 || size < 1 || size > 4096) {
+    if (argc < 2 || argc > 3 || argv[1][0] == '-' || size < 1 || size > 4096) {
         fprintf(stderr, "usage: bench_large_dataset NAME.btf.h5 [SIZE]\n"
                         "SIZE x SIZE texels, 81 x 81 images; 256, the default, makes 2.6 GB\n");
         return WEFT_BAD_USAGE;
