@@ -32,6 +32,11 @@ weft_code weft_virtual_cloth_read(const char *path, const weft_rig_settings *set
 {
     *cloth = (weft_virtual_cloth){.opening_mm = settings->opening_mm};
     WEFT_TRY(weft_weave_read(path, NULL, 0, &cloth->weave, warning, error));
+    weft_code code = weft_woven_table_create(&cloth->weave, &cloth->table, error);
+    if (code != WEFT_OK) {
+        weft_virtual_cloth_free(cloth);
+        return code;
+    }
     choose_tiles(cloth);
     if (settings->tiles_x > 0)
         cloth->tiles_x = (int)settings->tiles_x;
@@ -44,6 +49,7 @@ weft_code weft_virtual_cloth_read(const char *path, const weft_rig_settings *set
 
 void weft_virtual_cloth_free(weft_virtual_cloth *cloth)
 {
+    weft_woven_table_free(cloth->table);
     weft_weave_free(&cloth->weave);
     *cloth = (weft_virtual_cloth){0};
 }

@@ -3,12 +3,13 @@
 #define WEFT_CAPTURE_VIRTUAL_CLOTH_H
 
 #include "capture/settings.h"
-#include "reflectance/weave.h"
+#include "reflectance/woven_batch.h"
 
 #include <stddef.h>
 
 typedef struct weft_virtual_cloth {
     weft_weave weave;
+    weft_woven_table *table; /* of the weave, for batches */
     double opening_mm;
     int tiles_x, tiles_y; /* across the opening: whole, so that the material repeats */
     uint64_t noise_seed;  /* 0 = no noise */

@@ -21,20 +21,52 @@ WEFT_HOT static void irradiate_row(const float *x_mm, const float *y_mm, int wid
     }
 }
 
-/* The sum of the BRDF over the cloth samples of a pixel. */
-static weft_rgb sum_brdf(const lighting *l, const weft_cloth_pixel *cloth)
+/* Cloth points waiting to be evaluated, and the pixels they belong to. */
+typedef struct waiting_points {
+    weft_weave_batch batch;
+    int pixel[WEFT_BATCH_SIZE];
+} waiting_points;
+
+/* Adds the light that the waiting points of a row send to the camera. */
+static void add_cloth(const lighting *l, waiting_points *waiting, size_t row_start, const float *irradiance,
+                      float *radiance)
+{
+    const weft_weave *weave = &l->cloth->weave;
+    weft_weave_specular_batch(l->cloth->table, &waiting->batch);
+    for (int i = 0; i < waiting->batch.count; i++) {
+        weft_rgb brdf =
+            weft_weave_shade(weave, &weave->yarn[waiting->batch.yarn[i]], (weft_real)waiting->batch.specular[i]);
+        size_t index = (size_t)waiting->pixel[i];
+        double scale = (double)irradiance[index - row_start] / l->view->sample_count;
+        float *pixel = radiance + 3 * index;
+        pixel[0] += (float)(scale * brdf.r);
+        pixel[1] += (float)(scale * brdf.g);
+        pixel[2] += (float)(scale * brdf.b);
+    }
+    waiting->batch.count = 0;
+}
+
+static void light_cloth_row(const lighting *l, int y, const float *irradiance, float *radiance)
 {
     const weft_virtual_view *view = l->view;
-    weft_vec3 at = {view->x_mm[cloth->pixel], view->y_mm[cloth->pixel], 0};
-    weft_vec3 toward_light = weft_unit(weft_subtract(l->light, at));
-    weft_vec3 toward_camera = weft_unit(weft_subtract(view->camera, at));
-    weft_rgb sum = {0, 0, 0};
-    for (int i = 0; i < cloth->count; i++) {
-        weft_rgb brdf =
-            weft_weave_brdf(&l->cloth->weave, &view->point[cloth->first + (size_t)i], toward_light, toward_camera);
-        sum = (weft_rgb){sum.r + brdf.r, sum.g + brdf.g, sum.b + brdf.b};
+    size_t start = (size_t)y * (size_t)view->width;
+    waiting_points waiting;
+    if (!(l->light.z > 0 && view->camera.z > 0))
+        return;
+    waiting.batch.count = 0;
+    for (int i = view->row[y]; i < view->row[y + 1]; i++) {
+        const weft_cloth_pixel *cloth = &view->cloth[i];
+        weft_vec3 at = {view->x_mm[cloth->pixel], view->y_mm[cloth->pixel], 0};
+        weft_vec3 toward_light = weft_unit(weft_subtract(l->light, at));
+        weft_vec3 toward_camera = weft_unit(weft_subtract(view->camera, at));
+        for (int k = 0; k < cloth->count; k++) {
+            if (waiting.batch.count == WEFT_BATCH_SIZE)
+                add_cloth(l, &waiting, start, irradiance, radiance);
+            waiting.pixel[waiting.batch.count] = cloth->pixel;
+            weft_weave_batch_put(&waiting.batch, &view->point[cloth->first + (size_t)k], toward_light, toward_camera);
+        }
     }
-    return sum;
+    add_cloth(l, &waiting, start, irradiance, radiance);
 }
 
 static void light_row(const lighting *l, int y, float *irradiance, float *radiance)
@@ -48,15 +80,7 @@ static void light_row(const lighting *l, int y, float *irradiance, float *radian
         float *pixel = radiance + 3 * (start + (size_t)x);
         pixel[0] = pixel[1] = pixel[2] = printed;
     }
-    for (int i = view->row[y]; i < view->row[y + 1]; i++) {
-        const weft_cloth_pixel *cloth = &view->cloth[i];
-        weft_rgb sum = sum_brdf(l, cloth);
-        float *pixel = radiance + 3 * (size_t)cloth->pixel;
-        double scale = irradiance[(size_t)cloth->pixel - start] / view->sample_count;
-        pixel[0] += (float)(scale * sum.r);
-        pixel[1] += (float)(scale * sum.g);
-        pixel[2] += (float)(scale * sum.b);
-    }
+    light_cloth_row(l, y, irradiance, radiance);
 }
 
 void weft_virtual_view_light(const weft_virtual_view *view, const weft_virtual_cloth *cloth, weft_vec3 light,

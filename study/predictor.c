@@ -1,6 +1,7 @@
 #include "study/predictor.h"
 
 #include "reflectance/lafortune.h"
+#include "reflectance/woven_batch.h"
 
 #include <stdlib.h>
 
@@ -13,6 +14,7 @@ struct weft_predictor {
     const weft_material *material;
     weft_table_directions directions; /* of the material */
     const weft_weave *weave;
+    weft_woven_table *table; /* of the weave */
     double tiles_u, tiles_v;
     weft_dataset *other;
     int first_row;
@@ -48,7 +50,7 @@ void weft_predictor_predict(const weft_predictor *predictor, int x, int y, const
     predictor->predict(predictor, x, y, image, image_count, prediction);
 }
 
-/* From BRDF times `scale` to the quantity of the dataset. */
+/* Of a sample for a BRDF of 1 / pi, in the quantity of the dataset. */
 static double quantity(const weft_dataset_layout *layout, weft_vec3 light)
 {
     return layout->values == WEFT_REFLECTANCE_COSINE ? light.z : 1;
@@ -104,6 +106,26 @@ static void locate_points(const weft_predictor *predictor, int x, int y, weft_we
     }
 }
 
+/* The mean BRDF of the points in one image. */
+static weft_rgb mean_of_points(const weft_predictor *predictor, const weft_weave_point point[POINTS], weft_vec3 light,
+                               weft_vec3 view)
+{
+    weft_weave_batch batch;
+    weft_rgb sum = {0};
+    if (!(light.z > 0 && view.z > 0))
+        return sum;
+    batch.count = 0;
+    for (int i = 0; i < POINTS; i++)
+        weft_weave_batch_put(&batch, &point[i], light, view);
+    weft_weave_specular_batch(predictor->table, &batch);
+    for (int i = 0; i < POINTS; i++) {
+        const weft_yarn *yarn = &predictor->weave->yarn[point[i].yarn];
+        weft_rgb brdf = weft_weave_shade(predictor->weave, yarn, (weft_real)batch.specular[i]);
+        sum = (weft_rgb){sum.r + brdf.r, sum.g + brdf.g, sum.b + brdf.b};
+    }
+    return scaled(1.0 / POINTS, sum);
+}
+
 static void predict_by_weave(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
                              weft_rgb *prediction)
 {
@@ -113,12 +135,7 @@ static void predict_by_weave(const weft_predictor *predictor, int x, int y, cons
     for (int i = 0; i < image_count; i++) {
         weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
         weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image[i]], x, y);
-        weft_rgb sum = {0};
-        for (int k = 0; k < POINTS; k++) {
-            weft_rgb brdf = weft_weave_brdf(predictor->weave, &point[k], light, view);
-            sum = (weft_rgb){sum.r + brdf.r, sum.g + brdf.g, sum.b + brdf.b};
-        }
-        prediction[i] = scaled(WEFT_PI / POINTS * quantity(layout, light), sum);
+        prediction[i] = scaled(WEFT_PI * quantity(layout, light), mean_of_points(predictor, point, light, view));
     }
 }
 
@@ -129,7 +146,10 @@ weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave 
     (*result)->weave = weave;
     (*result)->tiles_u = tiles_u;
     (*result)->tiles_v = tiles_v;
-    return WEFT_OK;
+    weft_code code = weft_woven_table_create(weave, &(*result)->table, error);
+    if (code != WEFT_OK)
+        weft_predictor_free(*result);
+    return code;
 }
 
 /* ---- Another dataset ---- */
