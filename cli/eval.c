@@ -16,14 +16,15 @@ typedef struct eval_command {
     weft_weave_parameter parameter[PARAMETER_LIMIT];
 } eval_command;
 
-enum { KEY_NOISE = 0x2000 };
+enum { KEY_NOISE = 0x2000, KEY_AS_PRINTED };
 
 static const struct argp_option option_table[] = {
     {"at", 'a', "DIRECTIONS.csv", 0,
      "Where to evaluate: columns lx,ly,lz,vx,vy,vz and maybe u,v (else the mean of the material), level", 0},
     {"output", 'o', "FILE.csv", 0, "Write here instead of to standard output", 0},
     {"noise", KEY_NOISE, "SEED", 0, "Evaluate a weave with its noise (default: without)", 0},
-    {"set", 's', "NAME=R[,G,B]", 0, "Value of a $NAME in a weave; may be repeated", 0},
+    {"as-printed", KEY_AS_PRINTED, NULL, 0, "Weigh the threads of a .mc as its article prints it, not by area", 0},
+    {"set", 's', "NAME=R[,G,B]", 0, "Value of a $NAME in a weave or .mc; may be repeated", 0},
     {0},
 };
 
@@ -67,6 +68,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_NOISE:
         command->options.noise_seed = parse_whole("noise", argument, 1, UINT64_MAX, state);
         return 0;
+    case KEY_AS_PRINTED:
+        command->options.as_printed = true;
+        return 0;
     case 's':
         add_parameter(command, argument, state);
         return 0;
@@ -90,16 +94,16 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 
 static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
 
-static const struct argp parser = {
-    option_table,
-    parse_option,
-    "MODEL --at DIRECTIONS.csv",
-    "Example: weft eval silk.weft --at directions.csv > values.csv\n\n"
-    "Evaluates a material (.weft), a dataset (.btf.h5) or a weave (.wv) and prints the rows of the table with "
-    "the BRDF appended: r,g,b in 1/sr, without the cosine.",
-    children,
-    NULL,
-    NULL};
+static const struct argp parser = {option_table,
+                                   parse_option,
+                                   "MODEL --at DIRECTIONS.csv",
+                                   "Example: weft eval silk.weft --at directions.csv > values.csv\n\n"
+                                   "Evaluates a material (.weft), a dataset (.btf.h5), a weave (.wv) or a cloth of "
+                                   "microcylinders (.mc) and prints the rows of the table with "
+                                   "the BRDF appended: r,g,b in 1/sr, without the cosine.",
+                                   children,
+                                   NULL,
+                                   NULL};
 
 /* The whole table is made before any of it is written: a bad row then leaves nothing half-done. */
 static weft_code evaluate(const eval_command *command, weft_model *model, char **text, size_t *size, weft_error *error)

@@ -34,10 +34,8 @@ static weft_code read_stream(FILE *file, const char *path, char *text, weft_erro
     return WEFT_OK;
 }
 
-weft_code weft_weave_read(const char *path, const weft_weave_parameter *parameters, int parameter_count,
-                          weft_weave *weave, char warning[WEFT_MESSAGE_SIZE], weft_error *error)
+weft_code weave_read_text(const char *path, char **result, weft_error *error)
 {
-    *weave = (weft_weave){0};
     FILE *file = fopen(path, "rb");
     if (!file)
         return weft_fail(error, WEFT_BAD_INPUT, "cannot read '%s': %s", path, strerror(errno));
@@ -45,7 +43,19 @@ weft_code weft_weave_read(const char *path, const weft_weave_parameter *paramete
     weft_code code = text ? read_stream(file, path, text, error) : weft_fail_memory(error, path, WEAVE_MAX_BYTES + 2);
     fclose(file);
     if (code == WEFT_OK)
-        code = weft_weave_parse(text, path, parameters, parameter_count, weave, warning, error);
+        *result = text;
+    else
+        free(text);
+    return code;
+}
+
+weft_code weft_weave_read(const char *path, const weft_weave_parameter *parameters, int parameter_count,
+                          weft_weave *weave, char warning[WEFT_MESSAGE_SIZE], weft_error *error)
+{
+    *weave = (weft_weave){0};
+    char *text;
+    WEFT_TRY(weave_read_text(path, &text, error));
+    weft_code code = weft_weave_parse(text, path, parameters, parameter_count, weave, warning, error);
     free(text);
     return code;
 }

@@ -6,6 +6,9 @@
 
 enum { WEAVE_MAX_TILE_SIDE = 4096, WEAVE_MAX_CELLS = 1 << 20, WEAVE_MAX_YARNS = 4096, WEAVE_MAX_BYTES = 10 << 20 };
 
+/* A text file of at most WEAVE_MAX_BYTES, terminated; the caller frees it. Errors: WEFT_BAD_INPUT. */
+weft_code weave_read_text(const char *path, char **text, weft_error *error);
+
 /* What the text says, all of it checked except whether the model has such segments. Frees what it allocated on failure.
  */
 weft_code weave_parse_text(const char *text, const char *path, const weft_weave_parameter *parameters,

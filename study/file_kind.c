@@ -23,10 +23,12 @@ weft_code weft_file_kind_of(const char *path, weft_file_kind *kind, weft_error *
         *kind = WEFT_FILE_MATERIAL;
     else if (ends_with(path, ".wv"))
         *kind = WEFT_FILE_WEAVE;
+    else if (ends_with(path, ".mc"))
+        *kind = WEFT_FILE_MICROCYLINDER;
     else if (ends_with(path, ".stitch"))
         *kind = WEFT_FILE_STITCH;
     else
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is none of .btf.h5, .weft, .wv, .stitch or a session folder",
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is none of .btf.h5, .weft, .wv, .mc, .stitch or a session folder",
                          path);
     return WEFT_OK;
 }

@@ -5,11 +5,12 @@
 #include "btf/status.h"
 
 typedef enum weft_file_kind {
-    WEFT_FILE_SESSION,  /* a folder */
-    WEFT_FILE_DATASET,  /* NAME.btf.h5 */
-    WEFT_FILE_MATERIAL, /* NAME.weft */
-    WEFT_FILE_WEAVE,    /* NAME.wv */
-    WEFT_FILE_STITCH    /* NAME.stitch */
+    WEFT_FILE_SESSION,       /* a folder */
+    WEFT_FILE_DATASET,       /* NAME.btf.h5 */
+    WEFT_FILE_MATERIAL,      /* NAME.weft */
+    WEFT_FILE_WEAVE,         /* NAME.wv */
+    WEFT_FILE_MICROCYLINDER, /* NAME.mc */
+    WEFT_FILE_STITCH         /* NAME.stitch */
 } weft_file_kind;
 
 /* Errors: WEFT_BAD_INPUT where there is no such file, or its name has none of these endings. */

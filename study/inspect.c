@@ -1,9 +1,11 @@
 #include "study/inspect.h"
 
 #include "btf/dataset.h"
+#include "btf/direction.h"
 #include "btf/material_models.h"
 #include "btf/session.h"
 #include "geometry/tile_mesh.h"
+#include "reflectance/microcylinder_file.h"
 #include "reflectance/weave.h"
 #include "study/file_kind.h"
 #include "study/verify.h"
@@ -175,6 +177,21 @@ static weft_code inspect_stitch(const char *path, json_t **result, weft_error *e
     return code;
 }
 
+/* ---- Microcylinder cloth ---- */
+
+static weft_code inspect_microcylinder(const char *path, json_t **result, weft_error *error)
+{
+    weft_microcylinder_description description;
+    WEFT_TRY(weft_microcylinder_read(path, NULL, 0, &description, error));
+    const weft_cloth_thread *thread = description.cloth.thread;
+    *result = json_pack("{s:s, s:s, s:s, s:[ss], s:[ii], s:[ff], s:f}", "file", path, "kind", "microcylinder cloth",
+                        "name", description.name, "axes", thread[0].axis == WEFT_AXIS_X ? "x" : "y",
+                        thread[1].axis == WEFT_AXIS_X ? "x" : "y", "tangents", thread[0].sample_count,
+                        thread[1].sample_count, "areas", thread[0].area_share, thread[1].area_share, "sigma_deg",
+                        weft_deg_of_rad(description.cloth.sigma));
+    return WEFT_OK;
+}
+
 /* ---- Any ---- */
 
 static weft_code inspect_any(const char *path, const weft_progress *progress, bool all, json_t **result,
@@ -192,6 +209,8 @@ static weft_code inspect_any(const char *path, const weft_progress *progress, bo
         code = inspect_session(path, progress, all, result, error);
     else if (kind == WEFT_FILE_STITCH)
         code = inspect_stitch(path, result, error);
+    else if (kind == WEFT_FILE_MICROCYLINDER)
+        code = inspect_microcylinder(path, result, error);
     else
         code = inspect_weave(path, result, error);
     if (code == WEFT_OK && !*result)

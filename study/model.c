@@ -1,6 +1,7 @@
 #include "study/model.h"
 
 #include "reflectance/lafortune.h"
+#include "reflectance/microcylinder_file.h"
 #include "study/file_kind.h"
 #include "study/raw_btf.h"
 
@@ -15,6 +16,8 @@ struct weft_model {
     weft_dataset *dataset;
     weft_raw_btf *raw;
     weft_weave weave;
+    weft_prepared_cloth cloth; /* of microcylinders */
+    weft_cloth_weighting weighting;
 };
 
 /* ---- Opening ---- */
@@ -36,15 +39,25 @@ static weft_code open_weave(weft_model *model, const char *path, const weft_mode
     return weft_weave_read(path, options->parameter, options->parameter_count, &model->weave, NULL, error);
 }
 
+static weft_code open_microcylinder(weft_model *model, const char *path, const weft_model_options *options,
+                                    weft_error *error)
+{
+    weft_microcylinder_description description;
+    WEFT_TRY(weft_microcylinder_read(path, options->parameter, options->parameter_count, &description, error));
+    model->cloth = weft_microcylinder_prepare(&description.cloth);
+    return WEFT_OK;
+}
+
 weft_code weft_model_open(const char *path, const weft_model_options *options, weft_model **result, weft_error *error)
 {
     weft_model *model = calloc(1, sizeof *model);
     if (!model)
         return weft_fail_memory(error, "model", sizeof *model);
     model->noise_seed = options->noise_seed;
+    model->weighting = options->as_printed ? WEFT_CLOTH_AS_PRINTED : WEFT_CLOTH_BY_AREA;
     weft_code code = weft_file_kind_of(path, &model->kind, error);
     if (code == WEFT_OK && model->kind == WEFT_FILE_SESSION)
-        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder, not a model (.weft, .btf.h5 or .wv)", path);
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder, not a model (.weft, .btf.h5, .wv or .mc)", path);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_STITCH)
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a stitch, not a model; weft simulate makes a .btf.h5 of it",
                          path);
@@ -52,6 +65,8 @@ weft_code weft_model_open(const char *path, const weft_model_options *options, w
         code = open_material(model, path, error);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_DATASET)
         code = open_dataset(model, path, error);
+    else if (code == WEFT_OK && model->kind == WEFT_FILE_MICROCYLINDER)
+        code = open_microcylinder(model, path, options, error);
     else if (code == WEFT_OK)
         code = open_weave(model, path, options, error);
     if (code != WEFT_OK)
@@ -87,12 +102,15 @@ static void add_row(const weft_model *model, int level, int y, const weft_query 
     }
 }
 
+/* So few are done sooner than other threads are woken. */
+enum { FEW_ROWS = 64 };
+
 /* BRDF x pi. */
 static weft_rgb level_mean(const weft_model *model, int level, const weft_query *query)
 {
     const weft_material_level *at = &model->material.level[level];
     double r = 0, g = 0, b = 0;
-#pragma omp parallel for reduction(+ : r, g, b)
+#pragma omp parallel for reduction(+ : r, g, b) if (at->height > FEW_ROWS)
     for (int y = 0; y < at->height; y++) {
         double sum[3] = {0};
         add_row(model, level, y, query, sum);
@@ -149,6 +167,8 @@ weft_code weft_model_brdf(weft_model *model, const weft_query *query, weft_rgb *
         *brdf = material_brdf(model, query);
     else if (model->kind == WEFT_FILE_WEAVE)
         *brdf = weave_brdf(model, query);
+    else if (model->kind == WEFT_FILE_MICROCYLINDER)
+        *brdf = weft_microcylinder_brdf(&model->cloth, model->weighting, query->light, query->view);
     else if (query->has_place)
         return weft_raw_btf_sample(model->raw, query->u, query->v, query->light, query->view, brdf, error);
     else

@@ -1,4 +1,4 @@
-/* Any model of Weft as a BRDF: a material, a dataset, or a weave. */
+/* Any model of Weft as a BRDF: a material, a dataset, a weave, or a cloth of microcylinders. */
 #ifndef WEFT_STUDY_MODEL_H
 #define WEFT_STUDY_MODEL_H
 
@@ -12,11 +12,12 @@ typedef struct weft_model weft_model;
 
 typedef struct weft_model_options {
     uint64_t noise_seed;                   /* of a weave; 0 = without its noise */
-    const weft_weave_parameter *parameter; /* [parameter_count] for the $names of a weave */
+    const weft_weave_parameter *parameter; /* [parameter_count] for the $names of a weave or cloth */
     int parameter_count;
+    bool as_printed; /* weights of a microcylinder cloth: of the article, not by area */
 } weft_model_options;
 
-/* Opens a .weft, .btf.h5 or .wv file. The caller frees it with weft_model_close. Errors: as the reader of each. */
+/* Opens a .weft, .btf.h5, .wv or .mc file. The caller frees it with weft_model_close. Errors: as the reader of each. */
 weft_code weft_model_open(const char *path, const weft_model_options *options, weft_model **result, weft_error *error);
 void weft_model_close(weft_model *model);
 
