@@ -105,9 +105,6 @@ static void add_row(const weft_model *model, int level, int y, const weft_query 
 /* So few are done sooner than other threads are woken. */
 enum { FEW_ROWS = 64 };
 
-/* So few are done sooner than other threads are woken. */
-enum { FEW_ROWS = 64 };
-
 /* BRDF x pi. */
 static weft_rgb level_mean(const weft_model *model, int level, const weft_query *query)
 {
