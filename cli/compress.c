@@ -42,8 +42,8 @@ static const struct argp_option option_table[] = {
      0},
     {"max-exponent", KEY_MAX_EXPONENT, "N", 0, "Largest exponent of a lobe (default: 8192)", 0},
     {"error", KEY_ERROR, "PERCENT", 0,
-     "Give each texel the smallest model whose relative RMSE is at most this: a diffuse term, lobes, T; the whole "
-     "model "
+     "Give each texel the smallest model whose relative RMSE is at most this: a diffuse term, lobes, T, S, as few bits "
+     "of them as will do; the whole model "
      "where none is (default: the whole model everywhere)",
      0},
     {"budget", KEY_BUDGET, "MB", 0,

@@ -32,11 +32,11 @@ struct weft_texel_fitter {
     weft_packed packed[WEFT_CHANNELS]; /* the last model that was fitted */
     weft_fit as_read[WEFT_CHANNELS];   /* the same as it will be read */
     int16_t frame[3];                  /* its code */
-    uint8_t *code;                     /* [channel][view_count] its T */
+    uint8_t *code;                     /* [2][channel][view_count] its T; then room for a copy */
     float *decoded;                    /* T of one channel as it will be read */
     int light_count;                   /* of S; 0 without */
     double *light, *decoded_light;     /* S of one channel, and as it will be read */
-    uint8_t *light_code;               /* [channel][light_count] */
+    uint8_t *light_code;               /* [2][channel][light_count] alike */
     float *cosine;                     /* with S */
     const weft_fit_kernels *kernels;
     weft_error_tally *tally;
@@ -48,7 +48,7 @@ static weft_code create_light(weft_texel_fitter *fitter, weft_error *error)
     size_t bytes = ((size_t)fitter->bundle.sample_count + WEFT_STRIP_LANES) * sizeof *fitter->cosine;
     fitter->light_count = fitter->bundle.light_count;
     fitter->light = calloc(2 * lights + 1, sizeof *fitter->light);
-    fitter->light_code = calloc(WEFT_CHANNELS * lights + 1, 1);
+    fitter->light_code = calloc(2 * WEFT_CHANNELS * lights + 1, 1);
     fitter->cosine = aligned_alloc(64, bytes);
     if (!fitter->light || !fitter->light_code || !fitter->cosine)
         return weft_fail_memory(error, "light table of a texel", bytes);
@@ -74,7 +74,7 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
         code = weft_error_tally_create(&fitter->tally, error);
     if (code == WEFT_OK) {
         fitter->upright.table = calloc(3 * views, sizeof *fitter->table);
-        fitter->code = calloc(WEFT_CHANNELS * views, 1);
+        fitter->code = calloc(2 * WEFT_CHANNELS * views, 1);
         fitter->decoded = calloc(views, sizeof *fitter->decoded);
         if (!fitter->upright.table || !fitter->code || !fitter->decoded)
             code = weft_fail_memory(error, "view tables of a texel", 3 * views * sizeof *fitter->table);
@@ -341,10 +341,39 @@ static weft_fit_options whole_model(const weft_texel_fitter *fitter)
     return options;
 }
 
+static bool meets_target(weft_texel_fitter *fitter)
+{
+    double target = fitter->source->target_error;
+    weft_error_sums sums = measure_model(fitter, false);
+    return sums.square_error <= target * target * sums.square;
+}
+
+static void round_codes(const uint8_t *whole, size_t count, int bits, uint8_t *rounded)
+{
+    for (size_t i = 0; i < count; i++)
+        rounded[i] = weft_table_code_rounded(whole[i], bits);
+}
+
+/* The fewest bits of T and S with which a model that meets the target still does. */
+static void spare_bits(weft_texel_fitter *fitter)
+{
+    size_t codes = WEFT_CHANNELS * (size_t)fitter->bundle.view_count;
+    size_t light_codes = WEFT_CHANNELS * (size_t)fitter->light_count;
+    uint8_t *whole = fitter->code + codes, *whole_light = fitter->light_code + light_codes;
+    memcpy(whole, fitter->code, codes);
+    if (light_codes > 0)
+        memcpy(whole_light, fitter->light_code, light_codes);
+    for (int bits = 4; bits <= 8; bits += 2) {
+        round_codes(whole, codes, bits, fitter->code);
+        round_codes(whole_light, light_codes, bits, fitter->light_code);
+        if (bits == 8 || meets_target(fitter))
+            return;
+    }
+}
+
 /* Climbs from the smallest model to the whole one, at last with S, until the target is met; returns whether it is. */
 static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whole)
 {
-    double target = fitter->source->target_error;
     weft_model_ladder ladder = weft_model_ladder_make(whole, fitter->bundle.view_count);
     for (int rung = 0; rung < ladder.count + (fitter->light_count > 0); rung++) {
         bool light = rung == ladder.count;
@@ -353,9 +382,11 @@ static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whol
         options.lobe_count = model.lobe_count;
         options.table = model.table;
         fit_model(fitter, &options, light);
-        weft_error_sums sums = measure_model(fitter, false);
-        if (sums.square_error <= target * target * sums.square)
+        if (meets_target(fitter)) {
+            if (model.table || light)
+                spare_bits(fitter);
             return true;
+        }
     }
     return false;
 }

@@ -12,12 +12,12 @@ enum { WANTED_SIDE = 512, LEGEND_WIDTH = 300, LINE_HEIGHT = 14, SWATCH = 10 };
 
 void weft_model_colour(uint8_t code, float rgb[3])
 {
-    /* Rows: bits of T, columns: bits of S; greys without tables, blues with T, oranges with S, greens with both. */
+    /* Greys without tables, blues with T, oranges with S, greens with both; the paler the fewer bits. */
     static const float base[4][3] = {{0.9f, 0.9f, 0.9f}, {0.45f, 0.65f, 1}, {1, 0.65f, 0.3f}, {0.45f, 0.9f, 0.5f}};
     weft_model_parts parts = weft_model_decode(code);
-    int bits = parts.table_bits + parts.light_table_bits;
+    int bits = parts.table_bits > parts.light_table_bits ? parts.table_bits : parts.light_table_bits;
     const float *hue = base[(parts.table_bits > 0) + 2 * (parts.light_table_bits > 0)];
-    float brightness = 1 - 0.22f * (float)parts.lobe_count, pale = bits > 0 ? 0.5f - 0.5f * (float)bits / 16 : 0;
+    float brightness = 1 - 0.2f * (float)parts.lobe_count, pale = bits > 0 ? (float)(8 - bits) * 0.17f : 0;
     for (int c = 0; c < 3; c++)
         rgb[c] = brightness * (hue[c] + pale * (1 - hue[c]));
 }

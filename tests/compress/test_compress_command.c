@@ -1,6 +1,7 @@
 /* weft compress as a user runs it. */
 #include "tests/btf/cmocka_all.h"
 
+#include "btf/image.h"
 #include "btf/material.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
@@ -79,6 +80,23 @@ static void a_target_error_says_how_many_texels_miss_it(void **state)
     expect("command.btf.h5 -o target.weft --error 0.1", 0, "9 of 9 texels");
 }
 
+static void a_budget_is_kept_and_reported_in_a_picture(void **state)
+{
+    (void)state;
+    struct stat status;
+    weft_image picture;
+    expect("command.btf.h5 -o budget.weft --budget 0.006 --report report", 0, "budget.weft: 0.0");
+    assert_int_equal(stat("budget.weft", &status), 0);
+    assert_true(status.st_size <= 6000);
+    assert_int_equal(weft_image_read("report/models.png", &picture, NULL, NULL), WEFT_OK);
+    weft_image_free(&picture);
+    assert_int_equal(access("report/index.html", F_OK), 0);
+    expect("command.btf.h5 -o none.weft --budget 0.001", 2, "too small");
+    expect("command.btf.h5 -o none.weft --budget 1 --error 3", 2, "not both");
+    expect("command.btf.h5 -o none.weft --report report", 2, "needs --error or --budget");
+    assert_int_not_equal(access("none.weft", F_OK), 0);
+}
+
 static void wrong_usage_is_2(void **state)
 {
     (void)state;
@@ -122,6 +140,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dataset_becomes_a_material_with_a_table_of_errors),
         cmocka_unit_test(a_target_error_says_how_many_texels_miss_it),
+        cmocka_unit_test(a_budget_is_kept_and_reported_in_a_picture),
         cmocka_unit_test(wrong_usage_is_2),
         cmocka_unit_test(bad_input_is_1_and_leaves_nothing),
         cmocka_unit_test(a_full_disk_is_3_and_leaves_nothing),
