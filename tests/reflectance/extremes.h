@@ -5,6 +5,7 @@
 #include "tests/btf/cmocka_all.h"
 #include "tests/reflectance/random.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 /* Room for rounding above a bound. */
