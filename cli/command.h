@@ -41,6 +41,7 @@ int command_register(int argc, char **argv);
 int command_import(int argc, char **argv);
 int command_compress(int argc, char **argv);
 int command_bard(int argc, char **argv);
+int command_tile(int argc, char **argv);
 int command_fit_weave(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_play(int argc, char **argv);

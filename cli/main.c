@@ -17,6 +17,7 @@ static const command commands[] = {
     {"register", command_register, "turn the photographs of a session into a dataset"},
     {"import", command_import, "turn foreign photographs into a dataset"},
     {"compress", command_compress, "fit lobes and a view table to a dataset"},
+    {"tile", command_tile, "average the repeats of a dataset into one tile"},
     {"bard", command_bard, "predict a dataset from the photographs under one light"},
     {"fit-weave", command_fit_weave, "fit a weave to a dataset"},
     {"render", command_render, "draw a material to an image file"},

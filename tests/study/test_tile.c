@@ -1,0 +1,273 @@
+/* weft tile on cloth whose tile is known. */
+#include "btf/direction.h"
+#include "fixture.h"
+#include "study/tile.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const char *const input = "tile.btf.h5", *const output = "tile.tile.btf.h5";
+
+/* ---- Cloth ---- */
+
+/* What the datasets of these tests show. */
+static struct {
+    double width, height, left, top; /* of the tile, texels */
+    double noise;                    /* standard deviation relative to the value */
+    weft_weave weave;
+} cloth;
+
+/* Mixes a state well (Steele, Lea and Flood 2014). */
+static uint64_t mixed(uint64_t state)
+{
+    state = (state ^ state >> 30) * 0xbf58476d1ce4e5b9u;
+    state = (state ^ state >> 27) * 0x94d049bb133111ebu;
+    return state ^ state >> 31;
+}
+
+/* A deviate that depends on place and directions alone: sum of four uniforms, of unit variance. */
+static double deviate(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    const double part[] = {x, y, light.x, light.y, view.x, view.y};
+    uint64_t state = 0;
+    double sum = 0;
+    for (int i = 0; i < 6; i++)
+        state = mixed(state + (uint64_t)(int64_t)(65536 * part[i]) + 0x9e3779b97f4a7c15u);
+    for (int i = 0; i < 4; i++) {
+        state = mixed(state + 0x9e3779b97f4a7c15u);
+        sum += (double)(state >> 40) / (1 << 24) - 0.5;
+    }
+    return sum * sqrt(3);
+}
+
+static weft_rgb noisy(weft_rgb value, int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    double factor = fmax(1 + cloth.noise * deviate(x, y, light, view), 0);
+    return (weft_rgb){factor * value.r, factor * value.g, factor * value.b};
+}
+
+/* A smooth tile without symmetry. */
+static weft_rgb waves(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    double u = 2 * WEFT_PI * (x + 0.5 - cloth.left) / cloth.width,
+           v = 2 * WEFT_PI * (y + 0.5 - cloth.top) / cloth.height;
+    double value = 0.5 + 0.2 * light.z * sin(u) * cos(v) + 0.1 * sin(2 * u + v) + 0.1 * view.z * cos(u - 2 * v);
+    return noisy((weft_rgb){value, 0.5 * value, 0.25 * value}, x, y, light, view);
+}
+
+/* The weave, each texel the mean of 4 x 4 points. */
+static weft_rgb woven(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    enum { POINTS = 4 };
+    weft_rgb sum = {0};
+    for (int i = 0; i < POINTS * POINTS; i++) {
+        double U = (x + (i % POINTS + 0.5) / POINTS - cloth.left) / cloth.width;
+        double V = 1 - (y + (i / POINTS + 0.5) / POINTS - cloth.top) / cloth.height;
+        weft_weave_point point = weft_weave_locate(&cloth.weave, U, V, 0);
+        weft_rgb value = weft_weave_brdf(&cloth.weave, &point, light, view);
+        sum.r += value.r, sum.g += value.g, sum.b += value.b;
+    }
+    double scale = WEFT_PI / (POINTS * POINTS);
+    return noisy((weft_rgb){scale * sum.r, scale * sum.g, scale * sum.b}, x, y, light, view);
+}
+
+static weft_rgb only_noise(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    double value = 0.5 + 0.1 * deviate(x, y, light, view);
+    return (weft_rgb){value, value, value};
+}
+
+static void read_weave(const char *name)
+{
+    char path[512];
+    weft_error error = {0};
+    snprintf(path, sizeof path, "%s/weaves/%s", WEFT_ASSETS, name);
+    expect_ok(weft_weave_read(path, NULL, 0, &cloth.weave, NULL, &error), &error);
+}
+
+static weft_code find(const weft_weave *weave, weft_tile_report *report, weft_error *error)
+{
+    weft_dataset *dataset;
+    expect_ok(weft_dataset_open(input, &dataset, error), error);
+    weft_code code = weft_tile_find(dataset, weave, NULL, report, error);
+    if (code == WEFT_OK)
+        code = weft_tile_write(dataset, output, NULL, report, error);
+    weft_dataset_close(dataset);
+    return code;
+}
+
+/* Distance of two places that repeat. */
+static double apart(double a, double b, double period)
+{
+    double turns = (a - b) / period;
+    return fabs(turns - round(turns)) * period;
+}
+
+static void expect_near(const char *what, double found, double wanted, double within)
+{
+    if (!(fabs(found - wanted) <= within))
+        fail_msg("%s is %.4f, not %.4f to %.4f", what, found, wanted, within);
+}
+
+/* ---- Tests ---- */
+
+static void the_period_is_found_to_a_twentieth_of_a_texel_under_noise(void **state)
+{
+    (void)state;
+    static const double size[][2] = {{9.37, 13.82}, {12, 10}, {21.33, 32}};
+    for (int i = 0; i < 3; i++) {
+        cloth.width = size[i][0], cloth.height = size[i][1], cloth.left = 3.3, cloth.top = 5.9, cloth.noise = 0.2;
+        fixture_far_dataset(input, 70, 66, 2, waves, 1);
+        weft_tile_report report;
+        weft_error error = {0};
+        expect_ok(find(NULL, &report, &error), &error);
+        expect_near("width", report.tile.width, cloth.width, 0.05);
+        expect_near("height", report.tile.height, cloth.height, 0.05);
+        expect_near("width in mm", report.width_mm, cloth.width, 0.05);
+        expect_near("tiles along u", report.tiles_x, 70 / cloth.width, 0.05);
+    }
+}
+
+/* Twills look the same some cells further along both axes: the likeness tells that it is one of these places. */
+static void the_weave_gives_the_phase_to_a_twentieth_of_a_texel_under_noise(void **state)
+{
+    (void)state;
+    static const char *const name[] = {"wool_gabardine.wv", "cotton_denim.wv", "polyester_lining.wv"};
+    for (int i = 0; i < 3; i++) {
+        read_weave(name[i]);
+        double cell_x = i < 2 ? 2.11 : 8.44, cell_y = i < 2 ? 2.07 : 8.28;
+        cloth.width = cell_x * cloth.weave.tile_width, cloth.height = cell_y * cloth.weave.tile_height;
+        cloth.left = 4.27, cloth.top = 7.61, cloth.noise = 0.15;
+        fixture_far_dataset(input, 96, 96, 2, woven, 0);
+        weft_tile_report report;
+        weft_error error = {0};
+        expect_ok(find(&cloth.weave, &report, &error), &error);
+        expect_near("width", report.tile.width, cloth.width, 0.05);
+        expect_near("height", report.tile.height, cloth.height, 0.05);
+        expect_near("left", apart(report.tile.left, cloth.left, cell_x), 0, 0.05);
+        expect_near("top", apart(report.tile.top, cloth.top, cell_y), 0, 0.05);
+        expect_near("likeness", report.likeness, 1, 0.08);
+        weft_weave_free(&cloth.weave);
+    }
+}
+
+/* Sum over the texels and channels of a dataset, of image `image`. */
+static double mean_of_image(const char *path, int image)
+{
+    weft_dataset *dataset;
+    weft_error error = {0};
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    size_t images = (size_t)layout->image_count, texels = (size_t)layout->width * (size_t)layout->height;
+    weft_half *samples = malloc(3 * texels * images * sizeof *samples);
+    uint8_t *mask = malloc(texels * images);
+    double sum = 0;
+    expect_ok(weft_dataset_read_block(dataset, 0, 0, layout->width, layout->height, samples, mask, &error), &error);
+    for (size_t i = 0; i < texels; i++) {
+        assert_int_equal(mask[i * images + (size_t)image], 0);
+        sum += (double)weft_float_of_half(samples[3 * (i * images + (size_t)image)]);
+    }
+    weft_dataset_close(dataset);
+    free(samples);
+    free(mask);
+    return sum / (double)texels;
+}
+
+static void the_mean_tile_is_free_of_noise_and_keeps_the_mean(void **state)
+{
+    (void)state;
+    cloth.width = 12, cloth.height = 10, cloth.left = cloth.top = 0, cloth.noise = 0;
+    fixture_far_dataset(input, 96, 80, 2, waves, 0);
+    weft_tile_report report;
+    weft_error error = {0};
+    expect_ok(find(NULL, &report, &error), &error);
+    assert_int_equal(report.texels_x, 12);
+    assert_int_equal(report.texels_y, 10);
+    expect_near("residual share", report.residual_share, 0, 0.05);
+    expect_near("mean of image 5", mean_of_image(output, 5), mean_of_image(input, 5), 1e-3);
+    cloth.noise = 0.1;
+    fixture_far_dataset(input, 96, 80, 2, waves, 0);
+    expect_ok(find(NULL, &report, &error), &error);
+    expect_near("residual relative to the mean", report.residual_relative, 0.1, 0.02);
+}
+
+static void a_sample_masked_in_one_tile_comes_from_the_others(void **state)
+{
+    (void)state;
+    cloth.width = 12, cloth.height = 10, cloth.left = cloth.top = 0, cloth.noise = 0;
+    fixture_far_dataset(input, 36, 30, 2, waves, 1);
+    weft_tile_report report;
+    weft_error error = {0};
+    expect_ok(find(NULL, &report, &error), &error);
+    assert_int_equal(report.empty_count, 0);
+    mean_of_image(output, 0); /* checks the mask */
+}
+
+static void expect_refusal(const char *with)
+{
+    weft_tile_report report;
+    weft_error error = {0};
+    remove(output);
+    assert_int_equal(find(cloth.weave.yarn ? &cloth.weave : NULL, &report, &error), WEFT_BAD_INPUT);
+    if (!strstr(error.message, with))
+        fail_msg("'%s' does not say '%s'", error.message, with);
+    assert_int_not_equal(access(output, F_OK), 0);
+}
+
+static void what_has_no_tile_is_refused(void **state)
+{
+    (void)state;
+    fixture_far_dataset(input, 64, 64, 2, only_noise, 0);
+    expect_refusal("does not repeat along u");
+    cloth.width = 40, cloth.height = 10, cloth.left = cloth.top = cloth.noise = 0;
+    fixture_far_dataset(input, 60, 60, 2, waves, 0);
+    expect_refusal("does not repeat along u");
+    fixture_far_dataset(input, 6, 60, 2, waves, 0);
+    expect_refusal("6 x 60 texels");
+    fixture_near_dataset(input, 16, 4, waves);
+    expect_refusal("near lights");
+}
+
+static void another_weave_is_refused(void **state)
+{
+    (void)state;
+    read_weave("cotton_denim.wv");
+    cloth.width = 15.5, cloth.height = 31, cloth.left = cloth.top = 2, cloth.noise = 0;
+    fixture_far_dataset(input, 64, 64, 3, woven, 0);
+    weft_weave_free(&cloth.weave);
+    read_weave("silk_shantung.wv");
+    expect_refusal("does not look like the weave 'Silk shantung'");
+    weft_weave_free(&cloth.weave);
+}
+
+static void the_command_says_what_it_did(void **state)
+{
+    (void)state;
+    cloth.width = 12, cloth.height = 10, cloth.left = cloth.top = 0, cloth.noise = 0;
+    fixture_far_dataset(input, 36, 30, 2, waves, 0);
+    remove(output);
+    assert_int_equal(system(WEFT_PROGRAM " tile tile.btf.h5 -o tile.tile.btf.h5 | grep -q 'tiles: 3.00 x 3.00'"), 0);
+    assert_int_equal(access(output, F_OK), 0);
+    assert_int_equal(
+        system(WEFT_PROGRAM " tile tile.btf.h5 -o tile.tile.btf.h5 --json | grep -q '\"texels\":\\[12,10\\]'"), 0);
+    assert_int_equal(WEXITSTATUS(system(WEFT_PROGRAM " tile tile.btf.h5 -o tile.btf.h5 2>/dev/null")), 2);
+    assert_int_equal(WEXITSTATUS(system(WEFT_PROGRAM " tile missing.btf.h5 -o tile.tile.btf.h5 2>/dev/null")), 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_period_is_found_to_a_twentieth_of_a_texel_under_noise),
+        cmocka_unit_test(the_weave_gives_the_phase_to_a_twentieth_of_a_texel_under_noise),
+        cmocka_unit_test(the_mean_tile_is_free_of_noise_and_keeps_the_mean),
+        cmocka_unit_test(a_sample_masked_in_one_tile_comes_from_the_others),
+        cmocka_unit_test(what_has_no_tile_is_refused),
+        cmocka_unit_test(another_weave_is_refused),
+        cmocka_unit_test(the_command_says_what_it_did),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
