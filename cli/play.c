@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "cli/scene_errors.h"
 #include "cli/scene_options.h"
 
 #include "player/context.h"
@@ -58,6 +59,7 @@ typedef struct play {
     double frame_ms; /* smoothed */
     double titled_s; /* when the title was set last */
     long frame_count;
+    char errors[SCENE_ERRORS_SIZE]; /* of what is shown, "" until it rests */
 } play;
 
 static double now_s(void)
@@ -98,11 +100,11 @@ static void set_title(play *p)
         return;
     p->titled_s = now;
     const weft_scene *scene = &p->interaction.scene;
-    char title[256];
-    snprintf(title, sizeof title, "Weft - %s%s - mips %s - %.1f ms/frame - H for help",
+    char title[256 + SCENE_ERRORS_SIZE];
+    snprintf(title, sizeof title, "Weft - %s%s - mips %s - %.1f ms/frame%s%s - H for help",
              scene->pane_count > 1 ? "side by side" : weft_mode_name(scene->pane[0]),
              p->interaction.drag_moves_light ? " - drag moves the light" : "",
-             scene->level_choice == WEFT_LEVEL_NONE ? "off" : "on", p->frame_ms);
+             scene->level_choice == WEFT_LEVEL_NONE ? "off" : "on", p->frame_ms, p->errors[0] ? " - " : "", p->errors);
     weft_window_set_title(p->window, title);
 }
 
@@ -111,6 +113,8 @@ static weft_code prepare_canvas(play *p, weft_error *error)
 {
     weft_interaction *i = &p->interaction;
     weft_window_size(p->window, &i->width, &i->height);
+    if (i->changed)
+        p->errors[0] = 0;
     bool resized = i->width != p->canvas.width || i->height != p->canvas.height;
     if (resized && i->width > 0 && i->height > 0) {
         weft_canvas_free(&p->canvas);
@@ -200,6 +204,7 @@ static weft_code grant_wishes(play *p, weft_error *error)
 
 static weft_code run(play *p, weft_error *error)
 {
+    const weft_interaction *i = &p->interaction;
     int limit = p->command->frame_limit;
     bool resting = false;
     while (weft_window_poll(p->window, resting ? 0.1 : 0) && (limit == 0 || p->frame_count < limit)) {
@@ -214,6 +219,8 @@ static weft_code run(play *p, weft_error *error)
         resting = p->canvas.frame_count >= STILL_FRAMES;
         if (!resting)
             WEFT_TRY(draw_frame(p, error));
+        if (p->canvas.frame_count == STILL_FRAMES && !resting)
+            WEFT_TRY(scene_errors_print(p->player, &i->scene, p->canvas.width, p->canvas.height, p->errors, error));
         weft_canvas_present(&p->canvas);
         weft_window_show(p->window);
         set_title(p);

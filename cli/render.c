@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "cli/scene_errors.h"
 #include "cli/scene_options.h"
 
 #include "player/context.h"
@@ -61,7 +62,12 @@ static weft_code draw(render_command *command, weft_player *player, weft_error *
                                  &image, error));
     weft_code code = scene_write_image(command->output, &image, error);
     weft_image_free(&image);
-    return code;
+    WEFT_TRY(code);
+    char errors[SCENE_ERRORS_SIZE];
+    WEFT_TRY(scene_errors_print(player, &scene->scene, scene->width, scene->height, errors, error));
+    if (errors[0])
+        command_say(&scene->common, "%s", errors);
+    return WEFT_OK;
 }
 
 static weft_code render(render_command *command, weft_error *error)

@@ -34,6 +34,7 @@ for model in cloth.weft cloth.btf.h5 "$assets/weaves/wool_gabardine.wv"; do
 done
 
 expect_ok render cloth.weft --raw cloth.btf.h5 --weave "$assets/weaves/wool_gabardine.wv" --mode split --size 300x120 -o picture.png
+grep -q "^from raw: compressed [0-9.]* % .*, analytic [0-9.]* %" out.log || fail "render does not say how far the models are from the data"
 expect_ok render cloth.weft --mesh sphere --size 64x64 -o sphere.exr
 expect_ok compare cloth.btf.h5 cloth.weft --weave "$assets/weaves/wool_gabardine.wv" -o report
 grep -q "<img" report/index.html || fail "the comparison has no pictures"
