@@ -54,6 +54,11 @@ static bucket_box box_of_segment(const segment_grid *grid, const yarn_strand *st
     return box;
 }
 
+static size_t bucket_of(const segment_grid *grid, int x, int y, int z)
+{
+    return ((size_t)z * (size_t)grid->count[1] + (size_t)y) * (size_t)grid->count[0] + (size_t)x;
+}
+
 static int floor_divide(int a, int b)
 {
     return a >= 0 ? a / b : -((-a + b - 1) / b);
@@ -66,8 +71,7 @@ static void list_segment(segment_grid *grid, const bucket_box *box, int strand, 
         for (int y = box->low[1]; y < box->high[1]; y++) {
             for (int x = box->low[0]; x < box->high[0]; x++) {
                 int tiles_x = floor_divide(x, grid->count[0]), tiles_y = floor_divide(y, grid->count[1]);
-                size_t bucket = (size_t)((z * grid->count[1] + y - tiles_y * grid->count[1]) * grid->count[0] + x -
-                                         tiles_x * grid->count[0]);
+                size_t bucket = bucket_of(grid, x - tiles_x * grid->count[0], y - tiles_y * grid->count[1], z);
                 if (fill)
                     grid->segment[fill[bucket]++] = (near_segment){strand, station, -tiles_x, -tiles_y};
                 else
@@ -108,7 +112,7 @@ static weft_code fill_lists(segment_grid *grid, weft_real margin, size_t buckets
     list_all(grid, margin, NULL);
     for (size_t i = 0; i < buckets; i++)
         grid->start[i + 1] += grid->start[i];
-    size_t *fill = malloc(buckets * sizeof *fill);
+    size_t *fill = malloc((buckets + 1) * sizeof *fill);
     grid->segment = malloc((grid->start[buckets] + 1) * sizeof *grid->segment);
     if (!fill || !grid->segment) {
         free(fill);
@@ -178,7 +182,7 @@ const near_segment *segments_near(const segment_grid *grid, weft_vec3 place, siz
     int x = bucket_index(place.x, grid->bucket.x, grid->count[0]);
     int y = bucket_index(place.y, grid->bucket.y, grid->count[1]);
     int z = bucket_index(place.z - grid->bottom, grid->bucket.z, grid->count[2]);
-    size_t bucket = (size_t)((z * grid->count[1] + y) * grid->count[0] + x);
+    size_t bucket = bucket_of(grid, x, y, z);
     *count = grid->start[bucket + 1] - grid->start[bucket];
     return grid->segment + grid->start[bucket];
 }

@@ -205,6 +205,7 @@ static void straight_mesh(const char *extra, weft_stitch *stitch, weft_tile_mesh
 {
     char text[512];
     weft_error error = {0};
+    *mesh = (weft_tile_mesh){0};
     snprintf(text, sizeof text, straight_yarn, extra);
     if (weft_stitch_parse(text, "straight", stitch, &error) != WEFT_OK ||
         weft_tile_mesh_create(stitch, 0, "straight", mesh, &error) != WEFT_OK)
