@@ -69,7 +69,7 @@ expect_error 1 "cloth.weft" fit-weave cloth.weft --weave start.wv -o none.wv
 expect_error 2 "needs" fit-weave cloth.btf.h5 -o none.wv
 expect_no_file none.wv
 
-for command in capture register import compress bard fit-weave render play compare eval info verify; do
+for command in capture register import compress bard tile fit-weave render play compare eval info verify; do
     expect_says "xample" "$command" --help
 done
 echo "$passed passed, 0 failed"
