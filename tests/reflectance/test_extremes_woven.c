@@ -114,9 +114,15 @@ static segment_bounds bounds_of(const weft_segment *segment, weft_real radius, w
     double a = segment->width / 2, factor = places_factor(segment, light, view);
     bool staple = fabs((double)segment->psi) >= 1e-15;
     double point = factor * a * (radius + a);
-    /* The texture rounds its place along the yarn otherwise than the point does; near a spike of R that shows. */
-    double texture = 1.01 * point * (staple ? 2 * segment->umax : WEFT_PI) / segment->highlight_width;
+    /* The texture rounds its place along the yarn otherwise than the point does, which shows at a spike of R. e(u) is
+     * monotone in |u|, so R is largest in the middle or at the end. */
+    weft_real largest = fmax(weft_spine_radius(segment, 0), weft_spine_radius(segment, segment->umax));
+    double extent = (staple ? 2 * (double)segment->umax : (double)WEFT_PI) / segment->highlight_width;
+    double texture = factor * a * (fmax(largest, radius) + a) * extent;
     double range = staple ? a * (longest_spine(segment) + 2 * a * segment->umax) : (double)WEFT_PI * a * (radius + a);
+    /* A spike of R that is narrower than the rounding of u is known to its order of magnitude only. */
+    if (WEFT_REAL_EPSILON > 1e-9)
+        texture *= 8;
     return (segment_bounds){point, texture, factor * range};
 }
 
