@@ -248,12 +248,20 @@ typedef struct fitting {
     weft_texel_counts counts;
 } fitting;
 
+/* Of the metadata, at most: its numbers may be longer than those of the provenance that they come from. */
+static uint64_t metadata_bytes(const weft_dataset_layout *layout)
+{
+    json_t *provenance = json_loads(layout->provenance, 0, NULL);
+    uint64_t bytes = METADATA_BYTES + (provenance ? json_dumpb(provenance, NULL, 0, JSON_COMPACT) : 0);
+    json_decref(provenance);
+    return bytes;
+}
+
 /* With a target or a budget: which model each texel has is part of the material. */
 static weft_code fit_chosen(fitting *of, const weft_texel_source *source, const weft_dense_job *job,
                             weft_material *material, weft_dense_result *result, weft_error *error)
 {
-    weft_budget_plan plan = {.bytes = of->options->budget_bytes,
-                             .reserve = METADATA_BYTES + strlen(source->layout->provenance)};
+    weft_budget_plan plan = {.bytes = of->options->budget_bytes, .reserve = metadata_bytes(source->layout)};
     if (plan.bytes > 0)
         return weft_budget_fit(of->dataset, source, job, &plan, material, result, error);
     WEFT_TRY(weft_dense_fit(of->dataset, source, job, material, result, error));
