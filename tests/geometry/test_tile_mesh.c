@@ -9,6 +9,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+static weft_stitch shipped[SHIPPED_STITCHES];
+static weft_tile_mesh shipped_mesh[SHIPPED_STITCHES];
+
+static int open_shipped(void **state)
+{
+    (void)state;
+    for (int i = 0; i < SHIPPED_STITCHES; i++)
+        shipped_stitch_open(shipped_stitch[i], 0, &shipped[i], &shipped_mesh[i]);
+    return 0;
+}
+
+static int close_shipped(void **state)
+{
+    (void)state;
+    for (int i = 0; i < SHIPPED_STITCHES; i++) {
+        weft_tile_mesh_free(&shipped_mesh[i]);
+        weft_stitch_free(&shipped[i]);
+    }
+    return 0;
+}
+
 typedef struct side {
     int32_t from, to;
 } side;
@@ -117,13 +138,9 @@ static void every_shipped_stitch_is_closed_manifold_and_oriented(void **state)
 {
     (void)state;
     for (int i = 0; i < SHIPPED_STITCHES; i++) {
-        weft_stitch stitch;
-        weft_tile_mesh mesh;
-        shipped_stitch_open(shipped_stitch[i], 0, &stitch, &mesh);
-        check_closed(&mesh);
-        check_fans(&mesh);
-        weft_tile_mesh_free(&mesh);
-        weft_stitch_free(&stitch);
+        const weft_tile_mesh *mesh = &shipped_mesh[i];
+        check_closed(mesh);
+        check_fans(mesh);
     }
 }
 
@@ -131,14 +148,10 @@ static void opposite_borders_match_vertex_by_vertex(void **state)
 {
     (void)state;
     for (int i = 0; i < SHIPPED_STITCHES; i++) {
-        weft_stitch stitch;
-        weft_tile_mesh mesh;
-        shipped_stitch_open(shipped_stitch[i], 0, &stitch, &mesh);
-        check_borders(&mesh);
-        assert_int_equal(unmatched(&mesh, 0), 0);
-        assert_int_equal(unmatched(&mesh, 1), 0);
-        weft_tile_mesh_free(&mesh);
-        weft_stitch_free(&stitch);
+        const weft_tile_mesh *mesh = &shipped_mesh[i];
+        check_borders(mesh);
+        assert_int_equal(unmatched(mesh, 0), 0);
+        assert_int_equal(unmatched(mesh, 1), 0);
     }
 }
 
@@ -164,21 +177,17 @@ static void gradients_point_out_of_the_triangles(void **state)
 {
     (void)state;
     for (int i = 0; i < SHIPPED_STITCHES; i++) {
-        weft_stitch stitch;
-        weft_tile_mesh mesh;
-        shipped_stitch_open(shipped_stitch[i], 0, &stitch, &mesh);
+        const weft_tile_mesh *mesh = &shipped_mesh[i];
         double all = 0, along = 0;
-        for (int k = 0; k < mesh.triangle_count; k++) {
+        for (int k = 0; k < mesh->triangle_count; k++) {
             double area[3];
-            triangle_area(&mesh, k, area);
+            triangle_area(mesh, k, area);
             all += 3 * sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
             for (int c = 0; c < 3; c++)
-                along += dot(area, mesh.normal[mesh.triangle[k][c]]);
+                along += dot(area, mesh->normal[mesh->triangle[k][c]]);
         }
         print_message("%s: %.3f\n", shipped_stitch[i], along / all);
         assert_true(along > 0.9 * all);
-        weft_tile_mesh_free(&mesh);
-        weft_stitch_free(&stitch);
     }
 }
 
@@ -301,5 +310,5 @@ int main(void)
         cmocka_unit_test(plies_are_real_grooves),
         cmocka_unit_test(the_mesh_does_not_depend_on_the_number_of_threads),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, open_shipped, close_shipped);
 }
