@@ -191,6 +191,11 @@ static void holes_are_seen_through(void **state)
     assert_true(fabs(covered - 0.4) < 0.004);
     /* A lit cylinder sends back the mean of its cosine, pi / 4. */
     assert_true(fabs((double)mean[0][0] / covered - WEFT_PI / 4) < 0.004);
+    /* What is met first lies on the cylinder, with its normal and its fibres. */
+    weft_first_hit first;
+    assert_true(weft_illumination_path(lit.illumination, weft_vec3_of(0.7, 0.6, 5), up, 1, 0, mean, &first));
+    assert_true(fabs(hypot(first.at.y - 0.5, first.at.z) - 0.2) < 1e-3 && fabs(first.at.y - 0.6) < 1e-5);
+    assert_true(fabs(first.normal.y - 0.5) < 0.02 && fabs(first.tangent.x) > 0.9999 && first.yarn == 0);
     put_out(&lit);
 }
 
