@@ -57,7 +57,7 @@ void scene_options_init(scene_options *options)
 static void parse_level(weft_scene *scene, const char *text, struct argp_state *state)
 {
     if (strcmp(text, "auto") == 0) {
-        scene->level_choice = WEFT_LEVEL_AUTO;
+        scene->level_choice = WEFT_LEVEL_TRILINEAR;
     } else if (strcmp(text, "none") == 0) {
         scene->level_choice = WEFT_LEVEL_NONE;
     } else {
@@ -133,7 +133,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         o->repeat = parse_number("repeat", argument, 1e-3, 1e6, state);
         return 0;
     case KEY_LIGHT:
-        parse_light(&o->scene.light, argument, state);
+        parse_light(&o->scene.light[0].direction, argument, state);
         return 0;
     case KEY_CAMERA:
         parse_camera(&o->scene.orbit, argument, state);

@@ -22,7 +22,7 @@ void weft_player_set_surface(const weft_player *p, GLuint program, const weft_sc
     float matrix[16];
     weft_orbit_clip_of_world(&scene->orbit, p->centre, p->radius, aspect, shift_x, shift_y, matrix);
     weft_vec3 eye = weft_orbit_eye(&scene->orbit, p->centre, p->radius);
-    weft_vec3 light = weft_direction_of_angles(scene->light);
+    weft_vec3 light = weft_direction_of_angles(scene->light[0].direction);
     glUseProgram(program);
     glUniformMatrix4fv(glGetUniformLocation(program, "clip_of_world"), 1, GL_FALSE, matrix);
     weft_gl_set_vec3(program, "eye", eye.x, eye.y, eye.z);

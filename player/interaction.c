@@ -56,7 +56,7 @@ void weft_interaction_move(weft_interaction *i, double x, double y)
     if (i->drag == WEFT_DRAG_ORBIT)
         turn_camera(&i->scene.orbit, across_rad, down_rad);
     else if (i->drag == WEFT_DRAG_LIGHT)
-        turn_light(&i->scene.light, across_rad, down_rad);
+        turn_light(&i->scene.light[0].direction, across_rad, down_rad);
     i->changed |= i->drag != WEFT_DRAG_NONE;
 }
 
@@ -98,7 +98,7 @@ static bool change_scene(weft_interaction *i, int key)
         show_all(i);
         return true;
     case GLFW_KEY_M:
-        scene->level_choice = scene->level_choice == WEFT_LEVEL_NONE ? WEFT_LEVEL_AUTO : WEFT_LEVEL_NONE;
+        scene->level_choice = scene->level_choice == WEFT_LEVEL_NONE ? WEFT_LEVEL_TRILINEAR : WEFT_LEVEL_NONE;
         return true;
     case GLFW_KEY_LEFT_BRACKET:
         scene->exposure /= exposure_step;

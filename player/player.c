@@ -6,25 +6,6 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-const char *weft_mode_name(weft_mode mode)
-{
-    static const char *const name[WEFT_MODE_COUNT] = {"raw", "compressed", "analytic"};
-    return name[mode];
-}
-
-weft_scene weft_scene_default(void)
-{
-    return (weft_scene){
-        .orbit = {weft_rad_of_deg(-70), weft_rad_of_deg(28), 3.6},
-        .light = {weft_rad_of_deg(45), weft_rad_of_deg(-110)},
-        .exposure = 1,
-        .repeat = 8,
-        .pane_count = 1,
-        .pane = {WEFT_MODE_COMPRESSED},
-        .labels = true,
-    };
-}
-
 /* ---- Programs ---- */
 
 static weft_code build_programs(weft_player *p, weft_error *error)

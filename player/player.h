@@ -8,40 +8,15 @@
 #define WEFT_PLAYER_PLAYER_H
 
 #include "btf/dataset.h"
-#include "btf/direction.h"
 #include "btf/image.h"
 #include "btf/material.h"
 #include "btf/progress.h"
 #include "player/canvas.h"
 #include "player/mesh.h"
-#include "player/orbit.h"
+#include "player/scene.h"
 #include "reflectance/weave.h"
 
 #include <stdbool.h>
-
-typedef enum weft_mode { WEFT_MODE_RAW, WEFT_MODE_COMPRESSED, WEFT_MODE_ANALYTIC, WEFT_MODE_COUNT } weft_mode;
-
-/* "raw", "compressed", "analytic". Pure. */
-const char *weft_mode_name(weft_mode mode);
-
-/* Which mip level is shown: the one that fits the pixel's footprint, the finest everywhere, or a given one. */
-typedef enum weft_level_choice { WEFT_LEVEL_AUTO, WEFT_LEVEL_NONE, WEFT_LEVEL_FIXED } weft_level_choice;
-
-typedef struct weft_scene {
-    weft_orbit orbit;
-    weft_angles light; /* of the world, theta from its z */
-    double exposure;
-    double repeat; /* materials for one unit of the mesh's texture coordinates */
-    weft_level_choice level_choice;
-    double level;   /* with WEFT_LEVEL_FIXED; may be fractional */
-    int pane_count; /* side by side */
-    weft_mode pane[WEFT_MODE_COUNT];
-    bool labels;      /* the name of its mode in each pane */
-    const char *help; /* text over the picture, or NULL; borrowed */
-} weft_scene;
-
-/* A light from the upper left, the drape seen from above its rim, eight materials across it, compressed. */
-weft_scene weft_scene_default(void);
 
 typedef struct weft_player weft_player;
 

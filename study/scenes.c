@@ -29,7 +29,7 @@ const char *weft_scenes_model_name(int model)
 static weft_scene scene_of(const setting *s, weft_mode mode)
 {
     weft_scene scene = weft_scene_default();
-    scene.light = (weft_angles){weft_rad_of_deg(s->light_theta_deg), weft_rad_of_deg(s->light_phi_deg)};
+    scene.light[0].direction = (weft_angles){weft_rad_of_deg(s->light_theta_deg), weft_rad_of_deg(s->light_phi_deg)};
     if (s->elevation_deg > 0) {
         scene.orbit.azimuth_rad = weft_rad_of_deg(s->azimuth_deg);
         scene.orbit.elevation_rad = weft_rad_of_deg(s->elevation_deg);

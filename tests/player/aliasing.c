@@ -50,7 +50,7 @@ weft_code aliasing_measure(weft_player *player, weft_scene scene, int width, int
     weft_code code = weft_player_picture(player, &scene, width, height, 1, NULL, &a->without, error);
     if (code == WEFT_OK)
         code = weft_player_picture(player, &scene, width, height, samples, NULL, &a->reference, error);
-    scene.level_choice = WEFT_LEVEL_AUTO;
+    scene.level_choice = WEFT_LEVEL_TRILINEAR;
     if (code == WEFT_OK)
         code = weft_player_picture(player, &scene, width, height, 1, NULL, &a->with, error);
     if (code == WEFT_OK)

@@ -82,7 +82,7 @@ static void compressed_equals_c_between_levels(void **state)
 static void compressed_equals_c_under_grazing_light_from_behind(void **state)
 {
     weft_scene scene = weft_scene_default();
-    scene.light = (weft_angles){weft_rad_of_deg(85), weft_rad_of_deg(100)};
+    scene.light[0].direction = (weft_angles){weft_rad_of_deg(85), weft_rad_of_deg(100)};
     scene.exposure = 3;
     compare_material(state, "grazing", 3, 37, 0, scene);
 }
@@ -99,7 +99,7 @@ static void compressed_equals_c_with_a_light_table(void **state)
     weft_scene scene = weft_scene_default();
     compare_material(state, "81 views, 81 lights", 2, 81, 81, scene);
     compare_material(state, "33 lights, no views", 1, 0, 33, scene);
-    scene.light = (weft_angles){weft_rad_of_deg(70), weft_rad_of_deg(200)};
+    scene.light[0].direction = (weft_angles){weft_rad_of_deg(70), weft_rad_of_deg(200)};
     scene.repeat = 37;
     compare_material(state, "81 views, 60 lights, minified", 2, 81, 60, scene);
 }
