@@ -9,6 +9,7 @@
 #include "btf/status.h"
 #include "btf/vector.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -83,6 +84,14 @@ weft_code weft_dataset_read_block(weft_dataset *dataset, int x, int y, int width
  * All 1 where the dataset holds none. Not thread-safe. */
 weft_code weft_dataset_read_opacity(weft_dataset *dataset, int y, int height, float *opacity, weft_error *error);
 
+/* Whether the dataset knows the average frame of its texels. */
+bool weft_dataset_has_frames(const weft_dataset *dataset);
+
+/* Frames of the texels [y, y + height) rows: [height][layout width][2][3], unit normal and unit tangent perpendicular
+ * to it. z and x where the dataset holds none. Not thread-safe. Errors: WEFT_BAD_INPUT for a frame that is none or lies
+ * below the horizon, WEFT_BAD_USAGE for rows outside the material. */
+weft_code weft_dataset_read_frames(weft_dataset *dataset, int y, int height, float *frames, weft_error *error);
+
 /* ---- Writing ---- */
 
 /* Takes whole images in any order, spools them to a scratch file beside the target, and turns them
@@ -101,6 +110,10 @@ weft_code weft_dataset_writer_put_image(weft_dataset_writer *writer, int image, 
 
 /* Optional, once: opacity [height][width][view_count] in 0..1, copied. */
 weft_code weft_dataset_writer_put_opacity(weft_dataset_writer *writer, const float *opacity, weft_error *error);
+
+/* Optional, once: frames [height][width][2][3] as weft_dataset_read_frames gives them, copied. Errors: WEFT_BAD_INPUT
+ * for one that is none, WEFT_SYSTEM. */
+weft_code weft_dataset_writer_put_frames(weft_dataset_writer *writer, const float *frames, weft_error *error);
 
 /* Writes the file under its final name (atomically) and frees the writer, also on failure. `provenance`
  * (JSON text, may be NULL) replaces the one of the layout. */

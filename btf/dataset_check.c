@@ -47,6 +47,28 @@ static weft_code check_places(const weft_dataset_layout *layout, const char *wha
     return WEFT_OK;
 }
 
+static bool is_frame(const float frame[6])
+{
+    weft_vec3 normal = weft_vec3_of(frame[0], frame[1], frame[2]), tangent = weft_vec3_of(frame[3], frame[4], frame[5]);
+    return fabs(weft_length(normal) - 1) < 1e-3 && fabs(weft_length(tangent) - 1) < 1e-3 &&
+           fabs(weft_dot(normal, tangent)) < 1e-3 && normal.z >= -1e-6;
+}
+
+weft_code weft_dataset_frames_check(const float *frames, size_t count, int row, int width, const char *path,
+                                    weft_code code, weft_error *error)
+{
+    for (size_t i = 0; i < count; i++) {
+        const float *f = frames + 6 * i;
+        if (!is_frame(f))
+            return weft_fail(error, code,
+                             "'%s': frame of texel (%d, %d) is no normal above the surface with a tangent: (%g, %g, "
+                             "%g), (%g, %g, %g)",
+                             path, (int)(i % (size_t)width), row + (int)(i / (size_t)width), f[0], f[1], f[2], f[3],
+                             f[4], f[5]);
+    }
+    return WEFT_OK;
+}
+
 weft_code weft_dataset_provenance_check(const char *text, const char *path, weft_code code, weft_error *error)
 {
     json_error_t where;

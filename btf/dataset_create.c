@@ -210,14 +210,26 @@ weft_code weft_dataset_file_write(const weft_dataset_file *file, const weft_data
     return done ? WEFT_OK : fail(file->path, error);
 }
 
-weft_code weft_dataset_file_write_opacity(const weft_dataset_file *file, const weft_dataset_layout *layout,
-                                          const float *opacity, weft_error *error)
+static weft_code write_floats(const weft_dataset_file *file, const weft_dataset_layout *layout, const char *name,
+                              int rank, int per_texel, const float *values, weft_error *error)
 {
-    hid_t object = create_texels(file->file, layout, "opacity", H5T_IEEE_F32LE, 3, layout->view_count, true);
-    bool done = object >= 0 && H5Dwrite(object, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, opacity) >= 0;
+    hid_t object = create_texels(file->file, layout, name, H5T_IEEE_F32LE, rank, per_texel, true);
+    bool done = object >= 0 && H5Dwrite(object, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
     weft_code code = done ? WEFT_OK : fail(file->path, error);
     H5Dclose(object);
     return code;
+}
+
+weft_code weft_dataset_file_write_opacity(const weft_dataset_file *file, const weft_dataset_layout *layout,
+                                          const float *opacity, weft_error *error)
+{
+    return write_floats(file, layout, "opacity", 3, layout->view_count, opacity, error);
+}
+
+weft_code weft_dataset_file_write_frames(const weft_dataset_file *file, const weft_dataset_layout *layout,
+                                         const float *frames, weft_error *error)
+{
+    return write_floats(file, layout, "frame", 4, 2, frames, error);
 }
 
 weft_code weft_dataset_file_write_provenance(const weft_dataset_file *file, const char *text, weft_error *error)

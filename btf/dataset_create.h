@@ -13,8 +13,8 @@ typedef struct weft_dataset_file {
 /* Width and height of a chunk, texels (docs/dataset-format.md, Storage). Pure. */
 void weft_dataset_chunk(const weft_dataset_layout *layout, int *width, int *height);
 
-/* Creates `temporary_path` with everything but samples, masks, provenance and opacity, and reserves the disk space of
- * the samples. Errors: WEFT_SYSTEM, with messages that name `path`. */
+/* Creates `temporary_path` with everything but samples, masks, provenance, opacity and frames, and reserves the disk
+ * space of the samples. Errors: WEFT_SYSTEM, with messages that name `path`. */
 weft_code weft_dataset_create(const char *temporary_path, const char *path, const weft_dataset_layout *layout,
                               weft_error *error);
 
@@ -31,6 +31,10 @@ weft_code weft_dataset_file_write(const weft_dataset_file *file, const weft_data
 /* opacity [height][width][view_count]. Errors: WEFT_SYSTEM. */
 weft_code weft_dataset_file_write_opacity(const weft_dataset_file *file, const weft_dataset_layout *layout,
                                           const float *opacity, weft_error *error);
+
+/* frames [height][width][2][3]. Errors: WEFT_SYSTEM. */
+weft_code weft_dataset_file_write_frames(const weft_dataset_file *file, const weft_dataset_layout *layout,
+                                         const float *frames, weft_error *error);
 
 /* Errors: WEFT_SYSTEM. */
 weft_code weft_dataset_file_write_provenance(const weft_dataset_file *file, const char *text, weft_error *error);

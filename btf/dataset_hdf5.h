@@ -20,7 +20,8 @@ struct weft_dataset {
     char *path;
     uint64_t file_size;
     weft_dataset_layout layout;
-    hid_t file, half, samples, mask, opacity; /* opacity is invalid where the file has none */
+    hid_t file, half, samples, mask;
+    hid_t opacity, frames; /* invalid where the file has none */
 };
 
 /* Keeps HDF5 from printing its error stack. */
@@ -34,6 +35,9 @@ const char *weft_hdf5_cause(void);
  */
 hid_t weft_hdf5_half_type(void);
 
+/* Opens a dataset of the file so that its filtered chunks, once decoded, are kept for a while. Negative on failure. */
+hid_t weft_hdf5_open_cached(hid_t file, const char *name);
+
 /* Checks every count, index, direction and the provenance of a layout. Errors: `code` with a message that starts with
  * `path`. */
 weft_code weft_dataset_layout_check(const weft_dataset_layout *layout, const char *path, weft_code code,
@@ -42,6 +46,11 @@ weft_code weft_dataset_layout_check(const weft_dataset_layout *layout, const cha
 /* The counts of the layout alone, so that arrays can be allocated. Errors as above. */
 weft_code weft_dataset_layout_check_counts(const weft_dataset_layout *layout, const char *path, weft_code code,
                                            weft_error *error);
+
+/* That each of `count` frames [2][3] is a unit normal not below the horizon and a unit tangent perpendicular to it, to
+ * 0.001; `row` is the first of them, `width` frames long. Errors as above. */
+weft_code weft_dataset_frames_check(const float *frames, size_t count, int row, int width, const char *path,
+                                    weft_code code, weft_error *error);
 
 /* That `text` is a JSON object. Errors as above. */
 weft_code weft_dataset_provenance_check(const char *text, const char *path, weft_code code, weft_error *error);

@@ -9,7 +9,6 @@
 
 /* A dataset may claim at most so many times the bytes of its file: room for any filter, not for a bomb. */
 static const uint64_t largest_ratio = 1024;
-static const size_t chunk_cache_bytes = (size_t)1 << 27, least_cache_bytes = (size_t)1 << 22, chunk_cache_slots = 12421;
 
 enum { MAX_NAME = 64, MAX_PROVENANCE = 1 << 24 };
 
@@ -134,48 +133,11 @@ static weft_code read_attributes(weft_dataset *dataset, weft_error *error)
 
 /* ---- Datasets ---- */
 
-/* Whole filtered chunks must be decoded to read any part of them, so they are worth keeping. Bytes of one; 0 where
- * chunks are not filtered, or there are none. */
-static size_t filtered_chunk_bytes(hid_t object)
-{
-    hsize_t side[H5S_MAX_RANK];
-    hid_t creation = H5Dget_create_plist(object), type = H5Dget_type(object);
-    int rank = 0;
-    if (creation >= 0 && H5Pget_nfilters(creation) > 0 && H5Pget_layout(creation) == H5D_CHUNKED)
-        rank = H5Pget_chunk(creation, H5S_MAX_RANK, side);
-    size_t bytes = rank > 0 ? H5Tget_size(type) : 0;
-    for (int i = 0; i < rank; i++)
-        bytes *= (size_t)side[i];
-    H5Tclose(type);
-    H5Pclose(creation);
-    return bytes;
-}
-
-/* Opens a dataset with a cache of so many bytes for its chunks. */
-static hid_t open_with_cache(hid_t file, const char *name, size_t bytes)
-{
-    hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
-    H5Pset_chunk_cache(access, chunk_cache_slots, bytes, 1);
-    hid_t object = H5Dopen2(file, name, access);
-    H5Pclose(access);
-    return object;
-}
-
-static hid_t open_cached(hid_t file, const char *name)
-{
-    hid_t object = H5Dopen2(file, name, H5P_DEFAULT);
-    if (object < 0)
-        return object;
-    size_t bytes = filtered_chunk_bytes(object) > 0 ? chunk_cache_bytes : 0;
-    H5Dclose(object);
-    return open_with_cache(file, name, bytes);
-}
-
 /* Opens a dataset of numbers with `rank` dimensions. */
 static weft_code open_array(const weft_dataset *dataset, const char *name, int rank, hsize_t *size, hid_t *object,
                             weft_error *error)
 {
-    *object = open_cached(dataset->file, name);
+    *object = weft_hdf5_open_cached(dataset->file, name);
     if (*object < 0)
         return fail(dataset, error, "cannot open", name);
     hid_t space = H5Dget_space(*object), type = H5Dget_type(*object);
@@ -207,10 +169,21 @@ static int limited_int(hsize_t size)
     return size > INT32_MAX ? INT32_MAX : (int)size;
 }
 
+/* Leaves *object alone where there is none. */
+static weft_code open_optional(const weft_dataset *dataset, const char *name, int rank, const hsize_t *expected,
+                               hid_t *object, weft_error *error)
+{
+    hsize_t size[4];
+    if (H5Lexists(dataset->file, name, H5P_DEFAULT) <= 0)
+        return WEFT_OK;
+    WEFT_TRY(open_array(dataset, name, rank, size, object, error));
+    return check_size(dataset, name, rank, size, expected, error);
+}
+
 static weft_code open_texels(weft_dataset *dataset, weft_error *error)
 {
     weft_dataset_layout *layout = &dataset->layout;
-    hsize_t samples[4], mask[3], opacity[3];
+    hsize_t samples[4], mask[3];
     WEFT_TRY(open_array(dataset, "samples", 4, samples, &dataset->samples, error));
     WEFT_TRY(open_array(dataset, "mask", 3, mask, &dataset->mask, error));
     WEFT_TRY(check_size(dataset, "mask", 3, mask, samples, error));
@@ -218,11 +191,9 @@ static weft_code open_texels(weft_dataset *dataset, weft_error *error)
     layout->height = limited_int(samples[0]);
     layout->width = limited_int(samples[1]);
     layout->image_count = limited_int(samples[2]);
-    if (H5Lexists(dataset->file, "opacity", H5P_DEFAULT) <= 0)
-        return WEFT_OK;
-    WEFT_TRY(open_array(dataset, "opacity", 3, opacity, &dataset->opacity, error));
-    return check_size(dataset, "opacity", 3, opacity, (hsize_t[]){samples[0], samples[1], (hsize_t)layout->view_count},
-                      error);
+    WEFT_TRY(open_optional(dataset, "opacity", 3, (hsize_t[]){samples[0], samples[1], (hsize_t)layout->view_count},
+                           &dataset->opacity, error));
+    return open_optional(dataset, "frame", 4, (hsize_t[]){samples[0], samples[1], 2, 3}, &dataset->frames, error);
 }
 
 static weft_code open_view_count(weft_dataset *dataset, weft_error *error)
@@ -337,7 +308,8 @@ weft_code weft_dataset_open(const char *path, weft_dataset **result, weft_error 
     weft_dataset *dataset = calloc(1, sizeof *dataset);
     if (!dataset)
         return weft_fail_memory(error, "dataset", sizeof *dataset);
-    dataset->file = dataset->half = dataset->samples = dataset->mask = dataset->opacity = H5I_INVALID_HID;
+    dataset->file = dataset->half = H5I_INVALID_HID;
+    dataset->samples = dataset->mask = dataset->opacity = dataset->frames = H5I_INVALID_HID;
     dataset->path = strdup(path);
     weft_code code = dataset->path ? WEFT_OK : weft_fail_memory(error, "path", strlen(path));
     if (code == WEFT_OK)
@@ -349,32 +321,6 @@ weft_code weft_dataset_open(const char *path, weft_dataset **result, weft_error 
     else
         weft_dataset_close(dataset);
     return code;
-}
-
-/* Bytes of a cache that serves reading block by block: neighbouring blocks may share chunks. */
-static size_t block_cache_bytes(size_t chunk_bytes)
-{
-    size_t bytes = chunk_bytes < (chunk_cache_bytes >> 2) ? 4 * chunk_bytes : chunk_cache_bytes;
-    return bytes > least_cache_bytes ? bytes : least_cache_bytes;
-}
-
-weft_code weft_dataset_limit_cache(weft_dataset *dataset, uint64_t *bytes, weft_error *error)
-{
-    static const char *const name[3] = {"samples", "mask", "opacity"};
-    hid_t *const object[3] = {&dataset->samples, &dataset->mask, &dataset->opacity};
-    *bytes = 0;
-    for (int i = 0; i < 3; i++) {
-        size_t chunk = *object[i] >= 0 ? filtered_chunk_bytes(*object[i]) : 0;
-        if (chunk == 0)
-            continue;
-        /* Encoded, and decoded where it does not fit into the cache. */
-        *bytes += block_cache_bytes(chunk) + 2 * chunk;
-        H5Dclose(*object[i]);
-        *object[i] = open_with_cache(dataset->file, name[i], block_cache_bytes(chunk));
-        if (*object[i] < 0)
-            return fail(dataset, error, "cannot open", name[i]);
-    }
-    return WEFT_OK;
 }
 
 void weft_dataset_close(weft_dataset *dataset)

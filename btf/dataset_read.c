@@ -127,3 +127,23 @@ weft_code weft_dataset_read_opacity(weft_dataset *dataset, int y, int height, fl
     }
     return WEFT_OK;
 }
+
+bool weft_dataset_has_frames(const weft_dataset *dataset)
+{
+    return dataset->frames >= 0;
+}
+
+weft_code weft_dataset_read_frames(weft_dataset *dataset, int y, int height, float *frames, weft_error *error)
+{
+    static const float surface[6] = {0, 0, 1, 1, 0, 0};
+    const weft_dataset_layout *layout = &dataset->layout;
+    texel_block block = {0, y, layout->width, height};
+    WEFT_TRY(check_block(dataset, block, error));
+    size_t count = (size_t)layout->width * (size_t)height;
+    for (size_t i = 0; dataset->frames < 0 && i < count; i++)
+        memcpy(frames + 6 * i, surface, sizeof surface);
+    if (dataset->frames < 0)
+        return WEFT_OK;
+    WEFT_TRY(read_slab(dataset, dataset->frames, "frame", block, 4, 2, H5T_NATIVE_FLOAT, frames, error));
+    return weft_dataset_frames_check(frames, count, y, layout->width, dataset->path, WEFT_BAD_INPUT, error);
+}

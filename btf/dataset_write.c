@@ -17,7 +17,7 @@ struct weft_dataset_writer {
     weft_dataset_layout layout;
     weft_atomic_file file;
     weft_scratch scratch;
-    float *opacity; /* NULL where none was put */
+    float *opacity, *frames; /* NULL where none were put */
 };
 
 static weft_code copy_layout(weft_dataset_layout *copy, const weft_dataset_layout *layout, weft_error *error)
@@ -86,6 +86,19 @@ weft_code weft_dataset_writer_put_opacity(weft_dataset_writer *writer, const flo
     if (!writer->opacity)
         return weft_fail_memory(error, "opacity", count * sizeof *opacity);
     memcpy(writer->opacity, opacity, count * sizeof *opacity);
+    return WEFT_OK;
+}
+
+weft_code weft_dataset_writer_put_frames(weft_dataset_writer *writer, const float *frames, weft_error *error)
+{
+    const weft_dataset_layout *layout = &writer->layout;
+    size_t count = (size_t)layout->width * (size_t)layout->height, bytes = 6 * count * sizeof *frames;
+    WEFT_TRY(weft_dataset_frames_check(frames, count, 0, layout->width, writer->path, WEFT_BAD_INPUT, error));
+    free(writer->frames);
+    writer->frames = malloc(bytes);
+    if (!writer->frames)
+        return weft_fail_memory(error, "frames", bytes);
+    memcpy(writer->frames, frames, bytes);
     return WEFT_OK;
 }
 
@@ -199,6 +212,8 @@ static weft_code fill(const weft_dataset_writer *writer, const weft_dataset_file
     WEFT_TRY(code);
     if (writer->opacity)
         WEFT_TRY(weft_dataset_file_write_opacity(file, &writer->layout, writer->opacity, error));
+    if (writer->frames)
+        WEFT_TRY(weft_dataset_file_write_frames(file, &writer->layout, writer->frames, error));
     return weft_dataset_file_write_provenance(file, provenance, error);
 }
 
@@ -231,6 +246,7 @@ void weft_dataset_writer_abandon(weft_dataset_writer *writer)
     weft_atomic_file_abandon(&writer->file);
     weft_dataset_layout_free(&writer->layout);
     free(writer->opacity);
+    free(writer->frames);
     free(writer->path);
     free(writer);
 }

@@ -37,8 +37,9 @@ static const struct argp_option option_table[] = {
     {"light-table", KEY_LIGHT_TABLE, "on|off", 0,
      "Light table S beside T, as large and several times the time; where lights repeat (default: off)", 0},
     {"levels", KEY_LEVELS, "on|off", 0, "Mip levels (default: on)", 0},
-    {"frames", KEY_FRAMES, "on|off", 0,
-     "Turn the frame of each texel where that helps; off: the frame of the surface everywhere, faster (default: on)",
+    {"frames", KEY_FRAMES, "on|off|given", 0,
+     "Turn the frame of each texel where that helps, from that of the surface and from the one that the dataset gives; "
+     "given: as the dataset says; off: the frame of the surface everywhere, fastest (default: on)",
      0},
     {"max-exponent", KEY_MAX_EXPONENT, "N", 0, "Largest exponent of a lobe (default: 8192)", 0},
     {"error", KEY_ERROR, "PERCENT", 0,
@@ -56,6 +57,13 @@ static const struct argp_option option_table[] = {
     {"memory", KEY_MEMORY, "MB", 0, "Never take more memory than this (default: a quarter of what there is)", 0},
     {0},
 };
+
+static weft_frame_choice parse_frames(const char *argument, struct argp_state *state)
+{
+    if (strcmp(argument, "given") == 0)
+        return WEFT_FRAMES_GIVEN;
+    return parse_switch("frames", argument, state) ? WEFT_FRAMES_FITTED : WEFT_FRAMES_SURFACE;
+}
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
@@ -81,7 +89,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         options->levels = parse_switch("levels", argument, state);
         return 0;
     case KEY_FRAMES:
-        options->frames = parse_switch("frames", argument, state);
+        options->frames = parse_frames(argument, state);
         return 0;
     case KEY_MAX_EXPONENT:
         options->max_exponent = parse_number("max-exponent", argument, 1, 60000, state);

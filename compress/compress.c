@@ -4,6 +4,7 @@
 #include "btf/material_models.h"
 #include "btf/processor.h"
 #include "compress/budget.h"
+#include "compress/given_frames.h"
 #include "compress/memory.h"
 #include "compress/sparse_material.h"
 
@@ -28,7 +29,7 @@ static const char *const model_name[3] = {"lobes and view table", "lobes", "spar
 weft_compress_options weft_compress_default_options(void)
 {
     return (weft_compress_options){
-        .lobe_count = 2, .table = true, .levels = true, .frames = true, .max_exponent = 8192};
+        .lobe_count = 2, .table = true, .levels = true, .frames = WEFT_FRAMES_FITTED, .max_exponent = 8192};
 }
 
 static int used_images(const weft_dataset_layout *layout, const uint8_t *held_out)
@@ -230,7 +231,7 @@ static weft_code identify(const weft_dataset *dataset, const weft_compress_optio
              (long)status.st_mtim.tv_nsec);
     snprintf(text->options, sizeof text->options,
              "%s, %d lobes, lights %d, frames %d, N <= %.17g, error <= %.17g, levels %d, held out %08lx",
-             model_name[report->model], report->lobe_count, options->light_table, options->frames,
+             model_name[report->model], report->lobe_count, options->light_table, (int)options->frames,
              options->max_exponent, options->target_error, options->levels, held_out);
     return WEFT_OK;
 }
@@ -273,6 +274,7 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
     const weft_compress_options *options = of->options;
     identity_text identity;
     weft_dense_result result;
+    WEFT_TRY(weft_given_frames_store(of->dataset, material, error));
     WEFT_TRY(identify(of->dataset, options, report, &of->fingerprint, &identity, error));
     weft_dense_job job = {.budget = of->budget,
                           .checkpoint_path = options->checkpoint_path,
@@ -283,8 +285,11 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
                                 .held_out = options->held_out,
                                 .options = weft_fit_default_options(),
                                 .light_table = material->light_count > 0,
-                                .fit_frames = options->frames,
+                                .frames = options->frames,
                                 .target_error = options->target_error};
+    if (options->frames == WEFT_FRAMES_GIVEN ||
+        (options->frames == WEFT_FRAMES_FITTED && weft_dataset_has_frames(of->dataset)))
+        source.given = material;
     source.options.lobe_count = report->lobe_count;
     source.options.table = report->model == WEFT_COMPRESS_TABLE;
     source.options.max_exponent = options->max_exponent;

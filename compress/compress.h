@@ -6,15 +6,16 @@
 #include "btf/material.h"
 #include "btf/progress.h"
 #include "compress/note.h"
+#include "compress/texel.h"
 
 #include <stdbool.h>
 
 typedef struct weft_compress_options {
-    int lobe_count;        /* at most; 0..3 */
-    bool table;            /* T(v), where the samples can carry it */
-    bool light_table;      /* S(l) beside T, where lights repeat and the samples can carry it */
-    bool levels;           /* mip levels, each fitted to the mean samples of its groups of texels */
-    bool frames;           /* fit normal and tangent of every texel too; else all have the frame of the surface */
+    int lobe_count;   /* at most; 0..3 */
+    bool table;       /* T(v), where the samples can carry it */
+    bool light_table; /* S(l) beside T, where lights repeat and the samples can carry it */
+    bool levels;      /* mip levels, each fitted to the mean samples of its groups of texels */
+    weft_frame_choice frames;
     double max_exponent;   /* N <= this */
     double target_error;   /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
     uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
@@ -25,7 +26,7 @@ typedef struct weft_compress_options {
     weft_note note;              /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 
-/* 2 lobes, table, levels, frames, N <= 8192, nothing held out, a quarter of the memory, no checkpoint. */
+/* 2 lobes, table, levels, fitted frames, N <= 8192, nothing held out, a quarter of the memory, no checkpoint. */
 weft_compress_options weft_compress_default_options(void);
 
 /* What the number of samples a texel allows: at least four for every free parameter. */

@@ -9,26 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A frame is turned only where that takes at least 2 % off the squared error. */
-#define WORTHWHILE 0.98
-
-/* The fit of a few lights is a start, not worth its last steps. */
-#define COARSE_TOLERANCE 3e-3
-
-/* A fit of the grey samples and its T. */
-typedef struct grey_fit {
-    weft_fit fit;
-    double *table;
-} grey_fit;
-
 struct weft_texel_fitter {
     const weft_texel_source *source;
     weft_bundle bundle;
     weft_samples samples;
     weft_fit_workspace *workspace;
-    grey_fit upright, turned;
-    bool turns;                        /* the last model's frame was turned */
-    double *table;                     /* of one channel */
+    weft_frame_search frames;
+    bool turns, second_start; /* the last model's frame was turned; its lobes began as thrown back to the light */
+    double *table;            /* of one channel */
     weft_packed packed[WEFT_CHANNELS]; /* the last model that was fitted */
     weft_fit as_read[WEFT_CHANNELS];   /* the same as it will be read */
     int16_t frame[3];                  /* its code */
@@ -73,20 +61,20 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
     if (code == WEFT_OK)
         code = weft_error_tally_create(&fitter->tally, error);
     if (code == WEFT_OK) {
-        fitter->upright.table = calloc(3 * views, sizeof *fitter->table);
+        fitter->table = calloc(views, sizeof *fitter->table);
         fitter->code = calloc(2 * WEFT_CHANNELS * views, 1);
         fitter->decoded = calloc(views, sizeof *fitter->decoded);
-        if (!fitter->upright.table || !fitter->code || !fitter->decoded)
-            code = weft_fail_memory(error, "view tables of a texel", 3 * views * sizeof *fitter->table);
+        if (!fitter->table || !fitter->code || !fitter->decoded)
+            code = weft_fail_memory(error, "view tables of a texel", views * sizeof *fitter->table);
     }
+    if (code == WEFT_OK)
+        code = weft_frame_search_create(source->layout->view_count, &fitter->frames, error);
     if (code == WEFT_OK && source->light_table)
         code = create_light(fitter, error);
     if (code != WEFT_OK) {
         weft_texel_fitter_free(fitter);
         return code;
     }
-    fitter->turned.table = fitter->upright.table + views;
-    fitter->table = fitter->upright.table + 2 * views;
     *result = fitter;
     return WEFT_OK;
 }
@@ -99,7 +87,8 @@ void weft_texel_fitter_free(weft_texel_fitter *fitter)
     weft_samples_free(&fitter->samples);
     weft_fit_workspace_free(fitter->workspace);
     weft_error_tally_free(fitter->tally);
-    free(fitter->upright.table);
+    weft_frame_search_free(&fitter->frames);
+    free(fitter->table);
     free(fitter->code);
     free(fitter->decoded);
     free(fitter->light);
@@ -126,28 +115,6 @@ int weft_texel_group(const weft_dataset_layout *layout, int level, int x, int y,
     extent[2] = smaller((x + 1) * side, layout->width);
     extent[3] = smaller((y + 1) * side, layout->height);
     return (extent[2] - extent[0]) * (extent[3] - extent[1]);
-}
-
-/* ---- The frame, by fits of the grey samples on a quarter of the lights ---- */
-
-/* Which of two fits the channels start from: in the frame of the surface, or in one that was free to turn. */
-static const grey_fit *choose_frame(weft_texel_fitter *fitter, const weft_fit_options *options)
-{
-    grey_fit *upright = &fitter->upright, *turned = &fitter->turned;
-    weft_frame frame = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
-    weft_fit_cold(&fitter->bundle, &fitter->samples, WEFT_GREY, options, fitter->workspace, &frame, &upright->fit,
-                  upright->table);
-    fitter->turns = false;
-    if (options->lobe_count == 0 || !fitter->source->fit_frames)
-        return upright;
-    weft_fit_options turning = *options;
-    turning.fit_frame = true;
-    turned->fit = upright->fit;
-    memcpy(turned->table, upright->table, (size_t)fitter->bundle.view_count * sizeof *turned->table);
-    weft_fit_refine(&fitter->bundle, &fitter->samples, WEFT_GREY, &turning, fitter->workspace, &turned->fit,
-                    turned->table);
-    fitter->turns = turned->fit.residual < WORTHWHILE * upright->fit.residual;
-    return fitter->turns ? turned : upright;
 }
 
 /* ---- Storing and measuring ---- */
@@ -254,7 +221,7 @@ static void refine_with_light(weft_texel_fitter *fitter, const weft_fit_options 
 }
 
 static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, int channel,
-                        const grey_fit *start, const weft_frame *frame)
+                        const weft_grey_fit *start, const weft_frame *frame)
 {
     size_t views = (size_t)fitter->bundle.view_count;
     uint8_t *code = fitter->code + (size_t)channel * views;
@@ -275,12 +242,13 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
 }
 
 /* Fits and packs one model, with S or without; `fitter` holds the result. */
-static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light)
+static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given)
 {
-    weft_fit_options coarse = *options;
-    coarse.coarse = true;
-    coarse.tolerance = COARSE_TOLERANCE;
-    const grey_fit *start = choose_frame(fitter, &coarse);
+    weft_frame_request request = {fitter->source->frames, given, *options};
+    const weft_grey_fit *start =
+        weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+    fitter->turns = start == &fitter->frames.turned;
+    fitter->second_start = start->fit.start > 0;
     weft_frame frame = weft_pack_frame(&start->fit.frame, fitter->frame);
     for (int channel = 0; channel < WEFT_CHANNELS; channel++)
         fit_channel(fitter, options, light, channel, start, &frame);
@@ -372,7 +340,7 @@ static void spare_bits(weft_texel_fitter *fitter)
 }
 
 /* Climbs from the smallest model to the whole one, at last with S, until the target is met; returns whether it is. */
-static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whole)
+static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
 {
     weft_model_ladder ladder = weft_model_ladder_make(whole, fitter->bundle.view_count);
     for (int rung = 0; rung < ladder.count + (fitter->light_count > 0); rung++) {
@@ -381,7 +349,7 @@ static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whol
         weft_fit_options options = *whole;
         options.lobe_count = model.lobe_count;
         options.table = model.table;
-        fit_model(fitter, &options, light);
+        fit_model(fitter, &options, light, given);
         if (meets_target(fitter)) {
             if (model.table || light)
                 spare_bits(fitter);
@@ -389,6 +357,16 @@ static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whol
         }
     }
     return false;
+}
+
+/* The frame that a texel is given; NULL where there is none. */
+static const weft_frame *find_given(const weft_material *given, int level, int x, int y, weft_frame *frame)
+{
+    if (!given)
+        return NULL;
+    const weft_material_level *from = &given->level[level];
+    *frame = weft_frame_decode(from->frame + 3 * ((size_t)y * (size_t)from->width + (size_t)x));
+    return frame;
 }
 
 void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int level, int x, int y, const float *sum,
@@ -410,13 +388,15 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         return;
     }
     weft_fit_options whole = whole_model(fitter);
+    weft_frame frame;
+    const weft_frame *given = find_given(fitter->source->given, level, x, y, &frame);
     if (fitter->source->target_error > 0)
-        counts->missed += !fit_smallest(fitter, &whole);
+        counts->missed += !fit_smallest(fitter, &whole, given);
     else
-        fit_model(fitter, &whole, fitter->light_count > 0);
+        fit_model(fitter, &whole, fitter->light_count > 0, given);
     weft_error_sums sums = measure_model(fitter, is_tallied(&material->level[level], x, y));
     weft_error_sums_add(&counts->sums, &sums);
     store_model(fitter, material, level, x, y);
     counts->turned += fitter->turns;
-    counts->second_start += fitter->upright.fit.start > 0;
+    counts->second_start += fitter->second_start;
 }

@@ -3,7 +3,7 @@
 #define WEFT_COMPRESS_TEXEL_H
 
 #include "compress/candidate.h"
-#include "compress/fit.h"
+#include "compress/frame_search.h"
 #include "compress/measure.h"
 #include "compress/pack.h"
 
@@ -17,7 +17,9 @@ typedef struct weft_texel_source {
     const uint8_t *held_out;
     weft_fit_options options;
     bool light_table; /* fit S(l), where lights have labels */
-    bool fit_frames;  /* turn the frame of a texel where that helps; else all have that of the surface */
+    weft_frame_choice frames;
+    const weft_material
+        *given; /* WEFT_FRAMES_GIVEN: has the frames; WEFT_FRAMES_FITTED: begin there too, may be NULL */
     /* Each texel has the smallest model (compress/model_ladder.h) whose RMSE over the rms of its samples is at most
      * this; the whole of `options` where none is. 0: the whole everywhere. */
     double target_error;

@@ -24,8 +24,9 @@ typedef struct acquisition {
     weft_dataset_writer *writer;
     weft_illumination *illumination;
     view_samples samples;
-    weft_half *image; /* [height][width][3] */
-    float *opacity;   /* [height][width][direction_count] */
+    weft_half *image;      /* [height][width][3] */
+    float *opacity;        /* [height][width][direction_count] */
+    weft_frame_sum *frame; /* [height][width] each view weighs by what it sees of the texel's cloth */
 } acquisition;
 
 weft_vec3 weft_acquisition_direction(int index)
@@ -114,10 +115,32 @@ static void note_view(acquisition *a, int view)
         const texel_samples *texel = &a->samples.texel[i];
         double paths = (double)texel->batches * BATCH_PATHS, covered = (double)texel->hits / paths;
         a->opacity[i * n + (size_t)view] = (float)covered;
+        weft_frame_sum_merge(&a->frame[i], &texel->frame, (weft_real)(1 / paths));
         a->report->covered += covered * share;
         a->report->paths_per_texel += paths * share;
     }
     a->report->noise = fmax(a->report->noise, view_samples_noise(&a->samples));
+}
+
+static weft_code put_frames(const acquisition *a, weft_error *error)
+{
+    size_t texels = (size_t)a->options->width * (size_t)a->options->height, bytes = 6 * texels * sizeof(float);
+    float *frames = malloc(bytes);
+    if (!frames)
+        return weft_fail_memory(error, "frames", bytes);
+    for (size_t i = 0; i < texels; i++) {
+        weft_frame mean = weft_frame_of_sum(&a->frame[i]);
+        const weft_vec3 axis[2] = {mean.normal, mean.tangent};
+        for (size_t k = 0; k < 2; k++) {
+            float *to = frames + 6 * i + 3 * k;
+            to[0] = (float)axis[k].x;
+            to[1] = (float)axis[k].y;
+            to[2] = (float)axis[k].z;
+        }
+    }
+    weft_code code = weft_dataset_writer_put_frames(a->writer, frames, error);
+    free(frames);
+    return code;
 }
 
 static weft_code acquire_views(acquisition *a, const weft_progress *progress, weft_error *error)
@@ -130,7 +153,8 @@ static weft_code acquire_views(acquisition *a, const weft_progress *progress, we
             WEFT_TRY(put_light(a, view, light, error));
     }
     weft_progress_report(progress, "simulating views", a->direction_count, a->direction_count);
-    return weft_dataset_writer_put_opacity(a->writer, a->opacity, error);
+    WEFT_TRY(weft_dataset_writer_put_opacity(a->writer, a->opacity, error));
+    return put_frames(a, error);
 }
 
 static weft_code prepare(acquisition *a, weft_error *error)
@@ -144,7 +168,8 @@ static weft_code prepare(acquisition *a, weft_error *error)
     WEFT_TRY(view_samples_create(a->mesh, a->direction_count, a->options, &a->samples, error));
     a->image = malloc(3 * texels * sizeof *a->image);
     a->opacity = calloc(texels * (size_t)a->direction_count, sizeof *a->opacity);
-    if (!a->image || !a->opacity)
+    a->frame = calloc(texels, sizeof *a->frame);
+    if (!a->image || !a->opacity || !a->frame)
         return weft_fail_memory(error, "images", texels * (size_t)a->direction_count * sizeof *a->opacity);
     return WEFT_OK;
 }
@@ -185,5 +210,6 @@ weft_code weft_acquire(const weft_stitch *stitch, const weft_tile_mesh *mesh, co
     view_samples_free(&a.samples);
     free(a.image);
     free(a.opacity);
+    free(a.frame);
     return code;
 }

@@ -28,9 +28,10 @@ weft_vec3 weft_acquisition_direction(int index);
 
 /* Simulates all pairs of `direction` [direction_count] as view and light, all of them above the horizon, and writes the
  * dataset `path` with opacity: image view x direction_count + light. A sample is reflectance times cosine of the whole
- * texel, holes included as black. Work is shared: one path serves all lights, and texels get as many paths as their
- * variance needs. The same for any number of threads. Errors: WEFT_BAD_USAGE for directions or a size that make no
- * sense; WEFT_SYSTEM; those of the dataset writer. */
+ * texel, holes included as black. The frame of a texel is the average over all views of what they see of its cloth:
+ * normal of the surface, direction of the fibres. Work is shared: one path serves all lights, and texels get as many
+ * paths as their variance needs. The same for any number of threads. Errors: WEFT_BAD_USAGE for directions or a size
+ * that make no sense; WEFT_SYSTEM; those of the dataset writer. */
 weft_code weft_acquire(const weft_stitch *stitch, const weft_tile_mesh *mesh, const weft_vec3 *direction,
                        int direction_count, const weft_acquisition_options *options, const char *path,
                        const weft_progress *progress, weft_acquisition_report *report, weft_error *error);

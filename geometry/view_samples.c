@@ -65,9 +65,14 @@ static void add_batch(view_samples *samples, const weft_illumination *illuminati
     int x = (int)(index % (size_t)samples->options->width), y = (int)(index / (size_t)samples->options->width);
     key = sequence_key(key, (uint64_t)texel->batches++);
     memset(batch, 0, values * sizeof *batch);
-    for (uint32_t k = 0; k < BATCH_PATHS; k++)
-        texel->hits += weft_illumination_path(illumination, place_in_texel(samples, x, y, key, k), view, key, k,
-                                              (float(*)[3])(void *)batch, NULL);
+    for (uint32_t k = 0; k < BATCH_PATHS; k++) {
+        weft_first_hit first;
+        if (!weft_illumination_path(illumination, place_in_texel(samples, x, y, key, k), view, key, k,
+                                    (float(*)[3])(void *)batch, &first))
+            continue;
+        texel->hits++;
+        weft_frame_sum_add(&texel->frame, first.normal, first.tangent, 1);
+    }
     for (size_t i = 0; i < values; i++) {
         float mean = batch[i] / BATCH_PATHS;
         sum[i] += mean;

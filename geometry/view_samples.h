@@ -2,6 +2,7 @@
 #ifndef WEFT_GEOMETRY_VIEW_SAMPLES_H
 #define WEFT_GEOMETRY_VIEW_SAMPLES_H
 
+#include "btf/frame_sum.h"
 #include "geometry/acquisition.h"
 #include "geometry/illumination.h"
 
@@ -11,9 +12,10 @@ enum { BATCH_PATHS = 16, FIRST_BATCHES = 4, MAX_BATCHES = 512 };
 /* One texel in one view. */
 typedef struct texel_samples {
     int batches;
-    long hits;       /* paths that met the cloth */
-    double squares;  /* sum over batches, lights and channels of squared batch means */
-    double variance; /* of one batch, summed over lights and channels */
+    long hits;            /* paths that met the cloth */
+    double squares;       /* sum over batches, lights and channels of squared batch means */
+    double variance;      /* of one batch, summed over lights and channels */
+    weft_frame_sum frame; /* over the paths that met the cloth */
 } texel_samples;
 
 typedef struct view_samples {

@@ -19,13 +19,16 @@ static void read_all(weft_dataset *dataset)
     weft_half *half = malloc(samples * 3 * sizeof *half);
     uint8_t *mask = malloc(samples);
     float *opacity = malloc((size_t)layout->width * (size_t)layout->view_count * sizeof *opacity);
-    for (int y = 0; half && mask && opacity && y < layout->height; y++) {
+    float *frames = malloc(6 * (size_t)layout->width * sizeof *frames);
+    for (int y = 0; half && mask && opacity && frames && y < layout->height; y++) {
         weft_dataset_read_block(dataset, 0, y, layout->width, 1, half, mask, NULL);
         weft_dataset_read_opacity(dataset, y, 1, opacity, NULL);
+        weft_dataset_read_frames(dataset, y, 1, frames, NULL);
     }
     free(half);
     free(mask);
     free(opacity);
+    free(frames);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

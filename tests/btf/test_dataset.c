@@ -174,6 +174,37 @@ static void images_come_in_any_order_and_absent_ones_are_missing(void **state)
     remove("order.btf.h5");
 }
 
+static void frames_are_kept_and_are_those_of_the_surface_where_absent(void **state)
+{
+    (void)state;
+    enum { WIDTH = 3, HEIGHT = 4 };
+    weft_dataset_layout layout = tiny_layout(WIDTH, HEIGHT, 2, 1);
+    float frames[HEIGHT * WIDTH][6], read[HEIGHT * WIDTH][6];
+    for (int i = 0; i < HEIGHT * WIDTH; i++) {
+        float c = cosf((float)i / 10), s = sinf((float)i / 10);
+        memcpy(frames[i], (float[6]){s, 0, c, c, 0, -s}, sizeof frames[i]);
+    }
+    weft_dataset_writer *writer;
+    assert_int_equal(weft_dataset_writer_create("tilted.btf.h5", &layout, &writer, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_writer_put_frames(writer, &frames[0][0], NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_writer_finish(writer, NULL, NULL), WEFT_OK);
+    weft_dataset *dataset = open_dataset("tilted.btf.h5");
+    assert_true(weft_dataset_has_frames(dataset));
+    assert_int_equal(weft_dataset_read_frames(dataset, 1, 3, &read[0][0], NULL), WEFT_OK);
+    assert_memory_equal(read, frames[WIDTH], 3 * WIDTH * sizeof read[0]);
+    assert_int_equal(weft_dataset_read_frames(dataset, 2, 3, &read[0][0], NULL), WEFT_BAD_USAGE);
+    weft_dataset_close(dataset);
+
+    write_dataset("tilted.btf.h5", &layout, tiny_smooth);
+    dataset = open_dataset("tilted.btf.h5");
+    assert_false(weft_dataset_has_frames(dataset));
+    assert_int_equal(weft_dataset_read_frames(dataset, 0, HEIGHT, &read[0][0], NULL), WEFT_OK);
+    for (int i = 0; i < HEIGHT * WIDTH; i++)
+        assert_memory_equal(read[i], ((const float[6]){0, 0, 1, 1, 0, 0}), sizeof read[i]);
+    weft_dataset_close(dataset);
+    weft_dataset_layout_free(&layout);
+}
+
 static void opacity_is_kept_and_is_one_where_absent(void **state)
 {
     (void)state;
@@ -285,6 +316,7 @@ int main(void)
         cmocka_unit_test(samples_and_mask_can_be_read_alone),
         cmocka_unit_test(images_come_in_any_order_and_absent_ones_are_missing),
         cmocka_unit_test(opacity_is_kept_and_is_one_where_absent),
+        cmocka_unit_test(frames_are_kept_and_are_those_of_the_surface_where_absent),
         cmocka_unit_test(near_lights_are_seen_from_each_texel),
         cmocka_unit_test(long_provenance_is_kept),
         cmocka_unit_test(blocks_outside_the_material_are_refused),

@@ -171,6 +171,7 @@ static void shapes_that_disagree_are_refused(void **state)
         {"view", 2, {VIEWS, 4}, "'view'"},
         {"view_of_image", 1, {IMAGES - 1}, "'view_of_image'"},
         {"opacity", 3, {HEIGHT, WIDTH, VIEWS + 1}, "'opacity'"},
+        {"frame", 4, {HEIGHT, WIDTH, 3, 3}, "dimension 2 of 'frame' is 3, must be 2"},
         {"view", 2, {1 << 24, 3}, "too few for"},
     };
     for (size_t i = 0; i < sizeof edit / sizeof edit[0]; i++) {
@@ -265,6 +266,25 @@ static void opacity_out_of_range_is_refused(void **state)
     weft_dataset_close(dataset);
 }
 
+static void frames_that_are_none_are_refused(void **state)
+{
+    (void)state;
+    /* Zeros but for the one value. */
+    hid_t file = open_copy();
+    put_shape(file, "frame", 4, (hsize_t[]){HEIGHT, WIDTH, 2, 3});
+    put_value(file, "frame", 4, (hsize_t[]){0, 0, 0, 2}, 1);
+    H5Fclose(file);
+    weft_dataset *dataset;
+    weft_error error = {0};
+    float frames[WIDTH * HEIGHT * 6];
+    assert_int_equal(weft_dataset_open(damaged, &dataset, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_read_frames(dataset, 0, HEIGHT, frames, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "damaged.btf.h5': frame of texel (0, 0)"));
+    assert_int_equal(weft_dataset_read_frames(dataset, 2, 1, frames, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "frame of texel (0, 2)"));
+    weft_dataset_close(dataset);
+}
+
 /* ---- Writing ---- */
 
 static void impossible_layouts_are_refused_and_leave_nothing(void **state)
@@ -308,6 +328,10 @@ static void bad_images_are_refused(void **state)
     assert_int_equal(weft_dataset_writer_put_image(writer, 1, samples, mask, NULL), WEFT_BAD_USAGE);
     const float opacity[2] = {0, 1.5f};
     assert_int_equal(weft_dataset_writer_put_opacity(writer, opacity, NULL), WEFT_BAD_INPUT);
+    const float sunken[12] = {0, 0, 1, 1, 0, 0, 0, 0, -1, 1, 0, 0}, skew[12] = {0, 0, 1, 0, 0.1f, 1, 0, 0, 1, 1, 0, 0};
+    assert_int_equal(weft_dataset_writer_put_frames(writer, sunken, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "frame of texel (1, 0)"));
+    assert_int_equal(weft_dataset_writer_put_frames(writer, skew, NULL), WEFT_BAD_INPUT);
     assert_int_equal(weft_dataset_writer_finish(writer, "not JSON", NULL), WEFT_BAD_USAGE);
     assert_int_equal(access("new.btf.h5", F_OK), -1);
     weft_dataset_layout_free(&layout);
@@ -368,6 +392,7 @@ int main(void)
         cmocka_unit_test(directions_and_indices_out_of_range_are_named),
         cmocka_unit_test(a_valid_sample_that_is_not_finite_is_named_and_a_masked_one_cleared),
         cmocka_unit_test(opacity_out_of_range_is_refused),
+        cmocka_unit_test(frames_that_are_none_are_refused),
         cmocka_unit_test(impossible_layouts_are_refused_and_leave_nothing),
         cmocka_unit_test(bad_images_are_refused),
         cmocka_unit_test(a_full_disk_is_an_error_and_leaves_the_old_file_as_it_was),

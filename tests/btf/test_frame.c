@@ -1,5 +1,5 @@
 #include "btf/direction.h"
-#include "btf/material.h"
+#include "btf/frame_sum.h"
 #include "tests/btf/cmocka_all.h"
 
 static weft_vec3 tilted(int theta_deg, int phi_deg)
@@ -71,6 +71,40 @@ static void hostile_codes_give_finite_orthonormal_frames(void **state)
     }
 }
 
+static void an_average_tangent_does_not_know_signs(void **state)
+{
+    (void)state;
+    const weft_frame true_frame = weft_frame_of_normal(tilted(40, 70), 0.4);
+    weft_frame_sum sum = {0};
+    for (int i = 0; i < 10; i++) {
+        double turn_rad = weft_rad_of_deg(8 * (i - 4.5)), sign = i % 3 ? 1 : -1;
+        weft_vec3 tangent = weft_add(weft_scale(true_frame.tangent, sign * cos(turn_rad)),
+                                     weft_scale(true_frame.bitangent, sign * sin(turn_rad)));
+        weft_frame_sum_add(&sum, true_frame.normal, tangent, 0.3);
+    }
+    weft_frame mean = weft_frame_of_sum(&sum);
+    assert_orthonormal(&mean);
+    assert_true(angle_between(mean.normal, true_frame.normal) < 1e-12);
+    assert_true(fabs(weft_dot(mean.tangent, true_frame.tangent)) > 1 - 1e-12);
+}
+
+static void an_average_normal_weighs_and_stays_above_the_horizon(void **state)
+{
+    (void)state;
+    weft_frame_sum one = {0}, sum = {0};
+    weft_frame_sum_add(&one, weft_vec3_of(1, 0, 0), weft_vec3_of(0, 1, 0), 6);
+    weft_frame_sum_merge(&sum, &one, 0.5);
+    weft_frame_sum_add(&sum, weft_vec3_of(0, 0, 1), weft_vec3_of(0, 1, 0), 4);
+    weft_frame mean = weft_frame_of_sum(&sum);
+    assert_true(weft_length(weft_subtract(mean.normal, weft_vec3_of(0.6, 0, 0.8))) < 1e-15);
+    assert_true(fabs(mean.tangent.y) > 1 - 1e-15);
+    weft_frame_sum_add(&sum, weft_vec3_of(0, 0, -1), weft_vec3_of(0, 1, 0), 5);
+    mean = weft_frame_of_sum(&sum);
+    assert_true(weft_length(weft_subtract(mean.normal, weft_vec3_of(1, 0, 0))) < 1e-15);
+    mean = weft_frame_of_sum(&(weft_frame_sum){0});
+    assert_true(mean.normal.z == 1 && mean.tangent.x == 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -78,6 +112,8 @@ int main(void)
         cmocka_unit_test(codes_of_zero_are_the_frame_of_the_surface),
         cmocka_unit_test(azimuth_turns_the_tangent_towards_the_bitangent),
         cmocka_unit_test(a_normal_along_x_starts_from_y),
+        cmocka_unit_test(an_average_tangent_does_not_know_signs),
+        cmocka_unit_test(an_average_normal_weighs_and_stays_above_the_horizon),
         cmocka_unit_test(hostile_codes_give_finite_orthonormal_frames),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -135,6 +135,41 @@ static void holes_show_in_the_opacity_and_close_at_grazing_views(void **state)
     assert_true(grazing > steep + 0.1);
 }
 
+/* A straight cylinder of radius 0.25 along x, seen from above: across it the normal goes round, the tangent stays x. */
+static void frames_average_normals_and_fibres(void **state)
+{
+    (void)state;
+    static const char text[] = "stitch { tile = {1, 1}, resolution = 96, yarn { radius = 0.25, diffuse = {0.5, 0.5, "
+                               "0.5}, points { {0, 0.5, 0}, {0.5, 0.5, 0}, {1, 0.5, 0} } } }";
+    weft_stitch stitch;
+    weft_tile_mesh mesh;
+    const weft_vec3 up = {0, 0, 1};
+    weft_acquisition_options options = {.width = 2, .height = SIZE, .noise = 0.05, .seed = 1};
+    weft_acquisition_report report;
+    weft_dataset *dataset;
+    float frame[SIZE][2][2][3];
+    assert_int_equal(weft_stitch_parse(text, "rod.stitch", &stitch, NULL), WEFT_OK);
+    assert_int_equal(weft_tile_mesh_create(&stitch, 0, "rod.stitch", &mesh, NULL), WEFT_OK);
+    assert_int_equal(weft_acquire(&stitch, &mesh, &up, 1, &options, "rod.btf.h5", NULL, &report, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_open("rod.btf.h5", &dataset, NULL), WEFT_OK);
+    assert_true(weft_dataset_has_frames(dataset));
+    assert_int_equal(weft_dataset_read_frames(dataset, 0, SIZE, &frame[0][0][0][0], NULL), WEFT_OK);
+    weft_dataset_close(dataset);
+    for (int y = 2; y < 6; y++) {
+        /* From the axis upward, in radii: a row is half a radius high. */
+        double low = (SIZE / 2.0 - y - 1) / 2, high = low + 0.5;
+        double along_y = (high * high - low * low) / 2;
+        double along_z = (high * sqrt(1 - high * high) + asin(high) - low * sqrt(1 - low * low) - asin(low)) / 2;
+        const float *normal = frame[y][1][0], *tangent = frame[y][1][1];
+        assert_float_equal(normal[0], 0, 0.01);
+        assert_float_equal(normal[1], along_y / hypot(along_y, along_z), 0.03);
+        assert_true(tangent[0] > 0.999f);
+    }
+    assert_true(frame[0][1][0][2] == 1 && frame[0][1][1][0] == 1);
+    weft_tile_mesh_free(&mesh);
+    weft_stitch_free(&stitch);
+}
+
 static void requests_without_sense_are_refused(void **state)
 {
     (void)state;
@@ -166,6 +201,7 @@ int main(void)
         cmocka_unit_test(exchanging_views_and_lights_changes_nothing_within_the_noise),
         cmocka_unit_test(the_threads_do_not_show),
         cmocka_unit_test(holes_show_in_the_opacity_and_close_at_grazing_views),
+        cmocka_unit_test(frames_average_normals_and_fibres),
         cmocka_unit_test(requests_without_sense_are_refused),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
