@@ -17,7 +17,7 @@ heading() {
     printf '\n== %s\n' "$*"
 }
 
-cmake --build "$build" --target bench_reflectance bench_fit bench_large_dataset bench_compress bench_player bench_aliasing bench_truth
+cmake --build "$build" --target bench_reflectance bench_fit bench_large_dataset bench_compress bench_player bench_aliasing bench_truth bench_paper weft
 
 heading "Evaluations a second of the models, one core"
 "$build/bench/bench_reflectance"
@@ -31,6 +31,10 @@ fi
 heading "The whole job: reading, fitting all levels, writing, all cores"
 "$build/bench/bench_large_dataset" "$scratch/cloth.btf.h5" "$size"
 "$build/bench/bench_compress" "$scratch/cloth.btf.h5"
+
+heading "Cloth from geometry, and the representation of Daubert et al. 2001 beside Weft's"
+"$build/cli/weft" simulate assets/stitches/plain_knit.stitch -o "$scratch/knit.btf.h5" --size 16x16 --noise 2
+"$build/bench/bench_paper" "$scratch/knit.btf.h5"
 
 heading "Aliasing of the drape seen from afar"
 "$build/bench/bench_aliasing"
