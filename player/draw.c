@@ -75,7 +75,8 @@ static void draw_background(const weft_player *p)
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-/* Holes of the cloth show what was drawn before: the background, or the cloth behind where it came first. */
+/* Holes of the cloth show what was drawn before: the background, or the cloth behind where it came first. Reflectance is
+ * that of the whole texel, holes included, and takes no further factor. */
 static void draw_pane(const weft_player *p, const weft_scene *scene, weft_mode mode, int width, int height,
                       weft_sampling sampling)
 {
@@ -83,7 +84,7 @@ static void draw_pane(const weft_player *p, const weft_scene *scene, weft_mode m
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     GLuint program = p->shade[mode];
     weft_player_set_surface(p, program, scene, mode, (double)width / height, sampling.shift_x / width,
                             sampling.shift_y / height, sampling.level_bias);

@@ -99,14 +99,27 @@ void weft_table_directions_free(weft_table_directions *directions)
     *directions = (weft_table_directions){0};
 }
 
+/* Any direction from which the opacity can be found. */
+static weft_vec3 above_horizon(weft_vec3 light)
+{
+    return light.z > 0 ? light : weft_vec3_of(0, 0, 1);
+}
+
+/* What no light reaches hides what is behind it all the same. */
+static weft_rgba lit_from(weft_vec3 light, weft_rgba value)
+{
+    return light.z > 0 ? value : (weft_rgba){0, 0, 0, value.a};
+}
+
 weft_rgba weft_material_texel(const weft_material *material, const weft_table_directions *directions, int level, int x,
                               int y, weft_vec3 light, weft_vec3 view)
 {
     const weft_material_level *at = &material->level[level];
-    if (!(light.z > 0 && view.z > 0))
+    if (!(view.z > 0))
         return (weft_rgba){0};
-    table_corners corners = corners_of(material, directions, light, view);
-    return texel_value(material, at, &corners, (size_t)y * (size_t)at->width + (size_t)x, light, view);
+    weft_vec3 above = above_horizon(light);
+    table_corners corners = corners_of(material, directions, above, view);
+    return lit_from(light, texel_value(material, at, &corners, (size_t)y * (size_t)at->width + (size_t)x, above, view));
 }
 
 static weft_rgba mix(weft_rgba a, weft_rgba b, weft_real share)
@@ -147,13 +160,14 @@ weft_rgba weft_material_sample(const weft_material *material, const weft_table_d
                                weft_real u, weft_real v, weft_vec3 light, weft_vec3 view)
 {
     bool finite = isfinite(u) && isfinite(v);
-    if (!(light.z > 0 && view.z > 0 && finite))
+    if (!(view.z > 0 && finite))
         return (weft_rgba){0};
-    table_corners corners = corners_of(material, directions, light, view);
+    weft_vec3 above = above_horizon(light);
+    table_corners corners = corners_of(material, directions, above, view);
     weft_real clamped = level > 0 ? fmin(level, (weft_real)(material->level_count - 1)) : 0;
     int fine = (int)clamped;
-    weft_rgba value = level_value(material, &corners, fine, u, v, light, view);
+    weft_rgba value = level_value(material, &corners, fine, u, v, above, view);
     if (clamped > (weft_real)fine)
-        value = mix(value, level_value(material, &corners, fine + 1, u, v, light, view), clamped - (weft_real)fine);
-    return value;
+        value = mix(value, level_value(material, &corners, fine + 1, u, v, above, view), clamped - (weft_real)fine);
+    return lit_from(light, value);
 }

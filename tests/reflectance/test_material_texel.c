@@ -114,11 +114,14 @@ static void texel_is_the_equation_of_its_codes(void **state)
     assert_near(texel(m, 0, x, y).a, opacity);
 }
 
-static void below_the_horizon_there_is_nothing(void **state)
+static void below_the_horizon_there_is_nothing_but_opacity(void **state)
 {
     const model *m = *state;
     const weft_vec3 below = {0.6, 0, -0.8};
-    assert_same_colour(weft_material_texel(&m->material, &m->directions, 0, 0, 0, below, view), (weft_rgba){0});
+    weft_real opacity = weft_material_texel(&m->material, &m->directions, 0, 0, 0, light, view).a;
+    assert_true(opacity > 0);
+    assert_same_colour(weft_material_texel(&m->material, &m->directions, 0, 0, 0, below, view),
+                       (weft_rgba){0, 0, 0, opacity});
     assert_same_colour(weft_material_sample(&m->material, &m->directions, 0, 0, 0, light, below), (weft_rgba){0});
     assert_same_colour(weft_material_sample(&m->material, &m->directions, 0, (weft_real)NAN, 0, light, view),
                        (weft_rgba){0});
@@ -163,8 +166,10 @@ static void levels_are_mixed_and_clamped(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(texel_is_the_equation_of_its_codes),    cmocka_unit_test(below_the_horizon_there_is_nothing),
-        cmocka_unit_test(sample_at_a_texel_centre_is_the_texel), cmocka_unit_test(sample_is_bilinear_and_repeats),
+        cmocka_unit_test(texel_is_the_equation_of_its_codes),
+        cmocka_unit_test(below_the_horizon_there_is_nothing_but_opacity),
+        cmocka_unit_test(sample_at_a_texel_centre_is_the_texel),
+        cmocka_unit_test(sample_is_bilinear_and_repeats),
         cmocka_unit_test(levels_are_mixed_and_clamped),
     };
     return cmocka_run_group_tests_name("material texel", tests, make_model, free_model);

@@ -1,0 +1,195 @@
+/* Cloth with holes in front of a background. */
+#include "stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIZE = 48, TEXELS = 8, VIEWS = 19 };
+
+static const double cloth = 0.6;
+
+/* Grey cloth and holes by turns at level 0, half of each from there on. The reflectance is that of the whole texel. */
+static void make_mesh_cloth(weft_material *material)
+{
+    weft_error error = {0};
+    expect_ok(weft_material_create(TEXELS, TEXELS, 0, VIEWS, 0, true, material, &error), &error);
+    for (int v = 0; v < VIEWS; v++)
+        material->view[v] = weft_direction_of_angles(weft_ubo81_angles(v));
+    for (int k = 0; k < material->level_count; k++) {
+        weft_material_level *level = &material->level[k];
+        int texels = level->width * level->height;
+        for (int i = 0; i < texels; i++) {
+            bool hole = k == 0 && (i / level->width + i % level->width) % 2;
+            double value = k > 0 ? cloth / 2 : hole ? 0 : cloth;
+            weft_frame frame = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
+            weft_frame_encode(&frame, level->frame + 3 * i);
+            for (int c = 0; c < 3; c++)
+                level->diffuse[4 * i + c] = weft_half_of_float((float)value);
+            for (int v = 0; v < VIEWS; v++) {
+                const uint8_t code[4] = {255, 255, 255, k > 0 ? 128 : hole ? 0 : 255};
+                memcpy(level->table + 4 * (v * texels + i), code, sizeof code);
+            }
+        }
+    }
+}
+
+static void set_mesh(weft_player *player, weft_code (*make)(weft_mesh *, weft_error *))
+{
+    weft_mesh mesh;
+    weft_error error = {0};
+    expect_ok(make(&mesh, &error), &error);
+    expect_ok(weft_player_set_mesh(player, &mesh, &error), &error);
+    weft_mesh_free(&mesh);
+}
+
+/* A triangle without area: nothing of it is seen. */
+static weft_code make_nothing(weft_mesh *mesh, weft_error *error)
+{
+    WEFT_TRY(weft_mesh_allocate(3, 1, mesh, error));
+    for (int i = 0; i < 3; i++) {
+        mesh->vertex[i] = (weft_vertex){.position = {(float)i, 0, 0}, .normal = {0, 0, 1}, .tangent = {1, 0, 0, 1}};
+        mesh->index[0][i] = (uint32_t)i;
+    }
+    return WEFT_OK;
+}
+
+static weft_scene plane_scene(double elevation_deg)
+{
+    weft_scene scene = weft_scene_default();
+    scene.orbit = (weft_orbit){weft_rad_of_deg(-90), weft_rad_of_deg(elevation_deg), 3};
+    scene.light[0].direction = (weft_angles){0, 0};
+    scene.repeat = 1;
+    scene.labels = false;
+    scene.level_choice = WEFT_LEVEL_FIXED;
+    return scene;
+}
+
+static weft_image draw(weft_player *player, const weft_scene *scene, int samples)
+{
+    weft_image image;
+    weft_error error = {0};
+    expect_ok(weft_player_picture(player, scene, SIZE, SIZE, samples, NULL, &image, &error), &error);
+    return image;
+}
+
+static weft_image draw_background(weft_player *player)
+{
+    weft_scene scene = plane_scene(90);
+    set_mesh(player, make_nothing);
+    return draw(player, &scene, 1);
+}
+
+static double mean_of_middle(const weft_image *image)
+{
+    double sum = 0;
+    for (int y = SIZE / 2 - 6; y < SIZE / 2 + 6; y++)
+        for (int x = SIZE / 2 - 6; x < SIZE / 2 + 6; x++)
+            sum += (double)image->pixels[3 * (y * SIZE + x)] / 144;
+    return sum;
+}
+
+static void set_material(weft_player *player, weft_material *material)
+{
+    weft_error error = {0};
+    expect_ok(weft_player_set_material(player, material, &error), &error);
+}
+
+static void a_half_covered_level_shows_half_of_the_background(void **state)
+{
+    weft_player *player = ((stage *)*state)->player;
+    weft_material material;
+    make_mesh_cloth(&material);
+    set_material(player, &material);
+    weft_image background = draw_background(player);
+    set_mesh(player, weft_mesh_plane);
+    weft_scene scene = plane_scene(90);
+    scene.level = 1;
+    weft_image half = draw(player, &scene, 1);
+    assert_true(mean_of_middle(&background) > 0.05);
+    assert_float_equal(mean_of_middle(&half), cloth / 2 + (1 - 128 / 255.0) * mean_of_middle(&background), 1e-3);
+    weft_image_free(&background);
+    weft_image_free(&half);
+    weft_material_free(&material);
+}
+
+static void levels_of_holes_have_one_mean(void **state)
+{
+    weft_player *player = ((stage *)*state)->player;
+    weft_material material;
+    make_mesh_cloth(&material);
+    set_material(player, &material);
+    set_mesh(player, weft_mesh_plane);
+    weft_scene scene = plane_scene(90);
+    scene.repeat = 24; /* many texels in a pixel: their mean is what counts */
+    weft_image fine = draw(player, &scene, 16);
+    for (int level = 1; level < material.level_count; level++) {
+        scene.level = level;
+        weft_image coarse = draw(player, &scene, 1);
+        assert_float_equal(mean_of_middle(&coarse), mean_of_middle(&fine), 4e-3);
+        weft_image_free(&coarse);
+    }
+    weft_image_free(&fine);
+    weft_material_free(&material);
+}
+
+/* How many pixels show something of the background. */
+static int compare_with_evaluator(weft_player *player, const weft_material *material, const weft_image *background,
+                                  const weft_scene *scene)
+{
+    weft_table_directions directions;
+    weft_surface_sample *surface;
+    weft_error error = {0};
+    expect_ok(weft_table_directions_create(material, &directions, &error), &error);
+    weft_image image = draw(player, scene, 1);
+    expect_ok(weft_player_read_surface(player, scene, WEFT_MODE_COMPRESSED, SIZE, SIZE, &surface, &error), &error);
+    int open = 0;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        const weft_surface_sample *at = &surface[i];
+        if (at->covered == 0)
+            continue;
+        weft_vec3 light = weft_vec3_of((weft_real)at->light[0], (weft_real)at->light[1], (weft_real)at->light[2]);
+        weft_vec3 view = weft_vec3_of((weft_real)at->view[0], (weft_real)at->view[1], (weft_real)at->view[2]);
+        weft_rgba f = weft_material_sample(material, &directions, (weft_real)at->level, (weft_real)at->u,
+                                           (weft_real)at->v, light, view);
+        double behind = (1 - f.a) * (double)background->pixels[3 * i];
+        assert_float_equal((double)image.pixels[3 * i], f.r * fmax(light.z, 0) + behind, 2e-3);
+        open += f.a < 0.9;
+    }
+    free(surface);
+    weft_image_free(&image);
+    weft_table_directions_free(&directions);
+    return open;
+}
+
+static void evaluator_and_shader_agree_where_there_are_holes(void **state)
+{
+    weft_player *player = ((stage *)*state)->player;
+    weft_material material;
+    stage_material(TEXELS, TEXELS, 2, VIEWS, 0, &material);
+    set_material(player, &material);
+    weft_image background = draw_background(player);
+    set_mesh(player, weft_mesh_plane);
+    weft_scene scene = plane_scene(50);
+    int open = 0;
+    for (int level = 0; level < 4; level++) {
+        scene.level = 0.4 * level;
+        scene.light[0].direction.theta_rad = weft_rad_of_deg(40);
+        open += compare_with_evaluator(player, &material, &background, &scene);
+        scene.light[0].direction.theta_rad = weft_rad_of_deg(140);
+        open += compare_with_evaluator(player, &material, &background, &scene);
+    }
+    assert_true(open > 100);
+    weft_image_free(&background);
+    weft_material_free(&material);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_half_covered_level_shows_half_of_the_background),
+        cmocka_unit_test(levels_of_holes_have_one_mean),
+        cmocka_unit_test(evaluator_and_shader_agree_where_there_are_holes),
+    };
+    return cmocka_run_group_tests(tests, stage_open, stage_close);
+}
