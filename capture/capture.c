@@ -109,7 +109,7 @@ static weft_code photograph(const weft_capture_request *request, const weft_capt
 {
     weft_session *session = &held->session;
     weft_rig rig;
-    WEFT_TRY(weft_rig_virtual_open(&setup->world, &session->target, &setup->cloth, held->next_stay, &rig, error));
+    WEFT_TRY(weft_rig_virtual_open(&setup->world, &session->target, &setup->sample, held->next_stay, &rig, error));
     run r = {.session = session,
              .shooting = weft_shooting_begin(&rig, session, &request->settings, held->next_stay),
              .stop = stop,
@@ -138,7 +138,7 @@ static weft_code complete(const weft_capture_request *request, const weft_captur
     if (missing > 0)
         return weft_fail(error, WEFT_SYSTEM, "stopped, %d of %d photographs; run again to go on",
                          session->shot_count - missing, session->shot_count);
-    return weft_truth_write(&truth, session, &setup->world, &setup->cloth, progress, error);
+    return weft_truth_write(&truth, session, &setup->world, &setup->sample, progress, error);
 }
 
 weft_code weft_capture_run(const weft_capture_request *request, const volatile sig_atomic_t *stop,

@@ -38,7 +38,7 @@ static weft_code time_photograph(const weft_capture_request *request, const weft
     if (!samples)
         return weft_fail_memory(error, "photograph", bytes);
     weft_rig rig;
-    weft_code code = weft_rig_virtual_open(&setup->world, &session->target, &setup->cloth, 0, &rig, error);
+    weft_code code = weft_rig_virtual_open(&setup->world, &session->target, &setup->sample, 0, &rig, error);
     if (code == WEFT_OK) {
         weft_shooting shooting = weft_shooting_begin(&rig, session, &request->settings, 0);
         weft_shot_record record;

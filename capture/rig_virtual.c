@@ -9,7 +9,7 @@
 typedef struct virtual_rig {
     weft_virtual_world world;
     const weft_target *target;
-    const weft_virtual_cloth *cloth;
+    const weft_virtual_sample *sample;
     weft_virtual_optics optics;
     weft_virtual_sensor sensor;
     int next_stay, stay;
@@ -69,12 +69,12 @@ static weft_code look(virtual_rig *rig, weft_error *error)
         return weft_fail(error, WEFT_SYSTEM, "virtual camera: camera and light have not been driven anywhere");
     if (!rig->seen_valid) {
         weft_virtual_view_free(&rig->seen);
-        WEFT_TRY(weft_virtual_view_make(&rig->optics, rig->target, rig->cloth, &rig->pose, &rig->seen, error));
+        WEFT_TRY(weft_virtual_view_make(&rig->optics, rig->target, rig->sample, &rig->pose, &rig->seen, error));
         rig->seen_valid = true;
     }
     if (!rig->radiance_valid) {
         bool shadowed = weft_virtual_world_shadowed(&rig->world, &rig->pose, rig->light);
-        weft_virtual_view_light(&rig->seen, rig->cloth, rig->light, rig->world.settings.light_distance_mm,
+        weft_virtual_view_light(&rig->seen, rig->sample, rig->light, rig->world.settings.light_distance_mm,
                                 shadowed ? 0 : 1, rig->radiance);
         rig->radiance_valid = true;
     }
@@ -127,14 +127,14 @@ static weft_code prepare(virtual_rig *rig, weft_error *error)
 }
 
 weft_code weft_rig_virtual_open(const weft_virtual_world *world, const weft_target *target,
-                                const weft_virtual_cloth *cloth, int first_stay, weft_rig *rig, weft_error *error)
+                                const weft_virtual_sample *sample, int first_stay, weft_rig *rig, weft_error *error)
 {
     virtual_rig *back_end = calloc(1, sizeof *back_end);
     if (!back_end)
         return weft_fail_memory(error, "virtual rig", sizeof *back_end);
     back_end->world = *world;
     back_end->target = target;
-    back_end->cloth = cloth;
+    back_end->sample = sample;
     back_end->next_stay = first_stay;
     weft_code code = prepare(back_end, error);
     if (code != WEFT_OK) {

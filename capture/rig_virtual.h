@@ -3,13 +3,13 @@
 #define WEFT_CAPTURE_RIG_VIRTUAL_H
 
 #include "capture/rig.h"
-#include "capture/virtual_cloth.h"
+#include "capture/virtual_sample.h"
 #include "capture/virtual_world.h"
 
-/* Opens a rig that photographs `cloth` in `target`. It borrows both. Its stage counts stays from `first_stay`, the
+/* Opens a rig that photographs `sample` in `target`. It borrows both. Its stage counts stays from `first_stay`, the
  * number of stays that the session has already seen: the same seed and stay always give the same errors. The caller
  * closes with rig->close(rig->back_end). Errors: WEFT_SYSTEM. */
 weft_code weft_rig_virtual_open(const weft_virtual_world *world, const weft_target *target,
-                                const weft_virtual_cloth *cloth, int first_stay, weft_rig *rig, weft_error *error);
+                                const weft_virtual_sample *sample, int first_stay, weft_rig *rig, weft_error *error);
 
 #endif

@@ -1,6 +1,7 @@
 #include "capture/settings.h"
 
 #include "btf/json_text.h"
+#include "geometry/stitch_sample.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -62,6 +63,7 @@ static const setting table[] = {
     WHOLE(tiles_x, 0, 0, 10000),
     WHOLE(tiles_y, 0, 0, 10000),
     WHOLE(cloth_noise, 1, 0, 1),
+    WHOLE(bounces, 3, 0, WEFT_STITCH_SAMPLE_MAX_BOUNCES),
 };
 
 enum { SETTING_COUNT = sizeof table / sizeof table[0] };

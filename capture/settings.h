@@ -37,6 +37,7 @@ typedef struct weft_rig_settings {
     /* The sample of the virtual rig. */
     double tiles_x, tiles_y; /* of the weave, across the opening; 0 = chosen by the weave */
     double cloth_noise;      /* 1 = with the noise of the weave, 0 = without */
+    double bounces;          /* of light between the yarns of a stitch */
 } weft_rig_settings;
 
 /* The virtual rig as it stands in Weft. */

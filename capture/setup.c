@@ -58,8 +58,8 @@ static weft_code describe(const weft_capture_request *request, const char *sampl
 static weft_code make(const weft_capture_request *request, weft_capture_setup *setup, weft_error *error)
 {
     const weft_rig_settings *settings = &request->settings;
-    WEFT_TRY(weft_virtual_cloth_read(request->sample, settings, request->seed, &setup->cloth, setup->warning, error));
-    WEFT_TRY(describe(request, setup->cloth.weave.name, &setup->session, error));
+    WEFT_TRY(weft_virtual_sample_read(request->sample, settings, request->seed, &setup->sample, setup->warning, error));
+    WEFT_TRY(describe(request, weft_virtual_sample_name(&setup->sample), &setup->session, error));
     return adopt_plan(request, &setup->session, error);
 }
 
@@ -75,7 +75,7 @@ weft_code weft_capture_setup_make(const weft_capture_request *request, weft_capt
 void weft_capture_setup_free(weft_capture_setup *setup)
 {
     weft_session_free(&setup->session);
-    weft_virtual_cloth_free(&setup->cloth);
+    weft_virtual_sample_free(&setup->sample);
 }
 
 uint64_t weft_photograph_bytes(const weft_session *session)

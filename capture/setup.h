@@ -3,13 +3,13 @@
 #define WEFT_CAPTURE_SETUP_H
 
 #include "capture/settings.h"
-#include "capture/virtual_cloth.h"
+#include "capture/virtual_sample.h"
 #include "capture/virtual_world.h"
 
 typedef struct weft_capture_request {
     const char *folder; /* of the session */
     const char *plan;   /* "ubo81" or a CSV file, see capture/plan.h */
-    const char *sample; /* weave file */
+    const char *sample; /* weave or stitch file */
     uint64_t seed;      /* below 2^63 */
     weft_rig_settings settings;
     const char *truth; /* file of the ground truth; NULL = FOLDER.truth.h5 */
@@ -23,7 +23,7 @@ weft_capture_request weft_capture_request_default(void);
 typedef struct weft_capture_setup {
     weft_session session; /* as planned; nothing of it is on disk */
     weft_virtual_world world;
-    weft_virtual_cloth cloth;
+    weft_virtual_sample sample;
     char warning[WEFT_MESSAGE_SIZE]; /* of the weave file; empty if all is well */
 } weft_capture_setup;
 

@@ -3,7 +3,7 @@
 #define WEFT_CAPTURE_TRUTH_H
 
 #include "btf/progress.h"
-#include "capture/virtual_cloth.h"
+#include "capture/virtual_sample.h"
 #include "capture/virtual_world.h"
 
 typedef struct weft_truth_request {
@@ -20,7 +20,7 @@ weft_code weft_truth_check_path(const weft_truth_request *request, const weft_se
  * reflectance of a choice of shots. Follows from settings, seed and journal, whatever interruptions the session had.
  * Parallel. Errors: WEFT_SYSTEM. */
 weft_code weft_truth_write(const weft_truth_request *request, const weft_session *session,
-                           const weft_virtual_world *world, const weft_virtual_cloth *cloth,
+                           const weft_virtual_world *world, const weft_virtual_sample *sample,
                            const weft_progress *progress, weft_error *error);
 
 /* The choice: one shot of each view in turn, each time with another light, so that all rings of views meet all rings of
@@ -31,7 +31,7 @@ int weft_truth_choose(const weft_session *session, int image_count, int *shots);
 /* pi BRDF cos(theta_light), averaged over the footprint of texel (x, y) of size x size texels over the opening (row 0
  * at the top) by 8 x 8 samples, each with the directions to a light and a camera at `light` and `camera` (plate frame,
  * mm). No falloff. Pure. */
-weft_rgb weft_truth_reflectance(const weft_virtual_cloth *cloth, int size, int x, int y, weft_vec3 light,
+weft_rgb weft_truth_reflectance(const weft_virtual_sample *sample, int size, int x, int y, weft_vec3 light,
                                 weft_vec3 camera);
 
 #endif

@@ -70,7 +70,7 @@ static void fill_poses(const weft_session *session, const weft_virtual_world *wo
     }
 }
 
-static void fill_image(const weft_session *session, const weft_virtual_world *world, const weft_virtual_cloth *cloth,
+static void fill_image(const weft_session *session, const weft_virtual_world *world, const weft_virtual_sample *sample,
                        int shot, int size, float *reflectance)
 {
     int stay = session->record[shot].stay;
@@ -80,7 +80,7 @@ static void fill_image(const weft_session *session, const weft_virtual_world *wo
 #pragma omp parallel for schedule(dynamic, 4)
     for (int y = 0; y < size; y++) {
         for (int x = 0; x < size; x++) {
-            weft_rgb value = weft_truth_reflectance(cloth, size, x, y, light, camera);
+            weft_rgb value = weft_truth_reflectance(sample, size, x, y, light, camera);
             float *texel = reflectance + 3 * ((size_t)y * (size_t)size + (size_t)x);
             texel[0] = (float)value.r;
             texel[1] = (float)value.g;
@@ -208,7 +208,7 @@ weft_code weft_truth_check_path(const weft_truth_request *request, const weft_se
 }
 
 weft_code weft_truth_write(const weft_truth_request *request, const weft_session *session,
-                           const weft_virtual_world *world, const weft_virtual_cloth *cloth,
+                           const weft_virtual_world *world, const weft_virtual_sample *sample,
                            const weft_progress *progress, weft_error *error)
 {
     truth t;
@@ -219,10 +219,10 @@ weft_code weft_truth_write(const weft_truth_request *request, const weft_session
         fill_poses(session, world, &t);
         size_t stride = (size_t)t.size * (size_t)t.size * 3;
         for (int image = 0; image < t.image_count; image++) {
-            fill_image(session, world, cloth, t.image_shot[image], t.size, t.reflectance + (size_t)image * stride);
+            fill_image(session, world, sample, t.image_shot[image], t.size, t.reflectance + (size_t)image * stride);
             weft_progress_report(progress, "computing the ground truth", image + 1, t.image_count);
         }
-        code = write_file(path, &world->camera, cloth->opening_mm, &t, error);
+        code = write_file(path, &world->camera, sample->opening_mm, &t, error);
     }
     free_truth(&t);
     return code;

@@ -3,7 +3,7 @@
 /* A light and what it does to a row of pixels. */
 typedef struct lighting {
     const weft_virtual_view *view;
-    const weft_virtual_cloth *cloth;
+    const weft_virtual_sample *sample;
     weft_vec3 light;
     double strength; /* power reference^2 */
 } lighting;
@@ -31,8 +31,8 @@ typedef struct waiting_points {
 static void add_cloth(const lighting *l, waiting_points *waiting, size_t row_start, const float *irradiance,
                       float *radiance)
 {
-    const weft_weave *weave = &l->cloth->weave;
-    weft_weave_specular_batch(l->cloth->table, &waiting->batch);
+    const weft_weave *weave = &l->sample->flat.weave;
+    weft_weave_specular_batch(l->sample->flat.table, &waiting->batch);
     for (int i = 0; i < waiting->batch.count; i++) {
         weft_rgb brdf =
             weft_weave_shade(weave, &weave->yarn[waiting->batch.yarn[i]], (weft_real)waiting->batch.specular[i]);
@@ -46,7 +46,7 @@ static void add_cloth(const lighting *l, waiting_points *waiting, size_t row_sta
     waiting->batch.count = 0;
 }
 
-static void light_cloth_row(const lighting *l, int y, const float *irradiance, float *radiance)
+static void light_flat_row(const lighting *l, int y, const float *irradiance, float *radiance)
 {
     const weft_virtual_view *view = l->view;
     size_t start = (size_t)y * (size_t)view->width;
@@ -69,6 +69,30 @@ static void light_cloth_row(const lighting *l, int y, const float *irradiance, f
     add_cloth(l, &waiting, start, irradiance, radiance);
 }
 
+/* Radiance of a point under irradiance pi across the direction of the light becomes that under the light's own. */
+static void light_deep_row(const lighting *l, int y, const float *irradiance, float *radiance)
+{
+    const weft_virtual_view *view = l->view;
+    size_t start = (size_t)y * (size_t)view->width;
+    if (!(l->light.z > 0 && view->camera.z > 0))
+        return;
+    for (int i = view->row[y]; i < view->row[y + 1]; i++) {
+        const weft_cloth_pixel *cloth = &view->cloth[i];
+        weft_vec3 at = {view->x_mm[cloth->pixel], view->y_mm[cloth->pixel], 0};
+        weft_vec3 toward_light = weft_unit(weft_subtract(l->light, at));
+        double scale =
+            (double)irradiance[(size_t)cloth->pixel - start] / (WEFT_PI * toward_light.z * view->sample_count);
+        float *pixel = radiance + 3 * (size_t)cloth->pixel;
+        for (size_t k = cloth->first; k < cloth->first + (size_t)cloth->count; k++) {
+            weft_rgb seen = weft_stitch_sample_light(l->sample->deep, view->vertex + k * (size_t)view->path_vertices,
+                                                     view->vertex_count[k], toward_light);
+            pixel[0] += (float)(scale * seen.r);
+            pixel[1] += (float)(scale * seen.g);
+            pixel[2] += (float)(scale * seen.b);
+        }
+    }
+}
+
 static void light_row(const lighting *l, int y, float *irradiance, float *radiance)
 {
     const weft_virtual_view *view = l->view;
@@ -80,13 +104,16 @@ static void light_row(const lighting *l, int y, float *irradiance, float *radian
         float *pixel = radiance + 3 * (start + (size_t)x);
         pixel[0] = pixel[1] = pixel[2] = printed;
     }
-    light_cloth_row(l, y, irradiance, radiance);
+    if (l->sample->deep)
+        light_deep_row(l, y, irradiance, radiance);
+    else
+        light_flat_row(l, y, irradiance, radiance);
 }
 
-void weft_virtual_view_light(const weft_virtual_view *view, const weft_virtual_cloth *cloth, weft_vec3 light,
+void weft_virtual_view_light(const weft_virtual_view *view, const weft_virtual_sample *sample, weft_vec3 light,
                              double reference_mm, double power, float *radiance)
 {
-    lighting l = {view, cloth, light, power * reference_mm * reference_mm};
+    lighting l = {view, sample, light, power * reference_mm * reference_mm};
 #pragma omp parallel for schedule(dynamic, 8)
     for (int y = 0; y < view->height; y++) {
         float irradiance[8192];

@@ -7,7 +7,7 @@
 typedef struct scene {
     const weft_virtual_optics *optics;
     const weft_target *target;
-    const weft_virtual_cloth *cloth;
+    const weft_virtual_sample *sample;
     weft_virtual_eye eye;
 } scene;
 
@@ -76,7 +76,23 @@ static void locate_cloth(const scene *s, const weft_virtual_view *view, const we
     for (int i = 0; i < view->sample_count; i++) {
         double x_mm, y_mm;
         if (sampled_region(s, x, y, i, &x_mm, &y_mm) == WEFT_TARGET_OPENING)
-            view->point[next++] = weft_virtual_cloth_locate(s->cloth, x_mm, y_mm);
+            view->point[next++] = weft_virtual_cloth_locate(&s->sample->flat, x_mm, y_mm);
+    }
+}
+
+/* The same for a sample with depth: what the points see on their way down. */
+static void see_cloth(const scene *s, const weft_virtual_view *view, const weft_cloth_pixel *cloth)
+{
+    size_t next = cloth->first;
+    int x = cloth->pixel % view->width, y = cloth->pixel / view->width;
+    for (int i = 0; i < view->sample_count; i++) {
+        double x_mm, y_mm;
+        if (sampled_region(s, x, y, i, &x_mm, &y_mm) != WEFT_TARGET_OPENING)
+            continue;
+        weft_vec3 toward_camera = weft_unit(weft_subtract(s->eye.centre, weft_vec3_of(x_mm, y_mm, 0)));
+        weft_seen_vertex *path = view->vertex + next * (size_t)view->path_vertices;
+        view->vertex_count[next++] = (uint8_t)weft_virtual_sample_see(s->sample, x_mm, y_mm, toward_camera,
+                                                                      (uint64_t)cloth->pixel, (uint32_t)i, path);
     }
 }
 
@@ -100,6 +116,21 @@ static weft_code allocate_view(weft_virtual_view *view, weft_error *error)
     return WEFT_OK;
 }
 
+static weft_code allocate_points(const weft_virtual_sample *sample, size_t points, weft_virtual_view *view,
+                                 weft_error *error)
+{
+    size_t bytes = (points + 1) * sizeof *view->point;
+    if (!sample->deep) {
+        view->point = malloc(bytes);
+        return view->point ? WEFT_OK : weft_fail_memory(error, "the cloth in a view", bytes);
+    }
+    view->path_vertices = 1 + weft_stitch_sample_bounces(sample->deep);
+    bytes = (points + 1) * (size_t)view->path_vertices * sizeof *view->vertex;
+    view->vertex = malloc(bytes);
+    view->vertex_count = malloc(points + 1);
+    return view->vertex && view->vertex_count ? WEFT_OK : weft_fail_memory(error, "paths of light in a view", bytes);
+}
+
 static weft_code sample_cloth(const scene *s, const int *counts, weft_virtual_view *view, weft_error *error)
 {
     int cloth_count = count_cloth(counts, (size_t)view->width * (size_t)view->height);
@@ -107,12 +138,14 @@ static weft_code sample_cloth(const scene *s, const int *counts, weft_virtual_vi
     if (!view->cloth)
         return weft_fail_memory(error, "the cloth in a view", (size_t)cloth_count * sizeof *view->cloth);
     size_t points = list_cloth(view, counts);
-    view->point = malloc((points + 1) * sizeof *view->point);
-    if (!view->point)
-        return weft_fail_memory(error, "the cloth in a view", points * sizeof *view->point);
+    WEFT_TRY(allocate_points(s->sample, points, view, error));
 #pragma omp parallel for schedule(dynamic, 256)
-    for (int i = 0; i < cloth_count; i++)
-        locate_cloth(s, view, &view->cloth[i]);
+    for (int i = 0; i < cloth_count; i++) {
+        if (s->sample->deep)
+            see_cloth(s, view, &view->cloth[i]);
+        else
+            locate_cloth(s, view, &view->cloth[i]);
+    }
     return WEFT_OK;
 }
 
@@ -132,10 +165,10 @@ static weft_code sample_view(const scene *s, weft_virtual_view *view, weft_error
 }
 
 weft_code weft_virtual_view_make(const weft_virtual_optics *optics, const weft_target *target,
-                                 const weft_virtual_cloth *cloth, const weft_pose *pose, weft_virtual_view *view,
+                                 const weft_virtual_sample *sample, const weft_pose *pose, weft_virtual_view *view,
                                  weft_error *error)
 {
-    scene s = {optics, target, cloth, weft_virtual_eye_of_pose(pose)};
+    scene s = {optics, target, sample, weft_virtual_eye_of_pose(pose)};
     *view = (weft_virtual_view){.width = optics->width,
                                 .height = optics->height,
                                 .sample_count = optics->sample_count,
@@ -152,5 +185,7 @@ void weft_virtual_view_free(weft_virtual_view *view)
     free(view->row);
     free(view->cloth);
     free(view->point);
+    free(view->vertex);
+    free(view->vertex_count);
     *view = (weft_virtual_view){0};
 }

@@ -18,7 +18,8 @@ enum { KEY_RIG = 0x2000, KEY_SAMPLE, KEY_PLAN, KEY_SEED, KEY_TRUTH, KEY_TRUTH_SI
 static const struct argp_option option_table[] = {
     {"output", 'o', "SESSION", 0, "The folder of the session", 0},
     {"rig", KEY_RIG, "virtual|FILE.json", 0, "The rig, or a file with its settings (default: virtual)", 0},
-    {"sample", KEY_SAMPLE, "CLOTH.wv", 0, "The weave that the virtual rig photographs", 0},
+    {"sample", KEY_SAMPLE, "CLOTH.wv|.stitch", 0,
+     "What the virtual rig photographs: a weave, flat, or a stitch, which has depth", 0},
     {"plan", KEY_PLAN, "ubo81|FILE.csv", 0,
      "Which photographs: all pairs of 81 directions (default), or a table with the columns theta_light_deg, "
      "phi_light_deg, "
@@ -72,7 +73,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         if (!request->folder || !request->sample)
-            argp_error(state, "needs --sample CLOTH.wv and -o SESSION");
+            argp_error(state, "needs --sample CLOTH.wv or CLOTH.stitch, and -o SESSION");
         refuse_same_file(request->truth, request->sample, state);
         return 0;
     default:

@@ -13,20 +13,20 @@ typedef struct fixture {
     uint16_t *samples;
 } fixture;
 
-static weft_virtual_cloth cloth;
+static weft_virtual_sample cloth;
 
 static int read_cloth(void **state)
 {
     (void)state;
     weft_rig_settings settings = weft_rig_settings_default();
     char warning[WEFT_MESSAGE_SIZE];
-    return weft_virtual_cloth_read(WEFT_ASSETS "/weaves/polyester_lining.wv", &settings, 1, &cloth, warning, NULL);
+    return weft_virtual_sample_read(WEFT_ASSETS "/weaves/polyester_lining.wv", &settings, 1, &cloth, warning, NULL);
 }
 
 static int free_cloth(void **state)
 {
     (void)state;
-    weft_virtual_cloth_free(&cloth);
+    weft_virtual_sample_free(&cloth);
     return 0;
 }
 

@@ -14,7 +14,7 @@ enum { TEXELS = 8, IMAGES = 5, STAYS = 5 };
 
 static weft_session session;
 static weft_virtual_world world;
-static weft_virtual_cloth cloth;
+static weft_virtual_sample cloth;
 static double rotation[STAYS][3][3], translation[STAYS][3], light[SMALL_SHOTS][3];
 static int stay[SMALL_SHOTS], image_shot[IMAGES];
 static float reflectance[IMAGES][TEXELS][TEXELS][3];
@@ -66,7 +66,7 @@ static int take_session(void **state)
     world = weft_virtual_world_of(&request.settings, request.seed);
     return weft_capture_run(&request, NULL, NULL, &summary, NULL) == WEFT_OK &&
                    weft_session_open("session", &session, NULL) == WEFT_OK &&
-                   weft_virtual_cloth_read(request.sample, &request.settings, request.seed, &cloth, warning, NULL) ==
+                   weft_virtual_sample_read(request.sample, &request.settings, request.seed, &cloth, warning, NULL) ==
                        WEFT_OK &&
                    load_truth()
                ? 0
@@ -76,7 +76,7 @@ static int take_session(void **state)
 static int leave_session(void **state)
 {
     weft_session_free(&session);
-    weft_virtual_cloth_free(&cloth);
+    weft_virtual_sample_free(&cloth);
     return scratch_folder_leave(state);
 }
 
@@ -113,9 +113,9 @@ static weft_rgb integrate_texel(int shot, int x, int y, int points)
         camera_length = sqrt(camera_length);
         light_length = sqrt(light_length);
         weft_weave_point point =
-            weft_weave_locate(&cloth.weave, u * cloth.tiles_x, v * cloth.tiles_y, cloth.noise_seed);
+            weft_weave_locate(&cloth.flat.weave, u * cloth.flat.tiles_x, v * cloth.flat.tiles_y, cloth.flat.noise_seed);
         weft_rgb brdf = weft_weave_brdf(
-            &cloth.weave, &point,
+            &cloth.flat.weave, &point,
             weft_vec3_of(to_light[0] / light_length, to_light[1] / light_length, to_light[2] / light_length),
             weft_vec3_of(to_camera[0] / camera_length, to_camera[1] / camera_length, to_camera[2] / camera_length));
         double weight = WEFT_PI * to_light[2] / light_length / (points * points);

@@ -41,3 +41,32 @@ expect_error 1 "a stitch, not a model" eval "$stitch" --at directions.csv
 expect_error 2 "needs a stitch" simulate "$stitch"
 expect_error 3 "'absent'" simulate "$stitch" --size 2x2 --noise 50 -o absent/no.btf.h5
 expect_no_file no.btf.h5
+
+# The same cloth as the sample of the virtual rig.
+write_plan >plan.csv
+printf '{"rig": "virtual", "samples_per_pixel": 2, "bounces": 1}' >rig.json
+expect_ok capture --rig rig.json --sample "$stitch" --plan plan.csv -o open --truth-images 1 --truth-size 8
+expect_ok info open
+grep -q "Open weave" out.log || fail "the session does not name its stitch"
+expect_ok capture --rig rig.json --sample "$stitch" --plan plan.csv -o open --truth-images 1 --truth-size 8
+expect_says "4 of 4 stays" register open --size 16x16 -o registered.btf.h5
+expect_ok compress registered.btf.h5 --lobes 1 -o registered.weft
+printf '{"rig": "virtual", "tiles_x": 3}' >tiles.json
+expect_error 1 "tiles_x" capture --rig tiles.json --sample "$stitch" --plan plan.csv -o tiles
+expect_error 1 "absent.stitch" capture --sample absent.stitch --plan plan.csv -o absent
+
+# What is no stitch.
+refuse_stitch() {
+    expect_error 1 "$1" simulate bad.stitch -o no.btf.h5 --size 2x2
+    [ "$(wc -l <err.log)" = 1 ] || fail "more than one line: $(cat err.log)"
+    expect_error 1 "$1" capture --sample bad.stitch --plan plan.csv -o no
+}
+head -c 300 "$stitch" >bad.stitch && refuse_stitch "bad.stitch:"
+: >bad.stitch && refuse_stitch "expected 'stitch'"
+head -c 3000 /dev/urandom >bad.stitch && refuse_stitch "bad.stitch"
+sed 's/radius = [^,]*,/radius = 0,/' "$stitch" >bad.stitch && refuse_stitch "zero"
+sed 's/radius = [^,]*,/radius = nan,/' "$stitch" >bad.stitch && refuse_stitch "bad.stitch:"
+head -c 1000000 /dev/zero | tr '\0' '{' >bad.stitch && refuse_stitch "bad.stitch:1:1"
+mkdir folder.stitch && expect_error 1 folder.stitch simulate folder.stitch -o no.btf.h5
+expect_no_file no.btf.h5
+[ ! -e no ] || fail "a session of a bad stitch was begun"

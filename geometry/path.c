@@ -1,0 +1,96 @@
+#include "geometry/path.h"
+
+#include "btf/material.h"
+#include "geometry/sample_sequence.h"
+#include "reflectance/lafortune.h"
+
+/* Rays start this far above the surface, in cells of the grid. */
+#define RAY_OFFSET 1e-3
+
+/* A path that carries less than this part of the light is over. */
+#define NEGLIGIBLE 1e-4
+
+static weft_vec3 vertex_vector(const float *from)
+{
+    return weft_vec3_of(from[0], from[1], from[2]);
+}
+
+weft_vec3 path_above(const path_scene *scene, weft_vec3 at, weft_vec3 normal)
+{
+    return weft_add(at, weft_scale(normal, (weft_real)RAY_OFFSET * (weft_real)ray_scene_mesh(scene->rays)->cell));
+}
+
+static weft_vec3 interpolate(const weft_tile_mesh *mesh, const ray_hit *hit, float (*attribute)[3])
+{
+    weft_vec3 sum = {0};
+    for (int i = 0; i < 3; i++)
+        sum = weft_add(sum, weft_scale(vertex_vector(attribute[mesh->triangle[hit->triangle][i]]), hit->weight[i]));
+    return sum;
+}
+
+static int yarn_at(const weft_tile_mesh *mesh, const ray_hit *hit)
+{
+    int largest = hit->weight[1] > hit->weight[0] ? 1 : 0;
+    largest = hit->weight[2] > hit->weight[largest] ? 2 : largest;
+    return mesh->yarn[mesh->triangle[hit->triangle][largest]];
+}
+
+/* Next vertex along a ray. */
+static path_end find_vertex(const path_scene *scene, weft_vec3 from, weft_vec3 direction, path_vertex *vertex)
+{
+    const weft_tile_mesh *mesh = ray_scene_mesh(scene->rays);
+    if (!ray_scene_trace(scene->rays, from, direction, &vertex->hit))
+        return PATH_LEFT;
+    if (weft_dot(vertex->hit.normal, direction) >= 0)
+        return PATH_LOST;
+    weft_frame frame = weft_frame_of_vectors(vertex->hit.normal, interpolate(mesh, &vertex->hit, mesh->tangent));
+    vertex->tangent = frame.tangent;
+    vertex->yarn = yarn_at(mesh, &vertex->hit);
+    const weft_fibre *fibre = &scene->stitch->yarn[vertex->yarn].fibre;
+    vertex->seen = weft_fibre_seen_from(fibre, frame.tangent, frame.normal, weft_scale(direction, -1));
+    return PATH_GOES_ON;
+}
+
+/* A direction whose density is the cosine to the normal over pi. */
+static weft_vec3 cosine_direction(const path_vertex *vertex, const double point[2])
+{
+    weft_real radius = sqrt(point[0]), angle = 2 * (weft_real)WEFT_PI * point[1];
+    weft_vec3 bitangent = weft_cross(vertex->hit.normal, vertex->tangent);
+    weft_vec3 flat =
+        weft_add(weft_scale(vertex->tangent, radius * cos(angle)), weft_scale(bitangent, radius * sin(angle)));
+    return weft_unit(weft_add(flat, weft_scale(vertex->hit.normal, sqrt(1 - point[0]))));
+}
+
+path_end path_bounce(const path_scene *scene, path_vertex *vertex, weft_rgb *throughput, uint64_t key, uint32_t index)
+{
+    double point[2];
+    sequence_point(key, index, point);
+    weft_vec3 direction = cosine_direction(vertex, point);
+    weft_rgb f = weft_fibre_brdf(&vertex->seen, direction);
+    throughput->r *= f.r * (weft_real)WEFT_PI;
+    throughput->g *= f.g * (weft_real)WEFT_PI;
+    throughput->b *= f.b * (weft_real)WEFT_PI;
+    if (!(fmax(throughput->r, fmax(throughput->g, throughput->b)) > NEGLIGIBLE))
+        return PATH_LOST;
+    return find_vertex(scene, path_above(scene, vertex->hit.at, vertex->hit.normal), direction, vertex);
+}
+
+/* The point on the view ray just above the cloth. */
+static weft_vec3 ray_start(const path_scene *scene, weft_vec3 place, weft_vec3 view)
+{
+    const weft_tile_mesh *mesh = ray_scene_mesh(scene->rays);
+    weft_real rise = (weft_real)mesh->top + (weft_real)mesh->cell / 2 - place.z;
+    return weft_add(place, weft_scale(view, rise / view.z));
+}
+
+bool path_begin(const path_scene *scene, weft_vec3 place, weft_vec3 view, path_vertex *vertex)
+{
+    weft_vec3 start = ray_start(scene, place, view);
+    return find_vertex(scene, start, weft_scale(view, -1), vertex) == PATH_GOES_ON;
+}
+
+weft_vec3 path_surface_normal(const path_scene *scene, const path_vertex *vertex)
+{
+    const weft_tile_mesh *mesh = ray_scene_mesh(scene->rays);
+    return weft_unit(interpolate(mesh, &vertex->hit, mesh->normal));
+}
