@@ -97,16 +97,18 @@ static weft_code inspect_material(const char *path, json_t **result, weft_error 
 
 /* ---- Dataset ---- */
 
-static json_t *describe_dataset(const char *path, const weft_dataset_layout *layout)
+static json_t *describe_dataset(const char *path, const weft_dataset *dataset)
 {
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     json_int_t raw =
         (json_int_t)layout->width * layout->height * layout->image_count * 3 * (json_int_t)sizeof(weft_half);
-    return json_pack("{s:s, s:s, s:I, s:I, s:[ii], s:i, s:i, s:s, s:s, s:f, s:o}", "file", path, "kind", "dataset",
+    return json_pack("{s:s, s:s, s:I, s:I, s:[ii], s:i, s:i, s:s, s:s, s:s, s:f, s:o}", "file", path, "kind", "dataset",
                      "bytes", file_size(path), "half_float_bytes", raw, "texels", layout->width, layout->height,
                      "images", layout->image_count, "views", layout->view_count, "values",
                      layout->values == WEFT_REFLECTANCE ? "reflectance" : "reflectance times cosine",
                      "lights_and_views", layout->distance == WEFT_NEAR ? "positions (near)" : "directions (far)",
-                     "texel_pitch_mm", layout->texel_pitch_mm, "provenance", parsed(layout->provenance));
+                     "frames", weft_dataset_has_frames(dataset) ? "given" : "of the surface", "texel_pitch_mm",
+                     layout->texel_pitch_mm, "provenance", parsed(layout->provenance));
 }
 
 static weft_code inspect_dataset(const char *path, const weft_progress *progress, bool all, json_t **result,
@@ -114,7 +116,7 @@ static weft_code inspect_dataset(const char *path, const weft_progress *progress
 {
     weft_dataset *dataset;
     WEFT_TRY(weft_dataset_open(path, &dataset, error));
-    *result = describe_dataset(path, weft_dataset_get_layout(dataset));
+    *result = describe_dataset(path, dataset);
     weft_code code = all ? weft_verify_dataset(dataset, progress, *result, error) : WEFT_OK;
     weft_dataset_close(dataset);
     return code;

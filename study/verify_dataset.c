@@ -19,29 +19,15 @@ static void count_masks(const uint8_t *mask, size_t count, mask_counts *counts)
     }
 }
 
-static weft_code check_opacity(weft_dataset *dataset, int y, int height, float *opacity, weft_error *error)
-{
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    WEFT_TRY(weft_dataset_read_opacity(dataset, y, height, opacity, error));
-    size_t views = (size_t)layout->view_count, width = (size_t)layout->width, count = (size_t)height * width * views;
-    for (size_t i = 0; i < count; i++) {
-        if (!(opacity[i] >= 0 && opacity[i] <= 1))
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': opacity %g at texel (%zu, %zu), view %zu",
-                             weft_dataset_path(dataset), (double)opacity[i], i / views % width,
-                             (size_t)y + i / views / width, i % views);
-    }
-    return WEFT_OK;
-}
-
 /* Room for one band of texels. */
 typedef struct band {
     int height;
     weft_half *samples;
     uint8_t *mask;
-    float *opacity;
+    float *opacity, *frames;
 } band;
 
-/* Samples are checked by the reader. */
+/* What is read is checked by the reader. */
 static weft_code read_bands(weft_dataset *dataset, const band *b, const weft_progress *progress, mask_counts *counts,
                             weft_error *error)
 {
@@ -49,7 +35,8 @@ static weft_code read_bands(weft_dataset *dataset, const band *b, const weft_pro
     for (int y = 0; y < layout->height; y += b->height) {
         int height = b->height < layout->height - y ? b->height : layout->height - y;
         WEFT_TRY(weft_dataset_read_block(dataset, 0, y, layout->width, height, b->samples, b->mask, error));
-        WEFT_TRY(check_opacity(dataset, y, height, b->opacity, error));
+        WEFT_TRY(weft_dataset_read_opacity(dataset, y, height, b->opacity, error));
+        WEFT_TRY(weft_dataset_read_frames(dataset, y, height, b->frames, error));
         count_masks(b->mask, (size_t)height * (size_t)layout->width * (size_t)layout->image_count, counts);
         weft_progress_report(progress, "checking samples", y + height, layout->height);
     }
@@ -65,15 +52,17 @@ weft_code weft_verify_dataset(weft_dataset *dataset, const weft_progress *progre
     b.samples = malloc(3 * texels * images * sizeof *b.samples);
     b.mask = malloc(texels * images);
     b.opacity = malloc(texels * (size_t)layout->view_count * sizeof *b.opacity);
+    b.frames = malloc(6 * texels * sizeof *b.frames);
     mask_counts counts = {0};
     weft_code code = WEFT_OK;
-    if (!b.samples || !b.mask || !b.opacity)
+    if (!b.samples || !b.mask || !b.opacity || !b.frames)
         code = weft_fail_memory(error, "rows of texels", 7 * texels * images);
     else
         code = read_bands(dataset, &b, progress, &counts, error);
     free(b.samples);
     free(b.mask);
     free(b.opacity);
+    free(b.frames);
     json_t *verified = json_pack("{s:I, s:I, s:I, s:I}", "valid_samples", (json_int_t)counts.valid, "missing",
                                  (json_int_t)counts.missing, "saturated", (json_int_t)counts.saturated, "shadowed",
                                  (json_int_t)counts.shadowed);

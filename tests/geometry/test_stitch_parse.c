@@ -104,6 +104,40 @@ static void a_million_control_points_are_refused(void **state)
     free(text);
 }
 
+static void a_text_cut_anywhere_is_refused(void **state)
+{
+    (void)state;
+    /* The last character is the end of the line. */
+    for (size_t length = 0; length + 2 < sizeof STITCH_TEXT - 1; length++) {
+        char text[sizeof STITCH_TEXT];
+        snprintf(text, sizeof text, "%.*s", (int)length, STITCH_TEXT);
+        expect_refusal(text, "plain.stitch:");
+    }
+}
+
+static void numbers_that_are_none_are_refused(void **state)
+{
+    (void)state;
+    expect_error("radius = 0.2,", "radius = nan,", "plain.stitch:8:19: expected '{', found 'nan'");
+    expect_error("radius = 0.2,", "radius = inf,", "plain.stitch:8:19: expected '{', found 'inf'");
+    expect_error("radius = 0.2,", "radius = -0.2,", "plain.stitch:8:19: radius = -0.2 is outside");
+    expect_error("{1, 0.5, 0.2}", "{1, 1e999, 0.2}", "plain.stitch:6:31: ");
+    expect_error("{1, 0.5, 0.2}", "{1, 1e5, 0.2}", "plain.stitch:6:31: ");
+}
+
+static void deep_nesting_is_refused_at_its_second_brace(void **state)
+{
+    (void)state;
+    enum { DEPTH = 5000000 };
+    char *text = malloc(DEPTH + 32);
+    assert_non_null(text);
+    memset(text, '{', DEPTH + 31);
+    memcpy(text, "stitch ", 7);
+    text[DEPTH + 31] = '\0';
+    expect_refusal(text, "plain.stitch:1:9: ");
+    free(text);
+}
+
 static void files_that_are_no_stitches_are_refused(void **state)
 {
     (void)state;
@@ -129,6 +163,9 @@ int main(void)
         cmocka_unit_test(mistakes_are_named_with_line_and_column),
         cmocka_unit_test(yarns_that_are_no_solids_are_refused),
         cmocka_unit_test(a_million_control_points_are_refused),
+        cmocka_unit_test(a_text_cut_anywhere_is_refused),
+        cmocka_unit_test(numbers_that_are_none_are_refused),
+        cmocka_unit_test(deep_nesting_is_refused_at_its_second_brace),
         cmocka_unit_test(files_that_are_no_stitches_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
