@@ -1,8 +1,10 @@
 /* Frame times of the player, each mode at 730 x 400: median of FRAMES frames, by the GPU's own timestamps and by the
- * wall. Usage: bench_player [NAME.weft] [NAME.btf.h5] [CLOTH.wv TILES] */
+ * wall. Usage: bench_player [NAME.weft] [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
 #include "player/player.h"
 #include "player/context.h"
+#include "player/environment.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,13 +49,14 @@ static double median(double *times)
 static void draw(weft_player *player, const weft_scene *scene, weft_canvas *canvas)
 {
     weft_error error = {0};
+    const weft_sampling moving = {.frame = -1};
     weft_canvas_begin_frame(canvas);
-    stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, (weft_sampling){0}, &error), &error);
+    stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, moving, &error), &error);
     weft_canvas_end_frame(canvas);
 }
 
 /* The camera turns a little between frames, so that no driver can reuse one. */
-static void time_mode(weft_player *player, weft_scene scene, const char *what, weft_canvas *canvas)
+static void time_scene(weft_player *player, weft_scene scene, const char *what, weft_canvas *canvas)
 {
     double wall[FRAMES], gpu[FRAMES], cpu_ms = 0;
     GLuint query[2];
@@ -78,6 +81,100 @@ static void time_mode(weft_player *player, weft_scene scene, const char *what, w
     double wall_ms = median(wall);
     printf("%-28s %8.2f ms wall %8.2f ms timestamps %8.2f ms processor %7.1f frames/s\n", what, wall_ms, median(gpu),
            cpu_ms, 1000 / wall_ms);
+}
+
+/* What a frame costs that shows nothing. */
+static void time_far_away(weft_player *player, weft_canvas *canvas)
+{
+    weft_scene scene = weft_scene_default();
+    scene.orbit.distance = 500;
+    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
+        if (weft_player_has(player, (weft_mode)mode))
+            scene.pane[0] = (weft_mode)mode;
+    }
+    time_scene(player, scene, "an empty frame", canvas);
+}
+
+static weft_image picture(weft_player *player, const weft_scene *scene, long frame, int samples, weft_canvas *canvas)
+{
+    weft_error error = {0};
+    weft_image image;
+    weft_canvas_clear(canvas);
+    for (int i = 0; i < samples; i++) {
+        const weft_sampling sampling = {.frame = frame < 0 ? frame : frame + i};
+        weft_canvas_begin_frame(canvas);
+        stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, sampling, &error), &error);
+        weft_canvas_end_frame(canvas);
+    }
+    stop_on(weft_canvas_read(canvas, &image, &error), &error);
+    weft_canvas_clear(canvas);
+    return image;
+}
+
+/* Of the pixels that the map does not show through: root mean square over the reference's. */
+static double relative_rmse(const weft_image *image, const weft_image *reference, const weft_image *background)
+{
+    double square = 0, norm = 0;
+    for (size_t i = 0; i < 3 * (size_t)WIDTH * HEIGHT; i++) {
+        if (reference->pixels[i] == background->pixels[i])
+            continue;
+        square += pow((double)(image->pixels[i] - reference->pixels[i]), 2);
+        norm += pow((double)reference->pixels[i], 2);
+    }
+    return sqrt(square / norm);
+}
+
+/* What a moving and a resting picture lack against all lights of the map, every neighbour evaluated. */
+static void judge_environment(weft_player *player, weft_scene scene, weft_canvas *canvas)
+{
+    static const int frames[] = {4, 16, 64};
+    weft_scene away = scene;
+    away.orbit.distance = 500;
+    weft_image background = picture(player, &away, 0, 1, canvas);
+    scene.filter = WEFT_FILTER_EXACT;
+    weft_image reference = picture(player, &scene, 0, WEFT_ENVIRONMENT_PARTS, canvas);
+    weft_image exact = picture(player, &scene, -1, 1, canvas);
+    scene.filter = WEFT_FILTER_STOCHASTIC;
+    weft_image moving = picture(player, &scene, -1, 1, canvas);
+    printf("    against all lights: moving, exact %.2f %%, stochastic %.2f %%; resting",
+           100 * relative_rmse(&exact, &reference, &background), 100 * relative_rmse(&moving, &reference, &background));
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+        weft_image image = picture(player, &scene, 0, frames[i], canvas);
+        printf(", %d frames %.2f %%", frames[i], 100 * relative_rmse(&image, &reference, &background));
+        weft_image_free(&image);
+    }
+    printf("\n");
+    weft_image_free(&background);
+    weft_image_free(&reference);
+    weft_image_free(&exact);
+    weft_image_free(&moving);
+}
+
+static void time_mode(weft_player *player, weft_mode mode, weft_canvas *canvas)
+{
+    char what[64];
+    static const char *const filter[] = {NULL, "exact", "stochastic"};
+    weft_scene scene = weft_scene_default();
+    scene.pane[0] = mode;
+    for (int f = WEFT_FILTER_EXACT; f <= WEFT_FILTER_STOCHASTIC; f++) {
+        scene.filter = (weft_filter)f;
+        snprintf(what, sizeof what, "%s, %s", weft_mode_name(mode), filter[f]);
+        time_scene(player, scene, what, canvas);
+    }
+    scene.shadows = true;
+    snprintf(what, sizeof what, "%s, shadows", weft_mode_name(mode));
+    time_scene(player, scene, what, canvas);
+    if (weft_player_has_environment(player)) {
+        scene.shadows = false;
+        scene.environment = true;
+        scene.light_count = 0;
+        for (int f = WEFT_FILTER_EXACT; f <= WEFT_FILTER_STOCHASTIC; f++) {
+            scene.filter = (weft_filter)f;
+            snprintf(what, sizeof what, "%s, environment, %s", weft_mode_name(mode), filter[f]);
+            time_scene(player, scene, what, canvas);
+        }
+        judge_environment(player, scene, canvas);
+    }
 }
 
 static void load_weave(weft_player *player, const char *path, double tiles)
@@ -111,6 +208,15 @@ static void load_material(weft_player *player, const char *path)
     weft_material_free(&material);
 }
 
+static void load_environment(weft_player *player, const char *path)
+{
+    weft_error error = {0};
+    weft_image image;
+    stop_on(weft_image_read(path, &image, NULL, &error), &error);
+    stop_on(weft_player_set_environment(player, &image, &error), &error);
+    weft_image_free(&image);
+}
+
 static bool has_extension(const char *path, const char *extension)
 {
     size_t length = strlen(path), wanted = strlen(extension);
@@ -133,6 +239,8 @@ static void load(weft_player *player, int argc, char **argv)
             load_material(player, argv[i]);
         else if (has_extension(argv[i], ".h5"))
             load_dataset(player, argv[i]);
+        else if (has_extension(argv[i], ".hdr") || has_extension(argv[i], ".exr"))
+            load_environment(player, argv[i]);
     }
 }
 
@@ -147,16 +255,10 @@ int main(int argc, char **argv)
     stop_on(weft_canvas_create(WIDTH, HEIGHT, &canvas, &error), &error);
     printf("%s, %d x %d\n", weft_gl_renderer(), WIDTH, HEIGHT);
     load(player, argc, argv);
+    time_far_away(player, &canvas);
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
-        weft_scene scene = weft_scene_default();
-        char what[64];
-        scene.pane[0] = (weft_mode)mode;
-        if (!weft_player_has(player, scene.pane[0]))
-            continue;
-        time_mode(player, scene, weft_mode_name(scene.pane[0]), &canvas);
-        scene.level_choice = WEFT_LEVEL_NONE;
-        snprintf(what, sizeof what, "%s, finest level", weft_mode_name(scene.pane[0]));
-        time_mode(player, scene, what, &canvas);
+        if (weft_player_has(player, (weft_mode)mode))
+            time_mode(player, (weft_mode)mode, &canvas);
     }
     weft_canvas_free(&canvas);
     weft_player_free(player);

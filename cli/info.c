@@ -4,11 +4,11 @@
 int command_info(int argc, char **argv)
 {
     common_options common = {0};
-    const char *path =
-        parse_one_file(argc, argv,
-                       "Example: weft info silk.weft\n\n"
-                       "Says what a material (.weft), a dataset (.btf.h5), a weave (.wv), a stitch (.stitch) or a session folder holds.",
-                       &common);
+    const char *path = parse_one_file(argc, argv,
+                                      "Example: weft info silk.weft\n\n"
+                                      "Says what a material (.weft), a dataset (.btf.h5), a weave (.wv), a stitch "
+                                      "(.stitch) or a session folder holds.",
+                                      &common);
     weft_error error = {0};
     json_t *description;
     weft_code code = weft_inspect(path, &description, &error);

@@ -142,6 +142,7 @@ static weft_code draw_frame(play *p, weft_error *error)
     double start = now_s();
     int index = p->canvas.frame_count;
     weft_sampling sampling = {
+        .frame = index,
         .shift_x = index > 0 ? radical_inverse(index, 2) - 0.5 : 0,
         .shift_y = index > 0 ? radical_inverse(index, 3) - 0.5 : 0,
     };
@@ -167,7 +168,7 @@ static weft_code save_screenshot(play *p, weft_error *error)
     while (access(path, F_OK) == 0 && number < 1000);
     weft_image image = {0};
     WEFT_TRY(weft_canvas_read(&p->canvas, &image, error));
-    weft_code code = scene_write_image(path, &image, error);
+    weft_code code = scene_write_image(path, &p->interaction.scene, &image, error);
     weft_image_free(&image);
     if (code == WEFT_OK)
         command_say(&p->command->scene.common, "saved %s", path);
@@ -221,7 +222,7 @@ static weft_code run(play *p, weft_error *error)
             WEFT_TRY(draw_frame(p, error));
         if (p->canvas.frame_count == STILL_FRAMES && !resting)
             WEFT_TRY(scene_errors_print(p->player, &i->scene, p->canvas.width, p->canvas.height, p->errors, error));
-        weft_canvas_present(&p->canvas);
+        weft_canvas_present(&p->canvas, &i->scene);
         weft_window_show(p->window);
         set_title(p);
     }

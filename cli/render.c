@@ -60,7 +60,7 @@ static weft_code draw(render_command *command, weft_player *player, weft_error *
     WEFT_TRY(scene_load(scene, player, error));
     WEFT_TRY(weft_player_picture(player, &scene->scene, scene->width, scene->height, command->samples, &progress,
                                  &image, error));
-    weft_code code = scene_write_image(command->output, &image, error);
+    weft_code code = scene_write_image(command->output, &scene->scene, &image, error);
     weft_image_free(&image);
     WEFT_TRY(code);
     char errors[SCENE_ERRORS_SIZE];

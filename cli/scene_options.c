@@ -1,7 +1,6 @@
 #include "cli/scene_options.h"
 #include "cli/arguments.h"
 
-#include "btf/colour.h"
 #include "btf/dataset_fingerprint.h"
 #include "capture/virtual_cloth.h"
 
@@ -279,12 +278,11 @@ weft_code scene_load(scene_options *o, weft_player *player, weft_error *error)
 
 /* ---- Pictures ---- */
 
-weft_code scene_write_image(const char *path, weft_image *image, weft_error *error)
+weft_code scene_write_image(const char *path, const weft_scene *scene, weft_image *image, weft_error *error)
 {
     const char *extension = strrchr(path, '.');
     bool linear = extension && (strcasecmp(extension, ".exr") == 0 || strncasecmp(extension, ".tif", 4) == 0);
-    size_t count = 3 * (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; !linear && i < count; i++)
-        image->pixels[i] = weft_srgb_of_linear(image->pixels[i]);
+    if (!linear)
+        weft_scene_show(scene, image);
     return weft_image_write(path, image, "Weft: directional light, radiance = BRDF x pi x cosine x exposure", error);
 }

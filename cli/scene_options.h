@@ -26,8 +26,8 @@ void scene_options_init(scene_options *options);
  * Errors: those of reading. */
 weft_code scene_load(scene_options *options, weft_player *player, weft_error *error);
 
-/* Writes a linear image: .exr as it is, other formats as sRGB (the image is then coded in place). Errors: WEFT_SYSTEM.
+/* Writes a linear picture: .exr as it is, other formats as the screen shows the scene (in place). Errors: WEFT_SYSTEM.
  */
-weft_code scene_write_image(const char *path, weft_image *image, weft_error *error);
+weft_code scene_write_image(const char *path, const weft_scene *scene, weft_image *image, weft_error *error);
 
 #endif

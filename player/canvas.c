@@ -14,25 +14,14 @@ static weft_code check_framebuffer(weft_error *error)
     return weft_gl_check("making a canvas", error);
 }
 
-static weft_code create_frame(weft_canvas *c, weft_error *error)
+/* The two buffers share their depth: only one of them is drawn into at a time. */
+static weft_code create_buffer(const weft_canvas *c, GLuint *buffer, GLuint *texture, weft_error *error)
 {
-    WEFT_TRY(weft_gl_texture(float_format, c->width, c->height, 0, NULL, &c->frame, error));
-    glGenRenderbuffers(1, &c->depth);
-    glBindRenderbuffer(GL_RENDERBUFFER, c->depth);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, c->width, c->height);
-    glGenFramebuffers(1, &c->frame_buffer);
-    glBindFramebuffer(GL_FRAMEBUFFER, c->frame_buffer);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, c->frame, 0);
+    WEFT_TRY(weft_gl_texture(float_format, c->width, c->height, 0, NULL, texture, error));
+    glGenFramebuffers(1, buffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, *buffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, *texture, 0);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, c->depth);
-    return check_framebuffer(error);
-}
-
-static weft_code create_sum(weft_canvas *c, weft_error *error)
-{
-    WEFT_TRY(weft_gl_texture(float_format, c->width, c->height, 0, NULL, &c->sum, error));
-    glGenFramebuffers(1, &c->sum_buffer);
-    glBindFramebuffer(GL_FRAMEBUFFER, c->sum_buffer);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, c->sum, 0);
     return check_framebuffer(error);
 }
 
@@ -42,8 +31,11 @@ weft_code weft_canvas_create(int width, int height, weft_canvas *c, weft_error *
     const char *const add[] = {weft_glsl_add_frag, NULL}, *const present[] = {weft_glsl_present_frag, NULL};
     *c = (weft_canvas){.width = width, .height = height};
     glGenVertexArrays(1, &c->vertex_array);
-    WEFT_TRY(create_frame(c, error));
-    WEFT_TRY(create_sum(c, error));
+    glGenRenderbuffers(1, &c->depth);
+    glBindRenderbuffer(GL_RENDERBUFFER, c->depth);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+    WEFT_TRY(create_buffer(c, &c->frame_buffer, &c->frame, error));
+    WEFT_TRY(create_buffer(c, &c->sum_buffer, &c->sum, error));
     WEFT_TRY(weft_gl_program("add", vertex, add, &c->add_program, error));
     WEFT_TRY(weft_gl_program("present", vertex, present, &c->present_program, error));
     weft_canvas_clear(c);
@@ -66,24 +58,20 @@ void weft_canvas_free(weft_canvas *c)
 
 void weft_canvas_clear(weft_canvas *c)
 {
-    glBindFramebuffer(GL_FRAMEBUFFER, c->sum_buffer);
-    glDisable(GL_SCISSOR_TEST);
-    glClearColor(0, 0, 0, 0);
-    glClear(GL_COLOR_BUFFER_BIT);
     c->frame_count = 0;
 }
 
 void weft_canvas_begin_frame(weft_canvas *c)
 {
-    glBindFramebuffer(GL_FRAMEBUFFER, c->frame_buffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, c->frame_count > 0 ? c->frame_buffer : c->sum_buffer);
     glViewport(0, 0, c->width, c->height);
 }
 
+/* With the program in use. */
 static void draw_over_everything(const weft_canvas *c, GLuint program, const char *sampler, GLuint texture)
 {
     glViewport(0, 0, c->width, c->height);
     glDisable(GL_DEPTH_TEST);
-    glUseProgram(program);
     glBindVertexArray(c->vertex_array);
     weft_gl_bind(program, sampler, 0, GL_TEXTURE_2D, texture);
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -92,18 +80,25 @@ static void draw_over_everything(const weft_canvas *c, GLuint program, const cha
 
 void weft_canvas_end_frame(weft_canvas *c)
 {
+    if (c->frame_count++ == 0)
+        return;
     glBindFramebuffer(GL_FRAMEBUFFER, c->sum_buffer);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
+    glUseProgram(c->add_program);
     draw_over_everything(c, c->add_program, "frame", c->frame);
     glDisable(GL_BLEND);
-    c->frame_count++;
 }
 
-void weft_canvas_present(const weft_canvas *c)
+void weft_canvas_present(const weft_canvas *c, const weft_scene *scene)
 {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glDisable(GL_BLEND);
+    glUseProgram(c->present_program);
+    weft_gl_set_float(c->present_program, "frame_share", 1.0 / (c->frame_count > 0 ? c->frame_count : 1));
+    weft_gl_set_int(c->present_program, "tone", scene->tone);
+    weft_gl_set_int(c->present_program, "difference", scene->layout == WEFT_LAYOUT_DIFFERENCE);
+    weft_gl_set_float(c->present_program, "divider", scene->layout == WEFT_LAYOUT_WIPE ? scene->divider : -1);
     draw_over_everything(c, c->present_program, "sum", c->sum);
 }
 

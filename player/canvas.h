@@ -4,13 +4,14 @@
 
 #include "btf/image.h"
 #include "player/gl.h"
+#include "player/scene.h"
 
 typedef struct weft_canvas {
     int width, height;
     int frame_count;                   /* summed so far */
-    GLuint frame_buffer, frame, depth; /* the frame being drawn: linear RGB, floats */
-    GLuint sum_buffer, sum;
-    GLuint vertex_array; /* empty, for full-screen triangles */
+    GLuint frame_buffer, frame, depth; /* the frame being drawn, unless it is the first: linear RGB, floats */
+    GLuint sum_buffer, sum;            /* the first frame is drawn here */
+    GLuint vertex_array;               /* empty, for full-screen triangles */
     GLuint add_program, present_program;
 } weft_canvas;
 
@@ -25,8 +26,8 @@ void weft_canvas_clear(weft_canvas *canvas);
 void weft_canvas_begin_frame(weft_canvas *canvas);
 void weft_canvas_end_frame(weft_canvas *canvas);
 
-/* Draws the mean of the frames, coded as sRGB, into framebuffer 0, which has the same size. */
-void weft_canvas_present(const weft_canvas *canvas);
+/* Draws the mean of the frames as the screen shows it (weft_scene_show) into framebuffer 0, which has the same size. */
+void weft_canvas_present(const weft_canvas *canvas, const weft_scene *scene);
 
 /* The mean of the frames, linear. The caller frees the image. Errors: WEFT_SYSTEM. */
 weft_code weft_canvas_read(const weft_canvas *canvas, weft_image *image, weft_error *error);

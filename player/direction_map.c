@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { CELLS = WEFT_DIRECTION_GRID * WEFT_DIRECTION_GRID };
 
@@ -19,28 +20,18 @@ typedef struct layout {
     int (*corner)[3]; /* [simplex - first] indices of directions, -1 unused */
 } layout;
 
-static void set_corner(weft_simplex *simplex, int slot, weft_vec3 direction, int label)
-{
-    weft_vec3 unit = weft_unit(direction);
-    simplex->corner[slot][0] = (float)unit.x;
-    simplex->corner[slot][1] = (float)unit.y;
-    simplex->corner[slot][2] = (float)unit.z;
-    simplex->corner[slot][3] = (float)label;
-}
-
 /* Appends a simplex without neighbours; c < 0 makes an arc, b < 0 too a single direction. */
 static int append(layout *l, int a, int b, int c)
 {
     int number = l->map->simplex_count++;
-    weft_simplex *simplex = &l->map->simplex[number];
-    *simplex = (weft_simplex){.next = {-1, -1, -1}, .is_arc = c < 0};
-    int corner[3] = {a, b, c};
-    for (int i = 0; i < 3; i++) {
-        int index = corner[i] >= 0 ? corner[i] : b >= 0 ? b : a;
-        set_corner(simplex, i, l->direction[index], l->label ? l->label[index] : index);
-        l->corner[number - l->first][i] = corner[i];
-    }
+    l->map->simplex[number] = (weft_simplex){.next = {-1, -1, -1}};
+    memcpy(l->corner[number - l->first], (int[3]){a, b, c}, sizeof *l->corner);
     return number;
+}
+
+static bool is_arc(const layout *l, int simplex)
+{
+    return l->corner[simplex - l->first][2] < 0;
 }
 
 static weft_real handedness(const layout *l, const int corner[3])
@@ -148,16 +139,47 @@ static void append_chain(layout *l, const weft_triangulation *triangulation, int
 static void join_arcs(layout *l)
 {
     for (int a = l->first; a < l->map->simplex_count; a++) {
-        for (int b = l->first; l->map->simplex[a].is_arc > 0 && b < l->map->simplex_count; b++) {
+        for (int b = l->first; is_arc(l, a) && b < l->map->simplex_count; b++) {
             const int *arc = l->corner[a - l->first], *other = l->corner[b - l->first];
-            if (a == b || l->map->simplex[b].is_arc == 0)
+            if (a == b || !is_arc(l, b))
                 continue;
             for (int end = 0; end < 2; end++) {
                 if (arc[end] >= 0 && (other[0] == arc[end] || other[1] == arc[end]))
-                    l->map->simplex[a].next[end] = (float)b;
+                    l->map->simplex[a].next[1 - end] = (float)b; /* there the weight of the other end is negative */
             }
         }
     }
+}
+
+static void set_form(weft_simplex *simplex, int slot, weft_vec3 form, int label)
+{
+    simplex->form[slot][0] = (float)form.x;
+    simplex->form[slot][1] = (float)form.y;
+    simplex->form[slot][2] = (float)form.z;
+    simplex->form[slot][3] = (float)label;
+}
+
+static void set_forms(const layout *l, int number)
+{
+    weft_simplex *simplex = &l->map->simplex[number];
+    const int *corner = l->corner[number - l->first];
+    weft_vec3 d[3];
+    int label[3];
+    for (int i = 0; i < 3; i++) {
+        int index = corner[i] >= 0 ? corner[i] : corner[0];
+        d[i] = weft_unit(l->direction[index]);
+        label[i] = l->label ? l->label[index] : index;
+    }
+    if (!is_arc(l, number)) {
+        for (int i = 0; i < 3; i++)
+            set_form(simplex, i, weft_cross(d[(i + 1) % 3], d[(i + 2) % 3]), label[i]);
+        return;
+    }
+    weft_vec3 pole = weft_cross(d[0], d[1]);
+    bool bounds = simplex->next[2] >= 0;
+    set_form(simplex, 0, weft_cross(d[1], pole), label[0]);
+    set_form(simplex, 1, weft_cross(pole, d[0]), label[1]);
+    set_form(simplex, 2, weft_scale(pole, bounds ? -1 : 0), -1);
 }
 
 static weft_code reserve(weft_direction_map *map, int extra, weft_error *error)
@@ -195,6 +217,8 @@ static weft_code lay_out(weft_direction_map *map, const weft_vec3 *direction, co
         if (triangles == 0)
             append_chain(&l, triangulation, capacity);
         join_arcs(&l);
+        for (int i = l.first; i < map->simplex_count; i++)
+            set_forms(&l, i);
         fill_cells(&l, triangulation, map->cell[map->set_count]);
         map->set_count++;
     }

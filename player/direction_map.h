@@ -12,18 +12,19 @@
 #include <stdint.h>
 
 enum {
-    WEFT_DIRECTION_GRID = 32,         /* cells along each side of the map of a set */
+    WEFT_DIRECTION_GRID = 64,         /* cells along each side of the map of a set */
     WEFT_DIRECTION_SETS_PER_ROW = 64, /* maps side by side in the texture */
     WEFT_DIRECTION_SIMPLICES_PER_ROW = 256
 };
 
-/* As it is uploaded. corner: a unit direction and the label of its entry. next: the simplex across the side opposite to
- * each corner of a triangle; of an arc, the next arcs beyond its first and second corner and the triangle it bounds.
- * -1: none. An arc repeats its second corner; a single direction repeats its first three times. */
+/* As it is uploaded. form: for each corner, the linear form of a query whose value is the corner's weight up to a
+ * common factor, and the label of the corner. The query lies in the simplex where none is negative; next: where to go
+ * from each that is, -1: nowhere. The third form of an arc is negative where the query lies in the triangle that the
+ * arc bounds; it is no weight, and its label is -1. */
 typedef struct weft_simplex {
-    float corner[3][4];
+    float form[3][4];
     float next[3];
-    float is_arc; /* 1 or 0 */
+    float padding;
 } weft_simplex;
 
 typedef struct weft_direction_map {

@@ -1,45 +1,88 @@
 #include "player/material_texture.h"
 
-static const weft_texture_format frame_format = {GL_RGB16I, GL_RGB_INTEGER, GL_SHORT};
-static const weft_texture_format half_format = {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+#include <math.h>
+#include <stdlib.h>
+
+static const weft_texture_format packed_format = {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT};
 static const weft_texture_format table_format = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
 
-static weft_code upload_frames(const weft_material *material, weft_material_texture *t, weft_error *error)
+/* The rotation from the axes of the surface to those of the texel, as a unit quaternion with w >= 0 (Shepperd 1978). */
+static void encode_rotation(const weft_frame *frame, int16_t code[4])
 {
-    const weft_mip_layout *layout = &t->layout;
-    WEFT_TRY(weft_gl_texture(frame_format, layout->width, layout->height, 0, NULL, &t->frame, error));
-    for (int k = 0; k < layout->level_count; k++) {
-        weft_mip_area a = layout->area[k];
-        glTexSubImage2D(GL_TEXTURE_2D, 0, a.x, a.y, a.width, a.height, frame_format.layout, frame_format.type,
-                        material->level[k].frame);
+    const double m[3][3] = {{(double)frame->tangent.x, (double)frame->bitangent.x, (double)frame->normal.x},
+                            {(double)frame->tangent.y, (double)frame->bitangent.y, (double)frame->normal.y},
+                            {(double)frame->tangent.z, (double)frame->bitangent.z, (double)frame->normal.z}};
+    double q[4];
+    if (m[0][0] + m[1][1] + m[2][2] > 0) {
+        q[3] = sqrt(fmax(0, 1 + m[0][0] + m[1][1] + m[2][2])) / 2;
+        for (int i = 0; i < 3; i++)
+            q[i] = (m[(i + 2) % 3][(i + 1) % 3] - m[(i + 1) % 3][(i + 2) % 3]) / (4 * q[3]);
+    } else {
+        int i = m[1][1] > m[0][0] ? 1 : 0;
+        i = m[2][2] > m[i][i] ? 2 : i;
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        q[i] = sqrt(fmax(0, 1 + m[i][i] - m[j][j] - m[k][k])) / 2;
+        q[j] = (m[j][i] + m[i][j]) / (4 * q[i]);
+        q[k] = (m[k][i] + m[i][k]) / (4 * q[i]);
+        q[3] = (m[k][j] - m[j][k]) / (4 * q[i]);
     }
-    return weft_gl_check("uploading frames", error);
+    for (int i = 0; i < 4; i++)
+        code[i] = (int16_t)lrint(32767 * fmin(fmax(q[i], -1), 1));
 }
 
-static weft_code upload_diffuse(const weft_material *material, weft_material_texture *t, weft_error *error)
+static uint32_t packed(uint16_t low, uint16_t high)
 {
-    const weft_mip_layout *layout = &t->layout;
-    WEFT_TRY(weft_gl_texture(half_format, layout->width, layout->height, 0, NULL, &t->diffuse, error));
-    for (int k = 0; k < layout->level_count; k++) {
-        weft_mip_area a = layout->area[k];
-        glTexSubImage2D(GL_TEXTURE_2D, 0, a.x, a.y, a.width, a.height, half_format.layout, half_format.type,
-                        material->level[k].diffuse);
-    }
-    return weft_gl_check("uploading diffuse terms", error);
+    return (uint32_t)high << 16 | low;
 }
 
-/* A material without lobes gets one layer that is never fetched: samplers must not be left empty. */
-static weft_code upload_lobes(const weft_material *material, weft_material_texture *t, weft_error *error)
+static void pack_base(const weft_material_level *level, size_t texel, uint32_t word[4])
+{
+    int16_t rotation[4];
+    weft_frame frame = weft_frame_decode(level->frame + 3 * texel);
+    const weft_half *diffuse = level->diffuse + 4 * texel;
+    encode_rotation(&frame, rotation);
+    word[0] = packed((uint16_t)rotation[0], (uint16_t)rotation[1]);
+    word[1] = packed((uint16_t)rotation[2], (uint16_t)rotation[3]);
+    word[2] = packed(diffuse[0], diffuse[1]);
+    word[3] = packed(diffuse[2], 0);
+}
+
+static void pack_lobe(const weft_material_level *level, size_t texels, size_t texel, int lobe, uint32_t word[2])
+{
+    const weft_half *code = level->lobe + 4 * ((size_t)lobe * texels + texel);
+    word[0] = packed(code[0], code[1]);
+    word[1] = packed(code[2], code[3]);
+}
+
+static void pack_layer(const weft_material_level *level, int lobes, int layer, uint32_t (*word)[4])
+{
+    size_t texels = (size_t)level->width * (size_t)level->height;
+    int first = 2 * (layer - 1);
+    for (size_t i = 0; i < texels; i++) {
+        if (layer == 0)
+            pack_base(level, i, word[i]);
+        for (int lobe = first; layer > 0 && lobe < first + 2 && lobe < lobes; lobe++)
+            pack_lobe(level, texels, i, lobe, word[i] + 2 * (lobe - first));
+    }
+}
+
+static weft_code upload_texels(const weft_material *material, weft_material_texture *t, weft_error *error)
 {
     const weft_mip_layout *layout = &t->layout;
-    int layers = 3 * material->lobe_count;
-    WEFT_TRY(weft_gl_texture(half_format, layout->width, layout->height, layers ? layers : 1, NULL, &t->lobe, error));
-    for (int k = 0; layers > 0 && k < layout->level_count; k++) {
-        weft_mip_area a = layout->area[k];
-        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, a.x, a.y, 0, a.width, a.height, layers, half_format.layout,
-                        half_format.type, material->level[k].lobe);
+    int lobes = 3 * material->lobe_count, layers = 1 + (lobes + 1) / 2;
+    size_t most = (size_t)layout->area[0].width * (size_t)layout->area[0].height;
+    uint32_t(*word)[4] = calloc(most, sizeof *word);
+    if (!word)
+        return weft_fail_memory(error, "texels", most * sizeof *word);
+    weft_code code = weft_gl_texture(packed_format, layout->width, layout->height, layers, NULL, &t->texel, error);
+    for (int i = 0; code == WEFT_OK && i < layout->level_count * layers; i++) {
+        weft_mip_area a = layout->area[i / layers];
+        pack_layer(&material->level[i / layers], lobes, i % layers, word);
+        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, a.x, a.y, i % layers, a.width, a.height, 1, packed_format.layout,
+                        packed_format.type, word);
     }
-    return weft_gl_check("uploading lobes", error);
+    free(word);
+    return code == WEFT_OK ? weft_gl_check("uploading texels", error) : code;
 }
 
 static const uint8_t *codes_of(const weft_material_level *level, bool of_lights)
@@ -104,9 +147,7 @@ weft_code weft_material_texture_upload(const weft_material *material, weft_mater
         .lobe_count = material->lobe_count,
         .opaque = is_opaque(material),
     };
-    WEFT_TRY(upload_frames(material, t, error));
-    WEFT_TRY(upload_diffuse(material, t, error));
-    WEFT_TRY(upload_lobes(material, t, error));
+    WEFT_TRY(upload_texels(material, t, error));
     WEFT_TRY(upload_table(material, &t->layout, false, &t->table, error));
     WEFT_TRY(upload_table(material, &t->layout, true, &t->light_table, error));
     return upload_directions(material, t, error);
@@ -114,9 +155,7 @@ weft_code weft_material_texture_upload(const weft_material *material, weft_mater
 
 void weft_material_texture_free(weft_material_texture *t)
 {
-    glDeleteTextures(1, &t->frame);
-    glDeleteTextures(1, &t->diffuse);
-    glDeleteTextures(1, &t->lobe);
+    glDeleteTextures(1, &t->texel);
     glDeleteTextures(1, &t->table.name);
     glDeleteTextures(1, &t->light_table.name);
     weft_direction_texture_free(&t->directions);
@@ -125,15 +164,10 @@ void weft_material_texture_free(weft_material_texture *t)
 
 void weft_material_texture_bind(const weft_material_texture *t, GLuint program)
 {
-    weft_gl_bind(program, "material_frame", 0, GL_TEXTURE_2D, t->frame);
-    weft_gl_bind(program, "material_diffuse", 1, GL_TEXTURE_2D, t->diffuse);
-    weft_gl_bind(program, "material_lobe", 2, GL_TEXTURE_2D_ARRAY, t->lobe);
-    weft_gl_bind(program, "material_table", 3, GL_TEXTURE_2D_ARRAY, t->table.name);
-    weft_gl_bind(program, "material_light_table", 4, GL_TEXTURE_2D_ARRAY, t->light_table.name);
-    weft_direction_texture_bind(&t->directions, program, 5);
-    weft_gl_set_int(program, "lobe_count", t->lobe_count);
-    weft_gl_set_int(program, "has_table", t->table.count > 0);
-    weft_gl_set_int(program, "has_light_table", t->light_table.count > 0);
+    weft_gl_bind(program, "material_texel", 0, GL_TEXTURE_2D_ARRAY, t->texel);
+    weft_gl_bind(program, "material_table", 1, GL_TEXTURE_2D_ARRAY, t->table.name);
+    weft_gl_bind(program, "material_light_table", 2, GL_TEXTURE_2D_ARRAY, t->light_table.name);
+    weft_direction_texture_bind(&t->directions, program, 3);
     weft_gl_set_int(program, "opaque", t->opaque);
     weft_gl_set_int(program, "level_count", t->layout.level_count);
     glUniform2i(glGetUniformLocation(program, "table_tiles"), t->table.columns, t->layout.width);

@@ -15,8 +15,12 @@ typedef struct weft_table_texture {
     int columns; /* directions side by side in a layer */
 } weft_table_texture;
 
+/* The texels are packed into words of 32 bits, four a layer: what they share with their neighbours in memory is what
+ * one fetch brings. Layer 0: the rotation from the axes of the surface to those of the texel, as a unit quaternion of
+ * signed 16-bit fractions (x, y; z, w), and the diffuse term in half floats (r, g; b). Layer 1 + i: lobes 2i and 2i +
+ * 1, counted 3 lobe + channel, as half floats (Cx, Cy; Cz, N). */
 typedef struct weft_material_texture {
-    GLuint frame, diffuse, lobe;
+    GLuint texel;
     weft_table_texture table, light_table;
     weft_direction_texture directions; /* set 0: views, set 1: lights */
     weft_mip_layout layout;

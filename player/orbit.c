@@ -18,6 +18,28 @@ weft_vec3 weft_orbit_eye(const weft_orbit *orbit, weft_vec3 centre, double radiu
     return weft_add(centre, weft_scale(weft_orbit_axes_of(orbit).backward, orbit->distance * radius));
 }
 
+/* Half the picture's width and height at unit distance. */
+static void half_sizes(double aspect, double *x, double *y)
+{
+    double slope = tan(field_of_view_rad / 2);
+    *x = aspect > 1 ? slope * aspect : slope;
+    *y = aspect > 1 ? slope : slope / aspect;
+}
+
+weft_orbit_axes weft_orbit_rays(const weft_orbit *orbit, int width, int height, double shift_x, double shift_y)
+{
+    weft_orbit_axes axes = weft_orbit_axes_of(orbit);
+    double x, y;
+    half_sizes((double)width / height, &x, &y);
+    weft_vec3 corner =
+        weft_add(weft_scale(axes.right, -x * (1 + 2 * shift_x)), weft_scale(axes.up, -y * (1 + 2 * shift_y)));
+    return (weft_orbit_axes){
+        .right = weft_scale(axes.right, 2 * x / width),
+        .up = weft_scale(axes.up, 2 * y / height),
+        .backward = weft_subtract(axes.backward, corner),
+    };
+}
+
 /* One clip coordinate: the distance from the eye along `axis`, plus a constant. */
 static void set_row(float matrix[16], int row, weft_vec3 axis, weft_vec3 eye, double constant)
 {
@@ -32,14 +54,14 @@ void weft_orbit_clip_of_world(const weft_orbit *orbit, weft_vec3 centre, double 
 {
     weft_orbit_axes axes = weft_orbit_axes_of(orbit);
     weft_vec3 eye = weft_orbit_eye(orbit, centre, radius), forward = weft_scale(axes.backward, -1);
-    double focal = 1 / tan(field_of_view_rad / 2);
-    double focal_x = aspect > 1 ? focal / aspect : focal, focal_y = aspect > 1 ? focal : focal * aspect;
+    double half_x, half_y;
+    half_sizes(aspect, &half_x, &half_y);
     double nearest = fmax(orbit->distance - 1.1, 0.02) * radius, farthest = (orbit->distance + 1.1) * radius;
     double depth = (farthest + nearest) / (farthest - nearest);
     double offset = -2 * farthest * nearest / (farthest - nearest);
     /* A shift is a multiple of w, and w is the forward distance. */
-    set_row(matrix, 0, weft_add(weft_scale(axes.right, focal_x), weft_scale(forward, 2 * shift_x)), eye, 0);
-    set_row(matrix, 1, weft_add(weft_scale(axes.up, focal_y), weft_scale(forward, 2 * shift_y)), eye, 0);
+    set_row(matrix, 0, weft_add(weft_scale(axes.right, 1 / half_x), weft_scale(forward, 2 * shift_x)), eye, 0);
+    set_row(matrix, 1, weft_add(weft_scale(axes.up, 1 / half_y), weft_scale(forward, 2 * shift_y)), eye, 0);
     set_row(matrix, 2, weft_scale(forward, depth), eye, offset);
     set_row(matrix, 3, forward, eye, 0);
 }

@@ -20,6 +20,10 @@ weft_orbit_axes weft_orbit_axes_of(const weft_orbit *orbit);
 /* Place of the eye around a bounding sphere. */
 weft_vec3 weft_orbit_eye(const weft_orbit *orbit, weft_vec3 centre, double radius);
 
+/* The ray from the eye through the point x, y of a picture of width x height pixels (from its lower left corner) is
+ * x right + y up - backward, of no particular length; shifts as below. */
+weft_orbit_axes weft_orbit_rays(const weft_orbit *orbit, int width, int height, double shift_x, double shift_y);
+
 /* OpenGL's clip_of_world, column-major, for a picture of the given aspect (width / height); the smaller side spans 30
  * degrees. shift_x, shift_y move the picture, in units of its width and height. */
 void weft_orbit_clip_of_world(const weft_orbit *orbit, weft_vec3 centre, double radius, double aspect, double shift_x,

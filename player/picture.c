@@ -10,12 +10,15 @@ enum { MAX_SIDE = 16384, MAX_SAMPLES = 64 };
 static weft_code add_frames(weft_player *p, const weft_scene *scene, int samples, const weft_progress *progress,
                             weft_canvas *canvas, weft_error *error)
 {
-    long total = (long)samples * samples;
+    long places = (long)samples * samples, total = places;
+    while (scene->environment_reference && total < WEFT_ENVIRONMENT_PARTS)
+        total += places;
     for (long i = 0; i < total; i++) {
         weft_sampling sampling = {
             .shift_x = (double)(i % samples + 0.5) / samples - 0.5,
-            .shift_y = (double)(i / samples + 0.5) / samples - 0.5,
+            .shift_y = (double)(i % places / samples + 0.5) / samples - 0.5,
             .level_bias = -log2((double)samples),
+            .frame = i,
         };
         weft_canvas_begin_frame(canvas);
         WEFT_TRY(weft_player_draw(p, scene, canvas->width, canvas->height, sampling, error));
@@ -76,17 +79,21 @@ static void free_target(surface_target *t)
     glDeleteTextures(PLANES, t->plane);
 }
 
-static void draw_surface(const weft_player *p, const weft_scene *scene, weft_mode mode, int width, int height)
+static weft_code draw_surface(weft_player *p, const weft_scene *scene, const weft_pane *pane, GLuint target,
+                              weft_error *error)
 {
-    glViewport(0, 0, width, height);
+    GLuint program;
+    weft_player_draw_shadows(p, scene);
+    WEFT_TRY(weft_player_draw_layers(p, scene, pane, 1, error));
+    WEFT_TRY(weft_programs_find_geometry(&p->programs, weft_scene_has_shadows(scene), &program, error));
+    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    glViewport(0, 0, pane->width, pane->height);
     glClearColor(0, 0, 0, 0);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glDisable(GL_BLEND);
-    weft_player_set_surface(p, p->geometry, scene, mode, (double)width / height, 0, 0, 0);
-    weft_player_draw_mesh(p);
-    glDisable(GL_DEPTH_TEST);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glUseProgram(program);
+    weft_player_set_point(p, program, scene, pane, &p->layer[0]);
+    weft_player_shade(p, pane, &p->layer[0], target);
+    return WEFT_OK;
 }
 
 static void set_sample(weft_surface_sample *sample, int plane, const float value[4])
@@ -103,6 +110,7 @@ static void set_sample(weft_surface_sample *sample, int plane, const float value
     default:
         sample->u = value[0];
         sample->v = value[1];
+        sample->key_share = value[2];
         break;
     }
 }
@@ -133,9 +141,11 @@ weft_code weft_player_read_surface(weft_player *p, const weft_scene *scene, weft
     surface_target target = {0};
     weft_code code = create_target(width, height, &target, error);
     if (code == WEFT_OK) {
-        draw_surface(p, scene, mode, width, height);
-        code = read_planes(width, height, *sample, error);
+        const weft_pane pane = {.mode = mode, .width = width, .height = height};
+        code = draw_surface(p, scene, &pane, target.buffer, error);
     }
+    if (code == WEFT_OK)
+        code = read_planes(width, height, *sample, error);
     free_target(&target);
     if (code != WEFT_OK) {
         free(*sample);

@@ -10,24 +10,13 @@
 
 static weft_code build_programs(weft_player *p, weft_error *error)
 {
-    const char *const surface[] = {weft_glsl_surface_vert, NULL}, *const screen[] = {weft_glsl_fullscreen_vert, NULL};
-    const char *const raw[] = {weft_glsl_surface, weft_glsl_directions, weft_glsl_raw, weft_glsl_shade_frag, NULL};
-    const char *const compressed[] = {weft_glsl_surface,    weft_glsl_directions, weft_glsl_lafortune,
-                                      weft_glsl_compressed, weft_glsl_shade_frag, NULL};
-    const char *const analytic[] = {weft_glsl_surface,
-                                    weft_glsl_directions,
-                                    weft_glsl_woven,
-                                    weft_glsl_weave,
-                                    weft_glsl_analytic,
-                                    weft_glsl_shade_frag,
-                                    NULL};
-    const char *const background[] = {weft_glsl_background_frag, NULL};
-    const char *const geometry[] = {weft_glsl_surface, weft_glsl_geometry_frag, NULL};
-    WEFT_TRY(weft_gl_program("raw", surface, raw, &p->shade[WEFT_MODE_RAW], error));
-    WEFT_TRY(weft_gl_program("compressed", surface, compressed, &p->shade[WEFT_MODE_COMPRESSED], error));
-    WEFT_TRY(weft_gl_program("analytic", surface, analytic, &p->shade[WEFT_MODE_ANALYTIC], error));
+    const char *const screen[] = {weft_glsl_fullscreen_vert, NULL};
+    const char *const environment[] = {weft_glsl_environment_frag, NULL};
+    const char *const background[] = {weft_glsl_background_frag, NULL}, *const copy[] = {weft_glsl_add_frag, NULL};
     WEFT_TRY(weft_gl_program("background", screen, background, &p->background, error));
-    return weft_gl_program("geometry", surface, geometry, &p->geometry, error);
+    WEFT_TRY(weft_gl_program("environment", screen, environment, &p->environment_background, error));
+    WEFT_TRY(weft_gl_program("copy", screen, copy, &p->copy, error));
+    return weft_shadow_map_create(&p->shadow, error);
 }
 
 weft_code weft_player_create(weft_player **result, weft_error *error)
@@ -65,10 +54,16 @@ void weft_player_free(weft_player *p)
     weft_raw_texture_free(&p->raw);
     weft_material_texture_free(&p->material);
     weft_weave_texture_free(&p->weave);
-    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++)
-        glDeleteProgram(p->shade[mode]);
+    weft_programs_free(&p->programs);
+    weft_shadow_map_free(&p->shadow);
+    for (int i = 0; i < WEFT_LAYER_COUNT; i++)
+        weft_layer_free(&p->layer[i]);
     glDeleteProgram(p->background);
-    glDeleteProgram(p->geometry);
+    glDeleteProgram(p->environment_background);
+    glDeleteProgram(p->copy);
+    glDeleteTextures(1, &p->kept);
+    glDeleteTextures(1, &p->environment_map);
+    free(p->environment);
     glDeleteVertexArrays(1, &p->empty_array);
     weft_overlay_free(&p->overlay);
     free(p);
@@ -89,6 +84,7 @@ weft_code weft_player_set_mesh(weft_player *p, const weft_mesh *mesh, weft_error
     if (!(radius > 0) || !isfinite(radius))
         return weft_fail(error, WEFT_BAD_INPUT, "the mesh is %g units large and cannot be looked at", (double)radius);
     free_mesh(p);
+    weft_shadow_map_forget(&p->shadow);
     p->centre = weft_vec3_of((weft_real)centre[0], (weft_real)centre[1], (weft_real)centre[2]);
     p->radius = (double)radius;
     p->index_count = 3 * mesh->triangle_count;
@@ -118,10 +114,21 @@ static weft_code has_now(weft_player *p, weft_mode mode, double width, double he
     return code;
 }
 
+static double smallest_z(const weft_vec3 *direction, int count)
+{
+    double smallest = 1;
+    for (int i = 0; i < count; i++)
+        smallest = fmin(smallest, (double)direction[i].z);
+    return smallest;
+}
+
 weft_code weft_player_set_material(weft_player *p, const weft_material *material, weft_error *error)
 {
     weft_material_texture_free(&p->material);
     weft_code code = weft_material_texture_upload(material, &p->material, error);
+    double *last = p->last_ring_z[WEFT_MODE_COMPRESSED];
+    last[0] = material->view_count > 0 ? smallest_z(material->view, material->view_count) : 0;
+    last[1] = material->light_count > 0 ? smallest_z(material->light, material->light_count) : last[0];
     return has_now(p, WEFT_MODE_COMPRESSED, material->level[0].width, material->level[0].height, code);
 }
 
@@ -131,6 +138,9 @@ weft_code weft_player_set_dataset(weft_player *p, weft_dataset *dataset, const w
     weft_raw_texture_free(&p->raw);
     weft_code code = weft_raw_texture_upload(dataset, WEFT_RAW_HALF_LIMIT, WEFT_RAW_LIMIT, progress, &p->raw, error);
     *skipped_levels = p->raw.skipped_levels;
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    p->last_ring_z[WEFT_MODE_RAW][0] = smallest_z(layout->view, layout->view_count);
+    p->last_ring_z[WEFT_MODE_RAW][1] = smallest_z(layout->light, layout->image_count);
     weft_mip_area finest = p->raw.layout.area[0];
     return has_now(p, WEFT_MODE_RAW, finest.width, finest.height, code);
 }
@@ -146,4 +156,42 @@ weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, double 
 bool weft_player_has(const weft_player *p, weft_mode mode)
 {
     return p->has[mode];
+}
+
+/* ---- Environment ---- */
+
+static weft_code upload_map(const weft_image *image, GLuint *texture, weft_error *error)
+{
+    WEFT_TRY(weft_gl_texture((weft_texture_format){GL_RGB16F, GL_RGB, GL_FLOAT}, image->width, image->height, 0,
+                             image->pixels, texture, error));
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    return weft_gl_check("uploading an environment map", error);
+}
+
+weft_code weft_player_set_environment(weft_player *p, const weft_image *image, weft_error *error)
+{
+    weft_environment *environment = NULL;
+    GLuint map = 0;
+    if (image) {
+        environment = calloc(1, sizeof *environment);
+        weft_code code = environment ? weft_environment_of_image(image, environment, error)
+                                     : weft_fail_memory(error, "environment", sizeof *environment);
+        if (code == WEFT_OK)
+            code = upload_map(image, &map, error);
+        if (code != WEFT_OK) {
+            free(environment);
+            return code;
+        }
+    }
+    free(p->environment);
+    glDeleteTextures(1, &p->environment_map);
+    p->environment = environment;
+    p->environment_map = map;
+    return WEFT_OK;
+}
+
+bool weft_player_has_environment(const weft_player *p)
+{
+    return p->environment != NULL;
 }

@@ -36,18 +36,28 @@ weft_code weft_player_set_weave(weft_player *player, const weft_weave *weave, do
 
 bool weft_player_has(const weft_player *player, weft_mode mode);
 
-/* How one frame samples its pixels: shift of the picture in pixels, and what is added to the level of detail. */
+/* Lights everything from `image`, where the scene asks for it (player/environment.h says how the map lies); NULL takes
+ * the environment away. Errors: those of weft_environment_of_image; what was there then stays. */
+weft_code weft_player_set_environment(weft_player *player, const weft_image *image, weft_error *error);
+bool weft_player_has_environment(const weft_player *player);
+
+/* How one frame samples its pixels. */
 typedef struct weft_sampling {
-    double shift_x, shift_y, level_bias;
+    double shift_x, shift_y; /* of the picture, pixels */
+    double level_bias;       /* added to the level of detail */
+    long frame;              /* number of the frame in a mean; -1: a picture that moves, to be good by itself */
+    bool hurry;              /* WEFT_FILTER_AUTO is then stochastic */
 } weft_sampling;
 
-/* Draws into the current framebuffer, width x height pixels. Every pane's mode must be there, and a mesh.
+/* Draws into the current framebuffer, width x height pixels of floats: linear radiance, or the signed difference of two
+ * modes where the layout is that. Every pane's mode must be there, and a mesh.
  * Errors: WEFT_BAD_USAGE where not; WEFT_SYSTEM. */
 weft_code weft_player_draw(weft_player *player, const weft_scene *scene, int width, int height, weft_sampling sampling,
                            weft_error *error);
 
-/* The picture as the mean of samples x samples frames on a grid within each pixel; linear. The caller frees `image`.
- * Errors: those of weft_player_draw; WEFT_BAD_USAGE for a size or number of samples out of range. */
+/* The picture as the mean of samples x samples frames on a grid within each pixel; linear (weft_scene_show makes it
+ * what the screen shows). With environment_reference at least 128 frames, lit by all lights of the map. The caller
+ * frees `image`. Errors: those of weft_player_draw; WEFT_BAD_USAGE for a size or number of samples out of range. */
 weft_code weft_player_picture(weft_player *player, const weft_scene *scene, int width, int height, int samples,
                               const weft_progress *progress, weft_image *image, weft_error *error);
 
@@ -57,7 +67,7 @@ weft_code weft_player_picture(weft_player *player, const weft_scene *scene, int 
 typedef struct weft_surface_sample {
     float light[3], level;
     float view[3], covered; /* 1 on the mesh, 0 beside it */
-    float u, v;
+    float u, v, key_share;  /* key_share: of the first light that is not in shadow */
 } weft_surface_sample;
 
 /* The inputs of the reflectance of `mode` for the scene's first frame, one pane: sample [height][width], row 0 at the

@@ -2,11 +2,17 @@
 #ifndef WEFT_PLAYER_PLAYER_PARTS_H
 #define WEFT_PLAYER_PLAYER_PARTS_H
 
+#include "player/environment.h"
+#include "player/layer.h"
 #include "player/material_texture.h"
 #include "player/overlay.h"
 #include "player/player.h"
+#include "player/programs.h"
 #include "player/raw_texture.h"
+#include "player/shadow.h"
 #include "player/weave_texture.h"
+
+enum { WEFT_LAYER_COUNT = 2 };
 
 struct weft_player {
     /* Mesh */
@@ -20,18 +26,48 @@ struct weft_player {
     weft_material_texture material;
     weft_weave_texture weave;
     double texel_count[WEFT_MODE_COUNT][2]; /* of level 0, for one material */
+    double last_ring_z[WEFT_MODE_COUNT][2]; /* smallest z of the measured views and lights */
+    /* Light */
+    weft_environment *environment; /* or NULL */
+    GLuint environment_map;
+    weft_shadow_map shadow;
     /* Programs */
-    GLuint shade[WEFT_MODE_COUNT], background, geometry;
+    weft_programs programs;
+    GLuint background, environment_background, copy;
     GLuint empty_array;
     weft_overlay overlay;
+    weft_layer layer[WEFT_LAYER_COUNT]; /* the second lies behind the first */
+    GLuint kept;                        /* picture of the first mode of a difference */
+    int kept_width, kept_height;
+    unsigned frames_drawn;
 };
 
-/* Uses `program` and sets what player/shaders/surface.glsl needs; the picture has the given aspect. */
-void weft_player_set_surface(const weft_player *player, GLuint program, const weft_scene *scene, weft_mode mode,
-                             double aspect, double shift_x, double shift_y, double level_bias);
+/* A pane of `width` x `height` pixels, `left` pixels from the left edge of the frame. */
+typedef struct weft_pane {
+    weft_mode mode;
+    int left, width, height;
+    weft_sampling sampling;
+} weft_pane;
 
-/* Draws the mesh with the program in use. */
-void weft_player_draw_mesh(const weft_player *player);
+/* Draws the first `layer_count` layers of the pane into player->layer. Leaves another framebuffer bound. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_player_draw_layers(weft_player *player, const weft_scene *scene, const weft_pane *pane, int layer_count,
+                                  weft_error *error);
+
+/* Sets what player/shaders/surface.glsl needs, `program` being in use. */
+void weft_player_set_point(const weft_player *player, GLuint program, const weft_scene *scene, const weft_pane *pane,
+                           const weft_layer *layer);
+
+/* Its rays alone. */
+void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane);
+
+/* Runs the program in use on every pixel of the layer that shows the mesh, and on no other: a triangle at the far end
+ * of the depth range passes where something is nearer. `target` is the framebuffer that is bound, with 24 bits of
+ * depth. */
+void weft_player_shade(const weft_player *player, const weft_pane *pane, const weft_layer *layer, GLuint target);
+
+/* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. */
+void weft_player_draw_shadows(weft_player *player, const weft_scene *scene);
 
 /* Errors: WEFT_BAD_USAGE unless a mesh and the mode are there. */
 weft_code weft_player_check_mode(const weft_player *player, weft_mode mode, weft_error *error);

@@ -3,6 +3,7 @@
 #define WEFT_PLAYER_SCENE_H
 
 #include "btf/direction.h"
+#include "btf/image.h"
 #include "player/orbit.h"
 
 #include <stdbool.h>
@@ -74,5 +75,15 @@ typedef struct weft_scene {
 
 /* A light from the upper left, the drape seen from above its rim, eight materials across it, compressed. */
 weft_scene weft_scene_default(void);
+
+/* The modes in the order of their panes: pane_count of them side by side, else two. Pure. */
+int weft_scene_panes(const weft_scene *scene);
+
+/* Whether there is a key light, and it casts shadows. Pure. */
+bool weft_scene_has_shadows(const weft_scene *scene);
+
+/* Linear radiance as the screen shows it (GLSL twin: player/shaders/present.frag.glsl): tone, sRGB, and the line of a
+ * wipe; or a signed difference in false colour. In place. */
+void weft_scene_show(const weft_scene *scene, weft_image *image);
 
 #endif

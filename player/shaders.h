@@ -10,12 +10,15 @@ extern const char weft_glsl_text_vert[];
 extern const char weft_glsl_text_frag[];
 
 extern const char weft_glsl_surface_vert[];
+extern const char weft_glsl_surface_frag[];
+extern const char weft_glsl_rotation[];
 extern const char weft_glsl_surface[];
+extern const char weft_glsl_environment_frag[];
 extern const char weft_glsl_directions[];
 extern const char weft_glsl_compressed[];
 extern const char weft_glsl_raw[];
 extern const char weft_glsl_analytic[];
-extern const char weft_glsl_shade_frag[];
+extern const char weft_glsl_shade_frag[], weft_glsl_depth_frag[];
 extern const char weft_glsl_geometry_frag[];
 
 /* From reflectance/. */

@@ -8,10 +8,8 @@ uniform vec2 weave_tiles;     // for one material
 const float FADE_BEGIN = -1.0;
 const float FADE_END = 1.0;
 
-vec3 mean_brdf(vec3 light, vec3 view)
+vec3 mean_brdf(Corners lights, Corners views)
 {
-    Corners lights = find_corners(0, light);
-    Corners views = find_corners(0, view);
     vec3 sum = vec3(0.0);
     for (int v = 0; v < 3; v++) {
         for (int l = 0; l < 3; l++) {
@@ -22,15 +20,25 @@ vec3 mean_brdf(vec3 light, vec3 view)
     return sum;
 }
 
-vec4 reflectance(SurfacePoint point)
+vec4 radiance(SurfacePoint point)
 {
     float fade = clamp((point.level - FADE_BEGIN) / (FADE_END - FADE_BEGIN), 0.0, 1.0);
-    vec3 brdf = vec3(0.0);
-    if (fade > 0.0)
-        brdf = fade * mean_brdf(point.light, point.view);
-    if (fade < 1.0) {
-        WeavePoint place = weave_locate(weave_table, point.coordinate * weave_tiles, uvec2(0u));
-        brdf += (1.0 - fade) * weave_brdf(weave_table, place, point.light, point.view);
+    if (STOCHASTIC)
+        fade = happens(point.chance, fade) ? 1.0 : 0.0;
+    Corners views = find_corners(0, point.view);
+    WeavePoint place = weave_locate(weave_table, point.coordinate * weave_tiles, uvec2(0u));
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < LIGHT_COUNT; i++) {
+        vec3 irradiance = surface_irradiance(point, i);
+        if (irradiance == vec3(0.0))
+            continue;
+        vec3 light = surface_light(point, i);
+        vec3 brdf = vec3(0.0);
+        if (fade > 0.0)
+            brdf = fade * mean_brdf(find_corners(0, light), views);
+        if (fade < 1.0)
+            brdf += (1.0 - fade) * weave_brdf(weave_table, place, light, point.view);
+        sum += irradiance * brdf;
     }
-    return vec4(brdf * WOVEN_PI, 1.0);
+    return vec4(sum * WOVEN_PI, 1.0);
 }

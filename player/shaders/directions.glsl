@@ -3,7 +3,7 @@
 uniform sampler2D direction_simplex;
 uniform isampler2D direction_cell;
 
-const int DIRECTION_GRID = 32;
+const int DIRECTION_GRID = 64;
 const int DIRECTION_SETS_PER_ROW = 64;
 const int DIRECTION_SIMPLICES_PER_ROW = 256;
 const int DIRECTION_MAX_STEPS = 48;
@@ -29,49 +29,36 @@ int first_simplex(int set, vec3 direction)
     return texelFetch(direction_cell, map + cell, 0).r;
 }
 
-// Coefficients of the query on the corners of a triangle, up to a common factor; where to go when one is negative.
-int step_from_triangle(vec3 query, vec3 a, vec3 b, vec3 c, vec3 next, out vec3 weight)
+float smallest_of(vec3 weight)
 {
-    weight = vec3(dot(query, cross(b, c)), dot(query, cross(c, a)), dot(query, cross(a, b)));
-    float smallest = min(weight.x, min(weight.y, weight.z));
-    if (smallest >= 0.0)
-        return -1;
-    return int(smallest == weight.x ? next.x : smallest == weight.y ? next.y : next.z);
-}
-
-// The same for the foot of the query on an arc.
-int step_from_arc(vec3 query, vec3 a, vec3 b, vec3 next, out vec3 weight)
-{
-    vec3 pole = cross(a, b);
-    weight = vec3(dot(cross(query, b), pole), dot(cross(a, query), pole), 0.0);
-    if (weight.x < 0.0)
-        return int(next.y);
-    if (weight.y < 0.0)
-        return int(next.x);
-    return dot(query, pole) > 0.0 ? int(next.z) : -1;
+    return min(weight.x, min(weight.y, weight.z));
 }
 
 Corners find_corners(int set, vec3 query)
 {
     int simplex = first_simplex(set, query);
     int previous = -1;
-    vec4 a, b, c;
-    vec3 weight;
-    for (int i = 0; i < DIRECTION_MAX_STEPS; i++) {
-        a = simplex_entry(simplex, 0);
-        b = simplex_entry(simplex, 1);
-        c = simplex_entry(simplex, 2);
+    vec4 a = simplex_entry(simplex, 0);
+    vec4 b = simplex_entry(simplex, 1);
+    vec4 c = simplex_entry(simplex, 2);
+    vec3 weight = query * mat3(a.xyz, b.xyz, c.xyz);
+    for (int i = 0; i < DIRECTION_MAX_STEPS && smallest_of(weight) < 0.0; i++) {
         vec4 next = simplex_entry(simplex, 3);
-        int target = next.w > 0.5 ? step_from_arc(query, a.xyz, b.xyz, next.xyz, weight)
-                                  : step_from_triangle(query, a.xyz, b.xyz, c.xyz, next.xyz, weight);
+        float smallest = smallest_of(weight);
+        int target = int(smallest == weight.x ? next.x : smallest == weight.y ? next.y : next.z);
         // Sent back: the query lies on the border of the two, within rounding.
         if (target < 0 || target == previous)
             break;
         previous = simplex;
         simplex = target;
+        a = simplex_entry(simplex, 0);
+        b = simplex_entry(simplex, 1);
+        c = simplex_entry(simplex, 2);
+        weight = query * mat3(a.xyz, b.xyz, c.xyz);
     }
-    weight = max(weight, vec3(0.0));
+    bool arc = c.w < 0.0;
+    weight = max(arc ? vec3(weight.xy, 0.0) : weight, vec3(0.0));
     float sum = weight.x + weight.y + weight.z;
     weight = sum > 0.0 ? weight / sum : vec3(1.0, 0.0, 0.0);
-    return Corners(ivec3(int(a.w), int(b.w), int(c.w)), weight);
+    return Corners(ivec3(int(a.w), int(b.w), int(arc ? b.w : c.w)), weight);
 }

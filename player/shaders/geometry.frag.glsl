@@ -6,7 +6,7 @@ layout(location = 2) out vec4 coordinates;
 void main()
 {
     SurfacePoint point = surface_point();
-    light_and_level = vec4(point.light, point.level);
+    light_and_level = vec4(surface_light(point, 0), point.level);
     view_and_cover = vec4(point.view, 1.0);
-    coordinates = vec4(point.coordinate, 0.0, 1.0);
+    coordinates = vec4(point.coordinate, point.key_share, 1.0);
 }

@@ -6,44 +6,73 @@ uniform ivec2 raw_tiles;      // columns and their width
 uniform vec2 raw_atlas_size;  // texels
 uniform vec4 level_area[16];  // x, y, width, height
 
-vec4 image_value(int image, vec2 position)
+vec4 image_value(int image, int level, vec2 coordinate)
 {
+    vec4 area = level_area[level];
+    vec2 position = area.xy + fract(vec2(coordinate.x, -coordinate.y)) * area.zw;
     int layer = image / raw_tiles.x;
     position.x += float((image - layer * raw_tiles.x) * raw_tiles.y);
     return textureLod(raw_sample, vec3(position / raw_atlas_size, float(layer)), 0.0);
 }
 
-vec4 level_value(int level, vec2 coordinate, ivec3 image[3], vec3 weight[3])
+vec4 corners_value(int level, vec2 coordinate, Corners lights)
 {
-    vec4 area = level_area[level];
-    vec2 position = area.xy + fract(vec2(coordinate.x, -coordinate.y)) * area.zw;
     vec4 sum = vec4(0.0);
-    for (int view = 0; view < 3; view++) {
-        for (int light = 0; light < 3; light++) {
-            if (weight[view][light] > 0.0)
-                sum += weight[view][light] * image_value(image[view][light], position);
-        }
+    for (int i = 0; i < 3; i++) {
+        if (lights.weight[i] > 0.0)
+            sum += lights.weight[i] * image_value(lights.label[i], level, coordinate);
     }
     return sum;
 }
 
-vec4 reflectance(SurfacePoint point)
+vec4 trilinear_value(vec3 light, SurfacePoint point, Corners views, int fine, float share)
+{
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 3; i++) {
+        if (views.weight[i] == 0.0)
+            continue;
+        Corners lights = find_corners(views.label[i], light);
+        vec4 value = corners_value(fine, point.coordinate, lights);
+        if (share > 0.0)
+            value = mix(value, corners_value(fine + 1, point.coordinate, lights), share);
+        sum += views.weight[i] * value;
+    }
+    return sum;
+}
+
+int chosen_corner(Corners corners, inout float chance)
+{
+    if (happens(chance, corners.weight.x))
+        return corners.label.x;
+    float rest = corners.weight.y + corners.weight.z;
+    return happens(chance, rest > 0.0 ? corners.weight.y / rest : 1.0) ? corners.label.y : corners.label.z;
+}
+
+vec4 chosen_value(vec3 light, SurfacePoint point, Corners views, int fine, float share)
+{
+    int level = happens(point.chance, share) ? fine + 1 : fine;
+    int view = chosen_corner(views, point.chance);
+    int image = chosen_corner(find_corners(view, light), point.chance);
+    return image_value(image, level, point.coordinate);
+}
+
+// Opacity depends on the view alone; the first light tells it also where the surface is dark.
+vec4 radiance(SurfacePoint point)
 {
     Corners views = find_corners(0, point.view);
-    ivec3 image[3];
-    vec3 weight[3];
-    for (int view = 0; view < 3; view++) {
-        Corners lights = Corners(ivec3(0), vec3(0.0));
-        if (views.weight[view] > 0.0)
-            lights = find_corners(views.label[view], point.light);
-        image[view] = lights.label;
-        weight[view] = lights.weight * views.weight[view];
-    }
     float level = clamp(point.level, 0.0, float(level_count - 1));
     int fine = int(level);
-    vec4 value = level_value(fine, point.coordinate, image, weight);
     float share = level - float(fine);
-    if (share > 0.0)
-        value = mix(value, level_value(fine + 1, point.coordinate, image, weight), share);
-    return value;
+    vec4 sum = vec4(0.0, 0.0, 0.0, 1.0);
+    for (int i = 0; i < LIGHT_COUNT; i++) {
+        vec3 irradiance = surface_irradiance(point, i);
+        if (i > 0 && irradiance == vec3(0.0))
+            continue;
+        vec3 light = surface_light(point, i);
+        vec4 value = STOCHASTIC ? chosen_value(light, point, views, fine, share)
+                                : trilinear_value(light, point, views, fine, share);
+        sum = vec4(sum.rgb + irradiance * value.rgb, i == 0 ? value.a : sum.a);
+        point.chance = fract(point.chance + 0.61803399);
+    }
+    return sum;
 }

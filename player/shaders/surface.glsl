@@ -1,29 +1,25 @@
-// What every mode needs to know of the point of the surface behind a pixel.
-in vec3 world_position;
-in vec3 world_normal;
-in vec4 world_tangent;
-in vec2 mesh_coordinate;
-
+// What every mode needs to know of the surface behind a pixel (written by surface.frag.glsl), and of the light on it.
+// Constants defined by player/programs.c: MAX_LIGHTS, LIGHT_COUNT (light_count, or 1), STOCHASTIC, SHADOWS.
+uniform sampler2D surface_rotation;
+uniform sampler2D surface_place;
+uniform vec3 ray_right, ray_up, ray_forward; // the ray through a pixel: x right + y up + forward
+uniform vec2 pane_origin;
 uniform vec3 eye;
-uniform vec3 light_direction; // world, unit, toward the light
-uniform float repeat;         // materials for a unit of the mesh's coordinates
-uniform vec2 texel_count;     // texels (cells of a weave) of the material
-uniform float level_choice;   // automatic below -999
-uniform float level_bias;
+uniform mat4 shadow_of_world;
+uniform highp sampler2DShadow shadow_map; // of the first light
+uniform int light_count;
+uniform vec3 light_direction[MAX_LIGHTS];  // world, unit, toward the light
+uniform vec3 light_irradiance[MAX_LIGHTS]; // on a surface that faces it, over pi
+uniform float sequence;                    // [0, 1), of the frame: where its random choices begin
 
 struct SurfacePoint {
-    vec3 light, view; // frame of the surface: x along u, y along v, z the normal
-    vec2 coordinate;  // texture coordinates of the material, repeated
-    float level;      // log2 of the pixel's footprint in texels, may be negative
+    mat3 axes;       // of the surface in the world: x along u, y along v, the normal
+    vec3 view;       // in these axes
+    vec2 coordinate; // texture coordinates of the material, repeated
+    float level;     // log2 of the pixel's footprint in texels, may be negative
+    float key_share; // of the first light that is not in shadow
+    float chance;    // in [0, 1)
 };
-
-// The larger of the two sides of the pixel in texture space, as OpenGL chooses its mip level.
-float footprint_level(vec2 coordinate)
-{
-    vec2 across = dFdx(coordinate) * texel_count;
-    vec2 up = dFdy(coordinate) * texel_count;
-    return 0.5 * log2(max(max(dot(across, across), dot(up, up)), 1e-20)) + level_bias;
-}
 
 // Interpolated normals may turn away from the eye at a silhouette; the view is kept just above the horizon.
 vec3 above_horizon(vec3 view)
@@ -31,24 +27,59 @@ vec3 above_horizon(vec3 view)
     return normalize(vec3(view.xy, max(view.z, 0.02)));
 }
 
+// Interleaved gradient noise (Jimenez 2014), moved by the frame: neighbours in the picture and in time differ.
+float pixel_chance()
+{
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    return fract(noise + sequence);
+}
+
+// True with probability `share`; what is left of the chance is uniform again.
+bool happens(inout float chance, float share)
+{
+    bool yes = chance < share;
+    chance = yes ? chance / share : (chance - share) / (1.0 - share);
+    return yes;
+}
+
+// Sixteen comparisons, bilinear by the hardware: a soft edge of about three texels of the map.
+float unshadowed_share(vec3 position)
+{
+    vec3 at = (shadow_of_world * vec4(position, 1.0)).xyz;
+    vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
+    float sum = 0.0;
+    for (int i = 0; i < 4; i++) {
+        vec2 shift = (vec2(float(i % 2), float(i / 2)) - 0.5) * 1.5 * texel;
+        sum += textureLod(shadow_map, vec3(at.xy + shift, at.z), 0.0);
+    }
+    return 0.25 * sum;
+}
+
 SurfacePoint surface_point()
 {
-    vec3 n = normalize(world_normal);
-    vec3 t = normalize(world_tangent.xyz - n * dot(n, world_tangent.xyz));
-    vec3 b = cross(n, t) * world_tangent.w;
-    vec2 coordinate = mesh_coordinate * repeat;
-    float level = level_choice < -999.0 ? footprint_level(coordinate) : level_choice;
-    // The back of the cloth is the same material, mirrored in u so that its frame stays right-handed.
-    if (!gl_FrontFacing) {
-        n = -n;
-        t = -t;
-        coordinate.x = -coordinate.x;
-    }
-    vec3 to_eye = normalize(eye - world_position);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 place = texelFetch(surface_place, pixel, 0);
+    vec2 at = gl_FragCoord.xy - pane_origin;
+    vec3 ray = at.x * ray_right + at.y * ray_up + ray_forward;
     SurfacePoint point;
-    point.light = vec3(dot(light_direction, t), dot(light_direction, b), dot(light_direction, n));
-    point.view = above_horizon(vec3(dot(to_eye, t), dot(to_eye, b), dot(to_eye, n)));
-    point.coordinate = coordinate;
-    point.level = level;
+    point.axes = axes_of_quaternion(texelFetch(surface_rotation, pixel, 0));
+    point.axes[1] *= sign(place.w);
+    point.view = above_horizon(-normalize(ray) * point.axes);
+    point.coordinate = place.xy;
+    point.level = place.z;
+    point.key_share = SHADOWS ? unshadowed_share(eye + abs(place.w) * ray) : 1.0;
+    point.chance = STOCHASTIC ? pixel_chance() : 0.0;
     return point;
+}
+
+vec3 surface_light(SurfacePoint point, int light)
+{
+    return light_direction[light] * point.axes;
+}
+
+// Over pi, with the cosine; 0 below the horizon of the surface.
+vec3 surface_irradiance(SurfacePoint point, int light)
+{
+    float cosine = max(dot(light_direction[light], point.axes[2]), 0.0);
+    return light_irradiance[light] * (light == 0 ? cosine * point.key_share : cosine);
 }

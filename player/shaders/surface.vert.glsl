@@ -5,14 +5,12 @@ in vec2 coordinate;
 
 uniform mat4 clip_of_world;
 
-out vec3 world_position;
 out vec3 world_normal;
 out vec4 world_tangent;
 out vec2 mesh_coordinate;
 
 void main()
 {
-    world_position = position;
     world_normal = normal;
     world_tangent = tangent;
     mesh_coordinate = coordinate;

@@ -97,7 +97,7 @@ static void a_view_without_valid_samples_takes_the_mean_and_no_triangle(void **s
     assert_int_equal(weft_raw_images_find(dataset, &images, &error), WEFT_OK);
     assert_int_equal(weft_raw_images_map(&images, weft_dataset_get_layout(dataset), &map, &error), WEFT_OK);
     assert_int_equal(map.set_count, 2);
-    assert_float_equal(map.simplex[0].corner[0][3], 1, 0);
+    assert_float_equal(map.simplex[0].form[0][3], 1, 0);
     weft_direction_map_free(&map);
     weft_raw_images_free(&images);
     weft_dataset_close(dataset);

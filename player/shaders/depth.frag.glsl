@@ -1,0 +1,4 @@
+// Depth is all that is kept.
+void main()
+{
+}
