@@ -17,10 +17,10 @@ weft_code scene_errors_print(weft_player *player, const weft_scene *scene, int w
                              char text[SCENE_ERRORS_SIZE], weft_error *error)
 {
     text[0] = 0;
-    int pane_width = width / scene->pane_count;
+    int panes = weft_scene_panes(scene), pane_width = scene->layout == WEFT_LAYOUT_PANES ? width / panes : width;
     if (!weft_player_has(player, WEFT_MODE_RAW) || pane_width < 1)
         return WEFT_OK;
-    for (int i = 0; i < scene->pane_count; i++) {
+    for (int i = 0; i < panes; i++) {
         weft_prediction_error e;
         if (scene->pane[i] == WEFT_MODE_RAW)
             continue;

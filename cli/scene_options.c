@@ -71,7 +71,8 @@ static void parse_camera(weft_orbit *orbit, const char *text, struct argp_state 
     parse_numbers("camera", text, 3, number, state);
     if (fabs(number[1]) > 90 || !(number[2] > 1))
         argp_error(state, "--camera needs an elevation of at most 90 degrees and a distance over 1, not '%s'", text);
-    *orbit = (weft_orbit){weft_rad_of_deg(number[0]), weft_rad_of_deg(number[1]), number[2]};
+    *orbit = (weft_orbit){
+        .azimuth_rad = weft_rad_of_deg(number[0]), .elevation_rad = weft_rad_of_deg(number[1]), .distance = number[2]};
 }
 
 static void parse_light(weft_angles *light, const char *text, struct argp_state *state)
@@ -182,7 +183,8 @@ static weft_code load_mesh(scene_options *o, weft_player *player, weft_error *er
         code = weft_player_set_mesh(player, &mesh, error);
     weft_mesh_free(&mesh);
     if (is_plane(o) && !o->has_camera)
-        o->scene.orbit = (weft_orbit){weft_rad_of_deg(-90), weft_rad_of_deg(75), 3};
+        o->scene.orbit =
+            (weft_orbit){.azimuth_rad = weft_rad_of_deg(-90), .elevation_rad = weft_rad_of_deg(75), .distance = 3};
     o->scene.repeat = o->repeat > 0 ? o->repeat : is_plane(o) ? 1 : 8;
     return code;
 }

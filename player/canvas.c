@@ -68,9 +68,9 @@ void weft_canvas_begin_frame(weft_canvas *c)
 }
 
 /* With the program in use. */
-static void draw_over_everything(const weft_canvas *c, GLuint program, const char *sampler, GLuint texture)
+static void draw_over_everything(const weft_canvas *c, int left, GLuint program, const char *sampler, GLuint texture)
 {
-    glViewport(0, 0, c->width, c->height);
+    glViewport(left, 0, c->width, c->height);
     glDisable(GL_DEPTH_TEST);
     glBindVertexArray(c->vertex_array);
     weft_gl_bind(program, sampler, 0, GL_TEXTURE_2D, texture);
@@ -86,11 +86,11 @@ void weft_canvas_end_frame(weft_canvas *c)
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
     glUseProgram(c->add_program);
-    draw_over_everything(c, c->add_program, "frame", c->frame);
+    draw_over_everything(c, 0, c->add_program, "frame", c->frame);
     glDisable(GL_BLEND);
 }
 
-void weft_canvas_present(const weft_canvas *c, const weft_scene *scene)
+void weft_canvas_present(const weft_canvas *c, const weft_scene *scene, int left)
 {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glDisable(GL_BLEND);
@@ -99,7 +99,8 @@ void weft_canvas_present(const weft_canvas *c, const weft_scene *scene)
     weft_gl_set_int(c->present_program, "tone", scene->tone);
     weft_gl_set_int(c->present_program, "difference", scene->layout == WEFT_LAYOUT_DIFFERENCE);
     weft_gl_set_float(c->present_program, "divider", scene->layout == WEFT_LAYOUT_WIPE ? scene->divider : -1);
-    draw_over_everything(c, c->present_program, "sum", c->sum);
+    weft_gl_set_int(c->present_program, "left", left);
+    draw_over_everything(c, left, c->present_program, "sum", c->sum);
 }
 
 weft_code weft_canvas_read(const weft_canvas *c, weft_image *image, weft_error *error)

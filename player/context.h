@@ -24,10 +24,11 @@ void weft_headless_free(weft_headless *headless);
 
 /* What the user did. Positions are pixels of the framebuffer, x right, y down. */
 typedef struct weft_window_events {
-    void (*press)(void *context, int button, bool pressed, bool shift, double x, double y);
+    void (*press)(void *context, int button, bool pressed, int modifiers, double x, double y); /* GLFW's */
     void (*move)(void *context, double x, double y);
     void (*scroll)(void *context, double steps);
-    void (*key)(void *context, int key); /* a GLFW key code, on press and repeat */
+    void (*key)(void *context, int key);           /* a GLFW key code, on press and repeat */
+    void (*drop)(void *context, const char *path); /* a file, once for each that was dropped */
     void *context;
 } weft_window_events;
 
@@ -48,6 +49,11 @@ void weft_window_size(const weft_window *window, int *width, int *height);
 void weft_window_set_title(weft_window *window, const char *title);
 /* Shows what was drawn into framebuffer 0. */
 void weft_window_show(weft_window *window);
+
+/* The GLFWwindow, for the user interface. */
+void *weft_window_handle(const weft_window *window);
+/* Dots for each of a screen of 96 dots per inch. */
+double weft_window_scale(const weft_window *window);
 
 /* Name of the driver's renderer, owned by the driver. */
 const char *weft_gl_renderer(void);

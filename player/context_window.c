@@ -26,7 +26,7 @@ static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
     double x, y;
     glfwGetCursorPos(handle, &x, &y);
     pixel_position(handle, &x, &y);
-    window->events.press(window->events.context, button, action == GLFW_PRESS, modifiers & GLFW_MOD_SHIFT, x, y);
+    window->events.press(window->events.context, button, action == GLFW_PRESS, modifiers, x, y);
 }
 
 static void on_move(GLFWwindow *handle, double x, double y)
@@ -50,6 +50,13 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
     weft_window *window = glfwGetWindowUserPointer(handle);
     if (action != GLFW_RELEASE)
         window->events.key(window->events.context, key);
+}
+
+static void on_drop(GLFWwindow *handle, int count, const char **path)
+{
+    weft_window *window = glfwGetWindowUserPointer(handle);
+    for (int i = 0; i < count; i++)
+        window->events.drop(window->events.context, path[i]);
 }
 
 static weft_code fail_glfw(weft_error *error, const char *action)
@@ -89,6 +96,7 @@ weft_code weft_window_create(const char *title, int width, int height, const wef
     glfwSetCursorPosCallback(handle, on_move);
     glfwSetScrollCallback(handle, on_scroll);
     glfwSetKeyCallback(handle, on_key);
+    glfwSetDropCallback(handle, on_drop);
     glfwMakeContextCurrent(handle);
     glfwSwapInterval(1);
     *result = window;
@@ -131,4 +139,16 @@ void weft_window_set_title(weft_window *window, const char *title)
 void weft_window_show(weft_window *window)
 {
     glfwSwapBuffers(window->handle);
+}
+
+void *weft_window_handle(const weft_window *window)
+{
+    return window->handle;
+}
+
+double weft_window_scale(const weft_window *window)
+{
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(window->handle, &x, &y);
+    return (double)x > 0 ? (double)x : 1;
 }

@@ -242,8 +242,6 @@ static void draw_labels(const weft_player *p, const weft_scene *scene, int width
     for (int i = 0; scene->labels && scene->pane_count > 1 && i < scene->pane_count; i++)
         weft_overlay_text(&p->overlay, width, height, width * i / scene->pane_count + margin, margin, scale,
                           weft_mode_name(scene->pane[i]));
-    if (scene->help)
-        weft_overlay_text(&p->overlay, width, height, margin, margin, scale, scene->help);
 }
 
 static weft_code check_scene(const weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)

@@ -12,7 +12,7 @@ weft_code weft_layer_resize(weft_layer *layer, int width, int height, weft_error
 {
     const weft_texture_format float_format = {GL_RGBA32F, GL_RGBA, GL_FLOAT};
     const weft_texture_format depth_format = {GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT};
-    if (layer->width == width && layer->height == height)
+    if (layer->width >= width && layer->height >= height)
         return WEFT_OK;
     weft_layer_free(layer);
     WEFT_TRY(weft_gl_texture(float_format, width, height, 0, NULL, &layer->rotation, error));

@@ -10,7 +10,7 @@ typedef struct weft_layer {
     GLuint buffer, rotation, place, depth; /* player/shaders/surface.frag.glsl says what the textures hold */
 } weft_layer;
 
-/* Makes the layer this large. The caller frees with weft_layer_free, also on failure. Errors: WEFT_SYSTEM. */
+/* Makes the layer at least this large. The caller frees with weft_layer_free, also on failure. Errors: WEFT_SYSTEM. */
 weft_code weft_layer_resize(weft_layer *layer, int width, int height, weft_error *error);
 void weft_layer_free(weft_layer *layer);
 

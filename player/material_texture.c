@@ -162,6 +162,13 @@ void weft_material_texture_free(weft_material_texture *t)
     *t = (weft_material_texture){0};
 }
 
+size_t weft_material_texture_bytes(const weft_material_texture *t)
+{
+    size_t texels = (size_t)t->layout.width * (size_t)t->layout.height;
+    size_t layers = 1 + (3 * (size_t)t->lobe_count + 1) / 2;
+    return texels * (16 * layers + 4 * (size_t)(t->table.count + t->light_table.count));
+}
+
 void weft_material_texture_bind(const weft_material_texture *t, GLuint program)
 {
     weft_gl_bind(program, "material_texel", 0, GL_TEXTURE_2D_ARRAY, t->texel);

@@ -7,6 +7,7 @@
 #include "player/mip_layout.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* T or S: a picture of all levels for each direction. */
 typedef struct weft_table_texture {
@@ -33,6 +34,9 @@ typedef struct weft_material_texture {
 weft_code weft_material_texture_upload(const weft_material *material, weft_material_texture *texture,
                                        weft_error *error);
 void weft_material_texture_free(weft_material_texture *texture);
+
+/* Of graphics memory, without the directions. */
+size_t weft_material_texture_bytes(const weft_material_texture *texture);
 
 /* Sets the uniforms of compressed.glsl; `program` is in use. */
 void weft_material_texture_bind(const weft_material_texture *texture, GLuint program);

@@ -15,13 +15,20 @@ weft_orbit_axes weft_orbit_axes_of(const weft_orbit *orbit)
 
 weft_vec3 weft_orbit_eye(const weft_orbit *orbit, weft_vec3 centre, double radius)
 {
-    return weft_add(centre, weft_scale(weft_orbit_axes_of(orbit).backward, orbit->distance * radius));
+    weft_orbit_axes axes = weft_orbit_axes_of(orbit);
+    weft_vec3 aside = weft_add(weft_scale(axes.right, orbit->pan_right), weft_scale(axes.up, orbit->pan_up));
+    return weft_add(centre, weft_scale(weft_add(aside, weft_scale(axes.backward, orbit->distance)), radius));
+}
+
+double weft_orbit_slope(void)
+{
+    return tan(field_of_view_rad / 2);
 }
 
 /* Half the picture's width and height at unit distance. */
 static void half_sizes(double aspect, double *x, double *y)
 {
-    double slope = tan(field_of_view_rad / 2);
+    double slope = weft_orbit_slope();
     *x = aspect > 1 ? slope * aspect : slope;
     *y = aspect > 1 ? slope : slope / aspect;
 }

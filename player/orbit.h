@@ -8,12 +8,16 @@
  * horizon, up to 90 degrees, where the azimuth still says which way is up in the picture: away from it. */
 typedef struct weft_orbit {
     double azimuth_rad, elevation_rad, distance;
+    double pan_right, pan_up; /* of what is looked at from the centre, in radii along the picture's axes */
 } weft_orbit;
 
 /* Right, up and backward (toward the eye) of the picture, unit. */
 typedef struct weft_orbit_axes {
     weft_vec3 right, up, backward;
 } weft_orbit_axes;
+
+/* Half of the smaller side of the picture at unit distance. */
+double weft_orbit_slope(void);
 
 weft_orbit_axes weft_orbit_axes_of(const weft_orbit *orbit);
 

@@ -195,3 +195,32 @@ bool weft_player_has_environment(const weft_player *p)
 {
     return p->environment != NULL;
 }
+
+/* ---- What there is ---- */
+
+void weft_player_material_parts(const weft_player *p, int *lobe_count, bool *view_table, bool *light_table)
+{
+    *lobe_count = p->material.lobe_count;
+    *view_table = p->material.table.count > 0;
+    *light_table = p->material.light_table.count > 0;
+}
+
+void weft_player_last_ring(const weft_player *p, weft_mode mode, double *view_rad, double *light_rad)
+{
+    *view_rad = acos(p->last_ring_z[mode][0]);
+    *light_rad = acos(p->last_ring_z[mode][1]);
+}
+
+size_t weft_player_bytes(const weft_player *p, weft_mode mode)
+{
+    if (!p->has[mode])
+        return 0;
+    switch (mode) {
+    case WEFT_MODE_RAW:
+        return weft_raw_texture_bytes(&p->raw);
+    case WEFT_MODE_COMPRESSED:
+        return weft_material_texture_bytes(&p->material);
+    default:
+        return weft_weave_texture_bytes(&p->weave);
+    }
+}

@@ -36,6 +36,13 @@ weft_code weft_player_set_weave(weft_player *player, const weft_weave *weave, do
 
 bool weft_player_has(const weft_player *player, weft_mode mode);
 
+/* Bytes of graphics memory that the data of a mode take; 0 without it. */
+size_t weft_player_bytes(const weft_player *player, weft_mode mode);
+/* What the material has: lobes, and whether T and S. */
+void weft_player_material_parts(const weft_player *player, int *lobe_count, bool *view_table, bool *light_table);
+/* Largest measured angle of the views and lights of a mode, from the normal. */
+void weft_player_last_ring(const weft_player *player, weft_mode mode, double *view_rad, double *light_rad);
+
 /* Lights everything from `image`, where the scene asks for it (player/environment.h says how the map lies); NULL takes
  * the environment away. Errors: those of weft_environment_of_image; what was there then stays. */
 weft_code weft_player_set_environment(weft_player *player, const weft_image *image, weft_error *error);

@@ -313,6 +313,12 @@ void weft_raw_texture_free(weft_raw_texture *t)
     *t = (weft_raw_texture){0};
 }
 
+size_t weft_raw_texture_bytes(const weft_raw_texture *t)
+{
+    size_t texels = (size_t)t->layout.width * (size_t)t->layout.height * (size_t)t->columns * (size_t)t->layers;
+    return texels * (t->packed ? 4 : 8);
+}
+
 void weft_raw_texture_bind(const weft_raw_texture *t, GLuint program)
 {
     float area[WEFT_MIP_LEVELS][4];

@@ -8,6 +8,7 @@
 #include "player/mip_layout.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* The texture holds BRDF x pi. Each image is a tile with its mip levels (box means of the samples), each with a border
  * of one texel that repeats the opposite side, so that the hardware's bilinear filter wraps round. Samples that the
@@ -34,6 +35,9 @@ typedef struct weft_raw_texture {
 weft_code weft_raw_texture_upload(weft_dataset *dataset, size_t half_limit, size_t limit, const weft_progress *progress,
                                   weft_raw_texture *texture, weft_error *error);
 void weft_raw_texture_free(weft_raw_texture *texture);
+
+/* Of graphics memory, without the directions. */
+size_t weft_raw_texture_bytes(const weft_raw_texture *texture);
 
 /* Sets the uniforms of raw.glsl; `program` is in use. */
 void weft_raw_texture_bind(const weft_raw_texture *texture, GLuint program);

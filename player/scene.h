@@ -70,7 +70,6 @@ typedef struct weft_scene {
     bool show_level;         /* the mip level in false colour */
     bool show_extrapolation; /* tint where view or light lies beyond the last measured ring */
     bool labels;             /* the name of its mode in each pane */
-    const char *help;        /* text over the picture, or NULL; borrowed */
 } weft_scene;
 
 /* A light from the upper left, the drape seen from above its rim, eight materials across it, compressed. */

@@ -46,7 +46,7 @@ static weft_code upload_mean(const weft_weave *weave, GLuint *texture, weft_erro
     return code;
 }
 
-static weft_code upload_table(const weft_weave *weave, GLuint *texture, weft_error *error)
+static weft_code upload_table(const weft_weave *weave, weft_weave_texture *t, weft_error *error)
 {
     int width, height;
     weft_weave_table(weave, NULL, &width, &height);
@@ -54,7 +54,8 @@ static weft_code upload_table(const weft_weave *weave, GLuint *texture, weft_err
     if (!rgba)
         return weft_fail_memory(error, "weave", (size_t)width * (size_t)height * 4 * sizeof *rgba);
     weft_weave_table(weave, rgba, &width, &height);
-    weft_code code = weft_gl_texture(float_format, width, height, 0, rgba, texture, error);
+    t->table_texels = width * height;
+    weft_code code = weft_gl_texture(float_format, width, height, 0, rgba, &t->table, error);
     free(rgba);
     return code;
 }
@@ -78,7 +79,7 @@ weft_code weft_weave_texture_upload(const weft_weave *weave, double tiles_u, dou
     *t = (weft_weave_texture){.tiles = {tiles_u, tiles_v}};
     if (!(tiles_u > 0) || !(tiles_v > 0) || !isfinite(tiles_u) || !isfinite(tiles_v))
         return weft_fail(error, WEFT_BAD_USAGE, "a material of %g x %g tiles cannot be shown", tiles_u, tiles_v);
-    WEFT_TRY(upload_table(weave, &t->table, error));
+    WEFT_TRY(upload_table(weave, t, error));
     WEFT_TRY(upload_mean(weave, &t->mean, error));
     return upload_directions(&t->directions, error);
 }
@@ -89,6 +90,11 @@ void weft_weave_texture_free(weft_weave_texture *t)
     glDeleteTextures(1, &t->mean);
     weft_direction_texture_free(&t->directions);
     *t = (weft_weave_texture){0};
+}
+
+size_t weft_weave_texture_bytes(const weft_weave_texture *t)
+{
+    return 16 * ((size_t)t->table_texels + DIRECTIONS * DIRECTIONS);
 }
 
 void weft_weave_texture_bind(const weft_weave_texture *t, GLuint program)

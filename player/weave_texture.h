@@ -6,10 +6,13 @@
 #include "player/direction_texture.h"
 #include "reflectance/weave.h"
 
+#include <stddef.h>
+
 /* Where a pixel covers less than half a cell the woven texture is evaluated, where it covers more than two the mean of
  * the tile, in between a blend by the logarithm of the footprint. The mean is tabulated for ubo81 lights and views. */
 typedef struct weft_weave_texture {
     GLuint table, mean;
+    int table_texels;
     weft_direction_texture directions;
     double tiles[2]; /* for one material */
 } weft_weave_texture;
@@ -19,6 +22,9 @@ typedef struct weft_weave_texture {
 weft_code weft_weave_texture_upload(const weft_weave *weave, double tiles_u, double tiles_v,
                                     weft_weave_texture *texture, weft_error *error);
 void weft_weave_texture_free(weft_weave_texture *texture);
+
+/* Of graphics memory, without the directions. */
+size_t weft_weave_texture_bytes(const weft_weave_texture *texture);
 
 /* Sets the uniforms of analytic.glsl; `program` is in use. */
 void weft_weave_texture_bind(const weft_weave_texture *texture, GLuint program);

@@ -29,10 +29,10 @@ static weft_code draw_alone(weft_player *player, const weft_scene *scene, weft_m
                             weft_image *image, weft_error *error)
 {
     weft_scene alone = *scene;
+    alone.layout = WEFT_LAYOUT_PANES;
     alone.pane_count = 1;
     alone.pane[0] = mode;
-    alone.labels = false;
-    alone.help = NULL;
+    alone.labels = alone.show_level = alone.show_extrapolation = false;
     return weft_player_picture(player, &alone, width, height, 1, NULL, image, error);
 }
 

@@ -2,6 +2,7 @@
 in vec2 screen;
 uniform sampler2D sum;
 uniform float frame_share; // 1 / number of frames
+uniform int left;        // of the picture on the screen, pixels
 uniform int tone;        // 0 clips, 1 is soft
 uniform bool difference; // signed: dark is equal
 uniform float divider;   // a line there, as a share of the width; none below 0
@@ -35,9 +36,9 @@ vec3 difference_colour(vec3 signed_difference)
 
 void main()
 {
-    vec3 linear = frame_share * texelFetch(sum, ivec2(gl_FragCoord.xy), 0).rgb;
+    vec3 linear = frame_share * texelFetch(sum, ivec2(gl_FragCoord.xy) - ivec2(left, 0), 0).rgb;
     vec3 shown = difference ? difference_colour(linear) : srgb_of_linear(tone_of_linear(linear));
-    if (divider >= 0.0 && abs(gl_FragCoord.x - divider * float(textureSize(sum, 0).x)) < 1.0)
+    if (divider >= 0.0 && abs(gl_FragCoord.x - float(left) - divider * float(textureSize(sum, 0).x)) < 1.0)
         shown = vec3(0.95);
     colour = vec4(shown, 1.0);
 }

@@ -77,7 +77,6 @@ static void nothing_stays_behind_when_a_player_is_freed(void **state)
     weft_scene scene = weft_scene_default();
     scene.pane_count = 2;
     scene.pane[1] = WEFT_MODE_RAW;
-    scene.help = "help";
     stage_dataset(path, 4, 7, 7, WEFT_REFLECTANCE_COSINE, true);
     expect_ok(weft_player_create(&player, &error), &error);
     for (int i = 0; i < 2; i++)

@@ -57,7 +57,8 @@ static weft_code make_nothing(weft_mesh *mesh, weft_error *error)
 static weft_scene plane_scene(double elevation_deg)
 {
     weft_scene scene = weft_scene_default();
-    scene.orbit = (weft_orbit){weft_rad_of_deg(-90), weft_rad_of_deg(elevation_deg), 3};
+    scene.orbit = (weft_orbit){
+        .azimuth_rad = weft_rad_of_deg(-90), .elevation_rad = weft_rad_of_deg(elevation_deg), .distance = 3};
     scene.light[0].direction = (weft_angles){0, 0};
     scene.repeat = 1;
     scene.labels = false;

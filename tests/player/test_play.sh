@@ -61,11 +61,10 @@ drag 3 60 20
 shoot "right drag"
 xdotool click 4
 shoot "wheel"
-for key in 1 3 s 2 m bracketright o h; do
+for key in 1 3 s w x 2 m n bracketright c o; do
     xdotool key $key
     shoot "key $key"
 done
-xdotool getwindowname "$window" | grep -q 'ms/frame' || { echo "no time in the title"; exit 1; }
 xdotool windowsize "$window" 400 300
 shoot "resize"
 xdotool key q

@@ -1,0 +1,374 @@
+#include "player/application_parts.h"
+
+#include "player/ui_bridge.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64 };
+
+static const double settle_s = 0.12; /* after the last change the mean of a picture at rest begins */
+static const double hurry_ms = 15;   /* exact frames longer than this are drawn stochastically while things move */
+static const double poll_s = 0.1;
+
+double weft_application_now_s(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+void weft_application_tell(weft_application *a, bool is_error, const char *text)
+{
+    if (!text[0])
+        return;
+    snprintf(a->note, sizeof a->note, "%s", text);
+    a->note_is_error = is_error;
+    a->noted_s = weft_application_now_s();
+}
+
+/* What the host could not do is told and the window stays. */
+static void tell_outcome(weft_application *a, weft_code code, const weft_error *error, const char *note)
+{
+    weft_application_tell(a, code != WEFT_OK, code == WEFT_OK ? note : error->message);
+}
+
+/* ---- Events ---- */
+
+static double picture_x(const weft_application *a, double x)
+{
+    return x - weft_application_panel_width(a);
+}
+
+static void on_press(void *context, int button, bool pressed, int modifiers, double x, double y)
+{
+    weft_application *a = context;
+    if (!pressed || !weft_ui_wants_mouse())
+        weft_interaction_press(&a->interaction, button, pressed, modifiers, picture_x(a, x), y);
+}
+
+static void on_move(void *context, double x, double y)
+{
+    weft_application *a = context;
+    weft_interaction_move(&a->interaction, picture_x(a, x), y);
+}
+
+static void on_scroll(void *context, double steps)
+{
+    weft_application *a = context;
+    if (!weft_ui_wants_mouse())
+        weft_interaction_scroll(&a->interaction, steps);
+}
+
+static void on_key(void *context, int key)
+{
+    weft_application *a = context;
+    if (!weft_ui_wants_keyboard())
+        weft_interaction_key(&a->interaction, key);
+}
+
+static void ask_to_open(weft_application *a, const char *path)
+{
+    const weft_application_host *host = &a->setup.host;
+    char note[WEFT_NOTE_SIZE] = "";
+    weft_error error = {0};
+    if (!host->open)
+        return;
+    tell_outcome(a, host->open(host->context, path, &a->interaction.scene, note, &error), &error, note);
+    a->interaction.changed = true;
+}
+
+static void on_drop(void *context, const char *path)
+{
+    ask_to_open(context, path);
+}
+
+/* ---- Life ---- */
+
+static weft_code open_window(weft_application *a, weft_error *error)
+{
+    const weft_window_events events = {on_press, on_move, on_scroll, on_key, on_drop, a};
+    char title[256];
+    snprintf(title, sizeof title, "Weft - %s", a->setup.title);
+    WEFT_TRY(weft_window_create(title, a->setup.width, a->setup.height, &events, &a->window, error));
+    a->scale = weft_window_scale(a->window);
+    WEFT_TRY(weft_ui_create(weft_window_handle(a->window), a->scale, error));
+    return weft_player_create(&a->player, error);
+}
+
+weft_code weft_application_create(const weft_application_setup *setup, weft_application **result, weft_error *error)
+{
+    *result = NULL;
+    weft_application *a = calloc(1, sizeof *a);
+    if (!a)
+        return weft_fail_memory(error, "application", sizeof *a);
+    a->setup = *setup;
+    a->progress = -1;
+    weft_code code = open_window(a, error);
+    if (code == WEFT_OK)
+        *result = a;
+    else
+        weft_application_free(a);
+    return code;
+}
+
+void weft_application_free(weft_application *a)
+{
+    if (!a)
+        return;
+    if (a->window) {
+        weft_canvas_free(&a->canvas);
+        weft_ui_free();
+    }
+    weft_player_free(a->player);
+    weft_window_free(a->window);
+    free(a);
+}
+
+weft_player *weft_application_player(weft_application *a)
+{
+    return a->player;
+}
+
+void weft_application_speed(const weft_application *a, long *frames, double *frame_ms)
+{
+    *frames = a->frame_count;
+    *frame_ms = a->frame_count > 0 ? a->total_ms / (double)a->frame_count : 0;
+}
+
+/* ---- Frames ---- */
+
+/* A canvas as large as the picture, begun anew when that is out of date. */
+static weft_code prepare_canvas(weft_application *a, int width, int height, weft_error *error)
+{
+    weft_interaction *i = &a->interaction;
+    i->width = width;
+    i->height = height;
+    bool is_resized = width != a->canvas.width || height != a->canvas.height;
+    if (is_resized) {
+        weft_canvas_free(&a->canvas);
+        WEFT_TRY(weft_canvas_create(width, height, &a->canvas, error));
+    }
+    if (i->changed || is_resized) {
+        weft_canvas_clear(&a->canvas);
+        a->moved_s = weft_application_now_s();
+        a->rests = false;
+        a->errors[0] = 0;
+    } else if (!a->rests && weft_application_now_s() - a->moved_s > settle_s) {
+        weft_canvas_clear(&a->canvas);
+        a->rests = true;
+    }
+    i->changed = false;
+    return WEFT_OK;
+}
+
+/* Radical inverses: any first few of these shifts spread evenly over the pixel. */
+static double radical_inverse(int index, int base)
+{
+    double result = 0, digit = 1;
+    for (; index > 0; index /= base) {
+        digit /= base;
+        result += digit * (index % base);
+    }
+    return result;
+}
+
+static weft_sampling sampling_of(const weft_application *a)
+{
+    int index = a->canvas.frame_count;
+    if (!a->rests)
+        return (weft_sampling){.frame = -1, .hurry = a->exact_ms > hurry_ms};
+    return (weft_sampling){
+        .shift_x = index > 0 ? radical_inverse(index, 2) - 0.5 : 0,
+        .shift_y = index > 0 ? radical_inverse(index, 3) - 0.5 : 0,
+        .frame = index,
+    };
+}
+
+static void note_time(weft_application *a, double elapsed_ms, bool is_exact)
+{
+    double *smooth[2] = {&a->frame_ms, is_exact ? &a->exact_ms : NULL};
+    for (int i = 0; i < 2 && smooth[i]; i++)
+        *smooth[i] = *smooth[i] > 0 ? 0.8 * *smooth[i] + 0.2 * elapsed_ms : elapsed_ms;
+    a->total_ms += elapsed_ms;
+    a->frame_count++;
+}
+
+static weft_code draw_frame(weft_application *a, weft_error *error)
+{
+    const weft_scene *scene = &a->interaction.scene;
+    weft_sampling sampling = sampling_of(a);
+    double start = weft_application_now_s();
+    weft_canvas_begin_frame(&a->canvas);
+    WEFT_TRY(weft_player_draw(a->player, scene, a->canvas.width, a->canvas.height, sampling, error));
+    weft_canvas_end_frame(&a->canvas);
+    glFinish();
+    /* The first frame builds programs and is no measure of the others. */
+    if (a->frame_count > 0)
+        note_time(a, 1000 * (weft_application_now_s() - start), scene->filter == WEFT_FILTER_AUTO && !sampling.hurry);
+    else
+        a->frame_count = 1;
+    return WEFT_OK;
+}
+
+static int still_frames(const weft_application *a)
+{
+    bool many_lights = a->interaction.scene.environment && weft_player_has_environment(a->player);
+    return many_lights ? STILL_FRAMES_OF_ENVIRONMENT : STILL_FRAMES;
+}
+
+static bool is_finished(const weft_application *a)
+{
+    return a->rests && a->canvas.frame_count >= still_frames(a);
+}
+
+static void measure(weft_application *a)
+{
+    const weft_application_host *host = &a->setup.host;
+    weft_error error = {0};
+    if (host->measure && host->measure(host->context, &a->interaction.scene, a->canvas.width, a->canvas.height,
+                                       a->errors, &error) != WEFT_OK)
+        weft_application_tell(a, true, error.message);
+}
+
+/* One frame more, unless the mean is finished or a moving picture stands. */
+static weft_code advance(weft_application *a, weft_error *error)
+{
+    if (a->setup.frame_limit > 0 && is_finished(a))
+        weft_canvas_clear(&a->canvas);
+    if (is_finished(a) || (!a->rests && a->canvas.frame_count > 0))
+        return WEFT_OK;
+    WEFT_TRY(draw_frame(a, error));
+    if (is_finished(a))
+        measure(a);
+    return WEFT_OK;
+}
+
+/* ---- Wishes ---- */
+
+static void save_picture(weft_application *a)
+{
+    const weft_application_host *host = &a->setup.host;
+    weft_image image = {0};
+    char note[WEFT_NOTE_SIZE] = "";
+    weft_error error = {0};
+    weft_code code = weft_canvas_read(&a->canvas, &image, &error);
+    if (code == WEFT_OK && host->save)
+        code = host->save(host->context, &a->interaction.scene, &image, note, &error);
+    weft_image_free(&image);
+    tell_outcome(a, code, &error, note);
+}
+
+static void change_mesh(weft_application *a)
+{
+    weft_mesh mesh = {0};
+    weft_error error = {0};
+    weft_code code = weft_mesh_open(a->interaction.wants_mesh, &mesh, &error);
+    if (code == WEFT_OK)
+        code = weft_player_set_mesh(a->player, &mesh, &error);
+    weft_mesh_free(&mesh);
+    tell_outcome(a, code, &error, "");
+    a->interaction.wants_mesh = NULL;
+    a->interaction.changed = true;
+}
+
+static void grant_wishes(weft_application *a)
+{
+    weft_interaction *i = &a->interaction;
+    if (i->wants_mesh)
+        change_mesh(a);
+    if (i->wants_reload) {
+        i->wants_reload = false;
+        ask_to_open(a, NULL);
+    }
+    /* A picture is saved once it is smooth: never one that is out of date. */
+    if (i->wants_screenshot && is_finished(a) && !i->changed) {
+        i->wants_screenshot = false;
+        save_picture(a);
+    }
+    if (i->wants_quit)
+        weft_window_close(a->window);
+}
+
+static void poll_host(weft_application *a)
+{
+    const weft_application_host *host = &a->setup.host;
+    char note[WEFT_NOTE_SIZE] = "";
+    weft_error error = {0};
+    bool changed = false;
+    if (!host->poll)
+        return;
+    weft_code code = host->poll(host->context, &a->interaction.scene, &a->progress, &changed, note, &error);
+    tell_outcome(a, code, &error, note);
+    a->interaction.changed |= changed;
+}
+
+/* ---- The loop ---- */
+
+static bool is_busy(const weft_application *a)
+{
+    return !is_finished(a) || a->interaction.changed || a->progress >= 0;
+}
+
+static void show(weft_application *a, int width, int height)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width, height);
+    glClearColor(0.02f, 0.02f, 0.02f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    if (a->canvas.frame_count > 0)
+        weft_canvas_present(&a->canvas, &a->interaction.scene, weft_application_panel_width(a));
+    weft_ui_begin();
+    weft_application_show_panel(a, width, height);
+    weft_ui_end();
+    weft_window_show(a->window);
+}
+
+static void find_modes(weft_application *a)
+{
+    weft_interaction *i = &a->interaction;
+    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++)
+        i->available[mode] = weft_player_has(a->player, (weft_mode)mode);
+    for (int pane = 0; pane < weft_scene_panes(&i->scene); pane++) {
+        for (int mode = 0; !i->available[i->scene.pane[pane]] && mode < WEFT_MODE_COUNT; mode++) {
+            if (i->available[mode])
+                weft_interaction_show(i, (weft_mode)mode);
+        }
+    }
+}
+
+static bool has_something(const weft_application *a)
+{
+    const bool *has = a->interaction.available;
+    return has[WEFT_MODE_RAW] || has[WEFT_MODE_COMPRESSED] || has[WEFT_MODE_ANALYTIC];
+}
+
+static weft_code step(weft_application *a, weft_error *error)
+{
+    int width, height;
+    grant_wishes(a);
+    poll_host(a);
+    find_modes(a);
+    weft_window_size(a->window, &width, &height);
+    int left = weft_application_panel_width(a);
+    if (width <= left || height == 0)
+        return WEFT_OK;
+    WEFT_TRY(prepare_canvas(a, width - left, height, error));
+    if (has_something(a))
+        WEFT_TRY(advance(a, error));
+    show(a, width, height);
+    return weft_gl_check("showing the window", error);
+}
+
+weft_code weft_application_run(weft_application *a, const weft_scene *scene, weft_error *error)
+{
+    a->interaction = (weft_interaction){.scene = *scene, .changed = true, .shows_panel = true};
+    a->interaction.before = scene->pane[0];
+    find_modes(a);
+    long limit = a->setup.frame_limit;
+    while (weft_window_poll(a->window, is_busy(a) ? 0 : poll_s) && (limit == 0 || a->frame_count < limit))
+        WEFT_TRY(step(a, error));
+    return WEFT_OK;
+}

@@ -1,0 +1,39 @@
+/* The inside of weft_application, shared by the files that make it. */
+#ifndef WEFT_PLAYER_APPLICATION_PARTS_H
+#define WEFT_PLAYER_APPLICATION_PARTS_H
+
+#include "player/application.h"
+#include "player/interaction.h"
+
+struct weft_application {
+    weft_application_setup setup;
+    weft_window *window;
+    weft_player *player;
+    weft_canvas canvas;
+    weft_interaction interaction;
+    double scale;              /* of text and widgets */
+    double frame_ms, exact_ms; /* smoothed: of all frames, and of those that evaluate every neighbour */
+    double moved_s;            /* when the picture changed last */
+    double total_ms;
+    long frame_count;
+    bool rests; /* the mean of the frames so far is of a picture that no longer changes */
+    double progress;
+    char errors[WEFT_NOTE_SIZE]; /* of what is shown, "" until it rests */
+    char note[WEFT_NOTE_SIZE];   /* told to the user */
+    bool note_is_error;
+    double noted_s;
+};
+
+/* Seconds from some start. */
+double weft_application_now_s(void);
+
+/* Tells the user; `is_error` in red. */
+void weft_application_tell(weft_application *application, bool is_error, const char *text);
+
+/* Pixels that the panel takes from the left of the window. */
+int weft_application_panel_width(const weft_application *application);
+
+/* All widgets of one frame; changes the interaction and its scene. `width`, `height`: of the window. */
+void weft_application_show_panel(weft_application *application, int width, int height);
+
+#endif

@@ -1,0 +1,82 @@
+/* Widgets over the picture: the one door to Dear ImGui. Immediate: every frame, between weft_ui_begin and weft_ui_end,
+ * says anew what there is, and each widget returns whether the user changed its value just now. One user interface at a
+ * time; the thread and the OpenGL context of the window. */
+#ifndef WEFT_PLAYER_UI_BRIDGE_H
+#define WEFT_PLAYER_UI_BRIDGE_H
+
+#include "btf/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Attaches to a GLFW window whose callbacks are installed already: they are called before the widgets' own. `scale`: of
+ * everything, 1 for 96 dots per inch. Errors: WEFT_SYSTEM. */
+weft_code weft_ui_create(void *glfw_window, double scale, weft_error *error);
+void weft_ui_free(void);
+
+void weft_ui_begin(void);
+/* Draws the widgets into framebuffer 0. */
+void weft_ui_end(void);
+
+/* Whether the pointer, or the keys, are on a widget and not the picture's. */
+bool weft_ui_wants_mouse(void);
+bool weft_ui_wants_keyboard(void);
+
+/* ---- Where widgets stand: pixels from the upper left corner of the window ---- */
+
+/* A panel that neither moves nor grows; to be ended whatever it returns. */
+void weft_ui_panel_begin(const char *name, double x, double y, double width, double height);
+/* A note as large as its text, at the given share of its own size from (x, y): 0.5, 0.5 centres it there. */
+void weft_ui_note_begin(const char *name, double x, double y, double share_x, double share_y);
+void weft_ui_panel_end(void);
+
+/* A heading that folds what follows; whether that is shown. */
+bool weft_ui_section(const char *name, bool open_at_first);
+void weft_ui_same_line(void);
+void weft_ui_gap(void);
+/* What follows cannot be changed, until weft_ui_enable. */
+void weft_ui_disable(bool disabled);
+void weft_ui_enable(void);
+
+/* ---- Widgets; labels stand left of them ---- */
+
+void weft_ui_heading(const char *text);
+void weft_ui_text(const char *text);
+void weft_ui_dim_text(const char *text);
+void weft_ui_value(const char *label, const char *value);
+/* Two columns: what to press, what it does. */
+void weft_ui_row(const char *key, const char *meaning);
+bool weft_ui_button(const char *label);
+bool weft_ui_toggle(const char *label, bool *value);
+/* `format` as printf takes it for one double; `logarithmic` needs 0 < low. */
+bool weft_ui_slider(const char *label, double *value, double low, double high, const char *format, bool logarithmic);
+bool weft_ui_angle(const char *label, double *value_rad, double low_deg, double high_deg);
+bool weft_ui_whole(const char *label, int *value, int low, int high);
+/* One of `count` names, side by side; those with allowed[i] false cannot be chosen (NULL: all can). */
+bool weft_ui_choice(const char *label, int *value, const char *const *name, const bool *allowed, int count);
+bool weft_ui_colour(const char *label, double rgb[3]);
+void weft_ui_progress(double share, const char *text);
+
+/* ---- Drawing within a panel ---- */
+
+/* Room for a drawing, with its upper left corner and the pointer, in the window's pixels. */
+typedef struct weft_ui_area {
+    double x, y, pointer_x, pointer_y;
+    bool hovered, dragged;
+} weft_ui_area;
+
+weft_ui_area weft_ui_drawing(const char *name, double width, double height);
+/* Colours are 0xRRGGBBAA. */
+void weft_ui_disc(double x, double y, double radius, uint32_t colour);
+void weft_ui_ring(double x, double y, double radius, double thickness, uint32_t colour);
+void weft_ui_line(double x0, double y0, double x1, double y1, double thickness, uint32_t colour);
+void weft_ui_label(double x, double y, uint32_t colour, const char *text);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
