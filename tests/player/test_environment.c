@@ -1,0 +1,164 @@
+/* Environment maps as lights. */
+#include "../btf/cmocka_all.h"
+#include "player/lighting.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { WIDTH = 128, HEIGHT = WIDTH / 2 };
+
+static weft_image map_of(float value)
+{
+    weft_error error = {0};
+    weft_image image;
+    assert_int_equal(weft_image_create(WIDTH, HEIGHT, &image, &error), WEFT_OK);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        image.pixels[i] = value;
+    return image;
+}
+
+static weft_environment *environment_of(const weft_image *image)
+{
+    weft_error error = {0};
+    weft_environment *environment = malloc(sizeof *environment);
+    assert_non_null(environment);
+    assert_int_equal(weft_environment_of_image(image, environment, &error), WEFT_OK);
+    return environment;
+}
+
+/* Over pi, on a surface with this normal. */
+static double irradiance_on(const weft_distant_light *light, int count, weft_vec3 normal)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++)
+        sum += (double)light[i].irradiance[1] * fmax(0, (double)weft_dot(light[i].direction, normal));
+    return sum;
+}
+
+static void a_uniform_sky_lights_every_surface_with_its_radiance(void **state)
+{
+    (void)state;
+    const weft_vec3 normal[] = {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    weft_image image = map_of(1);
+    weft_environment *environment = environment_of(&image);
+    for (int i = 0; i < 4; i++)
+        assert_float_equal(irradiance_on(environment->region, WEFT_ENVIRONMENT_REGIONS, normal[i]), 1, 0.03);
+    free(environment);
+    weft_image_free(&image);
+}
+
+static weft_image uneven_map(void)
+{
+    weft_image image = map_of(0.2f);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        image.pixels[i] *= 1 + (float)(i % 97) / 20;
+    for (int c = 0; c < 3; c++)
+        image.pixels[3 * (20 * WIDTH + 40) + c] = 5000;
+    return image;
+}
+
+static void the_parts_of_a_region_carry_its_power_in_equal_shares(void **state)
+{
+    (void)state;
+    weft_image image = uneven_map();
+    weft_environment *environment = environment_of(&image);
+    for (int region = 0; region < WEFT_ENVIRONMENT_REGIONS; region++) {
+        for (int c = 0; c < 3; c++) {
+            double sum = 0, whole = (double)environment->region[region].irradiance[c];
+            for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++)
+                sum += (double)environment->part[part][region].irradiance[c] / WEFT_ENVIRONMENT_PARTS;
+            assert_float_equal(sum, whole, 1e-4 * whole);
+        }
+        for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++) {
+            const weft_distant_light *light = &environment->part[part][region], *all = &environment->region[region];
+            double power = (double)(light->irradiance[0] + light->irradiance[1] + light->irradiance[2]);
+            double mean = (double)(all->irradiance[0] + all->irradiance[1] + all->irradiance[2]);
+            assert_float_equal(power, mean, 1e-3 * mean);
+        }
+    }
+    free(environment);
+    weft_image_free(&image);
+}
+
+static void a_bright_pixel_becomes_a_light_where_the_map_has_it(void **state)
+{
+    (void)state;
+    weft_image image = uneven_map();
+    weft_environment *environment = environment_of(&image);
+    double theta_rad = WEFT_PI * 20.5 / HEIGHT, phi_rad = 2 * WEFT_PI * (0.75 - 40.5 / WIDTH), nearest = -1, power = 0;
+    weft_vec3 sun = weft_direction_of_angles((weft_angles){theta_rad, phi_rad});
+    for (int i = 0; i < WEFT_ENVIRONMENT_REGIONS; i++) {
+        double cosine = (double)weft_dot(environment->region[i].direction, sun);
+        if (cosine > nearest) {
+            nearest = cosine;
+            power = (double)environment->region[i].irradiance[0];
+        }
+    }
+    double solid_angle = 2 * WEFT_PI / WIDTH * WEFT_PI / HEIGHT * sin(theta_rad);
+    assert_true(nearest > cos(WEFT_PI / HEIGHT));
+    assert_float_equal(power, 5000 * solid_angle / WEFT_PI, 0.02 * power);
+    free(environment);
+    weft_image_free(&image);
+}
+
+static void expect_refused(const weft_image *image)
+{
+    weft_error error = {0};
+    weft_environment *environment = malloc(sizeof *environment);
+    assert_int_equal(weft_environment_of_image(image, environment, &error), WEFT_BAD_INPUT);
+    assert_true(error.message[0] != 0);
+    free(environment);
+}
+
+static void black_and_square_maps_are_refused_and_spoilt_pixels_are_black(void **state)
+{
+    (void)state;
+    weft_image image = map_of(0);
+    expect_refused(&image);
+    image.pixels[0] = NAN;
+    image.pixels[1] = -1;
+    image.pixels[2] = INFINITY;
+    expect_refused(&image);
+    image.pixels[3] = 1;
+    weft_environment *environment = environment_of(&image);
+    for (int i = 0; i < WEFT_ENVIRONMENT_REGIONS; i++)
+        assert_true(isfinite(environment->region[i].irradiance[0]));
+    free(environment);
+    image.width = image.height;
+    expect_refused(&image);
+    weft_image_free(&image);
+}
+
+static void the_scene_lists_its_lights_before_those_of_the_map(void **state)
+{
+    (void)state;
+    weft_image image = map_of(1);
+    weft_environment *environment = environment_of(&image);
+    weft_scene scene = weft_scene_default();
+    assert_int_equal(weft_lighting_of(&scene, environment, 0).count, 1);
+    scene.environment = true;
+    scene.environment_strength = 2;
+    weft_lighting lighting = weft_lighting_of(&scene, environment, -1);
+    assert_int_equal(lighting.count, 1 + WEFT_ENVIRONMENT_REGIONS);
+    assert_int_equal(lighting.count, weft_lighting_count(&scene, environment));
+    assert_float_equal(lighting.irradiance[0][0], 1, 0);
+    assert_float_equal(lighting.irradiance[1][0], 2 * environment->region[0].irradiance[0], 1e-6);
+    scene.light_count = 0;
+    scene.environment = false;
+    assert_int_equal(weft_lighting_of(&scene, environment, 0).count, 1);
+    assert_float_equal(weft_lighting_of(&scene, environment, 0).irradiance[0][0], 0, 0);
+    free(environment);
+    weft_image_free(&image);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_uniform_sky_lights_every_surface_with_its_radiance),
+        cmocka_unit_test(the_parts_of_a_region_carry_its_power_in_equal_shares),
+        cmocka_unit_test(a_bright_pixel_becomes_a_light_where_the_map_has_it),
+        cmocka_unit_test(black_and_square_maps_are_refused_and_spoilt_pixels_are_black),
+        cmocka_unit_test(the_scene_lists_its_lights_before_those_of_the_map),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

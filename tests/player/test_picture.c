@@ -1,0 +1,265 @@
+/* Layouts, filters and lights of whole pictures. */
+#include "stage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { WIDTH = 160, HEIGHT = 120, PIXELS = WIDTH * HEIGHT };
+
+static const char *const dataset_path = "test_picture.btf.h5";
+
+static void set_models(weft_player *player)
+{
+    weft_error error = {0};
+    weft_material material;
+    weft_dataset *dataset;
+    int skipped;
+    stage_material(20, 13, 2, 81, 0, &material);
+    expect_ok(weft_player_set_material(player, &material, &error), &error);
+    weft_material_free(&material);
+    stage_dataset(dataset_path, 8, 19, 37, WEFT_REFLECTANCE_COSINE, false);
+    expect_ok(weft_dataset_open(dataset_path, &dataset, &error), &error);
+    expect_ok(weft_player_set_dataset(player, dataset, NULL, &skipped, &error), &error);
+    weft_dataset_close(dataset);
+    unlink(dataset_path);
+}
+
+static int open_with_models(void **state)
+{
+    stage_open(state);
+    set_models(((stage *)*state)->player);
+    return 0;
+}
+
+static weft_scene scene_of(weft_mode mode)
+{
+    weft_scene scene = weft_scene_default();
+    scene.pane[0] = mode;
+    scene.labels = false;
+    return scene;
+}
+
+static weft_image draw(void **state, weft_scene scene, int samples)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_image image;
+    expect_ok(weft_player_picture(s->player, &scene, WIDTH, HEIGHT, samples, NULL, &image, &error), &error);
+    return image;
+}
+
+static double relative_rmse(const weft_image *a, const weft_image *b)
+{
+    double square = 0, norm = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        square += pow((double)(a->pixels[i] - b->pixels[i]), 2);
+        norm += pow((double)b->pixels[i], 2);
+    }
+    return sqrt(square / norm);
+}
+
+static void a_wipe_shows_one_mode_left_of_the_divider_and_another_right_of_it(void **state)
+{
+    weft_scene scene = scene_of(WEFT_MODE_RAW);
+    weft_image first = draw(state, scene, 1), second = draw(state, scene_of(WEFT_MODE_COMPRESSED), 1);
+    scene.layout = WEFT_LAYOUT_WIPE;
+    scene.pane[1] = WEFT_MODE_COMPRESSED;
+    scene.divider = 0.4;
+    weft_image wipe = draw(state, scene, 1);
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        bool left = i / 3 % WIDTH < 0.4 * WIDTH;
+        assert_float_equal(wipe.pixels[i], left ? first.pixels[i] : second.pixels[i], 0);
+    }
+    weft_image_free(&first);
+    weft_image_free(&second);
+    weft_image_free(&wipe);
+}
+
+static void a_difference_is_signed_and_vanishes_for_equal_modes(void **state)
+{
+    weft_scene scene = scene_of(WEFT_MODE_RAW);
+    weft_image first = draw(state, scene, 2), second = draw(state, scene_of(WEFT_MODE_COMPRESSED), 2);
+    scene.layout = WEFT_LAYOUT_DIFFERENCE;
+    scene.pane[1] = WEFT_MODE_COMPRESSED;
+    weft_image difference = draw(state, scene, 2);
+    int brighter = 0, darker = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        assert_float_equal(difference.pixels[i], first.pixels[i] - second.pixels[i], 1e-6);
+        brighter += difference.pixels[i] > 0.01f;
+        darker += difference.pixels[i] < -0.01f;
+    }
+    assert_true(brighter > 100 && darker > 100);
+    weft_image_free(&difference);
+    scene.pane[1] = WEFT_MODE_RAW;
+    difference = draw(state, scene, 2);
+    for (int i = 0; i < 3 * PIXELS; i++)
+        assert_float_equal(difference.pixels[i], 0, 0);
+    weft_image_free(&first);
+    weft_image_free(&second);
+    weft_image_free(&difference);
+}
+
+/* One frame is far off; the mean comes near, since every choice has the probability of its weight. */
+static void expect_the_same_mean(void **state, weft_mode mode)
+{
+    weft_scene scene = scene_of(mode);
+    scene.filter = WEFT_FILTER_EXACT;
+    scene.repeat = 11;
+    weft_image exact = draw(state, scene, 16);
+    scene.filter = WEFT_FILTER_STOCHASTIC;
+    weft_image one = draw(state, scene, 1), mean = draw(state, scene, 16);
+    double far = relative_rmse(&one, &exact), near = relative_rmse(&mean, &exact);
+    printf("%s: one frame %.2f %%, mean of 256 %.3f %%\n", weft_mode_name(mode), 100 * far, 100 * near);
+    assert_true(far > 5 * near);
+    assert_true(near < 0.01);
+    weft_image_free(&exact);
+    weft_image_free(&one);
+    weft_image_free(&mean);
+}
+
+static void stochastic_frames_have_the_exact_mean(void **state)
+{
+    expect_the_same_mean(state, WEFT_MODE_COMPRESSED);
+    expect_the_same_mean(state, WEFT_MODE_RAW);
+}
+
+static void nothing_gets_brighter_in_shadow_and_some_of_it_dark(void **state)
+{
+    weft_scene scene = scene_of(WEFT_MODE_COMPRESSED);
+    scene.light[0].direction = (weft_angles){weft_rad_of_deg(65), weft_rad_of_deg(-160)};
+    weft_image lit = draw(state, scene, 1);
+    scene.shadows = true;
+    weft_image shadowed = draw(state, scene, 1);
+    int dark = 0, same = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        assert_true(shadowed.pixels[i] <= lit.pixels[i] + 1e-6f);
+        dark += lit.pixels[i] > 0.05f && shadowed.pixels[i] < 0.01f;
+        same += lit.pixels[i] > 0.1f && fabsf(shadowed.pixels[i] - lit.pixels[i]) < 1e-6f;
+    }
+    printf("%d channels in shadow, %d bright ones untouched\n", dark, same);
+    assert_true(dark > 300);
+    assert_true(same > 1000);
+    weft_image_free(&lit);
+    weft_image_free(&shadowed);
+}
+
+static void lights_add_up(void **state)
+{
+    weft_scene scene = scene_of(WEFT_MODE_RAW);
+    weft_light first = scene.light[0], second = {{weft_rad_of_deg(30), 1}, {0.5, 1, 2}};
+    weft_image a = draw(state, scene, 1);
+    scene.light[0] = second;
+    weft_image b = draw(state, scene, 1);
+    scene.light[0] = first;
+    scene.light[1] = second;
+    scene.light_count = 2;
+    weft_image both = draw(state, scene, 1);
+    scene.light_count = 0;
+    weft_image none = draw(state, scene, 1);
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        bool covered = none.pixels[i] == 0; /* the background is not black */
+        if (covered)
+            assert_float_equal(both.pixels[i], a.pixels[i] + b.pixels[i], 1e-5f);
+    }
+    weft_image_free(&a);
+    weft_image_free(&b);
+    weft_image_free(&both);
+    weft_image_free(&none);
+}
+
+/* Under a white sky a matt surface shows its albedo, whatever its slope. */
+static void a_matt_surface_under_a_white_sky_shows_its_albedo(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_material material;
+    weft_image sky;
+    expect_ok(weft_material_create(1, 1, 0, 0, 0, true, &material, &error), &error);
+    weft_frame frame = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
+    weft_frame_encode(&frame, material.level[0].frame);
+    for (int c = 0; c < 3; c++)
+        material.level[0].diffuse[c] = weft_half_of_float(0.5f);
+    expect_ok(weft_player_set_material(s->player, &material, &error), &error);
+    weft_material_free(&material);
+    expect_ok(weft_image_create(64, 32, &sky, &error), &error);
+    for (int i = 0; i < 3 * 64 * 32; i++)
+        sky.pixels[i] = 1;
+    expect_ok(weft_player_set_environment(s->player, &sky, &error), &error);
+    weft_image_free(&sky);
+    weft_scene scene = scene_of(WEFT_MODE_COMPRESSED);
+    scene.environment = scene.environment_reference = true;
+    scene.light_count = 0;
+    weft_image image = draw(state, scene, 1);
+    int covered = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        if (image.pixels[3 * i] > 0.9f)
+            continue; /* the sky itself */
+        covered++;
+        if (fabsf(image.pixels[3 * i] - 0.5f) > 0.02f && image.pixels[3 * i] < 0.6f)
+            fail_msg("albedo %g instead of 0.5 at %d, %d", (double)image.pixels[3 * i], i % WIDTH, i / WIDTH);
+    }
+    assert_true(covered > PIXELS / 5);
+    weft_image_free(&image);
+    expect_ok(weft_player_set_environment(s->player, NULL, &error), &error);
+    set_models(s->player);
+}
+
+static void switches_of_the_material_take_its_parts_away(void **state)
+{
+    weft_scene scene = scene_of(WEFT_MODE_COMPRESSED);
+    weft_image whole = draw(state, scene, 1);
+    scene.lobe[0] = scene.lobe[1] = false;
+    weft_image matt = draw(state, scene, 1);
+    scene.view_table = false;
+    weft_image without_table = draw(state, scene, 1);
+    scene = scene_of(WEFT_MODE_COMPRESSED);
+    scene.table_bits = 2;
+    weft_image coarse = draw(state, scene, 1);
+    int less = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        less += matt.pixels[i] < whole.pixels[i] - 1e-3f;
+        assert_true(matt.pixels[i] <= whole.pixels[i] + 1e-6f);
+    }
+    assert_true(less > 1000);
+    assert_true(relative_rmse(&without_table, &matt) > 0.05);
+    assert_true(relative_rmse(&coarse, &whole) > 0.02);
+    weft_image_free(&whole);
+    weft_image_free(&matt);
+    weft_image_free(&without_table);
+    weft_image_free(&coarse);
+}
+
+static void what_is_shown_rises_with_radiance_and_keeps_highlights_apart(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_image image;
+    weft_scene scene = weft_scene_default();
+    scene.tone = WEFT_TONE_SOFT;
+    expect_ok(weft_image_create(64, 1, &image, &error), &error);
+    for (int i = 0; i < 3 * 64; i++)
+        image.pixels[i] = 0.1f * (float)(i / 3);
+    weft_scene_show(&scene, &image);
+    for (int x = 1; x < 64; x++)
+        assert_true(image.pixels[3 * x] > image.pixels[3 * (x - 1)]);
+    assert_true(image.pixels[3 * 63] < 1);
+    weft_image_free(&image);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_wipe_shows_one_mode_left_of_the_divider_and_another_right_of_it),
+        cmocka_unit_test(a_difference_is_signed_and_vanishes_for_equal_modes),
+        cmocka_unit_test(stochastic_frames_have_the_exact_mean),
+        cmocka_unit_test(nothing_gets_brighter_in_shadow_and_some_of_it_dark),
+        cmocka_unit_test(lights_add_up),
+        cmocka_unit_test(a_matt_surface_under_a_white_sky_shows_its_albedo),
+        cmocka_unit_test(switches_of_the_material_take_its_parts_away),
+        cmocka_unit_test(what_is_shown_rises_with_radiance_and_keeps_highlights_apart),
+    };
+    return cmocka_run_group_tests(tests, open_with_models, stage_close);
+}
