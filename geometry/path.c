@@ -1,14 +1,9 @@
 #include "geometry/path.h"
 
 #include "btf/material.h"
+#include "geometry/path_step.h"
 #include "geometry/sample_sequence.h"
 #include "reflectance/lafortune.h"
-
-/* Rays start this far above the surface, in cells of the grid. */
-#define RAY_OFFSET 1e-3
-
-/* A path that carries less than this part of the light is over. */
-#define NEGLIGIBLE 1e-4
 
 static weft_vec3 vertex_vector(const float *from)
 {
@@ -17,7 +12,7 @@ static weft_vec3 vertex_vector(const float *from)
 
 weft_vec3 path_above(const path_scene *scene, weft_vec3 at, weft_vec3 normal)
 {
-    return weft_add(at, weft_scale(normal, (weft_real)RAY_OFFSET * (weft_real)ray_scene_mesh(scene->rays)->cell));
+    return path_ray_start(ray_scene_mesh(scene->rays), at, normal);
 }
 
 static weft_vec3 interpolate(const weft_tile_mesh *mesh, const ray_hit *hit, float (*attribute)[3])
@@ -51,26 +46,12 @@ static path_end find_vertex(const path_scene *scene, weft_vec3 from, weft_vec3 d
     return PATH_GOES_ON;
 }
 
-/* A direction whose density is the cosine to the normal over pi. */
-static weft_vec3 cosine_direction(const path_vertex *vertex, const double point[2])
-{
-    weft_real radius = sqrt(point[0]), angle = 2 * (weft_real)WEFT_PI * point[1];
-    weft_vec3 bitangent = weft_cross(vertex->hit.normal, vertex->tangent);
-    weft_vec3 flat =
-        weft_add(weft_scale(vertex->tangent, radius * cos(angle)), weft_scale(bitangent, radius * sin(angle)));
-    return weft_unit(weft_add(flat, weft_scale(vertex->hit.normal, sqrt(1 - point[0]))));
-}
-
 path_end path_bounce(const path_scene *scene, path_vertex *vertex, weft_rgb *throughput, uint64_t key, uint32_t index)
 {
     double point[2];
     sequence_point(key, index, point);
-    weft_vec3 direction = cosine_direction(vertex, point);
-    weft_rgb f = weft_fibre_brdf(&vertex->seen, direction);
-    throughput->r *= f.r * (weft_real)WEFT_PI;
-    throughput->g *= f.g * (weft_real)WEFT_PI;
-    throughput->b *= f.b * (weft_real)WEFT_PI;
-    if (!(fmax(throughput->r, fmax(throughput->g, throughput->b)) > NEGLIGIBLE))
+    weft_vec3 direction = path_cosine_direction(vertex->hit.normal, vertex->tangent, point);
+    if (!path_reflect(weft_fibre_brdf(&vertex->seen, direction), throughput))
         return PATH_LOST;
     return find_vertex(scene, path_above(scene, vertex->hit.at, vertex->hit.normal), direction, vertex);
 }
