@@ -9,13 +9,16 @@ typedef struct compare_command {
     weft_compare_options options;
 } compare_command;
 
-enum { KEY_TILES = 0x2000, KEY_BARD };
+enum { KEY_TILES = 0x2000, KEY_BARD, KEY_TRUTH, KEY_PATHS };
+enum { MAX_PATHS = 65536 };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "REPORT/", 0, "The folder for the page and its pictures", 0},
     {"weave", 'w', "CLOTH.wv", 0, "Compare this analytic cloth, too", 0},
     {"tiles", KEY_TILES, "X,Y", 0, "Tiles of the weave across the material (default: as the virtual rig lays it)", 0},
     {"bard", KEY_BARD, "NAME.bard.h5", 0, "Compare what `weft bard` predicted, too", 0},
+    {"truth", KEY_TRUTH, "FILE.stitch", 0, "Trace the geometry that the dataset was simulated from, too", 0},
+    {"paths", KEY_PATHS, "N", 0, "Paths of light for each pixel of it (default: 64)", 0},
     {0},
 };
 
@@ -45,6 +48,12 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_BARD:
         options->bard = argument;
+        return 0;
+    case KEY_TRUTH:
+        options->truth = argument;
+        return 0;
+    case KEY_PATHS:
+        options->truth_paths = (int)parse_whole("paths", argument, 4, MAX_PATHS, state);
         return 0;
     case KEY_TILES:
         parse_tiles(argument, options, state);
@@ -89,6 +98,35 @@ static void say_error(const common_options *common, const char *model, const cha
     command_event(common, event);
 }
 
+static void say_truth_error(const common_options *common, const char *scene, const char *model, const char *truth,
+                            const weft_truth_error *e)
+{
+    command_say(common, "%s, %s against %s: relative RMSE %.4f, PSNR %.2f dB, of blocks %.4f", scene, model, truth,
+                e->error.relative_rmse, e->psnr_db, e->block_relative_rmse);
+    char event[384];
+    snprintf(event, sizeof event,
+             "{\"event\":\"truth\",\"scene\":\"%s\",\"model\":\"%s\",\"against\":\"%s\",\"relative_rmse\":%.6g,"
+             "\"psnr_db\":%.6g,\"block_relative_rmse\":%.6g}",
+             scene, model, truth, e->error.relative_rmse, e->psnr_db, e->block_relative_rmse);
+    command_event(common, event);
+}
+
+static void say_truth(const common_options *common, const weft_truth *truth)
+{
+    if (truth->why_not[0])
+        command_say(common, "no truth: %s", truth->why_not);
+    if (truth->warning[0])
+        command_say(common, "warning: %s", truth->warning);
+    for (int i = 0; truth->drawn && i < WEFT_TRUTH_SCENE_COUNT; i++) {
+        const weft_truth_scene *scene = &truth->scene[i];
+        for (int model = 0; model < WEFT_TRUTH_MODELS; model++) {
+            const char *name = weft_truth_picture_name((weft_truth_picture)model);
+            say_truth_error(common, scene->caption, name, "truth", &scene->all[model]);
+            say_truth_error(common, scene->caption, name, "truth with near light", &scene->near[model]);
+        }
+    }
+}
+
 static void say_numbers(const compare_command *command, const weft_comparison *comparison)
 {
     const common_options *common = &command->common;
@@ -106,12 +144,13 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
                     comparison->left_out.count);
     if (!comparison->scenes.drawn)
         command_say(common, "no pictures of scenes: %s", comparison->scenes.why_not);
+    say_truth(common, &comparison->truth);
     command_say(common, "page: %s/index.html", command->options.folder);
 }
 
 int command_compare(int argc, char **argv)
 {
-    compare_command command = {0};
+    compare_command command = {.options.truth_paths = WEFT_TRUTH_DEFAULT_PATHS};
     command_parse(&parser, argc, argv, &command, &command.common);
     weft_progress progress = command_progress(&command.common);
     weft_comparison comparison;

@@ -115,7 +115,9 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
         WEFT_TRY(weft_leave_one_out_measure(files->dataset, progress, &comparison->left_out, error));
     const weft_scenes_request request = {files->dataset, &files->material, options->weave ? &files->cloth : NULL,
                                          options->bard};
-    return weft_scenes_draw(&request, progress, &comparison->scenes, error);
+    WEFT_TRY(weft_scenes_draw(&request, progress, &comparison->scenes, error));
+    const weft_truth_request truth = {files->dataset, &files->material, options->truth, options->truth_paths, 1};
+    return options->truth ? weft_truth_measure(&truth, progress, &comparison->truth, error) : WEFT_OK;
 }
 
 /* ---- Page ---- */
@@ -127,6 +129,7 @@ static weft_code fill_page(weft_page *page, const weft_dataset_layout *layout, c
     weft_page_models(page, comparison);
     WEFT_TRY(weft_page_slices(page, &comparison->slices, error));
     WEFT_TRY(weft_page_scenes(page, &comparison->scenes, error));
+    WEFT_TRY(weft_page_truth(page, &comparison->truth, error));
     WEFT_TRY(weft_page_left_out(page, &comparison->left_out, error));
     WEFT_TRY(weft_page_pairs(page, layout, comparison, error));
     weft_page_numbers(page, layout, material, comparison);
@@ -199,4 +202,5 @@ void weft_comparison_free(weft_comparison *comparison)
     weft_slices_free(&comparison->slices);
     weft_leave_one_out_free(&comparison->left_out);
     weft_scenes_free(&comparison->scenes);
+    weft_truth_free(&comparison->truth);
 }

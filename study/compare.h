@@ -7,12 +7,15 @@
 #include "study/measurement.h"
 #include "study/scenes.h"
 #include "study/slices.h"
+#include "study/truth.h"
 
 typedef struct weft_compare_options {
     const char *dataset;     /* NAME.btf.h5 */
     const char *material;    /* NAME.weft, fitted to it */
     const char *weave;       /* CLOTH.wv, or NULL */
     const char *bard;        /* NAME.bard.h5 as `weft bard` writes it, or NULL */
+    const char *truth;       /* FILE.stitch from which the dataset was simulated, or NULL */
+    int truth_paths;         /* of a pixel */
     double tiles_u, tiles_v; /* of the weave for one material; 0 = as many as the virtual rig would lay out */
     const char *folder;      /* for the page and its pictures */
 } weft_compare_options;
@@ -37,6 +40,7 @@ typedef struct weft_comparison {
     weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
     double dataset_bytes, half_float_bytes, material_bytes;
     weft_scenes scenes;
+    weft_truth truth;                /* nothing drawn without a stitch */
     char warning[WEFT_MESSAGE_SIZE]; /* that the material was made from another dataset, or "" */
 } weft_comparison;
 

@@ -21,6 +21,10 @@ void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const
 /* Every scene in every mode, and the differences to the dataset. Errors: WEFT_SYSTEM from writing pictures. */
 weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_error *error);
 
+/* The drape of the geometry itself beside the dataset and the material; nothing without a stitch. Errors: WEFT_SYSTEM
+ * from writing pictures. */
+weft_code weft_page_truth(weft_page *page, const weft_truth *truth, weft_error *error);
+
 /* A few photographs, flat, with the prediction of every model and its difference. Errors: WEFT_SYSTEM from writing
  * pictures. */
 weft_code weft_page_pairs(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison,

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-static bool is_lit(const weft_surface_sample *sample)
+bool weft_surface_is_lit(const weft_surface_sample *sample)
 {
     return sample->covered > 0.5f && sample->light[2] > 0;
 }
@@ -16,7 +16,7 @@ weft_code weft_visible_error_of(const weft_image *data, const weft_image *model,
         return weft_fail_memory(error, "visible pixels", 3 * pixels * sizeof *value);
     long count = 0;
     for (size_t i = 0; i < 3 * pixels; i++) {
-        if (is_lit(&surface[i / 3]))
+        if (weft_surface_is_lit(&surface[i / 3]))
             value[count++] = (weft_prediction){.prediction = model->pixels[i], .sample = data->pixels[i]};
     }
     weft_prediction_choice all = {WEFT_CHOOSE_ALL, 0};

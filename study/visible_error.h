@@ -5,6 +5,9 @@
 #include "player/player.h"
 #include "study/prediction_error.h"
 
+/* Whether a pixel shows the mesh with light on it. Pure. */
+bool weft_surface_is_lit(const weft_surface_sample *sample);
+
 /* Over all channels of the lit pixels of the mesh, `surface` [height][width] as weft_player_read_surface gives it.
  * Both pictures linear and of one size. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_visible_error_of(const weft_image *data, const weft_image *model, const weft_surface_sample *surface,

@@ -1,0 +1,64 @@
+/* Truth: a drape with the geometry of a stitch on it, traced, beside the same drape with the dataset that was simulated
+ * from the stitch, and with the material made of that. */
+#ifndef WEFT_STUDY_TRUTH_H
+#define WEFT_STUDY_TRUTH_H
+
+#include "btf/dataset.h"
+#include "btf/image.h"
+#include "btf/material.h"
+#include "btf/progress.h"
+#include "study/truth_error.h"
+
+#include <stdbool.h>
+
+/* What is drawn: by the player; traced, with all light; traced, with that of the cloth near by alone. */
+typedef enum weft_truth_picture {
+    WEFT_TRUTH_RAW,
+    WEFT_TRUTH_COMPRESSED,
+    WEFT_TRUTH_ALL,
+    WEFT_TRUTH_NEAR,
+    WEFT_TRUTH_PICTURES
+} weft_truth_picture;
+
+/* "raw", "compressed", "truth", "truth-near". Pure. */
+const char *weft_truth_picture_name(weft_truth_picture picture);
+
+enum { WEFT_TRUTH_REPEAT = 16 }; /* tiles along the drape's side */
+enum { WEFT_TRUTH_SCENE_COUNT = 3, WEFT_TRUTH_MODELS = WEFT_TRUTH_COMPRESSED + 1, WEFT_TRUTH_DEFAULT_PATHS = 64 };
+
+typedef struct weft_truth_scene {
+    const char *caption;
+    weft_image picture[WEFT_TRUTH_PICTURES];
+    weft_truth_error all[WEFT_TRUTH_MODELS], near[WEFT_TRUTH_MODELS]; /* of raw and compressed against each truth */
+    double noise;                                                     /* of the truth itself, weft_traced */
+} weft_truth_scene;
+
+/* Freed with weft_truth_free. */
+typedef struct weft_truth {
+    bool drawn; /* false where there is no OpenGL: `why_not` says so */
+    char why_not[WEFT_MESSAGE_SIZE];
+    char warning[WEFT_MESSAGE_SIZE]; /* that the dataset was made of another geometry, or "" */
+    char stitch[128];
+    int width, height;       /* of the pictures, pixels */
+    int cells, finest_cells; /* of the grid across a tile: traced; as the stitch asks for */
+    int triangles, bounces, paths;
+    double cloth_mm, reach_mm; /* side of the cloth; how far "near by" reaches */
+    weft_truth_scene scene[WEFT_TRUTH_SCENE_COUNT];
+} weft_truth;
+
+typedef struct weft_truth_request {
+    weft_dataset *dataset;
+    const weft_material *material;
+    const char *stitch; /* its file */
+    int paths;          /* of a pixel */
+    uint64_t seed;
+} weft_truth_request;
+
+/* Lays the cloth over the player's drape, WEFT_TRUTH_REPEAT tiles across it and at its true proportions, and draws it
+ * in a few views and lights. Light bounces as often as it did in the dataset. Having no OpenGL is not an error. Errors:
+ * WEFT_BAD_INPUT for a stitch or dataset that cannot be read, WEFT_SYSTEM. */
+weft_code weft_truth_measure(const weft_truth_request *request, const weft_progress *progress, weft_truth *truth,
+                             weft_error *error);
+void weft_truth_free(weft_truth *truth);
+
+#endif
