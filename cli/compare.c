@@ -98,33 +98,31 @@ static void say_error(const common_options *common, const char *model, const cha
     command_event(common, event);
 }
 
-static void say_truth_error(const common_options *common, const char *scene, const char *model, const char *truth,
-                            const weft_truth_error *e)
+static void say_truth_error(const common_options *common, const weft_truth_scene *scene, int light, int model)
 {
-    command_say(common, "%s, %s against %s: relative RMSE %.4f, PSNR %.2f dB, of blocks %.4f", scene, model, truth,
-                e->error.relative_rmse, e->psnr_db, e->block_relative_rmse);
+    static const char *const name[WEFT_TRUTH_LIGHTS] = {"all", "near"};
+    const weft_truth_error *e = &scene->under[light].error[model];
+    const char *what = weft_truth_model_name((weft_truth_model)model);
+    command_say(common, "%s, %s light, %s against truth: relative RMSE %.4f, PSNR %.2f dB, of blocks %.4f",
+                scene->caption, name[light], what, e->error.relative_rmse, e->psnr_db, e->block_relative_rmse);
     char event[384];
     snprintf(event, sizeof event,
-             "{\"event\":\"truth\",\"scene\":\"%s\",\"model\":\"%s\",\"against\":\"%s\",\"relative_rmse\":%.6g,"
+             "{\"event\":\"truth\",\"scene\":\"%s\",\"light\":\"%s\",\"model\":\"%s\",\"relative_rmse\":%.6g,"
              "\"psnr_db\":%.6g,\"block_relative_rmse\":%.6g}",
-             scene, model, truth, e->error.relative_rmse, e->psnr_db, e->block_relative_rmse);
+             scene->caption, name[light], what, e->error.relative_rmse, e->psnr_db, e->block_relative_rmse);
     command_event(common, event);
 }
 
-static void say_truth(const common_options *common, const weft_truth *truth)
+static void say_truth(const common_options *common, const weft_traced_truth *truth)
 {
     if (truth->why_not[0])
         command_say(common, "no truth: %s", truth->why_not);
     if (truth->warning[0])
         command_say(common, "warning: %s", truth->warning);
-    for (int i = 0; truth->drawn && i < WEFT_TRUTH_SCENE_COUNT; i++) {
-        const weft_truth_scene *scene = &truth->scene[i];
-        for (int model = 0; model < WEFT_TRUTH_MODELS; model++) {
-            const char *name = weft_truth_picture_name((weft_truth_picture)model);
-            say_truth_error(common, scene->caption, name, "truth", &scene->all[model]);
-            say_truth_error(common, scene->caption, name, "truth with near light", &scene->near[model]);
-        }
-    }
+    for (int i = 0; truth->drawn && i < WEFT_TRUTH_SCENE_COUNT; i++)
+        for (int light = 0; light < WEFT_TRUTH_LIGHTS; light++)
+            for (int model = 0; model < WEFT_TRUTH_TRACED; model++)
+                say_truth_error(common, &truth->scene[i], light, model);
 }
 
 static void say_numbers(const compare_command *command, const weft_comparison *comparison)

@@ -116,8 +116,8 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
     const weft_scenes_request request = {files->dataset, &files->material, options->weave ? &files->cloth : NULL,
                                          options->bard};
     WEFT_TRY(weft_scenes_draw(&request, progress, &comparison->scenes, error));
-    const weft_truth_request truth = {files->dataset, &files->material, options->truth, options->truth_paths, 1};
-    return options->truth ? weft_truth_measure(&truth, progress, &comparison->truth, error) : WEFT_OK;
+    const weft_traced_request truth = {files->dataset, &files->material, options->truth, options->truth_paths, 1};
+    return options->truth ? weft_traced_truth_measure(&truth, progress, &comparison->truth, error) : WEFT_OK;
 }
 
 /* ---- Page ---- */
@@ -202,5 +202,5 @@ void weft_comparison_free(weft_comparison *comparison)
     weft_slices_free(&comparison->slices);
     weft_leave_one_out_free(&comparison->left_out);
     weft_scenes_free(&comparison->scenes);
-    weft_truth_free(&comparison->truth);
+    weft_traced_truth_free(&comparison->truth);
 }

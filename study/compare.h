@@ -40,7 +40,7 @@ typedef struct weft_comparison {
     weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
     double dataset_bytes, half_float_bytes, material_bytes;
     weft_scenes scenes;
-    weft_truth truth;                /* nothing drawn without a stitch */
+    weft_traced_truth truth;         /* nothing drawn without a stitch */
     char warning[WEFT_MESSAGE_SIZE]; /* that the material was made from another dataset, or "" */
 } weft_comparison;
 

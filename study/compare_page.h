@@ -23,7 +23,7 @@ weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_erro
 
 /* The drape of the geometry itself beside the dataset and the material; nothing without a stitch. Errors: WEFT_SYSTEM
  * from writing pictures. */
-weft_code weft_page_truth(weft_page *page, const weft_truth *truth, weft_error *error);
+weft_code weft_page_truth(weft_page *page, const weft_traced_truth *truth, weft_error *error);
 
 /* A few photographs, flat, with the prediction of every model and its difference. Errors: WEFT_SYSTEM from writing
  * pictures. */

@@ -30,10 +30,10 @@ static const setting settings[WEFT_TRUTH_SCENE_COUNT] = {
     {"From a low camera, light from above", 20, -60, 20, 10},
 };
 
-const char *weft_truth_picture_name(weft_truth_picture picture)
+const char *weft_truth_model_name(weft_truth_model model)
 {
-    static const char *const name[WEFT_TRUTH_PICTURES] = {"raw", "compressed", "truth", "truth-near"};
-    return name[picture];
+    static const char *const name[WEFT_TRUTH_MODELS] = {"raw", "compressed", "truth"};
+    return name[model];
 }
 
 /* Everything that is needed for the pictures. Freed with put_away. */
@@ -61,7 +61,7 @@ static void put_away(truth_stage *stage)
 /* ---- What the dataset says of itself ---- */
 
 /* As many bounces as the simulation followed, and whether it was one of this stitch. */
-static void read_provenance(const weft_dataset_layout *layout, const weft_stitch *stitch, weft_truth *truth)
+static void read_provenance(const weft_dataset_layout *layout, const weft_stitch *stitch, weft_traced_truth *truth)
 {
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
     const char *name = json_string_value(json_object_get(provenance, "stitch"));
@@ -79,7 +79,7 @@ static void read_provenance(const weft_dataset_layout *layout, const weft_stitch
 /* ---- The cloth ---- */
 
 /* The number of triangles goes with the square of the number of cells. */
-static weft_code polygonise(truth_stage *stage, const char *path, weft_truth *truth, weft_error *error)
+static weft_code polygonise(truth_stage *stage, const char *path, weft_traced_truth *truth, weft_error *error)
 {
     const weft_stitch *stitch = &stage->stitch;
     double tiles = (double)WEFT_TRUTH_REPEAT * ceil(WEFT_TRUTH_REPEAT * stitch->width / stitch->height);
@@ -112,7 +112,7 @@ static weft_code set_drape(truth_stage *stage, weft_error *error)
     return weft_player_set_mesh(stage->player, &stage->drape, error);
 }
 
-static weft_code set_models(truth_stage *stage, const weft_truth_request *request, const weft_progress *progress,
+static weft_code set_models(truth_stage *stage, const weft_traced_request *request, const weft_progress *progress,
                             weft_error *error)
 {
     int skipped_levels;
@@ -122,8 +122,8 @@ static weft_code set_models(truth_stage *stage, const weft_truth_request *reques
     return weft_player_set_dataset(stage->player, request->dataset, progress, &skipped_levels, error);
 }
 
-static weft_code prepare(truth_stage *stage, const weft_truth_request *request, const weft_progress *progress,
-                         weft_truth *truth, weft_error *error)
+static weft_code prepare(truth_stage *stage, const weft_traced_request *request, const weft_progress *progress,
+                         weft_traced_truth *truth, weft_error *error)
 {
     WEFT_TRY(weft_stitch_read(request->stitch, &stage->stitch, error));
     read_provenance(weft_dataset_get_layout(request->dataset), &stage->stitch, truth);
@@ -177,8 +177,20 @@ static weft_code draw_background(truth_stage *stage, const weft_scene *scene, we
     return code;
 }
 
-static weft_code trace(truth_stage *stage, const weft_truth_request *request, const weft_scene *scene,
-                       const weft_truth *truth, const weft_progress *progress, weft_truth_scene *result,
+static weft_code draw_models(truth_stage *stage, const weft_scene *scene, weft_truth_scene *result, weft_error *error)
+{
+    for (int light = 0; light < WEFT_TRUTH_LIGHTS; light++) {
+        weft_scene lit = *scene;
+        weft_image *picture = result->under[light].picture;
+        lit.shadows = light == WEFT_TRUTH_ALL;
+        WEFT_TRY(draw(stage, &lit, WEFT_MODE_RAW, &picture[WEFT_TRUTH_RAW], error));
+        WEFT_TRY(draw(stage, &lit, WEFT_MODE_COMPRESSED, &picture[WEFT_TRUTH_COMPRESSED], error));
+    }
+    return WEFT_OK;
+}
+
+static weft_code trace(truth_stage *stage, const weft_traced_request *request, const weft_scene *scene,
+                       const weft_traced_truth *truth, const weft_progress *progress, weft_truth_scene *result,
                        weft_error *error)
 {
     weft_image background = {0};
@@ -188,22 +200,11 @@ static weft_code trace(truth_stage *stage, const weft_truth_request *request, co
     WEFT_TRY(draw_background(stage, scene, &background, error));
     weft_code code = weft_trace(stage->cloth, &stage->drape, stage->mm_per_unit, scene, &options, &background, progress,
                                 &traced, error);
-    result->picture[WEFT_TRUTH_ALL] = traced.all;
-    result->picture[WEFT_TRUTH_NEAR] = traced.near;
+    result->under[WEFT_TRUTH_ALL].picture[WEFT_TRUTH_TRACED] = traced.all;
+    result->under[WEFT_TRUTH_NEAR].picture[WEFT_TRUTH_TRACED] = traced.near;
     result->noise = traced.noise;
     weft_image_free(&background);
     return code;
-}
-
-/* ---- Errors ---- */
-
-static weft_code measure_against(const weft_image *truth, const weft_truth_scene *scene,
-                                 const weft_surface_sample *surface, weft_truth_error result[WEFT_TRUTH_MODELS],
-                                 weft_error *error)
-{
-    for (int model = 0; model < WEFT_TRUTH_MODELS; model++)
-        WEFT_TRY(weft_truth_error_of(truth, &scene->picture[model], surface, &result[model], error));
-    return WEFT_OK;
 }
 
 static weft_code measure(truth_stage *stage, const weft_scene *scene, weft_truth_scene *result, weft_error *error)
@@ -211,29 +212,32 @@ static weft_code measure(truth_stage *stage, const weft_scene *scene, weft_truth
     weft_surface_sample *surface;
     WEFT_TRY(
         weft_player_read_surface(stage->player, scene, WEFT_MODE_RAW, PICTURE_SIZE, PICTURE_SIZE, &surface, error));
-    weft_code code = measure_against(&result->picture[WEFT_TRUTH_ALL], result, surface, result->all, error);
-    if (code == WEFT_OK)
-        code = measure_against(&result->picture[WEFT_TRUTH_NEAR], result, surface, result->near, error);
+    weft_code code = WEFT_OK;
+    for (int i = 0; i < WEFT_TRUTH_LIGHTS * WEFT_TRUTH_TRACED && code == WEFT_OK; i++) {
+        weft_truth_pictures *under = &result->under[i / WEFT_TRUTH_TRACED];
+        int model = i % WEFT_TRUTH_TRACED;
+        code = weft_truth_error_of(&under->picture[WEFT_TRUTH_TRACED], &under->picture[model], surface,
+                                   &under->error[model], error);
+    }
     free(surface);
     return code;
 }
 
-static weft_code make_scene(truth_stage *stage, const weft_truth_request *request, int index,
-                            const weft_progress *progress, weft_truth *truth, weft_error *error)
+static weft_code make_scene(truth_stage *stage, const weft_traced_request *request, int index,
+                            const weft_progress *progress, weft_traced_truth *truth, weft_error *error)
 {
     weft_truth_scene *result = &truth->scene[index];
     weft_scene scene = scene_of(&settings[index]);
     result->caption = settings[index].caption;
-    WEFT_TRY(draw(stage, &scene, WEFT_MODE_RAW, &result->picture[WEFT_TRUTH_RAW], error));
-    WEFT_TRY(draw(stage, &scene, WEFT_MODE_COMPRESSED, &result->picture[WEFT_TRUTH_COMPRESSED], error));
+    WEFT_TRY(draw_models(stage, &scene, result, error));
     WEFT_TRY(trace(stage, request, &scene, truth, progress, result, error));
     return measure(stage, &scene, result, error);
 }
 
-weft_code weft_truth_measure(const weft_truth_request *request, const weft_progress *progress, weft_truth *truth,
-                             weft_error *error)
+weft_code weft_traced_truth_measure(const weft_traced_request *request, const weft_progress *progress,
+                                    weft_traced_truth *truth, weft_error *error)
 {
-    *truth = (weft_truth){.width = PICTURE_SIZE, .height = PICTURE_SIZE};
+    *truth = (weft_traced_truth){.width = PICTURE_SIZE, .height = PICTURE_SIZE};
     truth_stage stage = {0};
     weft_error absence = {0};
     if (weft_headless_create(WEFT_GL_CORE, &stage.headless, &absence) != WEFT_OK) {
@@ -246,14 +250,14 @@ weft_code weft_truth_measure(const weft_truth_request *request, const weft_progr
     put_away(&stage);
     truth->drawn = code == WEFT_OK;
     if (code != WEFT_OK)
-        weft_truth_free(truth);
+        weft_traced_truth_free(truth);
     return code;
 }
 
-void weft_truth_free(weft_truth *truth)
+void weft_traced_truth_free(weft_traced_truth *truth)
 {
-    for (int i = 0; i < WEFT_TRUTH_SCENE_COUNT; i++)
-        for (int picture = 0; picture < WEFT_TRUTH_PICTURES; picture++)
-            weft_image_free(&truth->scene[i].picture[picture]);
-    *truth = (weft_truth){0};
+    for (int i = 0; i < WEFT_TRUTH_SCENE_COUNT * WEFT_TRUTH_LIGHTS; i++)
+        for (int model = 0; model < WEFT_TRUTH_MODELS; model++)
+            weft_image_free(&truth->scene[i / WEFT_TRUTH_LIGHTS].under[i % WEFT_TRUTH_LIGHTS].picture[model]);
+    *truth = (weft_traced_truth){0};
 }

@@ -46,32 +46,24 @@ void weft_truth_base_free(weft_truth_base *base)
 
 /* ---- The camera ---- */
 
-/* A ray through (x, y) of the picture, both from -1 to 1, is forward + x right + y up. */
 typedef struct camera {
-    weft_vec3 eye, right, up, forward;
+    weft_vec3 eye; /* mm */
+    weft_orbit_axes rays;
 } camera;
 
-static weft_vec3 row_of(const float matrix[16], int row)
+static camera camera_of(const weft_mesh *mesh, double mm_per_unit, const weft_orbit *orbit, int width, int height)
 {
-    return weft_vec3_of((weft_real)matrix[row], (weft_real)matrix[4 + row], (weft_real)matrix[8 + row]);
-}
-
-/* The rows of the player's matrix are perpendicular; w is the forward distance. */
-static camera camera_of(const weft_mesh *mesh, double mm_per_unit, const weft_orbit *orbit, double aspect)
-{
-    float centre[3], radius, matrix[16];
+    float centre[3], radius;
     weft_mesh_bounds(mesh, centre, &radius);
-    weft_orbit_clip_of_world(orbit, vector_of(centre), (double)radius, aspect, 0, 0, matrix);
-    weft_vec3 x = row_of(matrix, 0), y = row_of(matrix, 1);
-    return (camera){.eye = weft_scale(weft_orbit_eye(orbit, vector_of(centre), (double)radius), mm_per_unit),
-                    .right = weft_scale(x, 1 / weft_dot(x, x)),
-                    .up = weft_scale(y, 1 / weft_dot(y, y)),
-                    .forward = row_of(matrix, 3)};
+    weft_vec3 eye = weft_orbit_eye(orbit, vector_of(centre), (double)radius);
+    return (camera){weft_scale(eye, mm_per_unit), weft_orbit_rays(orbit, width, height, 0, 0)};
 }
 
+/* (x, y) in pixels from the lower left corner. */
 static weft_vec3 ray_through(const camera *from, double x, double y)
 {
-    return weft_unit(weft_add(from->forward, weft_add(weft_scale(from->right, x), weft_scale(from->up, y))));
+    weft_vec3 across = weft_add(weft_scale(from->rays.right, x), weft_scale(from->rays.up, y));
+    return weft_unit(weft_subtract(across, from->rays.backward));
 }
 
 /* ---- Pixels ---- */
@@ -99,8 +91,7 @@ static void trace_batch(const tracing *t, int pixel, uint64_t key, int paths, do
     for (uint32_t i = 0; i < (uint32_t)paths; i++) {
         double point[2];
         sequence_point(sequence_key(key, PLACE_KEY), i, point);
-        weft_vec3 direction = ray_through(&t->from, 2 * (pixel % width + point[0]) / width - 1,
-                                          1 - 2 * (pixel / width + point[1]) / height);
+        weft_vec3 direction = ray_through(&t->from, pixel % width + point[0], height - pixel / width - 1 + point[1]);
         misses += !weft_draped_cloth_path(t->cloth, t->from.eye, direction, &t->light, key, i, &sum);
     }
     for (int c = 0; c < 3; c++) {
@@ -158,7 +149,7 @@ weft_code weft_trace(const weft_draped_cloth *cloth, const weft_mesh *mesh, doub
                  .options = options,
                  .background = background,
                  .light = {light, options->bounces, options->reach_mm},
-                 .from = camera_of(mesh, mm_per_unit, &scene->orbit, (double)options->width / options->height),
+                 .from = camera_of(mesh, mm_per_unit, &scene->orbit, options->width, options->height),
                  .exposure = scene->exposure,
                  .traced = traced,
                  .row = calloc((size_t)options->width, sizeof(spread))};
