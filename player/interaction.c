@@ -4,9 +4,7 @@
 #include <GLFW/glfw3.h>
 #include <stddef.h>
 
-static const double highest_elevation_rad = 89.9 * WEFT_PI / 180;
 static const double lowest_light_rad = 110 * WEFT_PI / 180;
-static const double nearest_distance = 1.05, farthest_distance = 60, farthest_pan = 4;
 static const double zoom_step = 0.9, exposure_step = 1.189207115; /* a quarter of a stop */
 static const double divider_reach = 8;                            /* pixels */
 
@@ -37,21 +35,13 @@ void weft_interaction_press(weft_interaction *i, int button, bool pressed, int m
     i->drag = pressed ? drag_of(i, button, modifiers) : WEFT_DRAG_NONE;
 }
 
-static void turn_camera(weft_orbit *orbit, double azimuth_rad, double elevation_rad)
-{
-    orbit->azimuth_rad = fmod(orbit->azimuth_rad - azimuth_rad, 2 * WEFT_PI);
-    orbit->elevation_rad =
-        weft_clamp(orbit->elevation_rad + elevation_rad, -highest_elevation_rad, highest_elevation_rad);
-}
-
 /* What is under the pointer stays there, for what lies at the distance of the centre. */
 static void pan(weft_interaction *i, double x, double y)
 {
     weft_orbit *orbit = &i->scene.orbit;
     int smaller = i->width < i->height ? i->width : i->height;
     double radii = smaller > 0 ? 2 * weft_orbit_slope() * orbit->distance / smaller : 0;
-    orbit->pan_right = weft_clamp(orbit->pan_right - radii * x, -farthest_pan, farthest_pan);
-    orbit->pan_up = weft_clamp(orbit->pan_up + radii * y, -farthest_pan, farthest_pan);
+    weft_orbit_pan(orbit, -radii * x, radii * y);
 }
 
 void weft_interaction_turn_light(weft_angles *light, double phi_rad, double theta_rad)
@@ -65,7 +55,7 @@ void weft_interaction_move(weft_interaction *i, double x, double y)
     double across = (x - i->x) / (i->width > 0 ? i->width : 1), down = (y - i->y) / (i->height > 0 ? i->height : 1);
     switch (i->drag) {
     case WEFT_DRAG_ORBIT:
-        turn_camera(&i->scene.orbit, across * 2 * WEFT_PI, down * WEFT_PI);
+        weft_orbit_turn(&i->scene.orbit, -across * 2 * WEFT_PI, down * WEFT_PI);
         break;
     case WEFT_DRAG_PAN:
         pan(i, x - i->x, y - i->y);
@@ -86,8 +76,7 @@ void weft_interaction_move(weft_interaction *i, double x, double y)
 
 void weft_interaction_scroll(weft_interaction *i, double steps)
 {
-    i->scene.orbit.distance =
-        weft_clamp(i->scene.orbit.distance * pow(zoom_step, steps), nearest_distance, farthest_distance);
+    weft_orbit_zoom(&i->scene.orbit, pow(zoom_step, steps));
     i->changed = true;
 }
 

@@ -1,6 +1,26 @@
 #include "player/orbit.h"
 
 static const double field_of_view_rad = 30 * WEFT_PI / 180;
+static const double highest_elevation_rad = 89.9 * WEFT_PI / 180;
+static const double nearest_distance = 1.05, farthest_distance = 60, farthest_pan = 4;
+
+void weft_orbit_turn(weft_orbit *orbit, double azimuth_rad, double elevation_rad)
+{
+    orbit->azimuth_rad = fmod(orbit->azimuth_rad + azimuth_rad, 2 * WEFT_PI);
+    orbit->elevation_rad =
+        weft_clamp(orbit->elevation_rad + elevation_rad, -highest_elevation_rad, highest_elevation_rad);
+}
+
+void weft_orbit_pan(weft_orbit *orbit, double right, double up)
+{
+    orbit->pan_right = weft_clamp(orbit->pan_right + right, -farthest_pan, farthest_pan);
+    orbit->pan_up = weft_clamp(orbit->pan_up + up, -farthest_pan, farthest_pan);
+}
+
+void weft_orbit_zoom(weft_orbit *orbit, double factor)
+{
+    orbit->distance = weft_clamp(orbit->distance * factor, nearest_distance, farthest_distance);
+}
 
 weft_orbit_axes weft_orbit_axes_of(const weft_orbit *orbit)
 {

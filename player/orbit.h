@@ -21,6 +21,12 @@ double weft_orbit_slope(void);
 
 weft_orbit_axes weft_orbit_axes_of(const weft_orbit *orbit);
 
+/* What moves a camera, within its limits: elevation up to 89.9 degrees either way, distance 1.05 to 60, pans up to 4.
+ */
+void weft_orbit_turn(weft_orbit *orbit, double azimuth_rad, double elevation_rad);
+void weft_orbit_pan(weft_orbit *orbit, double right, double up);
+void weft_orbit_zoom(weft_orbit *orbit, double factor); /* of the distance */
+
 /* Place of the eye around a bounding sphere. */
 weft_vec3 weft_orbit_eye(const weft_orbit *orbit, weft_vec3 centre, double radius);
 
