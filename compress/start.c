@@ -7,23 +7,40 @@
 static const weft_fit_lobe mirror_start = {.c = {-0.95, -0.9, 1}, .log_exponent = 2.0794};
 static const weft_fit_lobe retro_start = {.c = {0.9, 0.95, 1}, .log_exponent = 2.0794};
 static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent = 0.4055};
+static const weft_fit_lobe along_x_start = {.c = {1, 0.1, 0.2}, .log_exponent = 0.4055};
+static const weft_fit_lobe along_y_start = {.c = {0.1, 1, 0.2}, .log_exponent = 0.4055};
 
-enum { START_COUNT = 2, START_PASSES = 4 };
+enum { START_COUNT = 3, START_PASSES = 4 };
 
-#define GOOD_ENOUGH 0.1 /* of the energy: no further start is tried below */
+#define VANISHED 1e-3       /* part of the energy */
+#define GOOD_ENOUGH 0.1     /* of the energy: no further start is tried below */
+#define CLEARLY_BETTER 0.98 /* times the residual: few passes over few lights tell no finer differences */
 #define START_TOLERANCE 1e-2
 #define HOPELESS 3 /* a start whose first residual is so many times that of the first start is not followed */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
 
-/* Start number `index`: the mirror and a broad lobe, or the same thrown back to the light. */
+/* Start number `index`: the mirror and a broad lobe, the same thrown back to the light, or two that are thrown back
+ * along the surface: what cylinders, fuzz and everything else does that falls off more slowly than the cosine, where
+ * the lobes of the other two would have to be negative and vanish. */
 static void place_start(int index, int lobe_count, weft_fit *fit)
 {
     const weft_fit_lobe *order[START_COUNT][WEFT_GRAM_LOBES] = {{&mirror_start, &broad_start, &retro_start},
-                                                                {&retro_start, &broad_start, &mirror_start}};
+                                                                {&retro_start, &broad_start, &mirror_start},
+                                                                {&along_x_start, &along_y_start, &broad_start}};
     fit->start = index;
     fit->lobe_count = lobe_count;
     for (int i = 0; i < lobe_count; i++)
         fit->lobe[i] = *order[index][i];
+}
+
+static bool has_vanished_lobe(const weft_trial *trial)
+{
+    for (int i = 0; i < trial->fit.lobe_count; i++) {
+        double amplitude = trial->fit.lobe[i].amplitude;
+        if (amplitude * amplitude * trial->strength[1 + i] < VANISHED * trial->energy)
+            return true;
+    }
+    return false;
 }
 
 /* The best start after a few coarse passes; its T goes into workspace->table. */
@@ -34,9 +51,10 @@ static weft_fit try_starts(const weft_bundle *bundle, const weft_samples *sample
     weft_fit best = {.residual = INFINITY};
     double first_residual = INFINITY;
     int passes = 0;
+    bool vanished = false;
     for (int start = 0; start < (options->lobe_count ? START_COUNT : 1); start++) {
         /* A quarter of the lights hold a quarter of the energy. */
-        if (best.residual < GOOD_ENOUGH * samples->energy[channel] / 4)
+        if (best.residual < GOOD_ENOUGH * samples->energy[channel] / 4 && !vanished)
             break;
         now->fit = (weft_fit){.frame = *frame};
         place_start(start, options->lobe_count, &now->fit);
@@ -45,9 +63,10 @@ static weft_fit try_starts(const weft_bundle *bundle, const weft_samples *sample
         if (now->residual <= HOPELESS * first_residual)
             weft_workspace_refine(bundle, samples, channel, options, workspace, 0.1);
         passes += (now->fit.passes + 3) / 4;
-        if (now->residual < best.residual) {
+        if (now->residual < CLEARLY_BETTER * best.residual) {
             best = now->fit;
             best.residual = now->residual;
+            vanished = has_vanished_lobe(now);
             memcpy(workspace->table, now->table, (size_t)bundle->view_count * sizeof *now->table);
         }
     }

@@ -71,6 +71,26 @@ static void one_lobe_without_table_is_recovered_exactly(void **state)
     assert_float_equal(fit.lobe[0].c[1], -0.6, 1e-3);
 }
 
+/* What fuzz does: more, by the cosine, the lower the lamp stands. Lobes about the mirror direction or the normal would
+ * have to be negative, and vanish. */
+static void light_thrown_back_along_the_surface_is_fitted(void **state)
+{
+    texel_fixture *fixture = *state;
+    texel_fixture_fill(fixture, SYNTHETIC_WARD, 0, 0);
+    for (int image = 0; image < fixture->layout.image_count; image++) {
+        weft_vec3 l = fixture->layout.light[image], v = fixture->layout.view[fixture->layout.view_of_image[image]];
+        double along_x = fmax(0.9 * l.x * v.x - 0.1 * l.z * v.z, 0),
+               along_y = fmax(0.9 * l.y * v.y - 0.1 * l.z * v.z, 0);
+        for (int k = 0; k < 3; k++)
+            fixture->sum[3 * image + k] = (float)(l.z * (0.5 + along_x + along_y));
+    }
+    texel_fixture_gather(fixture);
+    weft_fit_options options = options_of(2, true);
+    weft_fit fit;
+    fit_cold(fixture, 1, &options, &fit);
+    assert_true(texel_fixture_error(fixture, 1, &fit, fixture->table) < 0.02);
+}
+
 static void a_turned_frame_is_found(void **state)
 {
     texel_fixture *fixture = *state;
@@ -265,6 +285,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(truth_without_noise_is_recovered),
         cmocka_unit_test(one_lobe_without_table_is_recovered_exactly),
+        cmocka_unit_test(light_thrown_back_along_the_surface_is_fitted),
         cmocka_unit_test(a_turned_frame_is_found),
         cmocka_unit_test(joint_fit_is_never_worse_than_alternation),
         cmocka_unit_test(reported_residual_is_that_of_the_samples_in_double),
