@@ -36,6 +36,15 @@ weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *
  * Errors: WEFT_SYSTEM. */
 weft_code weft_image_write(const char *path, const weft_image *image, const char *description, weft_error *error);
 
+/* The same with a text of Weft's own (ASCII) in the attribute "weft:settings": a tEXt chunk of PNG, an attribute of
+ * EXR; TIFF has no place for it. NULL: none. */
+weft_code weft_image_write_settings(const char *path, const weft_image *image, const char *description,
+                                    const char *settings, weft_error *error);
+
+/* The text that weft_image_write_settings wrote, owned by the caller; NULL where the image has none. The pixels are not
+ * read. Errors: WEFT_BAD_INPUT for a file that is no image. */
+weft_code weft_image_read_settings(const char *path, char **settings, weft_error *error);
+
 /* Raw camera values: [height][width][3] 16-bit samples, of which the low `bits` are used; TIFF without
  * compression, packed to `bits` (10, 12, 14 or 16) on disk. Writes to `path` directly: the caller names it atomically.
  */

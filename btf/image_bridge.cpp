@@ -15,6 +15,8 @@ namespace
 {
 
 constexpr long long max_pixels = 1ll << 28;
+constexpr const char *settings_name = "weft:settings";
+constexpr const char *no_time = "0000:00:00 00:00:00";
 
 /* One line of OpenImageIO's last message. */
 std::string first_line(const std::string &text)
@@ -65,6 +67,19 @@ weft_code read_image(const char *path, weft_image *image, weft_image_kind *kind,
     return read_floats(*input, path, image, error);
 }
 
+weft_code read_settings(const char *path, char **settings, weft_error *error)
+{
+    weft_code code;
+    auto input = open_input(path, &code, error);
+    WEFT_TRY(code);
+    *settings = nullptr;
+    const OIIO::ParamValue *found = input->spec().find_attribute(settings_name, OIIO::TypeDesc::STRING);
+    if (!found)
+        return WEFT_OK;
+    *settings = strdup(found->get_ustring().c_str());
+    return *settings ? WEFT_OK : weft_fail_memory(error, path, found->get_ustring().size());
+}
+
 bool has_extension(const std::string &path, const char *extension)
 {
     size_t length = strlen(extension);
@@ -97,13 +112,18 @@ weft_code encode(const char *path, const OIIO::ImageSpec &spec, const OIIO::Type
     return WEFT_OK;
 }
 
-weft_code write_image(const char *path, const weft_image *image, const char *description, weft_error *error)
+weft_code write_image(const char *path, const weft_image *image, const char *description, const char *settings,
+                      weft_error *error)
 {
     OIIO::TypeDesc type = type_for(path);
     OIIO::ImageSpec spec(image->width, image->height, 3, type);
     spec.attribute("oiio:ColorSpace", type == OIIO::TypeDesc::UINT8 ? "sRGB" : "linear");
     if (description)
         spec.attribute("ImageDescription", description);
+    /* Else EXR and TIFF carry the time of day, and the same picture never has the same bytes twice. */
+    spec.attribute("DateTime", no_time);
+    if (settings)
+        spec.attribute(settings_name, settings);
     encoded_bytes bytes;
     WEFT_TRY(encode(path, spec, OIIO::TypeDesc::FLOAT, image->pixels, &bytes, error));
     return weft_write_file(path, bytes.data(), bytes.size(), error);
@@ -117,8 +137,7 @@ weft_code write_photograph(const char *path, int width, int height, int bits, co
     spec.attribute("oiio:ColorSpace", "linear");
     spec.attribute("compression", "none");
     spec.attribute("tiff:RowsPerStrip", height);
-    /* Else the library writes the time of day, and the same photograph never has the same bytes twice. */
-    spec.attribute("DateTime", "0000:00:00 00:00:00");
+    spec.attribute("DateTime", no_time);
     /* OpenImageIO packs the high bits of 16-bit samples. */
     std::vector<uint16_t> shifted(size_t(width) * size_t(height) * 3);
     for (size_t i = 0; i < shifted.size(); i++)
@@ -179,7 +198,18 @@ weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *
 
 weft_code weft_image_write(const char *path, const weft_image *image, const char *description, weft_error *error)
 {
-    return guarded(path, error, [&] { return write_image(path, image, description, error); });
+    return weft_image_write_settings(path, image, description, nullptr, error);
+}
+
+weft_code weft_image_write_settings(const char *path, const weft_image *image, const char *description,
+                                    const char *settings, weft_error *error)
+{
+    return guarded(path, error, [&] { return write_image(path, image, description, settings, error); });
+}
+
+weft_code weft_image_read_settings(const char *path, char **settings, weft_error *error)
+{
+    return guarded(path, error, [&] { return read_settings(path, settings, error); });
 }
 
 weft_code weft_photograph_write(const char *path, int width, int height, int bits, const uint16_t *samples,

@@ -6,6 +6,7 @@
 
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -52,19 +53,40 @@ static const struct argp parser = {
 /* ---- What the application asks for ---- */
 
 /* The first free of weft-001.png, weft-002.png, ... in the current folder. */
-static weft_code save_screenshot(void *context, const weft_scene *scene, weft_image *image, char note[WEFT_NOTE_SIZE],
-                                 weft_error *error)
+static weft_code save_screenshot(void *context, const weft_scene *scene, int width, int height,
+                                 char note[WEFT_NOTE_SIZE], weft_error *error)
 {
-    const play_command *command = context;
+    play_command *command = context;
+    weft_settings *settings = &command->scene.settings;
     char path[32];
     int number = 1;
     do
         snprintf(path, sizeof path, "weft-%03d.png", number++);
     while (access(path, F_OK) == 0 && number < 1000);
-    WEFT_TRY(scene_write_image(path, scene, image, error));
+    settings->scene = *scene;
+    settings->width = width;
+    settings->height = height;
+    WEFT_TRY(weft_settings_draw(path, command->player, settings, NULL, error));
     snprintf(note, WEFT_NOTE_SIZE, "saved %s", path);
     command_say(&command->scene.common, "%s", note);
     return WEFT_OK;
+}
+
+static weft_code change_mesh(void *context, const char *name, weft_scene *scene, weft_error *error)
+{
+    play_command *command = context;
+    weft_settings *settings = &command->scene.settings;
+    char *old = settings->mesh;
+    settings->mesh = strdup(name);
+    settings->scene = *scene;
+    weft_code code = settings->mesh ? scene_load_mesh(&command->scene, command->player, error)
+                                    : weft_fail_memory(error, name, strlen(name));
+    if (code == WEFT_OK)
+        scene->repeat = settings->scene.repeat;
+    free(code == WEFT_OK ? old : settings->mesh);
+    if (code != WEFT_OK)
+        settings->mesh = old;
+    return code;
 }
 
 static weft_code measure_errors(void *context, const weft_scene *scene, int width, int height,
@@ -78,7 +100,7 @@ static weft_code measure_errors(void *context, const weft_scene *scene, int widt
 
 static weft_application_setup setup_of(play_command *command)
 {
-    const scene_options *options = &command->scene;
+    const weft_settings *options = &command->scene.settings;
     const char *first = options->material ? options->material : options->dataset ? options->dataset : options->weave;
     const char *slash = strrchr(first, '/');
     return (weft_application_setup){
@@ -87,7 +109,7 @@ static weft_application_setup setup_of(play_command *command)
         .width = options->width,
         .height = options->height,
         .frame_limit = command->frame_limit,
-        .host = {.context = command, .save = save_screenshot, .measure = measure_errors},
+        .host = {.context = command, .save = save_screenshot, .mesh = change_mesh, .measure = measure_errors},
     };
 }
 
@@ -97,7 +119,7 @@ static weft_code play(play_command *command, weft_application **application, wef
     WEFT_TRY(weft_application_create(&setup, application, error));
     command->player = weft_application_player(*application);
     WEFT_TRY(scene_load(&command->scene, command->player, error));
-    return weft_application_run(*application, &command->scene.scene, error);
+    return weft_application_run(*application, &command->scene.settings.scene, error);
 }
 
 int command_play(int argc, char **argv)
@@ -115,5 +137,6 @@ int command_play(int argc, char **argv)
                     weft_gl_renderer());
     }
     weft_application_free(application);
+    scene_options_free(&command.scene);
     return command_exit("play", &command.scene.common, code, &error);
 }

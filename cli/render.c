@@ -1,4 +1,3 @@
-#include "cli/arguments.h"
 #include "cli/scene_errors.h"
 #include "cli/scene_options.h"
 
@@ -7,14 +6,10 @@
 typedef struct render_command {
     scene_options scene;
     const char *output;
-    int samples;
 } render_command;
-
-enum { KEY_SAMPLES = 0x4000 };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "OUT.png|OUT.exr", 0, "Write the picture here: .png as sRGB, .exr linear", 0},
-    {"samples", KEY_SAMPLES, "N", 0, "Draw N x N frames within each pixel (default: 3)", 0},
     {0},
 };
 
@@ -27,9 +22,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case 'o':
         command->output = argument;
-        return 0;
-    case KEY_SAMPLES:
-        command->samples = (int)parse_whole("samples", argument, 1, 64, state);
         return 0;
     case ARGP_KEY_END:
         if (!command->output)
@@ -55,16 +47,12 @@ static const struct argp parser = {
 static weft_code draw(render_command *command, weft_player *player, weft_error *error)
 {
     scene_options *scene = &command->scene;
+    const weft_settings *settings = &scene->settings;
     weft_progress progress = command_progress(&scene->common);
-    weft_image image = {0};
-    WEFT_TRY(scene_load(scene, player, error));
-    WEFT_TRY(weft_player_picture(player, &scene->scene, scene->width, scene->height, command->samples, &progress,
-                                 &image, error));
-    weft_code code = scene_write_image(command->output, &scene->scene, &image, error);
-    weft_image_free(&image);
-    WEFT_TRY(code);
     char errors[SCENE_ERRORS_SIZE];
-    WEFT_TRY(scene_errors_print(player, &scene->scene, scene->width, scene->height, errors, error));
+    WEFT_TRY(scene_load(scene, player, error));
+    WEFT_TRY(weft_settings_draw(command->output, player, settings, &progress, error));
+    WEFT_TRY(scene_errors_print(player, &settings->scene, settings->width, settings->height, errors, error));
     if (errors[0])
         command_say(&scene->common, "%s", errors);
     return WEFT_OK;
@@ -79,8 +67,8 @@ static weft_code render(render_command *command, weft_error *error)
     if (code == WEFT_OK)
         code = draw(command, player, error);
     if (code == WEFT_OK)
-        command_say(&command->scene.common, "%s: %d x %d, drawn by %s", command->output, command->scene.width,
-                    command->scene.height, weft_gl_renderer());
+        command_say(&command->scene.common, "%s: %d x %d, drawn by %s", command->output, command->scene.settings.width,
+                    command->scene.settings.height, weft_gl_renderer());
     weft_player_free(player);
     weft_headless_free(headless);
     return code;
@@ -88,9 +76,10 @@ static weft_code render(render_command *command, weft_error *error)
 
 int command_render(int argc, char **argv)
 {
-    render_command command = {.samples = 3};
+    render_command command = {0};
     command_parse(&parser, argc, argv, &command, &command.scene.common);
     weft_error error = {0};
     weft_code code = render(&command, &error);
+    scene_options_free(&command.scene);
     return command_exit("render", &command.scene.common, code, &error);
 }

@@ -3,31 +3,35 @@
 #define WEFT_CLI_SCENE_OPTIONS_H
 
 #include "cli/command.h"
-#include "player/player.h"
+#include "player/settings.h"
+
+enum { SCENE_MAX_OPTIONS = 256 };
 
 typedef struct scene_options {
     common_options common;
-    const char *material, *dataset, *weave, *mesh;
-    const char *mode; /* NULL: what is there */
-    double tiles[2];  /* of the weave across the material; 0 = as the virtual rig lays it out */
-    double repeat;    /* 0 = by the mesh */
-    bool has_camera;  /* else by the mesh */
-    int width, height;
-    weft_scene scene;
+    weft_settings settings; /* what the options come to, once they are parsed; freed by scene_options_free */
+    const char *source;     /* the picture it starts from, or NULL */
+    bool has_modes, split;  /* --mode was given; it is split */
+    bool has_camera, has_lights;
+    double material_width_mm; /* once they are loaded */
+    /* Kept until the end of the command line, because --settings comes before all others, wherever it stands */
+    int option_count;
+    struct {
+        int key;
+        char *argument;
+    } option[SCENE_MAX_OPTIONS];
 } scene_options;
 
 /* Options of the scene, an argp child whose input is a scene_options. */
 extern const struct argp scene_argp;
 
-/* To be called from ARGP_KEY_INIT: defaults. */
-void scene_options_init(scene_options *options);
+void scene_options_free(scene_options *options);
 
-/* Loads the mesh and every model that is named into the player, and chooses the panes. Notes are told to the user.
- * Errors: those of reading. */
+/* Loads everything that the settings name into the player: mesh, environment and models; chooses the panes and the
+ * `repeat`. Notes are told to the user. Errors: those of reading. */
 weft_code scene_load(scene_options *options, weft_player *player, weft_error *error);
 
-/* Writes a linear picture: .exr as it is, other formats as the screen shows the scene (in place). Errors: WEFT_SYSTEM.
- */
-weft_code scene_write_image(const char *path, const weft_scene *scene, weft_image *image, weft_error *error);
+/* Loads the mesh that the settings name, and sets `repeat` as they say. Errors: those of weft_mesh_open. */
+weft_code scene_load_mesh(scene_options *options, weft_player *player, weft_error *error);
 
 #endif

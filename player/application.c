@@ -251,24 +251,21 @@ static weft_code advance(weft_application *a, weft_error *error)
 static void save_picture(weft_application *a)
 {
     const weft_application_host *host = &a->setup.host;
-    weft_image image = {0};
     char note[WEFT_NOTE_SIZE] = "";
     weft_error error = {0};
-    weft_code code = weft_canvas_read(&a->canvas, &image, &error);
-    if (code == WEFT_OK && host->save)
-        code = host->save(host->context, &a->interaction.scene, &image, note, &error);
-    weft_image_free(&image);
+    weft_code code = WEFT_OK;
+    if (host->save)
+        code = host->save(host->context, &a->interaction.scene, a->canvas.width, a->canvas.height, note, &error);
     tell_outcome(a, code, &error, note);
 }
 
 static void change_mesh(weft_application *a)
 {
-    weft_mesh mesh = {0};
+    const weft_application_host *host = &a->setup.host;
     weft_error error = {0};
-    weft_code code = weft_mesh_open(a->interaction.wants_mesh, &mesh, &error);
-    if (code == WEFT_OK)
-        code = weft_player_set_mesh(a->player, &mesh, &error);
-    weft_mesh_free(&mesh);
+    weft_code code = WEFT_OK;
+    if (host->mesh)
+        code = host->mesh(host->context, a->interaction.wants_mesh, &a->interaction.scene, &error);
     tell_outcome(a, code, &error, "");
     a->interaction.wants_mesh = NULL;
     a->interaction.changed = true;
@@ -283,8 +280,7 @@ static void grant_wishes(weft_application *a)
         i->wants_reload = false;
         ask_to_open(a, NULL);
     }
-    /* A picture is saved once it is smooth: never one that is out of date. */
-    if (i->wants_screenshot && is_finished(a) && !i->changed) {
+    if (i->wants_screenshot) {
         i->wants_screenshot = false;
         save_picture(a);
     }

@@ -11,9 +11,11 @@ enum { WEFT_NOTE_SIZE = 512 };
  * of theirs is shown in the window, and the window stays. */
 typedef struct weft_application_host {
     void *context;
-    /* Saves a picture (linear) that shows the scene; *note receives what to tell the user, such as its path. */
-    weft_code (*save)(void *context, const weft_scene *scene, weft_image *image, char note[WEFT_NOTE_SIZE],
+    /* Draws and saves a picture of the scene; *note receives what to tell the user, such as its path. */
+    weft_code (*save)(void *context, const weft_scene *scene, int width, int height, char note[WEFT_NOTE_SIZE],
                       weft_error *error);
+    /* Gives the player this mesh; scene->repeat may be changed. */
+    weft_code (*mesh)(void *context, const char *name, weft_scene *scene, weft_error *error);
     /* One line on the errors of what the scene shows, "" for none. */
     weft_code (*measure)(void *context, const weft_scene *scene, int width, int height, char note[WEFT_NOTE_SIZE],
                          weft_error *error);

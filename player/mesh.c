@@ -13,6 +13,7 @@ weft_code weft_mesh_allocate(int vertex_count, int triangle_count, weft_mesh *me
                          triangle_count);
     mesh->vertex_count = vertex_count;
     mesh->triangle_count = triangle_count;
+    mesh->size = mesh->coordinate_length = 1;
     mesh->vertex = calloc((size_t)vertex_count, sizeof *mesh->vertex);
     mesh->index = calloc((size_t)triangle_count, sizeof *mesh->index);
     if (mesh->vertex && mesh->index)
@@ -28,15 +29,22 @@ void weft_mesh_free(weft_mesh *mesh)
     *mesh = (weft_mesh){0};
 }
 
-void weft_mesh_bounds(const weft_mesh *mesh, float centre[3], float *radius)
+static void find_box(const weft_mesh *mesh, float low[3], float high[3])
 {
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (int i = 0; i < mesh->vertex_count; i++) {
-        for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = INFINITY;
+        high[axis] = -INFINITY;
+        for (int i = 0; i < mesh->vertex_count; i++) {
             low[axis] = fminf(low[axis], mesh->vertex[i].position[axis]);
             high[axis] = fmaxf(high[axis], mesh->vertex[i].position[axis]);
         }
     }
+}
+
+void weft_mesh_bounds(const weft_mesh *mesh, float centre[3], float *radius)
+{
+    float low[3], high[3];
+    find_box(mesh, low, high);
     for (int axis = 0; axis < 3; axis++)
         centre[axis] = low[axis] + (high[axis] - low[axis]) / 2;
     *radius = 0;
@@ -171,4 +179,30 @@ weft_code weft_mesh_compute_tangents(weft_mesh *mesh, weft_error *error)
         set_tangent(&mesh->vertex[i], sum[i][0], sum[i][1]);
     free(sum);
     return WEFT_OK;
+}
+
+/* Twice the signed area of a triangle of the texture. */
+static double coordinate_area(const float a[2], const float b[2], const float c[2])
+{
+    double ab_u = (double)b[0] - a[0], ab_v = (double)b[1] - a[1];
+    double ac_u = (double)c[0] - a[0], ac_v = (double)c[1] - a[1];
+    return ab_u * ac_v - ac_u * ab_v;
+}
+
+void weft_mesh_measure(weft_mesh *mesh)
+{
+    double on_mesh = 0, on_texture = 0;
+    for (int t = 0; t < mesh->triangle_count; t++) {
+        const weft_vertex *a = &mesh->vertex[mesh->index[t][0]], *b = &mesh->vertex[mesh->index[t][1]];
+        const weft_vertex *c = &mesh->vertex[mesh->index[t][2]];
+        vector area = cross(difference(b->position, a->position), difference(c->position, a->position));
+        on_mesh += sqrt(dot(area, area));
+        on_texture += fabs(coordinate_area(a->coordinate, b->coordinate, c->coordinate));
+    }
+    mesh->coordinate_length = on_texture > 0 ? sqrt(on_mesh / on_texture) : 0;
+    float low[3], high[3];
+    find_box(mesh, low, high);
+    mesh->size = 0;
+    for (int axis = 0; axis < 3; axis++)
+        mesh->size = fmax(mesh->size, (double)high[axis] - low[axis]);
 }

@@ -5,6 +5,7 @@
 
 #include "btf/status.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* As it is uploaded. tangent[0..2] points along increasing u; tangent[3] is +1 where normal x tangent points along
@@ -18,11 +19,13 @@ typedef struct weft_mesh {
     int vertex_count, triangle_count;
     weft_vertex *vertex;  /* [vertex_count] */
     uint32_t (*index)[3]; /* [triangle_count] */
+    double size;          /* side of the plane or of the cloth, diameter of the sphere, longest side of a file's box */
+    double coordinate_length; /* of the surface for one unit of texture coordinates */
 } weft_mesh;
 
 enum { WEFT_MESH_MAX_VERTICES = 1 << 26, WEFT_MESH_MAX_TRIANGLES = 1 << 26 };
 
-/* Zeroed arrays. Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. */
+/* Zeroed arrays; both lengths 1. Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. */
 weft_code weft_mesh_allocate(int vertex_count, int triangle_count, weft_mesh *mesh, weft_error *error);
 void weft_mesh_free(weft_mesh *mesh);
 
@@ -59,6 +62,13 @@ weft_code weft_mesh_drape(weft_mesh *mesh, weft_error *error);
  * ..." for an index out of range, a number that is not finite, no faces, no texture coordinates, or over the limits
  * above. */
 weft_code weft_mesh_read_obj(const char *path, weft_mesh *mesh, weft_error *error);
+
+/* Sets both lengths from the vertices: the longest side of the bounding box, and the square root of the area on the
+ * mesh over that on the texture (0 where the texture has none). */
+void weft_mesh_measure(weft_mesh *mesh);
+
+/* Whether the name is one of "drape", "sphere", "plane". Pure. */
+bool weft_mesh_is_built_in(const char *name);
 
 /* "drape", "sphere", "plane", or the path of an OBJ file. */
 weft_code weft_mesh_open(const char *name, weft_mesh *mesh, weft_error *error);

@@ -288,6 +288,7 @@ static weft_code build_mesh(reader *r)
         return weft_fail_memory(r->error, "OBJ mesh", (size_t)r->corner_count * sizeof *mesh->vertex);
     for (int i = 0; i < r->corner_count; i++)
         set_vertex(r, r->corner[i], &mesh->vertex[i]);
+    weft_mesh_measure(mesh);
     WEFT_TRY(complete_normals(r));
     return weft_mesh_compute_tangents(mesh, r->error);
 }

@@ -49,6 +49,11 @@ weft_code weft_mesh_sphere(weft_mesh *mesh, weft_error *error)
     return WEFT_OK;
 }
 
+bool weft_mesh_is_built_in(const char *name)
+{
+    return strcmp(name, "plane") == 0 || strcmp(name, "sphere") == 0 || strcmp(name, "drape") == 0;
+}
+
 weft_code weft_mesh_open(const char *name, weft_mesh *mesh, weft_error *error)
 {
     if (strcmp(name, "plane") == 0)

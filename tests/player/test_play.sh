@@ -65,6 +65,8 @@ for key in 1 3 s w x 2 m n bracketright c o; do
     xdotool key $key
     shoot "key $key"
 done
+"$weft" render --settings "$next" -o again.png --quiet
+cmp "$next" again.png || { echo "the last screenshot cannot be drawn again"; exit 1; }
 xdotool windowsize "$window" 400 300
 shoot "resize"
 xdotool key q

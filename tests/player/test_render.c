@@ -118,6 +118,69 @@ static void exr_holds_the_linear_values_of_the_png(void **state)
     weft_image_free(&coded);
 }
 
+/* A scene with most of its options away from their defaults. */
+#define MANY_OPTIONS                                                                                                   \
+    "--raw cloth.btf.h5 --weave $WEAVES/cotton_denim.wv --mode compressed,analytic --layout wipe --divider 0.4 "       \
+    "--light 31.7,12.9,0.8 --light 60,100,0.1,0.2,0.3 --shadows --exposure 1.3 --tone soft --camera=-33.3,21,2.9 "     \
+    "--lobes-on 1 --table-bits 5 --level nearest --mesh-size 123 --size 150x90 --samples 2 --quiet"
+
+static void a_picture_can_be_drawn_again_bit_for_bit(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$WEFT render cloth.weft " MANY_OPTIONS " -o shot.png"), 0);
+    assert_int_equal(run("$WEFT render --settings shot.png -o again.png --quiet && cmp shot.png again.png"), 0);
+    assert_int_equal(run("$WEFT render --settings shot.png -o shot.exr --quiet"), 0);
+    assert_int_equal(run("$WEFT render --settings shot.exr -o again.exr --quiet && cmp shot.exr again.exr"), 0);
+    assert_int_equal(run("$WEFT render --exposure 1.2 --settings shot.png -o again.png --quiet"), 0);
+    assert_int_equal(run("cmp -s shot.png again.png"), 1);
+    assert_int_equal(run("$WEFT render cloth.weft " MANY_OPTIONS " --exposure 1.2 -o other.png"), 0);
+    assert_int_equal(run("cmp other.png again.png"), 0);
+}
+
+static void a_folder_moved_as_a_whole_still_draws_its_pictures(void **state)
+{
+    (void)state;
+    assert_int_equal(run("mkdir -p box/shots && cp cloth.weft box && "
+                         "$WEFT render box/cloth.weft --size 40x30 --samples 1 --quiet -o box/shots/a.png"),
+                     0);
+    assert_int_equal(run("rm -rf moved && mkdir moved && mv box moved/crate && cd moved/crate/shots && "
+                         "$WEFT render --settings a.png --quiet -o b.png && cmp a.png b.png"),
+                     0);
+    assert_int_equal(run("mv moved/crate/cloth.weft moved; $WEFT render --settings moved/crate/shots/a.png -o c.png"),
+                     WEFT_BAD_INPUT);
+    expect_said("moved/crate/shots/a.png' shows the material 'moved/crate/shots/../cloth.weft'");
+    assert_int_equal(run("$WEFT render moved/cloth.weft --settings moved/crate/shots/a.png -o c.png --quiet"), 0);
+}
+
+static void a_picture_without_good_settings_is_refused(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$WEFT render cloth.weft --size 40x30 --samples 1 --quiet -o shot.png"), 0);
+    assert_int_equal(run("$WEFT render --settings cloth.weft -o c.png"), WEFT_BAD_INPUT);
+    assert_int_equal(run("head -c 60 shot.png > cut.png; $WEFT render --settings cut.png -o c.png"), WEFT_BAD_INPUT);
+    expect_said("cut.png");
+    assert_int_equal(run("sed 's/\"exposure\": 1/\"exposure\": X/' shot.png > bad.png; "
+                         "$WEFT render --settings bad.png -o c.png"),
+                     WEFT_BAD_INPUT);
+    expect_said("bad.png");
+    assert_int_equal(run("echo '{\"version\": 1, \"lamp\": 3}' > bad.json; $WEFT render --settings bad.json -o c.png"),
+                     WEFT_BAD_INPUT);
+    expect_said("the settings in 'bad.json': 'lamp' is not known");
+    assert_int_not_equal(access("c.png.tmp", F_OK), 0);
+}
+
+static void a_cloth_twice_as_large_repeats_twice_as_often(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$WEFT render cloth.weft --size 40x30 --samples 1 --mesh-size 240 --quiet -o real.png"), 0);
+    /* 24 texels of 0.5 mm: 12 mm */
+    assert_int_equal(run("$WEFT render cloth.weft --size 40x30 --samples 1 --repeat 20 --quiet -o given.png"), 0);
+    weft_image real = read_picture("real.png", 40, 30), given = read_picture("given.png", 40, 30);
+    assert_memory_equal(real.pixels, given.pixels, sizeof(float) * 3 * 40 * 30);
+    weft_image_free(&real);
+    weft_image_free(&given);
+}
+
 static void wrong_usage_is_exit_code_2(void **state)
 {
     (void)state;
@@ -134,6 +197,14 @@ static void wrong_usage_is_exit_code_2(void **state)
     assert_int_equal(run("$WEFT render cloth.weft --samples 65 -o a.png"), WEFT_BAD_USAGE);
     assert_int_equal(run("$WEFT render cloth.weft --level=-1 -o a.png"), WEFT_BAD_USAGE);
     assert_int_equal(run("$WEFT render cloth.weft --repeat 0 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --light 1,2,3,4 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --light 1,2,-3 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --light none -o a.png"), WEFT_BAD_USAGE);
+    expect_said("--environment");
+    assert_int_equal(run("$WEFT render cloth.weft --lobes-on 4 -o a.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --layout difference -o a.png"), WEFT_BAD_USAGE);
+    expect_said("needs two");
+    assert_int_equal(run("$WEFT render cloth.weft cloth.weft -o a.png"), WEFT_BAD_USAGE);
     assert_int_not_equal(access("a.png", F_OK), 0);
 }
 
@@ -175,6 +246,10 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(three_panes_show_three_different_pictures),
         cmocka_unit_test(exr_holds_the_linear_values_of_the_png),
+        cmocka_unit_test(a_picture_can_be_drawn_again_bit_for_bit),
+        cmocka_unit_test(a_folder_moved_as_a_whole_still_draws_its_pictures),
+        cmocka_unit_test(a_picture_without_good_settings_is_refused),
+        cmocka_unit_test(a_cloth_twice_as_large_repeats_twice_as_often),
         cmocka_unit_test(wrong_usage_is_exit_code_2),
         cmocka_unit_test(bad_files_are_exit_code_1_and_leave_no_picture),
         cmocka_unit_test(a_failing_system_is_exit_code_3_and_leaves_no_picture),
