@@ -6,7 +6,8 @@
 
 static void *allocate_rows(size_t rows, size_t stride, size_t size)
 {
-    size_t bytes = rows * stride * size;
+    /* aligned_alloc takes whole multiples of the alignment. */
+    size_t bytes = (rows * stride * size + 63) / 64 * 64;
     void *result = aligned_alloc(64, bytes);
     if (result)
         memset(result, 0, bytes);
