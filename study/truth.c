@@ -12,9 +12,9 @@
 #include <string.h>
 
 /* Triangles of the whole drape that are traced; about 120 bytes each. */
-static const double most_triangles = 8e6;
+static const double most_triangles = 12e6;
 
-enum { PICTURE_SIZE = 400, PICTURE_SAMPLES = 4, DEFAULT_BOUNCES = 3, MAX_BOUNCES = 256, COARSEST_CELLS = 4 };
+enum { PICTURE_SIZE = 400, PICTURE_SAMPLES = 3, DEFAULT_BOUNCES = 3, MAX_BOUNCES = 256, COARSEST_CELLS = 4 };
 
 /* Light of this inclination crosses the cloth from top to bottom within the reach of the cloth near by. */
 static const double reach_deg = 75;

@@ -26,7 +26,7 @@ typedef enum weft_truth_model {
 /* "raw", "compressed", "truth". Pure. */
 const char *weft_truth_model_name(weft_truth_model model);
 
-enum { WEFT_TRUTH_REPEAT = 16 }; /* tiles along the drape's side */
+enum { WEFT_TRUTH_REPEAT = 24 }; /* tiles along the drape's side */
 enum { WEFT_TRUTH_SCENE_COUNT = 3, WEFT_TRUTH_DEFAULT_PATHS = 64 };
 
 /* Linear pictures of a drape under one light, and the errors of the first two against the third. */
