@@ -106,12 +106,11 @@ weft_code weft_player_set_mesh(weft_player *p, const weft_mesh *mesh, weft_error
     return weft_gl_check("uploading the mesh", error);
 }
 
-static weft_code has_now(weft_player *p, weft_mode mode, double width, double height, weft_code code)
+static void has_now(weft_player *p, weft_mode mode, double width, double height)
 {
-    p->has[mode] = code == WEFT_OK;
+    p->has[mode] = true;
     p->texel_count[mode][0] = width;
     p->texel_count[mode][1] = height;
-    return code;
 }
 
 static double smallest_z(const weft_vec3 *direction, int count)
@@ -124,33 +123,60 @@ static double smallest_z(const weft_vec3 *direction, int count)
 
 weft_code weft_player_set_material(weft_player *p, const weft_material *material, weft_error *error)
 {
+    weft_material_texture texture;
+    weft_code code = weft_material_texture_upload(material, &texture, error);
+    if (code != WEFT_OK) {
+        weft_material_texture_free(&texture);
+        return code;
+    }
     weft_material_texture_free(&p->material);
-    weft_code code = weft_material_texture_upload(material, &p->material, error);
+    p->material = texture;
     double *last = p->last_ring_z[WEFT_MODE_COMPRESSED];
     last[0] = material->view_count > 0 ? smallest_z(material->view, material->view_count) : 0;
     last[1] = material->light_count > 0 ? smallest_z(material->light, material->light_count) : last[0];
-    return has_now(p, WEFT_MODE_COMPRESSED, material->level[0].width, material->level[0].height, code);
+    has_now(p, WEFT_MODE_COMPRESSED, material->level[0].width, material->level[0].height);
+    return WEFT_OK;
+}
+
+void weft_player_take_raw(weft_player *p, weft_raw_texture *texture, const weft_dataset_layout *layout)
+{
+    weft_raw_texture_free(&p->raw);
+    p->raw = *texture;
+    *texture = (weft_raw_texture){0};
+    p->last_ring_z[WEFT_MODE_RAW][0] = smallest_z(layout->view, layout->view_count);
+    p->last_ring_z[WEFT_MODE_RAW][1] = smallest_z(layout->light, layout->image_count);
+    weft_mip_area finest = p->raw.plan.layout.area[0];
+    has_now(p, WEFT_MODE_RAW, finest.width, finest.height);
 }
 
 weft_code weft_player_set_dataset(weft_player *p, weft_dataset *dataset, const weft_progress *progress,
                                   int *skipped_levels, weft_error *error)
 {
-    weft_raw_texture_free(&p->raw);
-    weft_code code = weft_raw_texture_upload(dataset, WEFT_RAW_HALF_LIMIT, WEFT_RAW_LIMIT, progress, &p->raw, error);
-    *skipped_levels = p->raw.skipped_levels;
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    p->last_ring_z[WEFT_MODE_RAW][0] = smallest_z(layout->view, layout->view_count);
-    p->last_ring_z[WEFT_MODE_RAW][1] = smallest_z(layout->light, layout->image_count);
-    weft_mip_area finest = p->raw.layout.area[0];
-    return has_now(p, WEFT_MODE_RAW, finest.width, finest.height, code);
+    weft_raw_texture texture;
+    weft_raw_limits limits = weft_raw_texture_limits();
+    weft_code code = weft_raw_texture_upload(dataset, &limits, progress, &texture, error);
+    if (code != WEFT_OK) {
+        weft_raw_texture_free(&texture);
+        return code;
+    }
+    *skipped_levels = texture.plan.skipped_levels;
+    weft_player_take_raw(p, &texture, weft_dataset_get_layout(dataset));
+    return WEFT_OK;
 }
 
 weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, double tiles_u, double tiles_v,
                                 weft_error *error)
 {
+    weft_weave_texture texture;
+    weft_code code = weft_weave_texture_upload(weave, tiles_u, tiles_v, &texture, error);
+    if (code != WEFT_OK) {
+        weft_weave_texture_free(&texture);
+        return code;
+    }
     weft_weave_texture_free(&p->weave);
-    weft_code code = weft_weave_texture_upload(weave, tiles_u, tiles_v, &p->weave, error);
-    return has_now(p, WEFT_MODE_ANALYTIC, tiles_u * weave->tile_width, tiles_v * weave->tile_height, code);
+    p->weave = texture;
+    has_now(p, WEFT_MODE_ANALYTIC, tiles_u * weave->tile_width, tiles_v * weave->tile_height);
+    return WEFT_OK;
 }
 
 bool weft_player_has(const weft_player *p, weft_mode mode)

@@ -24,7 +24,8 @@ typedef struct weft_player weft_player;
 weft_code weft_player_create(weft_player **result, weft_error *error);
 void weft_player_free(weft_player *player);
 
-/* What is shown; each may be set again. Nothing of the arguments is kept. Errors: WEFT_SYSTEM, WEFT_BAD_INPUT. */
+/* What is shown; each may be set again. Nothing of the arguments is kept. Errors: WEFT_SYSTEM, WEFT_BAD_INPUT; what was
+ * shown before then stays. */
 weft_code weft_player_set_mesh(weft_player *player, const weft_mesh *mesh, weft_error *error);
 weft_code weft_player_set_material(weft_player *player, const weft_material *material, weft_error *error);
 /* *skipped_levels receives the number of finest levels that did not fit (0 where all did). */

@@ -69,6 +69,9 @@ void weft_player_shade(const weft_player *player, const weft_pane *pane, const w
 /* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. */
 void weft_player_draw_shadows(weft_player *player, const weft_scene *scene);
 
+/* Shows `texture`, which is taken, as the samples of a dataset of that layout. */
+void weft_player_take_raw(weft_player *player, weft_raw_texture *texture, const weft_dataset_layout *layout);
+
 /* Errors: WEFT_BAD_USAGE unless a mesh and the mode are there. */
 weft_code weft_player_check_mode(const weft_player *player, weft_mode mode, weft_error *error);
 

@@ -138,9 +138,10 @@ static weft_rgba evaluate_raw_mean(void *context, const weft_surface_sample *at)
     return lit_raw(brdf, light);
 }
 
-static raw_model open_raw(stage *s, int size, int views, int lights, weft_values values, size_t half_limit,
-                          size_t limit)
+static raw_model open_raw(stage *s, int size, int views, int lights, weft_values values, size_t half_bytes,
+                          size_t bytes)
 {
+    const weft_raw_limits limits = {half_bytes, bytes, weft_gl_max_size(), weft_gl_max_layers()};
     weft_error error = {0};
     raw_model model;
     int skipped;
@@ -149,7 +150,7 @@ static raw_model open_raw(stage *s, int size, int views, int lights, weft_values
     expect_ok(weft_raw_btf_create(model.dataset, &model.raw, &error), &error);
     expect_ok(weft_player_set_dataset(s->player, model.dataset, NULL, &skipped, &error), &error);
     weft_raw_texture_free(&s->player->raw);
-    expect_ok(weft_raw_texture_upload(model.dataset, half_limit, limit, NULL, &s->player->raw, &error), &error);
+    expect_ok(weft_raw_texture_upload(model.dataset, &limits, NULL, &s->player->raw, &error), &error);
     return model;
 }
 
@@ -165,11 +166,11 @@ static void raw_equals_c_interpolation_in_views_and_lights(void **state)
     stage *s = *state;
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_NONE;
-    raw_model model = open_raw(s, 8, 81, 81, WEFT_REFLECTANCE_COSINE, WEFT_RAW_HALF_LIMIT, WEFT_RAW_LIMIT);
-    assert_false(s->player->raw.packed);
+    raw_model model = open_raw(s, 8, 81, 81, WEFT_REFLECTANCE_COSINE, SIZE_MAX, SIZE_MAX);
+    assert_false(s->player->raw.plan.packed);
     expect_small("raw 81 x 81", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
     close_raw(&model);
-    model = open_raw(s, 5, 19, 37, WEFT_REFLECTANCE, WEFT_RAW_HALF_LIMIT, WEFT_RAW_LIMIT);
+    model = open_raw(s, 5, 19, 37, WEFT_REFLECTANCE, SIZE_MAX, SIZE_MAX);
     expect_small("raw 19 x 37", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
     close_raw(&model);
 }
@@ -179,8 +180,8 @@ static void raw_with_a_shared_exponent_equals_c_too(void **state)
     stage *s = *state;
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_NONE;
-    raw_model model = open_raw(s, 6, 37, 37, WEFT_REFLECTANCE_COSINE, 0, WEFT_RAW_LIMIT);
-    assert_true(s->player->raw.packed);
+    raw_model model = open_raw(s, 6, 37, 37, WEFT_REFLECTANCE_COSINE, 0, SIZE_MAX);
+    assert_true(s->player->raw.plan.packed);
     expect_small("raw packed", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
     close_raw(&model);
 }
@@ -191,7 +192,7 @@ static void the_last_raw_level_is_the_mean_of_all_texels(void **state)
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_FIXED;
     scene.level = 99;
-    raw_model model = open_raw(s, 8, 19, 37, WEFT_REFLECTANCE_COSINE, WEFT_RAW_HALF_LIMIT, WEFT_RAW_LIMIT);
+    raw_model model = open_raw(s, 8, 19, 37, WEFT_REFLECTANCE_COSINE, SIZE_MAX, SIZE_MAX);
     expect_small("raw mean", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw_mean, &model));
     close_raw(&model);
 }
@@ -201,10 +202,11 @@ static void a_dataset_that_does_not_fit_loses_its_finest_levels_first(void **sta
     stage *s = *state;
     weft_error error = {0};
     weft_raw_texture texture;
+    const weft_raw_limits small = {0, 49 * 4, weft_gl_max_size(), weft_gl_max_layers()};
     raw_model model = open_raw(s, 8, 7, 7, WEFT_REFLECTANCE_COSINE, 0, (size_t)49 * 9 * 16 * 4);
-    assert_int_equal(s->player->raw.skipped_levels, 1);
-    assert_int_equal(s->player->raw.layout.area[0].width, 4);
-    assert_int_equal(weft_raw_texture_upload(model.dataset, 0, 49 * 4, NULL, &texture, &error), WEFT_BAD_INPUT);
+    assert_int_equal(s->player->raw.plan.skipped_levels, 1);
+    assert_int_equal(s->player->raw.plan.layout.area[0].width, 4);
+    assert_int_equal(weft_raw_texture_upload(model.dataset, &small, NULL, &texture, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "too many images for graphics memory: 49"));
     weft_raw_texture_free(&texture);
     close_raw(&model);
