@@ -6,6 +6,7 @@
 #include "compress/fit.h"
 #include "compress/given_frames.h"
 #include "compress/group_sums.h"
+#include "compress/texel.h"
 
 #include <argp.h>
 #include <math.h>

@@ -5,8 +5,8 @@
 #include "btf/dataset.h"
 #include "btf/material.h"
 #include "btf/progress.h"
+#include "compress/frame_choice.h"
 #include "compress/note.h"
-#include "compress/texel.h"
 
 #include <stdbool.h>
 

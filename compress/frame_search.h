@@ -4,13 +4,7 @@
 #define WEFT_COMPRESS_FRAME_SEARCH_H
 
 #include "compress/fit.h"
-
-/* Which frame a texel has. */
-typedef enum weft_frame_choice {
-    WEFT_FRAMES_SURFACE, /* that of the surface */
-    WEFT_FRAMES_GIVEN,   /* what the dataset says, which may be that of the surface */
-    WEFT_FRAMES_FITTED   /* the better of the two, or turned from there, where that helps */
-} weft_frame_choice;
+#include "compress/frame_choice.h"
 
 /* A fit of the grey samples and its T. */
 typedef struct weft_grey_fit {
