@@ -181,6 +181,44 @@ static void a_cloth_twice_as_large_repeats_twice_as_often(void **state)
     weft_image_free(&given);
 }
 
+static void a_path_gives_a_picture_for_every_frame(void **state)
+{
+    (void)state;
+    assert_int_equal(run("printf 'time_s,azimuth_deg,light_phi_deg\\n0,-70,-110\\n0.5,20,0\\n1,20,30\\n' > path.csv; "
+                         "$WEFT render cloth.weft --path path.csv --fps 4 --size 40x30 --samples 1 -q -o f%02d.png"),
+                     0);
+    assert_int_equal(run("ls f*.png | tr '\\n' ' ' | grep -qx 'f00.png f01.png f02.png f03.png f04.png '"), 0);
+    assert_int_equal(
+        run("$WEFT render cloth.weft --size 40x30 --samples 1 --camera=20,28,3.6 --light 45,0 -q -o k.png; "
+            "$WEFT render --settings f01.png -q -o g.png && cmp f01.png g.png"),
+        0);
+    weft_image frame = read_picture("f02.png", 40, 30), key = read_picture("k.png", 40, 30);
+    assert_memory_equal(frame.pixels, key.pixels, sizeof(float) * 3 * 40 * 30);
+    weft_image_free(&frame);
+    weft_image_free(&key);
+    assert_int_equal(run("cmp -s f00.png f01.png"), 1);
+    assert_int_equal(run("$WEFT render cloth.weft --path path.csv -o f.png"), WEFT_BAD_USAGE);
+    expect_said("%04d");
+    assert_int_equal(run("$WEFT render cloth.weft --path path.csv -o f%s%d.png"), WEFT_BAD_USAGE);
+    assert_int_equal(run("$WEFT render cloth.weft --path none.csv -o f%d.png"), WEFT_BAD_INPUT);
+    expect_said("none.csv");
+}
+
+static void a_sequence_on_a_full_disk_stops_with_whole_pictures(void **state)
+{
+    (void)state;
+    assert_int_equal(run("printf 'time_s,distance\\n0,60\\n1,2\\n' > near.csv; mkdir -p full; "
+                         "(ulimit -f 40; $WEFT render cloth.weft --path near.csv --fps 3 --size 300x300 --samples 1 -q "
+                         "-o full/f%d.exr)"),
+                     WEFT_SYSTEM);
+    expect_said("full/f");
+    assert_int_equal(run("ls -A full | grep -v '^f[0-9].exr$'"), 1);
+    assert_int_equal(
+        run("for f in full/*; do $WEFT render --settings $f -q -o full/again.exr && cmp $f full/again.exr || exit 9; "
+            "done"),
+        0);
+}
+
 static void wrong_usage_is_exit_code_2(void **state)
 {
     (void)state;
@@ -250,6 +288,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_folder_moved_as_a_whole_still_draws_its_pictures),
         cmocka_unit_test(a_picture_without_good_settings_is_refused),
         cmocka_unit_test(a_cloth_twice_as_large_repeats_twice_as_often),
+        cmocka_unit_test(a_path_gives_a_picture_for_every_frame),
+        cmocka_unit_test(a_sequence_on_a_full_disk_stops_with_whole_pictures),
         cmocka_unit_test(wrong_usage_is_exit_code_2),
         cmocka_unit_test(bad_files_are_exit_code_1_and_leave_no_picture),
         cmocka_unit_test(a_failing_system_is_exit_code_3_and_leaves_no_picture),
