@@ -6,6 +6,7 @@
 #include "compress/budget.h"
 #include "compress/given_frames.h"
 #include "compress/memory.h"
+#include "compress/opacity.h"
 #include "compress/sparse_material.h"
 
 #include <inttypes.h>
@@ -108,56 +109,6 @@ static weft_code create_material(const weft_dataset_layout *layout, const weft_c
     }
     weft_bundle_free(&bundle);
     return code;
-}
-
-/* ---- Opacity ---- */
-
-static weft_code store_opacity(weft_dataset *dataset, weft_material *material, weft_error *error)
-{
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    size_t width = (size_t)layout->width, views = (size_t)layout->view_count, texels = width * (size_t)layout->height;
-    float *row = malloc(width * views * sizeof *row);
-    weft_code code = row ? WEFT_OK : weft_fail_memory(error, "opacity of a row", width * views * sizeof *row);
-    for (int y = 0; code == WEFT_OK && y < layout->height; y++) {
-        code = weft_dataset_read_opacity(dataset, y, 1, row, error);
-        for (size_t i = 0; code == WEFT_OK && i < width * views; i++) {
-            size_t texel = (size_t)y * width + i / views;
-            float alpha = row[i] < 0 ? 0 : row[i] > 1 ? 1 : row[i];
-            material->level[0].table[((i % views) * texels + texel) * 4 + 3] = (uint8_t)(255 * alpha + 0.5f);
-        }
-    }
-    free(row);
-    return code;
-}
-
-/* Opacity of a group of texels is the mean of theirs. */
-static void halve_opacity(const weft_material_level *from, weft_material_level *to, int view_count)
-{
-    size_t from_texels = (size_t)from->width * (size_t)from->height, to_texels = (size_t)to->width * (size_t)to->height;
-    for (size_t view = 0; view < (size_t)view_count; view++) {
-        for (int y = 0; y < to->height; y++) {
-            for (int x = 0; x < to->width; x++) {
-                int rows = 2 * y + 1 < from->height ? 2 : 1, columns = 2 * x + 1 < from->width ? 2 : 1;
-                int sum = 0, count = rows * columns;
-                for (int row = 2 * y; row < 2 * y + rows; row++) {
-                    for (int column = 2 * x; column < 2 * x + columns; column++)
-                        sum += from->table[(view * from_texels + (size_t)(row * from->width + column)) * 4 + 3];
-                }
-                to->table[(view * to_texels + (size_t)(y * to->width + x)) * 4 + 3] =
-                    (uint8_t)((sum + count / 2) / count);
-            }
-        }
-    }
-}
-
-static weft_code fill_opacity(weft_dataset *dataset, weft_material *material, weft_error *error)
-{
-    if (material->view_count == 0)
-        return WEFT_OK;
-    WEFT_TRY(store_opacity(dataset, material, error));
-    for (int level = 1; level < material->level_count; level++)
-        halve_opacity(&material->level[level - 1], &material->level[level], material->view_count);
-    return WEFT_OK;
 }
 
 /* ---- Metadata ---- */
@@ -335,7 +286,7 @@ static weft_code fit_material(fitting *of, weft_material *material, weft_compres
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(of->dataset);
     WEFT_TRY(weft_dataset_fingerprint_take(of->dataset, &of->fingerprint, error));
-    WEFT_TRY(fill_opacity(of->dataset, material, error));
+    WEFT_TRY(opacity_fill(of->dataset, material, error));
     if (report->model == WEFT_COMPRESS_SPARSE)
         WEFT_TRY(fit_sparse(of, material, report, error));
     else

@@ -54,7 +54,7 @@ typedef struct weft_scene {
     bool environment_reference; /* sum every light of the map instead of a representative few: slow */
     double exposure;
     weft_tone tone;
-    double repeat; /* materials for one unit of the mesh's texture coordinates */
+    double repeat; /* materials for one unit of the mesh's texture coordinate u; along v such that texels are square */
     weft_level_choice level_choice;
     double level; /* with WEFT_LEVEL_FIXED; may be fractional */
     weft_filter filter;

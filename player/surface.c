@@ -23,13 +23,20 @@ static void draw_mesh(const weft_player *p)
     glBindVertexArray(0);
 }
 
+/* Width by height of what is shown. A cell of a weave need not be square, a texel is. */
+static double proportion_of(const weft_player *p)
+{
+    const double *texels = p->texel_count[p->has[WEFT_MODE_RAW] ? WEFT_MODE_RAW : WEFT_MODE_COMPRESSED];
+    return p->has[WEFT_MODE_RAW] || p->has[WEFT_MODE_COMPRESSED] ? texels[0] / texels[1] : 1;
+}
+
 static void set_view(const weft_player *p, GLuint program, const weft_scene *scene, const weft_pane *pane)
 {
     float matrix[16];
     weft_orbit_clip_of_world(&scene->orbit, p->centre, p->radius, (double)pane->width / pane->height,
                              pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height, matrix);
     glUniformMatrix4fv(glGetUniformLocation(program, "clip_of_world"), 1, GL_FALSE, matrix);
-    weft_gl_set_float(program, "repeat", scene->repeat);
+    weft_gl_set_vec2(program, "repeat", scene->repeat, scene->repeat * proportion_of(p));
     weft_gl_set_vec2(program, "texel_count", p->texel_count[pane->mode][0], p->texel_count[pane->mode][1]);
     weft_gl_set_float(program, "level_choice", level_uniform(scene));
     weft_gl_set_float(program, "level_bias", pane->sampling.level_bias);

@@ -104,11 +104,12 @@ static weft_code lay_cloth(truth_stage *stage, weft_error *error)
     return code;
 }
 
-/* The player repeats a material as often along v as along u; coordinates in proportion keep the tile's shape. */
-static weft_code set_drape(truth_stage *stage, weft_error *error)
+/* The player takes texels for square; coordinates in proportion lay the tile at its true shape. */
+static weft_code set_drape(truth_stage *stage, const weft_dataset_layout *layout, weft_error *error)
 {
+    double shown = (double)layout->width / layout->height, is = stage->stitch.width / stage->stitch.height;
     for (int i = 0; i < stage->drape.vertex_count; i++)
-        stage->drape.vertex[i].coordinate[1] *= (float)(stage->stitch.width / stage->stitch.height);
+        stage->drape.vertex[i].coordinate[1] *= (float)(is / shown);
     return weft_player_set_mesh(stage->player, &stage->drape, error);
 }
 
@@ -117,7 +118,7 @@ static weft_code set_models(truth_stage *stage, const weft_traced_request *reque
 {
     int skipped_levels;
     WEFT_TRY(weft_player_create(&stage->player, error));
-    WEFT_TRY(set_drape(stage, error));
+    WEFT_TRY(set_drape(stage, weft_dataset_get_layout(request->dataset), error));
     WEFT_TRY(weft_player_set_material(stage->player, request->material, error));
     return weft_player_set_dataset(stage->player, request->dataset, progress, &skipped_levels, error);
 }

@@ -4,7 +4,7 @@ in vec3 world_normal;
 in vec4 world_tangent;
 in vec2 mesh_coordinate;
 
-uniform float repeat;       // materials for a unit of the mesh's coordinates
+uniform vec2 repeat;        // materials for a unit of the mesh's coordinates
 uniform vec2 texel_count;   // texels (cells of a weave) of the material
 uniform float level_choice; // automatic below -999
 uniform float level_bias;

@@ -114,6 +114,40 @@ static void a_half_covered_level_shows_half_of_the_background(void **state)
     weft_material_free(&material);
 }
 
+/* Two squares, one above the other; the upper one is drawn first. */
+static weft_code make_two_planes(weft_mesh *mesh, weft_error *error)
+{
+    weft_mesh plane;
+    WEFT_TRY(weft_mesh_plane(&plane, error));
+    weft_code code = weft_mesh_allocate(8, 4, mesh, error);
+    for (int i = 0; i < 8 && code == WEFT_OK; i++) {
+        mesh->vertex[i] = plane.vertex[i % 4];
+        mesh->vertex[i].position[2] = i < 4 ? 0.2f : 0;
+    }
+    for (int i = 0; i < 12 && code == WEFT_OK; i++)
+        mesh->index[i / 3][i % 3] = plane.index[i / 3 % 2][i % 3] + (i < 6 ? 0 : 4);
+    weft_mesh_free(&plane);
+    return code;
+}
+
+static void holes_show_the_cloth_behind(void **state)
+{
+    weft_player *player = ((stage *)*state)->player;
+    weft_material material;
+    make_mesh_cloth(&material);
+    set_material(player, &material);
+    weft_image background = draw_background(player);
+    set_mesh(player, make_two_planes);
+    weft_scene scene = plane_scene(90);
+    scene.level = 1;
+    weft_image image = draw(player, &scene, 1);
+    double through = 1 - 128 / 255.0, lower = cloth / 2 + through * mean_of_middle(&background);
+    assert_float_equal(mean_of_middle(&image), cloth / 2 + through * lower, 1e-3);
+    weft_image_free(&background);
+    weft_image_free(&image);
+    weft_material_free(&material);
+}
+
 static void levels_of_holes_have_one_mean(void **state)
 {
     weft_player *player = ((stage *)*state)->player;
@@ -189,6 +223,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_half_covered_level_shows_half_of_the_background),
+        cmocka_unit_test(holes_show_the_cloth_behind),
         cmocka_unit_test(levels_of_holes_have_one_mean),
         cmocka_unit_test(evaluator_and_shader_agree_where_there_are_holes),
     };

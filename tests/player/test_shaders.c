@@ -288,9 +288,37 @@ static void analytic_equals_c_where_the_texture_fades_to_the_mean(void **state)
     compare_weave(state, "polyester_lining", 60);
 }
 
+/* The plane from above: u and v run over it as often as square texels fit. */
+static void texels_are_square_on_the_mesh(void **state)
+{
+    stage *s = *state;
+    weft_material material;
+    weft_mesh plane, drape;
+    weft_surface_sample *surface;
+    weft_error error = {0};
+    stage_material(16, 8, 0, 0, 0, &material);
+    expect_ok(weft_player_set_material(s->player, &material, &error), &error);
+    expect_ok(weft_mesh_plane(&plane, &error), &error);
+    expect_ok(weft_player_set_mesh(s->player, &plane, &error), &error);
+    weft_scene scene = weft_scene_default();
+    scene.orbit = (weft_orbit){weft_rad_of_deg(-90), weft_rad_of_deg(90), 3, 0, 0};
+    scene.repeat = 3;
+    expect_ok(weft_player_read_surface(s->player, &scene, WEFT_MODE_COMPRESSED, 64, 64, &surface, &error), &error);
+    const weft_surface_sample *middle = &surface[32 * 64 + 32], *right = middle + 8, *up = middle - 8 * 64;
+    assert_true(right->u > middle->u);
+    assert_float_equal((double)(up->v - middle->v), 2 * (double)(right->u - middle->u), 1e-4);
+    free(surface);
+    expect_ok(weft_mesh_drape(&drape, &error), &error);
+    expect_ok(weft_player_set_mesh(s->player, &drape, &error), &error);
+    weft_mesh_free(&drape);
+    weft_mesh_free(&plane);
+    weft_material_free(&material);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(texels_are_square_on_the_mesh),
         cmocka_unit_test(compressed_equals_c_with_two_lobes_and_81_views),
         cmocka_unit_test(compressed_equals_c_between_levels),
         cmocka_unit_test(compressed_equals_c_under_grazing_light_from_behind),
