@@ -43,10 +43,20 @@ weft_code weft_material_set_shape(weft_material *material, int width, int height
     return WEFT_OK;
 }
 
+/* Tables that are stored by components are decoded into arrays all the same. */
+static bool has_array(const weft_material *material, weft_section_kind kind)
+{
+    if (kind == WEFT_SECTION_TABL)
+        return material->view_count > 0;
+    if (kind == WEFT_SECTION_STAB)
+        return material->light_count > 0;
+    return weft_section_levels(material, kind) > 0;
+}
+
 static weft_code allocate_array(const weft_material *material, weft_section_kind kind, int level, void **array,
                                 weft_error *error)
 {
-    if (level >= weft_section_levels(material, kind))
+    if (!has_array(material, kind))
         return WEFT_OK;
     uint64_t size = weft_section_size(material, kind, level);
     *array = calloc(1, size);
@@ -127,9 +137,24 @@ void weft_material_free(weft_material *material)
         free(material->level[k].table);
         free(material->level[k].light_table);
         free(material->level[k].model);
+        weft_table_basis_free(material->level[k].table_basis);
+        weft_table_basis_free(material->level[k].light_table_basis);
     }
     free(material->view);
     free(material->light);
     free(material->metadata);
     *material = (weft_material){0};
+}
+
+bool weft_material_has_holes(const weft_material *material)
+{
+    for (int k = 0; k < material->level_count; k++) {
+        const weft_material_level *level = &material->level[k];
+        size_t codes = (size_t)material->view_count * (size_t)level->width * (size_t)level->height;
+        for (size_t i = 0; level->table && i < codes; i++) {
+            if (level->table[4 * i + 3] != 255)
+                return true;
+        }
+    }
+    return false;
 }

@@ -9,6 +9,7 @@
 
 #include "btf/half.h"
 #include "btf/status.h"
+#include "btf/table_basis.h"
 #include "btf/vector.h"
 
 #include <stdbool.h>
@@ -41,7 +42,9 @@ typedef struct weft_material_level {
                        NULL where the material has no table (T = 1) */
     uint8_t *light_table; /* [light_count][height][width][4]: r, g, b coded alike, S = (code/255)^2; 255 unused.
                              NULL where the material has none (S = 1) */
-    uint8_t *model;       /* [height][width]: its model, see btf/material_models.h; NULL where all have the same */
+    weft_table_basis *table_basis, *light_table_basis; /* what the tables were decoded from, where the material
+                                                          has_table_bases; else NULL */
+    uint8_t *model; /* [height][width]: its model, see btf/material_models.h; NULL where all have the same */
     weft_material_error error;
 } weft_material_level;
 
@@ -51,6 +54,8 @@ typedef struct weft_material {
     int view_count;        /* directions of T; 0 without a table */
     int light_count;       /* directions of S; 0 without a light table */
     bool has_models;       /* every level says which model each texel has */
+    bool has_table_bases;  /* tables are stored by components, and so */
+    bool has_opacity;      /* are opacities by themselves, if any is below 1 */
     double texel_pitch_mm; /* of level 0 */
     weft_vec3 *view;       /* [view_count], unit, upper hemisphere */
     weft_vec3 *light;      /* [light_count], unit, upper hemisphere */
@@ -66,6 +71,9 @@ void weft_material_free(weft_material *material);
 
 /* Adds maps of models, all 0. Errors: WEFT_SYSTEM. */
 weft_code weft_material_add_models(weft_material *material, weft_error *error);
+
+/* Whether any texel has an opacity below 1 in any view. Pure. */
+bool weft_material_has_holes(const weft_material *material);
 
 /* Writes atomically. Errors: WEFT_BAD_USAGE for contents that could not be read back (not finite, negative diffuse
  * terms or exponents, directions that are no unit vectors of the upper hemisphere, metadata that is no JSON object),

@@ -6,8 +6,8 @@
 
 const unsigned char weft_format_magic[8] = {0x89, 'W', 'E', 'F', 'T', '\r', '\n', 0x1a};
 
-const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ",
-                                                       "LOBE", "TABL", "STAB", "MODL", "ERRO"};
+const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ", "LOBE", "TABL",
+                                                       "STAB", "MODL", "TPCA", "SPCA", "ALPH", "ERRO"};
 
 weft_section_kind weft_section_kind_of(const char type[5])
 {
@@ -29,9 +29,15 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind)
     case WEFT_SECTION_LOBE:
         return material->lobe_count > 0 ? material->level_count : 0;
     case WEFT_SECTION_TABL:
-        return material->view_count > 0 ? material->level_count : 0;
+        return material->view_count > 0 && !material->has_table_bases ? material->level_count : 0;
     case WEFT_SECTION_STAB:
-        return material->light_count > 0 ? material->level_count : 0;
+        return material->light_count > 0 && !material->has_table_bases ? material->level_count : 0;
+    case WEFT_SECTION_TPCA:
+        return material->view_count > 0 && material->has_table_bases ? material->level_count : 0;
+    case WEFT_SECTION_SPCA:
+        return material->light_count > 0 && material->has_table_bases ? material->level_count : 0;
+    case WEFT_SECTION_ALPH:
+        return material->has_opacity && material->has_table_bases ? material->level_count : 0;
     case WEFT_SECTION_MODL:
         return material->has_models ? material->level_count : 0;
     default:
@@ -57,6 +63,8 @@ uint64_t weft_section_size(const weft_material *material, weft_section_kind kind
         return (uint64_t)material->view_count * texels * 4;
     case WEFT_SECTION_STAB:
         return (uint64_t)material->light_count * texels * 4;
+    case WEFT_SECTION_ALPH:
+        return (uint64_t)material->view_count * texels;
     case WEFT_SECTION_MODL:
         return texels;
     case WEFT_SECTION_ERRO:

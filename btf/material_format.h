@@ -4,6 +4,7 @@
 
 #include "btf/material.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "arrays are stored as they lie in memory");
@@ -35,6 +36,9 @@ typedef enum weft_section_kind {
     WEFT_SECTION_TABL,
     WEFT_SECTION_STAB,
     WEFT_SECTION_MODL,
+    WEFT_SECTION_TPCA,
+    WEFT_SECTION_SPCA,
+    WEFT_SECTION_ALPH,
     WEFT_SECTION_ERRO,
     WEFT_SECTION_KINDS /* their number; stands for an unknown type */
 } weft_section_kind;
@@ -54,7 +58,8 @@ weft_section_kind weft_section_kind_of(const char type[5]);
 /* Number of levels that hold a section of this kind: 0 where the material has none. Uses the counts only. Pure. */
 int weft_section_levels(const weft_material *material, weft_section_kind kind);
 
-/* Decoded bytes of a section, from the counts and level sizes only; 0 for META, whose size is free. Pure. */
+/* Decoded bytes of a section, from the counts and level sizes only; 0 for META, TPCA and SPCA, whose sizes are free.
+ * Pure. */
 uint64_t weft_section_size(const weft_material *material, weft_section_kind kind, int level);
 
 /* The texels of FRAM, RHO, LOBE, TABL, STAB and MODL in memory; NULL for the other kinds. */

@@ -145,13 +145,41 @@ static weft_code note_section(file_image *file, int index, weft_material *materi
     if (kind == WEFT_SECTION_KINDS)
         return WEFT_OK;
     material->has_models = material->has_models || kind == WEFT_SECTION_MODL;
-    if (section->level >= (uint32_t)weft_section_levels(material, kind))
+    material->has_opacity = material->has_opacity || kind == WEFT_SECTION_ALPH;
+    material->has_table_bases = material->has_table_bases || kind == WEFT_SECTION_TPCA || kind == WEFT_SECTION_SPCA;
+    /* Whether there are TABL or TPCA is known at the end of the table alone. */
+    if (section->level >= (uint32_t)material->level_count ||
+        (kind <= WEFT_SECTION_LITE && section->level >= (uint32_t)weft_section_levels(material, kind)))
         return fail_section(file, section, error, "the material has no such section");
     if (file->found[kind][section->level])
         return fail_section(file, section, error, "occurs twice");
     if (kind == WEFT_SECTION_META && section->decoded_size > WEFT_FORMAT_MAX_METADATA)
         return fail_section(file, section, error, "its size does not fit the material");
     file->found[kind][section->level] = index + 1;
+    return WEFT_OK;
+}
+
+static int directions_of(const weft_material *material, weft_section_kind kind)
+{
+    return kind == WEFT_SECTION_TPCA ? material->view_count : material->light_count;
+}
+
+static size_t texels_of(const weft_material *material, int k)
+{
+    return (size_t)material->level[k].width * (size_t)material->level[k].height;
+}
+
+/* Its size says how many components there are; a small file does not claim large tables. */
+static weft_code check_basis(const file_image *file, const weft_material *material, weft_section_kind kind, int k,
+                             weft_error *error)
+{
+    const weft_section *section = &file->section[file->found[kind][k] - 1];
+    int directions = directions_of(material, kind);
+    uint64_t decoded = 4 * (uint64_t)directions * texels_of(material, k);
+    if (!weft_table_basis_components(section->decoded_size, directions, texels_of(material, k)))
+        return fail_section(file, section, error, "its size does not fit the material");
+    if (decoded > file->size * WEFT_FORMAT_MAX_RATIO + WEFT_FORMAT_FREE_RATIO)
+        return fail_section(file, section, error, "claims to expand to more than 1024 times the size of the file");
     return WEFT_OK;
 }
 
@@ -162,6 +190,8 @@ static weft_code check_size(const file_image *file, const weft_material *materia
 {
     const weft_section *section = &file->section[file->found[kind][k] - 1];
     uint64_t whole = weft_section_size(material, kind, k);
+    if (kind == WEFT_SECTION_TPCA || kind == WEFT_SECTION_SPCA)
+        return check_basis(file, material, kind, k, error);
     bool compact = weft_section_may_be_compact(material, kind) && section->decoded_size < whole;
     if (kind != WEFT_SECTION_META && section->decoded_size != whole && !compact)
         return fail_section(file, section, error, "its size does not fit the material");
@@ -173,7 +203,11 @@ static weft_code check_size(const file_image *file, const weft_material *materia
 static weft_code check_complete(const file_image *file, const weft_material *material, weft_error *error)
 {
     for (int kind = 0; kind < WEFT_SECTION_KINDS; kind++) {
-        for (int k = 0; k < weft_section_levels(material, (weft_section_kind)kind); k++) {
+        int levels = weft_section_levels(material, (weft_section_kind)kind);
+        if (levels == 0 && file->found[kind][0])
+            return fail_section(file, &file->section[file->found[kind][0] - 1], error,
+                                "the material has no such section");
+        for (int k = 0; k < levels; k++) {
             if (!file->found[kind][k])
                 return weft_fail(error, WEFT_BAD_INPUT, "'%s' is damaged: section %s of level %d is missing",
                                  file->path, weft_section_type[kind], k);
@@ -289,6 +323,36 @@ static weft_code read_compact(const file_image *file, const weft_section *sectio
     return code;
 }
 
+static weft_code read_basis(const file_image *file, const weft_section *section, weft_material *material,
+                            weft_section_kind kind, int k, weft_error *error)
+{
+    weft_material_level *level = &material->level[k];
+    weft_table_basis **basis = kind == WEFT_SECTION_TPCA ? &level->table_basis : &level->light_table_basis;
+    uint8_t *table = kind == WEFT_SECTION_TPCA ? level->table : level->light_table;
+    int directions = directions_of(material, kind);
+    size_t texels = texels_of(material, k);
+    WEFT_TRY(weft_table_basis_create(weft_table_basis_components(section->decoded_size, directions, texels), directions,
+                                     texels, basis, error));
+    WEFT_TRY(decode(file, section, (*basis)->bytes, error));
+    memset(table, 255, 4 * (size_t)directions * texels);
+    weft_table_basis_decode(*basis, table);
+    return WEFT_OK;
+}
+
+/* After TPCA. */
+static weft_code read_opacity(const file_image *file, const weft_section *section, const weft_material *material, int k,
+                              weft_error *error)
+{
+    uint8_t *alpha = malloc(section->decoded_size), *table = material->level[k].table;
+    if (!alpha)
+        return weft_fail_memory(error, "opacity", section->decoded_size);
+    weft_code code = decode(file, section, alpha, error);
+    for (size_t i = 0; code == WEFT_OK && i < section->decoded_size; i++)
+        table[4 * i + 3] = alpha[i];
+    free(alpha);
+    return code;
+}
+
 static weft_code read_section(const file_image *file, weft_material *material, weft_section_kind kind, int k,
                               weft_error *error)
 {
@@ -302,6 +366,11 @@ static weft_code read_section(const file_image *file, weft_material *material, w
         return read_directions(file, section, material->light_count, material->light, error);
     case WEFT_SECTION_ERRO:
         return read_error(file, section, &material->level[k].error, error);
+    case WEFT_SECTION_TPCA:
+    case WEFT_SECTION_SPCA:
+        return read_basis(file, section, material, kind, k, error);
+    case WEFT_SECTION_ALPH:
+        return read_opacity(file, section, material, k, error);
     default:
         if (section->decoded_size < weft_section_size(material, kind, k))
             return read_compact(file, section, material, kind, k, error);

@@ -101,7 +101,7 @@ static weft_code add_section(file_image *file, weft_section_kind kind, int level
                          weft_section_type[kind], level, fault);
     size_t offset = aligned(file->size), bound = ZSTD_compressBound(size);
     unsigned char *stored = file->bytes + offset;
-    bool is_texels = kind >= WEFT_SECTION_FRAM && kind <= WEFT_SECTION_MODL;
+    bool is_texels = kind >= WEFT_SECTION_FRAM && kind <= WEFT_SECTION_ALPH;
     size_t packed = is_texels ? compress_section(stored, bound, bytes, size) : 0;
     size_t stored_size = packed > 0 ? packed : size;
     if (packed == 0)
@@ -157,6 +157,25 @@ static weft_code add_texels(file_image *file, const weft_material *material, wef
     return code;
 }
 
+static const weft_table_basis *basis_of(const weft_material *material, weft_section_kind kind, int k)
+{
+    const weft_material_level *level = &material->level[k];
+    return kind == WEFT_SECTION_TPCA ? level->table_basis : level->light_table_basis;
+}
+
+static weft_code add_opacity(file_image *file, const weft_material *material, int k, weft_error *error)
+{
+    size_t size = weft_section_size(material, WEFT_SECTION_ALPH, k);
+    uint8_t *alpha = malloc(size);
+    if (!alpha)
+        return weft_fail_memory(error, "opacity", size);
+    for (size_t i = 0; i < size; i++)
+        alpha[i] = material->level[k].table[4 * i + 3];
+    weft_code code = add_section(file, WEFT_SECTION_ALPH, k, alpha, size, error);
+    free(alpha);
+    return code;
+}
+
 static weft_code add_level_section(file_image *file, const weft_material *material, weft_section_kind kind, int k,
                                    weft_error *error)
 {
@@ -172,6 +191,13 @@ static weft_code add_level_section(file_image *file, const weft_material *materi
         return add_directions(file, kind, material->light, material->light_count, error);
     case WEFT_SECTION_ERRO:
         return add_section(file, kind, k, errors, sizeof errors, error);
+    case WEFT_SECTION_TPCA:
+    case WEFT_SECTION_SPCA: {
+        const weft_table_basis *basis = basis_of(material, kind, k);
+        return add_section(file, kind, k, basis->bytes, basis->size, error);
+    }
+    case WEFT_SECTION_ALPH:
+        return add_opacity(file, material, k, error);
     default:
         return add_texels(file, material, kind, k, error);
     }
@@ -185,6 +211,13 @@ static int count_sections(const weft_material *material)
     return count;
 }
 
+static size_t section_bytes(const weft_material *material, weft_section_kind kind, int k)
+{
+    if (kind == WEFT_SECTION_TPCA || kind == WEFT_SECTION_SPCA)
+        return basis_of(material, kind, k)->size;
+    return weft_section_size(material, kind, k);
+}
+
 /* Room for every section, each by itself at the worst that zstd does to it. */
 static size_t largest_file(const weft_material *material)
 {
@@ -192,7 +225,7 @@ static size_t largest_file(const weft_material *material)
         aligned(table_end(count_sections(material))) + aligned(ZSTD_compressBound(strlen(material->metadata)));
     for (int kind = 0; kind < WEFT_SECTION_KINDS; kind++) {
         for (int k = 0; k < weft_section_levels(material, (weft_section_kind)kind); k++)
-            size += aligned(ZSTD_compressBound(weft_section_size(material, (weft_section_kind)kind, k)));
+            size += aligned(ZSTD_compressBound(section_bytes(material, (weft_section_kind)kind, k)));
     }
     return size;
 }

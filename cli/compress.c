@@ -27,7 +27,8 @@ enum {
     KEY_ERROR,
     KEY_BUDGET,
     KEY_REPORT,
-    KEY_MEMORY
+    KEY_MEMORY,
+    KEY_TABLES
 };
 
 static const struct argp_option option_table[] = {
@@ -36,6 +37,10 @@ static const struct argp_option option_table[] = {
     {"table", KEY_TABLE, "on|off", 0, "View table T, where the samples can carry it (default: on)", 0},
     {"light-table", KEY_LIGHT_TABLE, "on|off", 0,
      "Light table S beside T, as large and several times the time; where lights repeat (default: off)", 0},
+    {"tables", KEY_TABLES, "8bit|pca:K", 0,
+     "Store T and S in 8 bits for each direction, or by K principal components across texels: a fraction of the size; "
+     "lobes are fitted to what is stored, in a second pass (default: 8bit)",
+     0},
     {"levels", KEY_LEVELS, "on|off", 0, "Mip levels (default: on)", 0},
     {"frames", KEY_FRAMES, "on|off|given", 0,
      "Turn the frame of each texel where that helps, from that of the surface and from the one that the dataset gives; "
@@ -65,6 +70,15 @@ static weft_frame_choice parse_frames(const char *argument, struct argp_state *s
     return parse_switch("frames", argument, state) ? WEFT_FRAMES_FITTED : WEFT_FRAMES_SURFACE;
 }
 
+static int parse_tables(char *argument, struct argp_state *state)
+{
+    if (strcmp(argument, "8bit") == 0)
+        return 0;
+    if (strncmp(argument, "pca:", 4) != 0)
+        argp_error(state, "--tables is 8bit or pca:K, not '%s'", argument);
+    return (int)parse_whole("tables pca:", argument + 4, 1, WEFT_BASIS_MAX_COMPONENTS, state);
+}
+
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     compress_command *command = state->input;
@@ -84,6 +98,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_LIGHT_TABLE:
         options->light_table = parse_switch("light-table", argument, state);
+        return 0;
+    case KEY_TABLES:
+        options->table_components = parse_tables(argument, state);
         return 0;
     case KEY_LEVELS:
         options->levels = parse_switch("levels", argument, state);
@@ -116,6 +133,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
             argp_error(state, "needs NAME.btf.h5 and -o NAME.weft");
         if (options->target_error > 0 && options->budget_bytes > 0)
             argp_error(state, "give --error or --budget, not both");
+        if (options->table_components > 0 && (options->target_error > 0 || options->budget_bytes > 0))
+            argp_error(state, "--tables pca:K is shared by all texels: leave out --error and --budget");
         if (command->report && !(options->target_error > 0 || options->budget_bytes > 0))
             argp_error(state, "--report needs --error or --budget: else all texels have the same model");
         refuse_same_file(command->output, command->input, state);

@@ -8,6 +8,7 @@
 #include "compress/memory.h"
 #include "compress/opacity.h"
 #include "compress/sparse_material.h"
+#include "compress/table_pca.h"
 
 #include <inttypes.h>
 #include <jansson.h>
@@ -50,6 +51,12 @@ static weft_code check_options(const weft_dataset *dataset, const weft_compress_
         return weft_fail(error, WEFT_BAD_USAGE, "largest exponent is %g, must be 1 to 60000", options->max_exponent);
     if (!(options->target_error >= 0 && options->target_error <= 1))
         return weft_fail(error, WEFT_BAD_USAGE, "target error is %g, must be 0 to 1", options->target_error);
+    if (options->table_components < 0 || options->table_components > WEFT_BASIS_MAX_COMPONENTS)
+        return weft_fail(error, WEFT_BAD_USAGE, "%d components of tables asked for, must be 1 to %d",
+                         options->table_components, WEFT_BASIS_MAX_COMPONENTS);
+    if (options->table_components > 0 && (options->target_error > 0 || options->budget_bytes > 0))
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "components of tables are shared by all texels: no target error or budget for each of them");
     if (options->target_error > 0 && options->budget_bytes > 0)
         return weft_fail(error, WEFT_BAD_USAGE, "a target error and a budget exclude each other");
     if (used_images(weft_dataset_get_layout(dataset), options->held_out) == 0)
@@ -129,6 +136,8 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
     }
     if (fit && options->budget_bytes > 0)
         json_object_set_new(fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
+    if (fit && options->table_components > 0)
+        json_object_set_new(fit, "table_components", json_integer(options->table_components));
     if (fit && report->model == WEFT_COMPRESS_SPARSE) {
         json_object_set_new(fit, "largest_exponent", json_real(setting->largest_exponent));
         json_object_set_new(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
@@ -220,6 +229,24 @@ static weft_code fit_chosen(fitting *of, const weft_texel_source *source, const 
     return source->target_error > 0 ? weft_material_find_models(material, error) : WEFT_OK;
 }
 
+/* Tables by components, and the lobes fitted to them in a second pass over the samples. That needs no checkpoint: what
+ * it starts from is the first pass, which has one. */
+static weft_code reduce_tables(fitting *of, const weft_texel_source *source, const weft_dense_job *job,
+                               weft_material *material, weft_dense_result *result, weft_error *error)
+{
+    weft_texel_source again = *source;
+    weft_dense_job alone = *job;
+    weft_dense_result second;
+    WEFT_TRY(weft_material_reduce_tables(material, of->options->table_components, error));
+    again.tables = material;
+    alone.checkpoint_path = NULL;
+    WEFT_TRY(weft_dense_fit(of->dataset, &again, &alone, material, &second, error));
+    result->times.bytes += second.times.bytes;
+    result->times.reading += second.times.reading;
+    result->times.starving += second.times.starving;
+    return WEFT_OK;
+}
+
 static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     const weft_compress_options *options = of->options;
@@ -245,6 +272,8 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
     source.options.table = report->model == WEFT_COMPRESS_TABLE;
     source.options.max_exponent = options->max_exponent;
     WEFT_TRY(fit_chosen(of, &source, &job, material, &result, error));
+    if (options->table_components > 0 && material->view_count + material->light_count > 0)
+        WEFT_TRY(reduce_tables(of, &source, &job, material, &result, error));
     /* What is free is given back to the system, so that writing the material has room. */
     malloc_trim(0);
     of->counts = result.counts;

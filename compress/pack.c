@@ -195,6 +195,15 @@ void weft_pack_channel(const weft_bundle *bundle, const weft_samples *samples, i
     weft_pack_rounded(&rounded, samples->scale, packed);
 }
 
+/* Terms that took something over from T once may lie beyond the bound of the fit; twice what they are is allowed. */
+static double scale_of_terms(const weft_fit *fit)
+{
+    double largest = fit->diffuse;
+    for (int i = 0; i < fit->lobe_count; i++)
+        largest = fmax(largest, fit->lobe[i].amplitude);
+    return 2 * largest / WEFT_LARGEST_AMPLITUDE;
+}
+
 void weft_pack_given_table(const weft_bundle *bundle, const weft_samples *samples, int channel,
                            const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit,
                            const uint8_t *code, weft_packed *packed)
@@ -208,6 +217,6 @@ void weft_pack_given_table(const weft_bundle *bundle, const weft_samples *sample
     trial->fit = rounded;
     weft_workspace_pass(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, decoded),
                         trial);
-    solve_rest(bundle, trial, decoded, frozen, 1, &rounded);
+    solve_rest(bundle, trial, decoded, frozen, scale_of_terms(fit), &rounded);
     weft_pack_rounded(&rounded, samples->scale, packed);
 }

@@ -298,6 +298,29 @@ static weft_error_sums judge_texel(weft_texel_fitter *fitter, int level, int x, 
     return sums;
 }
 
+/* Lobes for tables that are given. */
+static void refit_texel(weft_texel_fitter *fitter, const weft_material *from, int level, size_t texel)
+{
+    const weft_candidate whole = {from, {from->lobe_count, 8, 8}};
+    const weft_material_level *at = &from->level[level];
+    weft_frame frame = weft_frame_decode(at->frame + 3 * texel);
+    weft_fit_options options = fitter->source->options;
+    options.lobe_count = from->lobe_count;
+    memcpy(fitter->frame, at->frame + 3 * texel, sizeof fitter->frame);
+    fitter->turns = fitter->second_start = false;
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
+        const uint8_t *code = fitter->code + (size_t)channel * (size_t)fitter->bundle.view_count;
+        load_channel(fitter, &whole, at, texel, channel, &frame);
+        if (!(fitter->samples.energy[channel] > 0))
+            continue;
+        weft_samples lit = samples_as_lit(fitter, channel);
+        weft_pack_given_table(&fitter->bundle, &lit, channel, &options, fitter->workspace, &fitter->as_read[channel],
+                              code, &fitter->packed[channel]);
+        fitter->as_read[channel] =
+            weft_unpack(&fitter->packed[channel], options.lobe_count, &frame, fitter->samples.scale);
+    }
+}
+
 /* ---- The model that suffices ---- */
 
 /* The largest model that the samples can carry. */
@@ -390,7 +413,10 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
     weft_fit_options whole = whole_model(fitter);
     weft_frame frame;
     const weft_frame *given = find_given(fitter->source->given, level, x, y, &frame);
-    if (fitter->source->target_error > 0)
+    if (fitter->source->tables)
+        refit_texel(fitter, fitter->source->tables, level,
+                    (size_t)y * (size_t)material->level[level].width + (size_t)x);
+    else if (fitter->source->target_error > 0)
         counts->missed += !fit_smallest(fitter, &whole, given);
     else
         fit_model(fitter, &whole, fitter->light_count > 0, given);

@@ -127,25 +127,12 @@ static weft_code upload_directions(const weft_material *material, weft_material_
     return code;
 }
 
-static bool is_opaque(const weft_material *material)
-{
-    for (int k = 0; k < material->level_count; k++) {
-        const weft_material_level *level = &material->level[k];
-        size_t count = (size_t)level->width * (size_t)level->height * (size_t)material->view_count;
-        for (size_t i = 0; level->table && i < count; i++) {
-            if (level->table[4 * i + 3] != 255)
-                return false;
-        }
-    }
-    return true;
-}
-
 weft_code weft_material_texture_upload(const weft_material *material, weft_material_texture *t, weft_error *error)
 {
     *t = (weft_material_texture){
         .layout = weft_mip_layout_of(material->level[0].width, material->level[0].height, material->level_count, 0),
         .lobe_count = material->lobe_count,
-        .opaque = is_opaque(material),
+        .opaque = !weft_material_has_holes(material),
     };
     WEFT_TRY(upload_texels(material, t, error));
     WEFT_TRY(upload_table(material, &t->layout, false, &t->table, error));

@@ -62,14 +62,22 @@ static json_t *describe_models(const weft_material *material, int k)
     return models;
 }
 
+/* NULL where tables are stored by themselves. */
+static json_t *describe_basis(const weft_table_basis *basis)
+{
+    return basis ? json_integer(basis->component_count) : NULL;
+}
+
 static json_t *describe_level(const weft_material *material, int k)
 {
     const weft_material_level *level = &material->level[k];
     const weft_material_error *e = &level->error;
-    return json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f, s:o*}", "texels", level->width, level->height,
+    return json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f, s:o*, s:o*, s:o*}", "texels", level->width, level->height,
                      "median_relative_error", e->median_relative, "percentile80_relative_error",
                      e->percentile80_relative, "rmse", e->rmse, "relative_rmse", e->relative_rmse, "psnr_db",
-                     isfinite(e->psnr_db) ? e->psnr_db : 0, "texels_by_model", describe_models(material, k));
+                     isfinite(e->psnr_db) ? e->psnr_db : 0, "components_of_T", describe_basis(level->table_basis),
+                     "components_of_S", describe_basis(level->light_table_basis), "texels_by_model",
+                     describe_models(material, k));
 }
 
 static json_t *describe_material(const char *path, const weft_material *material)
