@@ -214,15 +214,17 @@ static void killed_again_and_again_it_ends_with_the_same_bytes(void **state)
 static void other_models_go_on_as_well(void **state)
 {
     (void)state;
-    const char *const option[4] = {"--error", "25"};
-    outcome got = compress_dataset(dataset_path, "large-chosen.weft", no_limit, option);
-    expect_says(&got, 0, "fitted in");
-    got = compress_dataset(dataset_path, path, (limits){.kill_at = 900000}, option);
-    assert_true(WIFSIGNALED(got.status));
-    got = compress_dataset(dataset_path, path, no_limit, option);
-    expect_says(&got, 0, "going on after");
-    expect_same_bytes(path, "large-chosen.weft");
-    unlink(path);
+    const char *const option[][4] = {{"--error", "25"}, {"--light-table", "on"}, {"--tables", "pca:3"}};
+    for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
+        outcome got = compress_dataset(dataset_path, "large-chosen.weft", no_limit, option[i]);
+        expect_says(&got, 0, "fitted in");
+        got = compress_dataset(dataset_path, path, (limits){.kill_at = 900000}, option[i]);
+        assert_true(WIFSIGNALED(got.status));
+        got = compress_dataset(dataset_path, path, no_limit, option[i]);
+        expect_says(&got, 0, "going on after");
+        expect_same_bytes(path, "large-chosen.weft");
+        unlink(path);
+    }
 }
 
 static void a_checkpoint_cut_anywhere_goes_on(void **state)

@@ -2,6 +2,7 @@
 #include "texel_fixture.h"
 
 #include "compress/pack.h"
+#include "compress/workspace.h"
 
 /* Error of a packed fit over the error of the fit. */
 static double loss(texel_fixture *fixture, const weft_fit_options *options, const weft_fit *fit)
@@ -90,6 +91,47 @@ static void largest_table_entry_uses_the_whole_range(void **state)
     assert_true(largest > 175);
 }
 
+/* Where light and view graze on the same side, the lobe is far below its peak: its amplitude lies beyond the bound of
+ * the fit, and T has taken over the rest. */
+static void amplitudes_take_back_what_a_large_table_had(void **state)
+{
+    texel_fixture *fixture = *state;
+    const double exponent = 8, amplitude = 5e5;
+    weft_fit_options options = weft_fit_default_options();
+    options.lobe_count = 1;
+    for (int image = 0; image < fixture->layout.image_count; image++) {
+        weft_vec3 l = fixture->layout.light[image], v = fixture->layout.view[fixture->layout.view_of_image[image]];
+        double base = (double)(l.x * v.x + l.y * v.y);
+        fixture->count[image] = v.z > 0.95 ? 1 : 0;
+        for (int k = 0; k < 3; k++)
+            fixture->sum[3 * image + k] =
+                (float)((double)(fixture->count[image] * l.z) * (base > 0 ? amplitude * pow(base, exponent) : 0));
+    }
+    texel_fixture_gather(fixture);
+    double needed = amplitude / fixture->samples.scale, held = 5e4;
+    assert_true(needed > 4e5);
+    weft_fit fit = {.lobe_count = 1, .lobe = {{{1, 1, 0}, log(exponent), held}}, .frame = fixture->frame};
+    for (int view = 0; view < WEFT_UBO81_COUNT; view++)
+        fixture->table[view] = needed / held;
+    assert_true(texel_fixture_error(fixture, 0, &fit, fixture->table) < 1e-4);
+    weft_packed packed;
+    uint8_t code[WEFT_UBO81_COUNT];
+    double decoded[WEFT_UBO81_COUNT];
+    weft_trial *trial = &fixture->workspace->trial[0];
+    trial->fit = fit;
+    weft_workspace_pass(&fixture->bundle, &fixture->samples, 0, &options,
+                        weft_workspace_keep_table(&fixture->bundle, fixture->workspace, fixture->table), trial);
+    weft_pack_channel(&fixture->bundle, &fixture->samples, 0, &options, fixture->workspace, &fit, fixture->table,
+                      &packed, code);
+    for (int view = 0; view < WEFT_UBO81_COUNT; view++)
+        decoded[view] = weft_table_of_code(code[view]);
+    weft_fit stored = weft_unpack(&packed, 1, &fit.frame, fixture->samples.scale);
+    assert_true(texel_fixture_error(fixture, 0, &stored, decoded) < 0.03);
+    weft_pack_given_table(&fixture->bundle, &fixture->samples, 0, &options, fixture->workspace, &stored, code, &packed);
+    stored = weft_unpack(&packed, 1, &fit.frame, fixture->samples.scale);
+    assert_true(texel_fixture_error(fixture, 0, &stored, decoded) < 0.03);
+}
+
 static void frames_survive_packing(void **state)
 {
     (void)state;
@@ -108,6 +150,7 @@ int main(void)
         cmocka_unit_test(rounding_costs_less_than_a_hundredth_of_the_error),
         cmocka_unit_test(sharp_lobes_survive_half_floats),
         cmocka_unit_test(largest_table_entry_uses_the_whole_range),
+        cmocka_unit_test(amplitudes_take_back_what_a_large_table_had),
         cmocka_unit_test(frames_survive_packing),
     };
     return cmocka_run_group_tests(tests, texel_fixture_setup, texel_fixture_teardown);
