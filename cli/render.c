@@ -72,6 +72,9 @@ static weft_code draw_picture(render_command *command, weft_player *player, weft
     WEFT_TRY(scene_errors_print(player, &settings->scene, settings->width, settings->height, errors, error));
     if (errors[0])
         command_say(&scene->common, "%s", errors);
+    WEFT_TRY(environment_error_print(player, settings, errors, error));
+    if (errors[0])
+        command_say(&scene->common, "%s", errors);
     return WEFT_OK;
 }
 

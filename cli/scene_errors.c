@@ -2,7 +2,9 @@
 
 #include "study/visible_error.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void append(char text[SCENE_ERRORS_SIZE], weft_mode mode, const weft_prediction_error *e)
@@ -28,4 +30,48 @@ weft_code scene_errors_print(weft_player *player, const weft_scene *scene, int w
         append(text, scene->pane[i], &e);
     }
     return WEFT_OK;
+}
+
+/* ---- Environments ---- */
+
+static double relative_rmse(const weft_image *image, const weft_image *reference, const weft_surface_sample *surface)
+{
+    double squares = 0, norm = 0;
+    for (size_t i = 0; i < 3 * (size_t)image->width * (size_t)image->height; i++) {
+        if (!(surface[i / 3].covered > 0.5f))
+            continue;
+        double exact = (double)reference->pixels[i], difference = (double)image->pixels[i] - exact;
+        squares += difference * difference;
+        norm += exact * exact;
+    }
+    return norm > 0 ? sqrt(squares / norm) : 0;
+}
+
+weft_code environment_error_print(weft_player *player, const weft_settings *settings, char text[SCENE_ERRORS_SIZE],
+                                  weft_error *error)
+{
+    const weft_scene *scene = &settings->scene;
+    int width = (settings->width + 3) / 4, height = (settings->height + 3) / 4;
+    text[0] = 0;
+    if (!scene->environment || !scene->environment_reference || !weft_player_has_environment(player))
+        return WEFT_OK;
+    weft_scene alone = *scene;
+    alone.layout = WEFT_LAYOUT_PANES;
+    alone.pane_count = 1;
+    alone.labels = alone.show_level = alone.show_extrapolation = false;
+    weft_image exact = {0}, fast = {0};
+    weft_surface_sample *surface = NULL;
+    weft_code code = weft_player_picture(player, &alone, width, height, settings->samples, NULL, &exact, error);
+    alone.environment_reference = false;
+    if (code == WEFT_OK)
+        code = weft_player_picture(player, &alone, width, height, settings->samples, NULL, &fast, error);
+    if (code == WEFT_OK)
+        code = weft_player_read_surface(player, &alone, alone.pane[0], width, height, &surface, error);
+    if (code == WEFT_OK)
+        snprintf(text, SCENE_ERRORS_SIZE, "without --environment-reference: relative RMSE %.2f %%",
+                 100 * relative_rmse(&fast, &exact, surface));
+    weft_image_free(&exact);
+    weft_image_free(&fast);
+    free(surface);
+    return code;
 }

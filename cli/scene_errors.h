@@ -2,7 +2,7 @@
 #ifndef WEFT_CLI_SCENE_ERRORS_H
 #define WEFT_CLI_SCENE_ERRORS_H
 
-#include "player/player.h"
+#include "player/settings.h"
 
 enum { SCENE_ERRORS_SIZE = 256 };
 
@@ -11,5 +11,11 @@ enum { SCENE_ERRORS_SIZE = 256 };
  * has no dataset or shows no model. width x height: of the whole picture. Errors: those of drawing. */
 weft_code scene_errors_print(weft_player *player, const weft_scene *scene, int width, int height,
                              char text[SCENE_ERRORS_SIZE], weft_error *error);
+
+/* How far the picture would be from the one lit by every light of the environment map without that: a line with the
+ * relative RMSE over the pixels of the mesh, for the first mode that is shown, at a quarter of the size; "" unless the
+ * scene asks for the reference. Errors: those of drawing. */
+weft_code environment_error_print(weft_player *player, const weft_settings *settings, char text[SCENE_ERRORS_SIZE],
+                                  weft_error *error);
 
 #endif

@@ -36,8 +36,8 @@ void weft_mesh_bounds(const weft_mesh *mesh, float centre[3], float *radius);
  * every vertex by itself). A vertex of no area gets z. Errors: WEFT_SYSTEM. */
 weft_code weft_mesh_compute_normals(weft_mesh *mesh, const uint32_t *group, weft_error *error);
 
-/* Unit tangents across the normals from positions and texture coordinates (Lengyel 2001); any perpendicular where the
- * coordinates are degenerate. Errors: WEFT_SYSTEM. */
+/* Unit tangents across the normals from positions and texture coordinates (Lengyel 2001; Debian has no library for it);
+ * any perpendicular where the coordinates are degenerate. Errors: WEFT_SYSTEM. */
 weft_code weft_mesh_compute_tangents(weft_mesh *mesh, weft_error *error);
 
 /* Two triangles for each cell of a grid of columns x rows vertices, row-major; the mesh has room for them. */

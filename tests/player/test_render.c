@@ -140,9 +140,10 @@ static void a_picture_can_be_drawn_again_bit_for_bit(void **state)
 static void a_folder_moved_as_a_whole_still_draws_its_pictures(void **state)
 {
     (void)state;
-    assert_int_equal(run("mkdir -p box/shots && cp cloth.weft box && "
-                         "$WEFT render box/cloth.weft --size 40x30 --samples 1 --quiet -o box/shots/a.png"),
-                     0);
+    assert_int_equal(
+        run("mkdir -p box/shots && cp cloth.weft box && "
+            "$WEFT render box/cloth.weft --mesh plane --size 40x30 --samples 1 --quiet -o box/shots/a.png"),
+        0);
     assert_int_equal(run("rm -rf moved && mkdir moved && mv box moved/crate && cd moved/crate/shots && "
                          "$WEFT render --settings a.png --quiet -o b.png && cmp a.png b.png"),
                      0);
@@ -155,7 +156,7 @@ static void a_folder_moved_as_a_whole_still_draws_its_pictures(void **state)
 static void a_picture_without_good_settings_is_refused(void **state)
 {
     (void)state;
-    assert_int_equal(run("$WEFT render cloth.weft --size 40x30 --samples 1 --quiet -o shot.png"), 0);
+    assert_int_equal(run("$WEFT render cloth.weft --mesh plane --size 40x30 --samples 1 --quiet -o shot.png"), 0);
     assert_int_equal(run("$WEFT render --settings cloth.weft -o c.png"), WEFT_BAD_INPUT);
     assert_int_equal(run("head -c 60 shot.png > cut.png; $WEFT render --settings cut.png -o c.png"), WEFT_BAD_INPUT);
     expect_said("cut.png");
@@ -185,18 +186,19 @@ static void a_path_gives_a_picture_for_every_frame(void **state)
 {
     (void)state;
     assert_int_equal(run("printf 'time_s,azimuth_deg,light_phi_deg\\n0,-70,-110\\n0.5,20,0\\n1,20,30\\n' > path.csv; "
-                         "$WEFT render cloth.weft --path path.csv --fps 4 --size 40x30 --samples 1 -q -o f%02d.png"),
+                         "$WEFT render cloth.weft --path path.csv --fps 4 --size 40x30 --samples 1 -q -o turn%02d.png"),
                      0);
-    assert_int_equal(run("ls f*.png | tr '\\n' ' ' | grep -qx 'f00.png f01.png f02.png f03.png f04.png '"), 0);
+    assert_int_equal(
+        run("ls turn*.png | tr '\\n' ' ' | grep -qx 'turn00.png turn01.png turn02.png turn03.png turn04.png '"), 0);
     assert_int_equal(
         run("$WEFT render cloth.weft --size 40x30 --samples 1 --camera=20,28,3.6 --light 45,0 -q -o k.png; "
-            "$WEFT render --settings f01.png -q -o g.png && cmp f01.png g.png"),
+            "$WEFT render --settings turn01.png -q -o g.png && cmp turn01.png g.png"),
         0);
-    weft_image frame = read_picture("f02.png", 40, 30), key = read_picture("k.png", 40, 30);
+    weft_image frame = read_picture("turn02.png", 40, 30), key = read_picture("k.png", 40, 30);
     assert_memory_equal(frame.pixels, key.pixels, sizeof(float) * 3 * 40 * 30);
     weft_image_free(&frame);
     weft_image_free(&key);
-    assert_int_equal(run("cmp -s f00.png f01.png"), 1);
+    assert_int_equal(run("cmp -s turn00.png turn01.png"), 1);
     assert_int_equal(run("$WEFT render cloth.weft --path path.csv -o f.png"), WEFT_BAD_USAGE);
     expect_said("%04d");
     assert_int_equal(run("$WEFT render cloth.weft --path path.csv -o f%s%d.png"), WEFT_BAD_USAGE);
@@ -207,8 +209,9 @@ static void a_path_gives_a_picture_for_every_frame(void **state)
 static void a_sequence_on_a_full_disk_stops_with_whole_pictures(void **state)
 {
     (void)state;
-    assert_int_equal(run("printf 'time_s,distance\\n0,60\\n1,2\\n' > near.csv; mkdir -p full; "
-                         "(ulimit -f 40; $WEFT render cloth.weft --path near.csv --fps 3 --size 300x300 --samples 1 -q "
+    assert_int_equal(run("printf 'time_s,distance\\n0,60\\n1,2\\n' > near.csv; rm -rf full; mkdir full; "
+                         "(ulimit -f 40; $WEFT render cloth.weft --path near.csv --fps 3 --size 300x300 "
+                         "--samples 1 -q "
                          "-o full/f%d.exr)"),
                      WEFT_SYSTEM);
     expect_said("full/f");
@@ -217,6 +220,30 @@ static void a_sequence_on_a_full_disk_stops_with_whole_pictures(void **state)
         run("for f in full/*; do $WEFT render --settings $f -q -o full/again.exr && cmp $f full/again.exr || exit 9; "
             "done"),
         0);
+}
+
+static void the_reference_of_an_environment_tells_its_error(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_image sky;
+    expect_ok(weft_image_create(32, 16, &sky, &error), &error);
+    for (int i = 0; i < 3 * 32 * 16; i++)
+        sky.pixels[i] = i % 96 < 9 ? 8 : 0.2f;
+    expect_ok(weft_image_write("sky.exr", &sky, NULL, &error), &error);
+    weft_image_free(&sky);
+    assert_int_equal(run("$WEFT render cloth.weft --mesh sphere --environment sky.exr --environment-reference "
+                         "--size 32x24 --samples 1 -o sky.png | grep -Eq 'relative RMSE [0-9.]+ %'"),
+                     0);
+    assert_int_equal(run("$WEFT render cloth.weft --mesh sphere --environment sky.exr --size 32x24 --samples 1 -q "
+                         "-o few.png; cmp -s few.png sky.png"),
+                     1);
+    assert_int_equal(run("$WEFT render cloth.weft --mesh sphere --settings sky.png -q -o again.png; "
+                         "cmp sky.png again.png"),
+                     0);
+    assert_int_equal(run("$WEFT render cloth.weft --environment cloth.weft -o a.png"), WEFT_BAD_INPUT);
+    assert_int_equal(run("$WEFT render cloth.weft --environment few.png -o a.png"), WEFT_BAD_INPUT);
+    expect_said("few.png': an environment map");
 }
 
 static void wrong_usage_is_exit_code_2(void **state)
@@ -290,6 +317,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_cloth_twice_as_large_repeats_twice_as_often),
         cmocka_unit_test(a_path_gives_a_picture_for_every_frame),
         cmocka_unit_test(a_sequence_on_a_full_disk_stops_with_whole_pictures),
+        cmocka_unit_test(the_reference_of_an_environment_tells_its_error),
         cmocka_unit_test(wrong_usage_is_exit_code_2),
         cmocka_unit_test(bad_files_are_exit_code_1_and_leave_no_picture),
         cmocka_unit_test(a_failing_system_is_exit_code_3_and_leaves_no_picture),
