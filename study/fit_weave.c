@@ -2,7 +2,6 @@
 
 #include "btf/direction.h"
 #include "study/fit_weave_model.h"
-#include "study/least_squares.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +9,7 @@
 #include <time.h>
 
 /* Directions looked at by the coarse grid and by the search that follows; the last steps look at all. */
-enum { GRID_IMAGES = 250, SEARCH_IMAGES = 500, GRID_STEPS = 5, GRID_SWEEPS = 2 };
+enum { GRID_IMAGES = 250, SEARCH_IMAGES = 500, GRID_STEPS = 5, GRID_SWEEPS = 2, STAGES = 4 };
 
 /* ---- Coarse grid ---- */
 
@@ -34,12 +33,13 @@ static weft_code try_point(weft_fit_weave_model *model, const double *parameters
 static weft_code search_group(weft_fit_weave_model *model, int group, grid_best *best, weft_error *error)
 {
     double point[WEFT_FIT_WEAVE_PARAMETERS];
-    int umax = weft_fit_weave_umax(model, group), psi = weft_fit_weave_psi(model, group);
+    int umax = weft_fit_weave_index(group, WEFT_FIT_WEAVE_UMAX), psi = weft_fit_weave_index(group, WEFT_FIT_WEAVE_PSI);
+    bool staple = model->group[group].staple;
     memcpy(point, best->parameters, sizeof point);
     for (int i = 0; i < GRID_STEPS; i++) {
         point[umax] = model->low[umax] + (model->high[umax] - model->low[umax]) * (i + 0.5) / GRID_STEPS;
-        for (int j = 0; j < (psi < 0 ? 1 : GRID_STEPS); j++) {
-            if (psi >= 0)
+        for (int j = 0; j < (staple ? GRID_STEPS : 1); j++) {
+            if (staple)
                 point[psi] = model->low[psi] + (model->high[psi] - model->low[psi]) * (j + 0.5) / GRID_STEPS;
             WEFT_TRY(try_point(model, point, best, error));
         }
@@ -62,104 +62,111 @@ static weft_code search_grid(weft_fit_weave_model *model, double *parameters, we
 
 /* ---- Least squares ---- */
 
-static weft_code solve(weft_fit_weave_model *model, int images, double *parameters, double *deviation, double *cost,
-                       weft_error *error)
+/* A width with a larger standard error, relative to that of the start, may be told better by the start; it is taken
+ * from there unless that makes the sum of squares larger by more than this factor. */
+static const double vague_width = 0.25, least_rise = 1.01;
+
+static weft_code solve(weft_fit_weave_model *model, int images, double *parameters, double *cost, weft_error *error)
 {
     weft_fit_weave_look_at(model, images);
-    weft_least_squares problem = {.parameter_count = model->parameter_count,
-                                  .residual_count = 3 * model->looked_at,
-                                  .low = model->low,
-                                  .high = model->high,
-                                  .residuals = weft_fit_weave_residuals,
-                                  .context = model};
-    WEFT_TRY(weft_least_squares_solve(&problem, parameters, deviation, error));
+    weft_least_squares problem = weft_fit_weave_problem(model);
+    WEFT_TRY(weft_least_squares_solve(&problem, parameters, error));
     return weft_fit_weave_cost(model, parameters, cost, error);
 }
 
-/* From the start that was given and from the best of the grid: the better end, refined on all images. */
+/* From the start that was given and from the best of the grid, with the widths of the start: the better end. */
 static weft_code search(weft_fit_weave_model *model, const weft_progress *progress, double *parameters,
-                        double *deviation, weft_error *error)
+                        weft_error *error)
 {
     double other[WEFT_FIT_WEAVE_PARAMETERS], cost, other_cost;
     memcpy(other, parameters, sizeof other);
     WEFT_TRY(search_grid(model, other, error));
-    weft_progress_report(progress, "fitting", 1, 4);
-    WEFT_TRY(solve(model, SEARCH_IMAGES, parameters, deviation, &cost, error));
-    weft_progress_report(progress, "fitting", 2, 4);
-    WEFT_TRY(solve(model, SEARCH_IMAGES, other, deviation, &other_cost, error));
-    weft_progress_report(progress, "fitting", 3, 4);
+    weft_progress_report(progress, "fitting", 1, STAGES);
+    WEFT_TRY(solve(model, SEARCH_IMAGES, parameters, &cost, error));
+    weft_progress_report(progress, "fitting", 2, STAGES);
+    WEFT_TRY(solve(model, SEARCH_IMAGES, other, &other_cost, error));
+    weft_progress_report(progress, "fitting", 3, STAGES);
     if (other_cost < cost)
         memcpy(parameters, other, sizeof other);
-    WEFT_TRY(solve(model, model->mean->count, parameters, deviation, &cost, error));
-    weft_progress_report(progress, "fitting", 4, 4);
     return WEFT_OK;
 }
 
-/* ---- Errors and the report ---- */
-
-static int compare_doubles(const void *left, const void *right)
-{
-    double a = *(const double *)left, b = *(const double *)right;
-    return (a > b) - (a < b);
-}
-
-static double largest_value(const weft_mean_brdf *mean)
-{
-    double largest = 0;
-    for (int i = 0; i < mean->count; i++)
-        largest = fmax(largest, fmax(mean->value[i].r, fmax(mean->value[i].g, mean->value[i].b)));
-    return largest;
-}
-
-weft_code weft_fit_weave_measure(const weft_mean_brdf *mean, const weft_weave *weave, weft_fit_weave_error *result,
+/* Takes the width of a group back to the start where the data do as well with that. */
+static weft_code try_start_width(weft_fit_weave_model *model, int group, double *parameters, double *cost,
                                  weft_error *error)
 {
-    size_t size = 3 * (size_t)mean->count * sizeof(double);
-    double *relative = malloc(size), threshold = 1e-4 * largest_value(mean);
-    if (!relative)
-        return weft_fail_memory(error, "relative errors", size);
-    weft_rgb *predicted = malloc((size_t)mean->count * sizeof *predicted);
-    if (!predicted) {
-        free(relative);
-        return weft_fail_memory(error, "predicted reflectance", (size_t)mean->count * sizeof *predicted);
+    double other[WEFT_FIT_WEAVE_PARAMETERS], other_cost;
+    memcpy(other, parameters, sizeof other);
+    weft_fit_weave_hold_width(model, group, other);
+    WEFT_TRY(solve(model, model->mean->count, other, &other_cost, error));
+    if (other_cost > least_rise * *cost) {
+        weft_fit_weave_free_width(model, group);
+        return WEFT_OK;
     }
-#pragma omp parallel for schedule(dynamic, 64)
-    for (int i = 0; i < mean->count; i++)
-        predicted[i] = weft_weave_mean_brdf(weave, mean->light[i], mean->view[i]);
-    size_t count = 0;
-    for (int i = 0; i < mean->count; i++) {
-        const double data[3] = {mean->value[i].r, mean->value[i].g, mean->value[i].b};
-        const double model[3] = {predicted[i].r, predicted[i].g, predicted[i].b};
-        for (int k = 0; k < 3; k++) {
-            if (data[k] > threshold)
-                relative[count++] = fabs(model[k] - data[k]) / data[k];
-        }
-    }
-    qsort(relative, count, sizeof *relative, compare_doubles);
-    *result = (weft_fit_weave_error){0};
-    if (count > 0) {
-        result->median_relative = relative[count / 2];
-        result->percentile80_relative = relative[count * 4 / 5];
-    }
-    free(relative);
-    free(predicted);
+    memcpy(parameters, other, sizeof other);
+    *cost = other_cost;
     return WEFT_OK;
 }
+
+static weft_code try_start_widths(weft_fit_weave_model *model, double *parameters, double *deviation, double *cost,
+                                  weft_error *error)
+{
+    for (int group = 0; group < model->group_count; group++) {
+        if (deviation[weft_fit_weave_index(group, WEFT_FIT_WEAVE_WIDTH)] < vague_width)
+            continue;
+        WEFT_TRY(try_start_width(model, group, parameters, cost, error));
+        WEFT_TRY(weft_fit_weave_deviation(model, parameters, deviation, error));
+    }
+    return WEFT_OK;
+}
+
+/* Where the inclination is as large as the width of the start allows, a narrower one may be true, and the way there is
+ * along the edge: begin beside it. */
+static void release_width(weft_fit_weave_model *model, int group, double *parameters)
+{
+    int umax = weft_fit_weave_index(group, WEFT_FIT_WEAVE_UMAX);
+    bool at_edge = parameters[umax] > 0.95 * model->high[umax];
+    weft_fit_weave_free_width(model, group);
+    if (at_edge)
+        parameters[weft_fit_weave_index(group, WEFT_FIT_WEAVE_WIDTH)] = 0.75;
+}
+
+/* On all images, with the widths that the data tell. */
+static weft_code refine(weft_fit_weave_model *model, const weft_progress *progress, double *parameters,
+                        double *deviation, weft_error *error)
+{
+    double cost;
+    for (int group = 0; group < model->group_count; group++)
+        release_width(model, group, parameters);
+    WEFT_TRY(solve(model, SEARCH_IMAGES, parameters, &cost, error));
+    WEFT_TRY(solve(model, model->mean->count, parameters, &cost, error));
+    WEFT_TRY(weft_fit_weave_deviation(model, parameters, deviation, error));
+    WEFT_TRY(try_start_widths(model, parameters, deviation, &cost, error));
+    weft_progress_report(progress, "fitting", STAGES, STAGES);
+    return WEFT_OK;
+}
+
+/* ---- The report ---- */
 
 static void describe_group(const weft_fit_weave_model *model, int index, const double *deviation,
                            weft_fit_weave_group *group)
 {
-    int psi = weft_fit_weave_psi(model, index), umax = weft_fit_weave_umax(model, index);
-    const weft_segment *segment = &model->weave->yarn[model->group[index].yarn].segment;
-    *group = (weft_fit_weave_group){.warp = model->weave->yarn[model->group[index].yarn].warp,
-                                    .staple = psi >= 0,
-                                    .yarn = model->group[index].yarn,
-                                    .psi_deg = weft_deg_of_rad(segment->psi),
-                                    .umax_deg = weft_deg_of_rad(segment->umax),
-                                    .kappa = segment->kappa,
-                                    .psi_deviation = psi >= 0 ? weft_deg_of_rad(deviation[psi]) : 0,
-                                    .umax_deviation = weft_deg_of_rad(deviation[umax]),
-                                    .kappa_deviation = deviation[umax + 1]};
+    const weft_fit_weave_fibres *fibres = &model->group[index];
+    const weft_yarn *yarn = &model->weave->yarn[fibres->yarn];
+    const double *own = deviation + weft_fit_weave_index(index, WEFT_FIT_WEAVE_PSI);
+    int width = weft_fit_weave_index(index, WEFT_FIT_WEAVE_WIDTH);
+    *group = (weft_fit_weave_group){.warp = yarn->warp,
+                                    .staple = fibres->staple,
+                                    .yarn = fibres->yarn,
+                                    .width_fitted = model->low[width] < model->high[width],
+                                    .psi_deg = weft_deg_of_rad(yarn->segment.psi),
+                                    .umax_deg = weft_deg_of_rad(yarn->segment.umax),
+                                    .kappa = yarn->segment.kappa,
+                                    .width = yarn->segment.width,
+                                    .psi_deviation = weft_deg_of_rad(own[WEFT_FIT_WEAVE_PSI]),
+                                    .umax_deviation = weft_deg_of_rad(own[WEFT_FIT_WEAVE_UMAX]),
+                                    .kappa_deviation = own[WEFT_FIT_WEAVE_CURVE],
+                                    .width_deviation = own[WEFT_FIT_WEAVE_WIDTH] * fibres->width};
 }
 
 static void describe(const weft_fit_weave_model *model, const double *deviation, weft_fit_weave_report *report)
@@ -191,7 +198,9 @@ weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const we
     *report = (weft_fit_weave_report){0};
     WEFT_TRY(weft_fit_weave_measure(mean, weave, &report->before, error));
     WEFT_TRY(weft_fit_weave_model_create(mean, weave, &model, parameters, error));
-    weft_code code = search(&model, progress, parameters, deviation, error);
+    weft_code code = search(&model, progress, parameters, error);
+    if (code == WEFT_OK)
+        code = refine(&model, progress, parameters, deviation, error);
     if (code == WEFT_OK)
         code = weft_fit_weave_model_apply(&model, parameters, error);
     if (code == WEFT_OK) {

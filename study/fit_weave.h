@@ -15,10 +15,10 @@ typedef struct weft_fit_weave_error {
 
 /* Yarns of one direction with the same shape and colours: their fibres are fitted as one. */
 typedef struct weft_fit_weave_group {
-    bool warp, staple;
-    int yarn;                                              /* the first of them, index */
-    double psi_deg, umax_deg, kappa;                       /* fitted */
-    double psi_deviation, umax_deviation, kappa_deviation; /* standard errors, degrees; INFINITY: not determined */
+    bool warp, staple, width_fitted;
+    int yarn;                               /* the first of them, index */
+    double psi_deg, umax_deg, kappa, width; /* fitted; the width, in cells, is that of the start where not */
+    double psi_deviation, umax_deviation, kappa_deviation, width_deviation; /* standard errors; INFINITY: unknown */
 } weft_fit_weave_group;
 
 typedef struct weft_fit_weave_report {
@@ -29,13 +29,15 @@ typedef struct weft_fit_weave_report {
     double seconds;
 } weft_fit_weave_report;
 
-/* Changes psi, umax, kappa, alpha, beta, kd and ks of `weave` to what explains `mean` best; segments that the model
- * does not have stay as they are. For a trial shape the diffuse colour and the specular colour of every group are
+/* Changes psi, umax, kappa, alpha, beta, widths, kd and ks of `weave` to what explains `mean` best; segments that the
+ * model does not have stay as they are. For a trial shape the diffuse colour and the specular colour of every group are
  * non-negative least squares of the error relative to the data; the shape is found on a coarse grid, group by group,
  * then by non-linear least squares. A mean BRDF knows only the sum of the diffuse terms: kd of all yarns is scaled by
- * one factor a channel. psi keeps its sign, and a filament (psi = 0) stays one. Errors: WEFT_BAD_INPUT for a weave
- * without admissible segment or with more than WEFT_FIT_WEAVE_GROUPS kinds, or for fewer images than unknowns;
- * WEFT_SYSTEM. */
+ * one factor a channel. psi keeps its sign, and a filament (psi = 0) stays one. The widths of a group change by one
+ * factor, 0.4 to 2.5; they stay those of the start where its standard error is above 0.25 and the start does as well.
+ * Standard errors take residuals of images with the same light or the same view as correlated. Errors: WEFT_BAD_INPUT
+ * for a weave without admissible segment or with more than WEFT_FIT_WEAVE_GROUPS kinds, or for fewer images than
+ * unknowns; WEFT_SYSTEM. */
 weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const weft_progress *progress,
                          weft_fit_weave_report *report, weft_error *error);
 

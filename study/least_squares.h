@@ -14,16 +14,19 @@ typedef void weft_residual_function(void *context, const double *parameters, dou
 
 typedef struct weft_least_squares {
     int parameter_count, residual_count;
-    const double *low, *high; /* [parameter_count] */
+    const double *low, *high; /* [parameter_count]; equal: the parameter is held there */
     weft_residual_function *residuals;
     void *context;
 } weft_least_squares;
 
-/* Minimises the sum of squares between the bounds from `parameters`, both start and result; derivatives by forward
- * differences. `deviation` [parameter_count] receives the standard error of each parameter as the residuals suggest it,
- * INFINITY where they do not determine it. Errors: WEFT_SYSTEM where the solver fails. */
-weft_code weft_least_squares_solve(const weft_least_squares *problem, double *parameters, double *deviation,
-                                   weft_error *error);
+/* Minimises the sum of squares between the bounds from `parameters`, both start and result, with derivatives by
+ * differences over 0.3 % of a parameter. Errors: WEFT_SYSTEM where the solver fails. */
+weft_code weft_least_squares_solve(const weft_least_squares *problem, double *parameters, weft_error *error);
+
+/* The same differences: residuals [residual_count] at `parameters`, and their derivatives [residual_count]
+ * [parameter_count], 0 for what is held. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_least_squares_linearise(const weft_least_squares *problem, const double *parameters, double *residuals,
+                                       double *jacobian, weft_error *error);
 
 /* x >= 0 [columns] that minimises |A x - b|^2, A [rows][columns]. Start and result in `x`. Errors: WEFT_SYSTEM. */
 weft_code weft_non_negative_least_squares(int rows, int columns, const double *a, const double *b, double *x,

@@ -2,22 +2,36 @@
 
 #include <ceres/ceres.h>
 
-#include <cmath>
 #include <exception>
-#include <utility>
 #include <vector>
 
 namespace
 {
 
-struct residual_functor {
-    const weft_least_squares *problem;
+bool is_held(const weft_least_squares *problem, int i)
+{
+    return problem->low[i] >= problem->high[i];
+}
 
-    bool operator()(double const *const *parameters, double *residuals) const
+class difference_cost final : public ceres::CostFunction
+{
+  public:
+    explicit difference_cost(const weft_least_squares *given) : problem(given)
     {
+        mutable_parameter_block_sizes()->push_back(given->parameter_count);
+        set_num_residuals(given->residual_count);
+    }
+
+    bool Evaluate(double const *const *parameters, double *residuals, double **jacobians) const override
+    {
+        if (jacobians && jacobians[0])
+            return weft_least_squares_linearise(problem, parameters[0], residuals, jacobians[0], nullptr) == WEFT_OK;
         problem->residuals(problem->context, parameters[0], residuals);
         return true;
     }
+
+  private:
+    const weft_least_squares *problem;
 };
 
 ceres::Solver::Options quiet_options()
@@ -40,51 +54,31 @@ weft_code check(const ceres::Solver::Summary &summary, weft_error *error)
     return weft_fail(error, WEFT_SYSTEM, "least squares: %s", summary.message.c_str());
 }
 
-/* Standard errors from the inverse of J'J; a parameter that is not determined has none. */
-void estimate_deviation(ceres::Problem &problem, const weft_least_squares *given, const double *parameters, double cost,
-                        double *deviation)
+/* Held parameters leave the problem; the others get bounds. */
+void constrain(ceres::Problem &problem, const weft_least_squares *given, double *parameters)
 {
-    int n = given->parameter_count, freedom = given->residual_count - n;
-    std::vector<double> covariance(static_cast<size_t>(n) * static_cast<size_t>(n));
-    ceres::Covariance::Options options;
-    options.algorithm_type = ceres::DENSE_SVD;
-    options.null_space_rank = -1;
-    options.num_threads = 1;
-    ceres::Covariance estimate(options);
-    const std::vector<std::pair<const double *, const double *>> blocks = {{parameters, parameters}};
-    bool known = freedom > 0 && estimate.Compute(blocks, &problem) &&
-                 estimate.GetCovarianceBlock(parameters, parameters, covariance.data());
-    for (int i = 0; i < n; i++) {
-        double variance = covariance[static_cast<size_t>(i) * static_cast<size_t>(n + 1)];
-        deviation[i] = known && variance > 0 ? std::sqrt(variance * 2 * cost / freedom) : INFINITY;
+    std::vector<int> held;
+    for (int i = 0; i < given->parameter_count; i++) {
+        if (is_held(given, i)) {
+            held.push_back(i);
+            continue;
+        }
+        problem.SetParameterLowerBound(parameters, i, given->low[i]);
+        problem.SetParameterUpperBound(parameters, i, given->high[i]);
     }
-}
-
-void set_bounds(ceres::Problem &problem, double *parameters, int count, const double *low, const double *high)
-{
-    for (int i = 0; i < count; i++) {
-        problem.SetParameterLowerBound(parameters, i, low[i]);
-        problem.SetParameterUpperBound(parameters, i, high[i]);
-    }
+    if (!held.empty())
+        problem.SetManifold(parameters, new ceres::SubsetManifold(given->parameter_count, held));
 }
 
 } // namespace
 
-weft_code weft_least_squares_solve(const weft_least_squares *given, double *parameters, double *deviation,
-                                   weft_error *error)
+weft_code weft_least_squares_solve(const weft_least_squares *given, double *parameters, weft_error *error)
 try {
-    ceres::NumericDiffOptions steps;
-    steps.relative_step_size = 1e-3;
-    auto *cost = new ceres::DynamicNumericDiffCostFunction<residual_functor, ceres::FORWARD>(
-        new residual_functor{given}, ceres::TAKE_OWNERSHIP, steps);
-    cost->AddParameterBlock(given->parameter_count);
-    cost->SetNumResiduals(given->residual_count);
     ceres::Problem problem;
-    problem.AddResidualBlock(cost, nullptr, parameters);
-    set_bounds(problem, parameters, given->parameter_count, given->low, given->high);
+    problem.AddResidualBlock(new difference_cost(given), nullptr, parameters);
+    constrain(problem, given, parameters);
     ceres::Solver::Summary summary;
     ceres::Solve(quiet_options(), &problem, &summary);
-    estimate_deviation(problem, given, parameters, summary.final_cost, deviation);
     return check(summary, error);
 } catch (const std::exception &exception) {
     return weft_fail(error, WEFT_SYSTEM, "least squares: %s", exception.what());
