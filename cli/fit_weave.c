@@ -53,9 +53,9 @@ static const struct argp parser = {option_table,
                                    parse_option,
                                    "NAME.btf.h5 --weave START.wv -o FITTED.wv",
                                    "Example: weft fit-weave denim.btf.h5 --weave twill.wv -o denim.wv\n\n"
-                                   "Finds twist, inclination and curvature of the yarns, scattering of the fibres and "
-                                   "colours so that the weave reflects like the mean of the dataset. Pattern and sizes "
-                                   "stay as they are in START.wv.",
+                                   "Finds twist, inclination, curvature and width of the yarns, scattering of the "
+                                   "fibres and colours so that the weave reflects like the mean of the dataset. "
+                                   "Pattern and lengths stay as they are in START.wv.",
                                    children,
                                    NULL,
                                    NULL};
@@ -88,19 +88,25 @@ static void print_value(char *text, size_t size, double value, double deviation)
 
 static void say_group(const fit_weave_command *command, const weft_fit_weave_group *group, const weft_weave *weave)
 {
-    char psi[64] = "0 (filament)", umax[64], kappa[64];
+    char psi[64] = "0 (filament)", umax[64], kappa[64], width[64];
     weft_rgb ks = weave->yarn[group->yarn].ks;
     if (group->staple)
         print_value(psi, sizeof psi, group->psi_deg, group->psi_deviation);
     print_value(umax, sizeof umax, group->umax_deg, group->umax_deviation);
     print_value(kappa, sizeof kappa, group->kappa, group->kappa_deviation);
-    command_say(&command->common, "%s (yarn %d): psi %s, umax %s degrees, kappa %s, ks %.4g %.4g %.4g",
-                group->warp ? "warp" : "weft", group->yarn + 1, psi, umax, kappa, (double)ks.r, (double)ks.g,
+    if (group->width_fitted)
+        print_value(width, sizeof width, group->width, group->width_deviation);
+    else
+        snprintf(width, sizeof width, "%.4g (as given: the data tell it no better)", group->width);
+    command_say(&command->common, "%s (yarn %d): psi %s, umax %s degrees, kappa %s, width %s, ks %.4g %.4g %.4g",
+                group->warp ? "warp" : "weft", group->yarn + 1, psi, umax, kappa, width, (double)ks.r, (double)ks.g,
                 (double)ks.b);
-    char event[256];
+    char event[320];
     snprintf(event, sizeof event,
-             "{\"event\":\"yarn\",\"type\":\"%s\",\"yarn\":%d,\"psi_deg\":%.9g,\"umax_deg\":%.9g,\"kappa\":%.9g}",
-             group->warp ? "warp" : "weft", group->yarn + 1, group->psi_deg, group->umax_deg, group->kappa);
+             "{\"event\":\"yarn\",\"type\":\"%s\",\"yarn\":%d,\"psi_deg\":%.9g,\"umax_deg\":%.9g,\"kappa\":%.9g,"
+             "\"width\":%.9g,\"width_fitted\":%s}",
+             group->warp ? "warp" : "weft", group->yarn + 1, group->psi_deg, group->umax_deg, group->kappa,
+             group->width, group->width_fitted ? "true" : "false");
     command_event(&command->common, event);
 }
 
