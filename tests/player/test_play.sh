@@ -76,4 +76,5 @@ for _ in $(seq 300); do
 done
 trap - EXIT
 wait $player
+"$weft" play --settings "$next" --frames 3 | grep -q "3 frames" || { echo "no window from a screenshot"; exit 1; }
 echo "$shots screenshots, all different from the one before"
