@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64 };
+enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64, PLOT_SIZE = 142 };
 
 static const double settle_s = 0.12; /* after the last change the mean of a picture at rest begins */
 static const double hurry_ms = 15;   /* exact frames longer than this are drawn stochastically while things move */
@@ -95,6 +95,7 @@ static weft_code open_window(weft_application *a, weft_error *error)
     WEFT_TRY(weft_window_create(title, a->setup.width, a->setup.height, &events, &a->window, error));
     a->scale = weft_window_scale(a->window);
     WEFT_TRY(weft_ui_create(weft_window_handle(a->window), a->scale, error));
+    WEFT_TRY(weft_probe_plots_create((int)(PLOT_SIZE * a->scale), &a->plots, error));
     return weft_player_create(&a->player, error);
 }
 
@@ -120,6 +121,7 @@ void weft_application_free(weft_application *a)
         return;
     if (a->window) {
         weft_canvas_free(&a->canvas);
+        weft_probe_plots_free(&a->plots);
         weft_ui_free();
     }
     weft_player_free(a->player);
@@ -308,6 +310,16 @@ static bool is_busy(const weft_application *a)
     return !is_finished(a) || a->interaction.changed || a->progress >= 0;
 }
 
+/* While the picture moves the numbers would be of one frame's choices. */
+static weft_code probe(weft_application *a, weft_error *error)
+{
+    const weft_interaction *i = &a->interaction;
+    if (!a->rests || weft_application_panel_width(a) == 0 || i->drag != WEFT_DRAG_NONE)
+        return WEFT_OK;
+    WEFT_TRY(weft_probe_read(a->player, &i->scene, &a->canvas, (int)i->x, (int)i->y, &a->probe, error));
+    return a->probe.on_mesh ? weft_probe_plots_draw(&a->plots, a->player, &i->scene, &a->probe, error) : WEFT_OK;
+}
+
 static void show(weft_application *a, int width, int height)
 {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -352,8 +364,10 @@ static weft_code step(weft_application *a, weft_error *error)
     if (width <= left || height == 0)
         return WEFT_OK;
     WEFT_TRY(prepare_canvas(a, width - left, height, error));
-    if (has_something(a))
+    if (has_something(a)) {
         WEFT_TRY(advance(a, error));
+        WEFT_TRY(probe(a, error));
+    }
     show(a, width, height);
     return weft_gl_check("showing the window", error);
 }

@@ -4,6 +4,7 @@
 
 #include "player/application.h"
 #include "player/interaction.h"
+#include "player/probe.h"
 
 struct weft_application {
     weft_application_setup setup;
@@ -16,7 +17,9 @@ struct weft_application {
     double moved_s;            /* when the picture changed last */
     double total_ms;
     long frame_count;
-    bool rests; /* the mean of the frames so far is of a picture that no longer changes */
+    bool rests;       /* the mean of the frames so far is of a picture that no longer changes */
+    weft_probe probe; /* of the pixel under the pointer */
+    weft_probe_plots plots;
     double progress;
     char errors[WEFT_NOTE_SIZE]; /* of what is shown, "" until it rests */
     char note[WEFT_NOTE_SIZE];   /* told to the user */

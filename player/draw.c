@@ -64,7 +64,7 @@ weft_code weft_player_check_mode(const weft_player *p, weft_mode mode, weft_erro
 
 /* ---- Panes ---- */
 
-static void bind_mode(const weft_player *p, const weft_scene *scene, weft_mode mode, GLuint program)
+void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_mode mode, GLuint program)
 {
     switch (mode) {
     case WEFT_MODE_RAW:
@@ -92,7 +92,7 @@ static bool is_stochastic(const weft_player *p, const weft_scene *scene, weft_sa
     return scene->filter == WEFT_FILTER_STOCHASTIC;
 }
 
-static weft_program_kind kind_of(const weft_player *p, const weft_scene *scene, const weft_pane *pane)
+weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene, const weft_pane *pane)
 {
     weft_program_kind kind = {
         .mode = pane->mode,
@@ -133,19 +133,20 @@ static weft_code shade_layer(weft_player *p, const weft_scene *scene, const weft
                              GLuint target, weft_error *error)
 {
     GLuint program;
-    const weft_program_kind kind = kind_of(p, scene, pane);
+    const weft_program_kind kind = weft_player_kind(p, scene, pane);
     WEFT_TRY(weft_programs_find(&p->programs, &kind, &program, error));
     glUseProgram(program);
     weft_player_set_point(p, program, scene, pane, layer);
     set_shown(p, program, scene, pane->mode);
-    bind_mode(p, scene, pane->mode, program);
+    weft_player_bind_mode(p, scene, pane->mode, program);
     weft_player_shade(p, pane, layer, target);
     return WEFT_OK;
 }
 
 static bool is_opaque(const weft_player *p, weft_mode mode)
 {
-    return mode == WEFT_MODE_ANALYTIC || (mode == WEFT_MODE_RAW ? p->raw.opaque || p->raw.plan.packed : p->material.opaque);
+    return mode == WEFT_MODE_ANALYTIC ||
+           (mode == WEFT_MODE_RAW ? p->raw.opaque || p->raw.plan.packed : p->material.opaque);
 }
 
 /* Through the holes of the cloth one more layer is seen, and the background. Reflectance is that of the whole texel,

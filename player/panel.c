@@ -247,6 +247,55 @@ static void picture_section(weft_interaction *i)
     i->changed |= weft_ui_toggle("Tint extrapolation", &scene->show_extrapolation);
 }
 
+/* ---- Under the pointer ---- */
+
+static void probe_rows(const weft_probe *probe)
+{
+    char text[96];
+    snprintf(text, sizeof text, "%.4f  %.4f  %.4f", probe->radiance[0], probe->radiance[1], probe->radiance[2]);
+    weft_ui_value("Linear", text);
+    snprintf(text, sizeof text, "%d, %d of level %d   (%.2f)", probe->texel_x, probe->texel_y, probe->texel_level,
+             probe->level);
+    weft_ui_value("Texel", text);
+    snprintf(text, sizeof text, "light %.1f\xc2\xb0   view %.1f\xc2\xb0",
+             weft_deg_of_rad(acos(weft_clamp(probe->light.z, -1, 1))),
+             weft_deg_of_rad(acos(weft_clamp(probe->view.z, -1, 1))));
+    weft_ui_value("Angles", text);
+}
+
+/* Where a direction lies in a disc of the plots. */
+static void mark_direction(weft_vec3 direction, double x, double y, double radius, double scale)
+{
+    const weft_ui_area area = {.x = x, .y = y};
+    double at_x, at_y;
+    place_on_map(direction, &area, radius, &at_x, &at_y);
+    weft_ui_ring(at_x, at_y, 3.5 * scale, 1.5 * scale, ink);
+}
+
+/* Reflectance over lights and over views, with the ring of what is. */
+static void probe_plots(const weft_application *a)
+{
+    double size = a->plots.size, radius = size / 2;
+    weft_ui_area area = weft_ui_here();
+    weft_ui_picture(a->plots.shown, 2 * size, size);
+    for (int disc = 0; disc < 2; disc++) {
+        double x = area.x + disc * size;
+        weft_ui_ring(x + radius, area.y + radius, radius, a->scale, faint);
+        mark_direction(disc == 0 ? a->probe.light : a->probe.view, x, area.y, radius, a->scale);
+    }
+    weft_ui_dim_text("pi BRDF over lights               over views");
+}
+
+static void probe_section(const weft_application *a)
+{
+    if (!a->probe.on_mesh) {
+        weft_ui_dim_text("Point at the cloth.");
+        return;
+    }
+    probe_rows(&a->probe);
+    probe_plots(a);
+}
+
 /* ---- Facts ---- */
 
 static void size_rows(const weft_application *a)
@@ -335,6 +384,8 @@ void weft_application_show_panel(weft_application *a, int width, int height)
             light_section(a);
         if (i->available[WEFT_MODE_COMPRESSED] && weft_ui_section("Compressed material", true))
             material_section(a);
+        if (weft_ui_section("Under the pointer", true))
+            probe_section(a);
         if (weft_ui_section("Picture", true))
             picture_section(i);
         if (weft_ui_section("Size and error", true))

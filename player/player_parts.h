@@ -66,6 +66,10 @@ void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pa
  * depth. */
 void weft_player_shade(const weft_player *player, const weft_pane *pane, const weft_layer *layer, GLuint target);
 
+/* Which program shades a pane, and its textures and switches. */
+weft_program_kind weft_player_kind(const weft_player *player, const weft_scene *scene, const weft_pane *pane);
+void weft_player_bind_mode(const weft_player *player, const weft_scene *scene, weft_mode mode, GLuint program);
+
 /* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. */
 void weft_player_draw_shadows(weft_player *player, const weft_scene *scene);
 

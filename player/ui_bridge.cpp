@@ -301,11 +301,22 @@ void weft_ui_progress(double share, const char *text)
     ImGui::ProgressBar((float)share, ImVec2(-1, 0), text);
 }
 
+weft_ui_area weft_ui_here(void)
+{
+    const ImVec2 corner = ImGui::GetCursorScreenPos(), pointer = ImGui::GetIO().MousePos;
+    return {corner.x, corner.y, pointer.x, pointer.y, false, false};
+}
+
 weft_ui_area weft_ui_drawing(const char *name, double width, double height)
 {
     const ImVec2 corner = ImGui::GetCursorScreenPos(), pointer = ImGui::GetIO().MousePos;
     ImGui::InvisibleButton(name, ImVec2((float)width, (float)height));
     return {corner.x, corner.y, pointer.x, pointer.y, ImGui::IsItemHovered(), ImGui::IsItemActive()};
+}
+
+void weft_ui_picture(unsigned texture, double width, double height)
+{
+    ImGui::Image((ImTextureID)(intptr_t)texture, ImVec2((float)width, (float)height), ImVec2(0, 1), ImVec2(1, 0));
 }
 
 void weft_ui_disc(double x, double y, double radius, uint32_t colour)

@@ -69,7 +69,11 @@ typedef struct weft_ui_area {
     bool hovered, dragged;
 } weft_ui_area;
 
+/* Where the next widget will stand. */
+weft_ui_area weft_ui_here(void);
 weft_ui_area weft_ui_drawing(const char *name, double width, double height);
+/* An OpenGL texture with alpha, its first row at the bottom. */
+void weft_ui_picture(unsigned texture, double width, double height);
 /* Colours are 0xRRGGBBAA. */
 void weft_ui_disc(double x, double y, double radius, uint32_t colour);
 void weft_ui_ring(double x, double y, double radius, double thickness, uint32_t colour);

@@ -85,7 +85,7 @@ vec4 texel_value(ivec2 texel, SurfacePoint point, Corners views)
             continue;
         if (LIGHT_TABLE)
             irradiance *= light_table_value(texel, find_corners(1, surface_light(point, i)));
-        sum += irradiance * (diffuse + lobes_value(lobe, light_direction[i] * axes));
+        sum += irradiance * (diffuse + lobes_value(lobe, world_light(i) * axes));
     }
     vec4 table = VIEW_TABLE ? table_value(texel, views) : vec4(1.0);
     return vec4(sum * table.rgb, table.a);

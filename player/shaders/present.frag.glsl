@@ -5,6 +5,7 @@ uniform float frame_share; // 1 / number of frames
 uniform int left;        // of the picture on the screen, pixels
 uniform int tone;        // 0 clips, 1 is soft
 uniform bool difference; // signed: dark is equal
+uniform bool keeps_opacity; // else 1
 uniform float divider;   // a line there, as a share of the width; none below 0
 out vec4 colour;
 
@@ -36,9 +37,10 @@ vec3 difference_colour(vec3 signed_difference)
 
 void main()
 {
-    vec3 linear = frame_share * texelFetch(sum, ivec2(gl_FragCoord.xy) - ivec2(left, 0), 0).rgb;
+    vec4 total = texelFetch(sum, ivec2(gl_FragCoord.xy) - ivec2(left, 0), 0);
+    vec3 linear = frame_share * total.rgb;
     vec3 shown = difference ? difference_colour(linear) : srgb_of_linear(tone_of_linear(linear));
     if (divider >= 0.0 && abs(gl_FragCoord.x - float(left) - divider * float(textureSize(sum, 0).x)) < 1.0)
         shown = vec3(0.95);
-    colour = vec4(shown, 1.0);
+    colour = vec4(shown, keeps_opacity ? min(total.a, 1.0) : 1.0);
 }

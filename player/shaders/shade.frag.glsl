@@ -38,12 +38,14 @@ void main()
 {
     SurfacePoint point = surface_point();
     vec4 value = vec4(0.0, 0.0, 0.0, 1.0);
-    if (!opaque || is_lit(point))
+    if (PLOT != 0 || !opaque || is_lit(point))
         value = radiance(point);
     value.rgb *= exposure;
     if (show_extrapolation)
         value.rgb = (value.rgb + 0.04) * extrapolation_tint(point);
     if (show_level)
         value.rgb = (0.25 + 0.75 * dot(value.rgb, vec3(1.0 / 3.0))) * level_colour(point.level);
+    if (PLOT != 0 && plotted_direction().z <= 0.0)
+        value = vec4(0.0);
     colour = value;
 }

@@ -1,5 +1,6 @@
 // What every mode needs to know of the surface behind a pixel (written by surface.frag.glsl), and of the light on it.
-// Constants defined by player/programs.c: MAX_LIGHTS, LIGHT_COUNT (light_count, or 1), STOCHASTIC, SHADOWS.
+// Constants defined by player/programs.c: MAX_LIGHTS, LIGHT_COUNT (light_count, or 1), STOCHASTIC, SHADOWS, and PLOT: 0 for
+// the picture; else a disc of directions at one place of the material, 1 of lights, 2 of views (player/probe.h).
 uniform sampler2D surface_rotation;
 uniform sampler2D surface_place;
 uniform vec3 ray_right, ray_up, ray_forward; // the ray through a pixel: x right + y up + forward
@@ -11,6 +12,10 @@ uniform int light_count;
 uniform vec3 light_direction[MAX_LIGHTS];  // world, unit, toward the light
 uniform vec3 light_irradiance[MAX_LIGHTS]; // on a surface that faces it, over pi
 uniform float sequence;                    // [0, 1), of the frame: where its random choices begin
+
+uniform vec3 probe_light, probe_view; // in the axes of the surface
+uniform vec3 probe_place;              // texture coordinates and level
+uniform float plot_size;               // pixels
 
 struct SurfacePoint {
     mat3 axes;       // of the surface in the world: x along u, y along v, the normal
@@ -32,6 +37,27 @@ float pixel_chance()
 {
     float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
     return fract(noise + sequence);
+}
+
+// Equal areas: z = 1 - r^2. Beside the disc z is negative.
+vec3 plotted_direction()
+{
+    vec2 place = 2.0 * (gl_FragCoord.xy - pane_origin) / plot_size - 1.0;
+    float square = dot(place, place);
+    return vec3(place * sqrt(max(2.0 - square, 0.0)), 1.0 - square);
+}
+
+SurfacePoint plotted_point()
+{
+    SurfacePoint point;
+    point.axes = mat3(1.0);
+    point.view = PLOT == 2 ? plotted_direction() : probe_view;
+    point.view.z = max(point.view.z, 0.0);
+    point.coordinate = probe_place.xy;
+    point.level = probe_place.z;
+    point.key_share = 1.0;
+    point.chance = 0.0;
+    return point;
 }
 
 // True with probability `share`; what is left of the chance is uniform again.
@@ -57,6 +83,8 @@ float unshadowed_share(vec3 position)
 
 SurfacePoint surface_point()
 {
+    if (PLOT != 0)
+        return plotted_point();
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 place = texelFetch(surface_place, pixel, 0);
     vec2 at = gl_FragCoord.xy - pane_origin;
@@ -72,14 +100,22 @@ SurfacePoint surface_point()
     return point;
 }
 
+// Of the world, unit, toward the light.
+vec3 world_light(int light)
+{
+    return PLOT == 0 ? light_direction[light] : PLOT == 1 ? plotted_direction() : probe_light;
+}
+
 vec3 surface_light(SurfacePoint point, int light)
 {
-    return light_direction[light] * point.axes;
+    return world_light(light) * point.axes;
 }
 
 // Over pi, with the cosine; 0 below the horizon of the surface.
 vec3 surface_irradiance(SurfacePoint point, int light)
 {
+    if (PLOT != 0)
+        return vec3(1.0); // without the cosine: BRDF x pi
     float cosine = max(dot(light_direction[light], point.axes[2]), 0.0);
     return light_irradiance[light] * (light == 0 ? cosine * point.key_share : cosine);
 }
