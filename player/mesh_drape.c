@@ -20,8 +20,10 @@ typedef struct point {
     float x, y, z;
 } point;
 
+/* Coordinates apart, for vector instructions. */
 typedef struct cloth {
-    point position[SIDE * SIDE], previous[SIDE * SIDE];
+    float x[SIDE * SIDE], y[SIDE * SIDE], z[SIDE * SIDE];
+    point previous[SIDE * SIDE];
 } cloth;
 
 /* Distances that are kept between particles some cells apart: along the threads and across them (shear), and over
@@ -48,15 +50,27 @@ static point subtract(point a, point b)
     return (point){a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
+static point position_of(const cloth *c, int i)
+{
+    return (point){c->x[i], c->y[i], c->z[i]};
+}
+
+static void set_position(cloth *c, int i, point position)
+{
+    c->x[i] = position.x;
+    c->y[i] = position.y;
+    c->z[i] = position.z;
+}
+
 static void lay_flat(cloth *c)
 {
     /* Turned and off centre: a symmetric cloth would hang in four equal folds. */
     const float turn_rad = 0.35f, offset_x = 0.035f, offset_y = -0.02f, height = 0.01f;
     for (int i = 0; i < SIDE * SIDE; i++) {
         float u = (float)(i % SIDE) * spacing - 0.5f, v = (float)(i / SIDE) * spacing - 0.5f;
-        c->position[i] = (point){cosf(turn_rad) * u - sinf(turn_rad) * v + offset_x,
+        c->previous[i] = (point){cosf(turn_rad) * u - sinf(turn_rad) * v + offset_x,
                                  sinf(turn_rad) * u + cosf(turn_rad) * v + offset_y, height};
-        c->previous[i] = c->position[i];
+        set_position(c, i, c->previous[i]);
     }
 }
 
@@ -64,22 +78,30 @@ static void move_freely(cloth *c)
 {
     const float keep = 1 - drag * step_s;
     for (int i = 0; i < SIDE * SIDE; i++) {
-        point velocity_step = scale(subtract(c->position[i], c->previous[i]), keep);
-        c->previous[i] = c->position[i];
-        c->position[i] = add(c->position[i], velocity_step);
-        c->position[i].z -= gravity * step_s * step_s;
+        point now = position_of(c, i), velocity_step = scale(subtract(now, c->previous[i]), keep);
+        c->previous[i] = now;
+        set_position(c, i, add(now, velocity_step));
+        c->z[i] -= gravity * step_s * step_s;
     }
 }
 
-static void keep_distance(point *a, point *b, float rest, float stiffness)
+/* `count` links that share no particle, each from `first` + i `stride` to the particle `reach` further on. */
+static void keep_distances_of(cloth *c, int first, int stride, int count, int reach, float rest, float stiffness)
 {
-    point d = subtract(*b, *a);
-    float length = sqrtf(d.x * d.x + d.y * d.y + d.z * d.z);
-    if (!(length > 0))
-        return;
-    point correction = scale(d, stiffness * 0.5f * (length - rest) / length);
-    *a = add(*a, correction);
-    *b = subtract(*b, correction);
+    float *x = c->x + first, *y = c->y + first, *z = c->z + first;
+#pragma omp simd
+    for (int i = 0; i < count * stride; i += stride) {
+        float dx = x[i + reach] - x[i], dy = y[i + reach] - y[i], dz = z[i + reach] - z[i];
+        float length = sqrtf(dx * dx + dy * dy + dz * dz);
+        /* A branch would keep the compiler from vector instructions; where the length is 0, so is the difference. */
+        float share = stiffness * 0.5f * (length - rest) / (length > 1e-20f ? length : 1e-20f);
+        x[i] += dx * share;
+        y[i] += dy * share;
+        z[i] += dz * share;
+        x[i + reach] -= dx * share;
+        y[i + reach] -= dy * share;
+        z[i + reach] -= dz * share;
+    }
 }
 
 static void keep_distances(cloth *c)
@@ -87,12 +109,12 @@ static void keep_distances(cloth *c)
     for (size_t k = 0; k < sizeof link_kinds / sizeof link_kinds[0]; k++) {
         link_kind kind = link_kinds[k];
         float rest = spacing * hypotf((float)kind.columns, (float)kind.rows);
-        for (int row = kind.rows < 0 ? -kind.rows : 0; row < SIDE && row + kind.rows < SIDE; row++) {
-            for (int column = 0; column + kind.columns < SIDE; column++) {
-                point *a = &c->position[row * SIDE + column];
-                keep_distance(a, a + kind.rows * SIDE + kind.columns, rest, kind.stiffness);
-            }
-        }
+        int reach = kind.rows * SIDE + kind.columns;
+        for (int column = 0; kind.rows == 0 && column + kind.columns < SIDE; column++)
+            keep_distances_of(c, column, SIDE, SIDE, reach, rest, kind.stiffness);
+        int start = kind.rows < 0 ? -kind.rows : 0;
+        for (int row = start; kind.rows != 0 && row < SIDE && row + kind.rows < SIDE; row++)
+            keep_distances_of(c, row * SIDE, 1, SIDE - kind.columns, reach, rest, kind.stiffness);
     }
 }
 
@@ -115,15 +137,17 @@ static void keep_off_table(cloth *c)
 {
     for (int i = 0; i < SIDE * SIDE; i++) {
         point away;
-        float distance = table_distance(c->position[i], &away);
+        if (c->z[i] <= -2 * rim_radius)
+            continue;
+        float distance = table_distance(position_of(c, i), &away);
         if (distance >= 0)
             continue;
-        c->position[i] = subtract(c->position[i], scale(away, distance));
+        point outside = subtract(position_of(c, i), scale(away, distance));
         /* Friction: part of the way along the table since the last step is undone. */
-        point moved = subtract(c->position[i], c->previous[i]);
+        point moved = subtract(outside, c->previous[i]);
         float normal_part = moved.x * away.x + moved.y * away.y + moved.z * away.z;
         point along = subtract(moved, scale(away, normal_part));
-        c->position[i] = subtract(c->position[i], scale(along, friction));
+        set_position(c, i, subtract(outside, scale(along, friction)));
     }
 }
 
@@ -174,8 +198,12 @@ static void refine_line(const point *line, int stride, point *fine, int fine_str
 
 static void refine(const cloth *c, point *between, point *fine)
 {
-    for (int row = 0; row < SIDE; row++)
-        refine_line(c->position + row * SIDE, 1, between + row * FINE, 1);
+    for (int row = 0; row < SIDE; row++) {
+        point line[SIDE];
+        for (int column = 0; column < SIDE; column++)
+            line[column] = position_of(c, row * SIDE + column);
+        refine_line(line, 1, between + row * FINE, 1);
+    }
     for (int column = 0; column < FINE; column++)
         refine_line(between + column, FINE, fine + column, FINE);
 }
