@@ -1,6 +1,6 @@
-#include "study/fit_weave.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "study/fit_weave_dataset.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -54,7 +54,8 @@ static const struct argp parser = {option_table,
                                    "NAME.btf.h5 --weave START.wv -o FITTED.wv",
                                    "Example: weft fit-weave denim.btf.h5 --weave twill.wv -o denim.wv\n\n"
                                    "Finds twist, inclination, curvature and width of the yarns, scattering of the "
-                                   "fibres and colours so that the weave reflects like the mean of the dataset. "
+                                   "fibres and colours so that the weave reflects like the mean of the whole tiles in "
+                                   "the dataset. "
                                    "Pattern and lengths stay as they are in START.wv.",
                                    children,
                                    NULL,
@@ -110,6 +111,25 @@ static void say_group(const fit_weave_command *command, const weft_fit_weave_gro
     command_event(&command->common, event);
 }
 
+static void say_source(const fit_weave_command *command, const weft_fit_weave_source *source)
+{
+    const weft_tile *tile = &source->tile.tile;
+    if (!source->tiled) {
+        command_say(&command->common, "mean of the whole material: %s", source->why_whole);
+        return;
+    }
+    command_say(&command->common,
+                "mean of %d x %d tiles of %.2f x %.2f texels, corner at %.2f, %.2f (likeness to the start: %.2f)",
+                source->tiles_x, source->tiles_y, tile->width, tile->height, tile->left, tile->top,
+                source->tile.likeness);
+    char event[256];
+    snprintf(event, sizeof event,
+             "{\"event\":\"tile\",\"size_texels\":[%.6g,%.6g],\"corner_texels\":[%.6g,%.6g],\"likeness\":%.4g,"
+             "\"averaged\":[%d,%d]}",
+             tile->width, tile->height, tile->left, tile->top, source->tile.likeness, source->tiles_x, source->tiles_y);
+    command_event(&command->common, event);
+}
+
 static void say_report(const fit_weave_command *command, const weft_weave *weave, const weft_fit_weave_report *report)
 {
     char alpha[64], beta[64];
@@ -137,16 +157,13 @@ static weft_code write_weave(const fit_weave_command *command, const weft_weave 
 static weft_code fit(const fit_weave_command *command, weft_weave *weave, weft_dataset *dataset, weft_error *error)
 {
     weft_progress progress = command_progress(&command->common);
-    weft_mean_brdf mean;
+    weft_fit_weave_source source;
     weft_fit_weave_report report;
-    WEFT_TRY(weft_mean_brdf_of(dataset, &progress, &mean, error));
-    weft_code code = weft_fit_weave(&mean, weave, &progress, &report, error);
-    weft_mean_brdf_free(&mean);
-    if (code == WEFT_OK)
-        code = write_weave(command, weave, &report, error);
-    if (code == WEFT_OK)
-        say_report(command, weave, &report);
-    return code;
+    WEFT_TRY(weft_fit_weave_to_dataset(dataset, weave, &progress, &source, &report, error));
+    WEFT_TRY(write_weave(command, weave, &report, error));
+    say_source(command, &source);
+    say_report(command, weave, &report);
+    return WEFT_OK;
 }
 
 int command_fit_weave(int argc, char **argv)

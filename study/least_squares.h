@@ -28,7 +28,7 @@ weft_code weft_least_squares_solve(const weft_least_squares *problem, double *pa
 weft_code weft_least_squares_linearise(const weft_least_squares *problem, const double *parameters, double *residuals,
                                        double *jacobian, weft_error *error);
 
-/* x >= 0 [columns] that minimises |A x - b|^2, A [rows][columns]. Start and result in `x`. Errors: WEFT_SYSTEM. */
+/* x >= 0 [columns] that minimises |A x - b|^2, A [rows][columns]. Errors: WEFT_SYSTEM. */
 weft_code weft_non_negative_least_squares(int rows, int columns, const double *a, const double *b, double *x,
                                           weft_error *error);
 

@@ -5,21 +5,44 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Sums over the valid texels of every image. */
+/* Sums over the valid texels of every image, weighted. */
 typedef struct sums {
     double (*rgb)[3];
     double *count;
 } sums;
 
-static void add_texels(const weft_half *samples, const uint8_t *mask, size_t texels, size_t images, sums *of)
+/* The part of texel [at, at + 1) between low and high. */
+static double share_inside(int at, double low, double high)
 {
-    for (size_t i = 0; i < texels * images; i++) {
-        if (mask[i])
+    return fmax(fmin(at + 1, high) - fmax(at, low), 0);
+}
+
+/* One texel, `weight` of which counts. */
+static void add_texel(const weft_half *samples, const uint8_t *mask, size_t images, double weight, sums *of)
+{
+    for (size_t image = 0; image < images; image++) {
+        if (mask[image])
             continue;
-        size_t image = i % images;
         for (size_t k = 0; k < 3; k++)
-            of->rgb[image][k] += (double)weft_float_of_half(samples[3 * i + k]);
-        of->count[image] += 1;
+            of->rgb[image][k] += weight * (double)weft_float_of_half(samples[3 * image + k]);
+        of->count[image] += weight;
+    }
+}
+
+/* Where the block begins, and its size. */
+typedef struct block {
+    int x, y, width, height;
+} block;
+
+static void add_block(const weft_half *samples, const uint8_t *mask, block at, const weft_texel_window *window,
+                      size_t images, sums *of)
+{
+    for (int i = 0; i < at.width * at.height; i++) {
+        size_t first = (size_t)i * images;
+        double weight = share_inside(at.x + i % at.width, window->left, window->left + window->width) *
+                        share_inside(at.y + i / at.width, window->top, window->top + window->height);
+        if (weight > 0)
+            add_texel(samples + 3 * first, mask + first, images, weight, of);
     }
 }
 
@@ -28,7 +51,8 @@ static int smaller(int a, int b)
     return a < b ? a : b;
 }
 
-static weft_code add_blocks(weft_dataset *dataset, const weft_progress *progress, sums *of, weft_error *error)
+static weft_code add_blocks(weft_dataset *dataset, const weft_texel_window *window, const weft_progress *progress,
+                            sums *of, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     int width, height;
@@ -39,10 +63,10 @@ static weft_code add_blocks(weft_dataset *dataset, const weft_progress *progress
     weft_code code = samples && mask ? WEFT_OK : weft_fail_memory(error, "block of the dataset", 7 * largest);
     for (int y = 0; code == WEFT_OK && y < layout->height; y += height) {
         for (int x = 0; code == WEFT_OK && x < layout->width; x += width) {
-            int w = smaller(width, layout->width - x), h = smaller(height, layout->height - y);
-            code = weft_dataset_read_block(dataset, x, y, w, h, samples, mask, error);
+            block at = {x, y, smaller(width, layout->width - x), smaller(height, layout->height - y)};
+            code = weft_dataset_read_block(dataset, x, y, at.width, at.height, samples, mask, error);
             if (code == WEFT_OK)
-                add_texels(samples, mask, (size_t)w * (size_t)h, images, of);
+                add_block(samples, mask, at, window, images, of);
         }
         weft_progress_report(progress, "reading rows", smaller(y + height, layout->height), layout->height);
     }
@@ -68,10 +92,11 @@ static void append_image(const weft_dataset_layout *layout, int image, const sum
     mean->count++;
 }
 
-weft_code weft_mean_brdf_of(weft_dataset *dataset, const weft_progress *progress, weft_mean_brdf *mean,
-                            weft_error *error)
+weft_code weft_mean_brdf_of(weft_dataset *dataset, const weft_texel_window *window, const weft_progress *progress,
+                            weft_mean_brdf *mean, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    const weft_texel_window all = {0, 0, layout->width, layout->height};
     size_t images = (size_t)layout->image_count;
     *mean = (weft_mean_brdf){.light = calloc(images, sizeof *mean->light),
                              .view = calloc(images, sizeof *mean->view),
@@ -81,7 +106,7 @@ weft_code weft_mean_brdf_of(weft_dataset *dataset, const weft_progress *progress
     if (!mean->light || !mean->view || !mean->value || !of.rgb || !of.count)
         code = weft_fail_memory(error, "mean of the images", images * (sizeof *of.rgb + sizeof *mean->value));
     if (code == WEFT_OK)
-        code = add_blocks(dataset, progress, &of, error);
+        code = add_blocks(dataset, window ? window : &all, progress, &of, error);
     for (int image = 0; code == WEFT_OK && image < layout->image_count; image++)
         append_image(layout, image, &of, mean);
     if (code == WEFT_OK && mean->count == 0)

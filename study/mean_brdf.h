@@ -13,10 +13,15 @@ typedef struct weft_mean_brdf {
     weft_rgb *value;         /* [count] 1/sr, mean over the valid texels */
 } weft_mean_brdf;
 
-/* Reads the whole dataset, block by block. Errors: WEFT_BAD_INPUT where nothing is valid; those of reading;
- * WEFT_SYSTEM for memory. */
-weft_code weft_mean_brdf_of(weft_dataset *dataset, const weft_progress *progress, weft_mean_brdf *mean,
-                            weft_error *error);
+/* A part of the material, texels, x to the right and y down from its upper left corner. */
+typedef struct weft_texel_window {
+    double left, top, width, height;
+} weft_texel_window;
+
+/* Over `window`, texels that it cuts with the share inside; NULL: the whole material. Reads it block by block. Errors:
+ * WEFT_BAD_INPUT where nothing is valid; those of reading; WEFT_SYSTEM for memory. */
+weft_code weft_mean_brdf_of(weft_dataset *dataset, const weft_texel_window *window, const weft_progress *progress,
+                            weft_mean_brdf *mean, weft_error *error);
 void weft_mean_brdf_free(weft_mean_brdf *mean);
 
 #endif

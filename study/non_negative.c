@@ -77,8 +77,8 @@ weft_code weft_non_negative_least_squares(int rows, int columns, const double *a
         return weft_fail_memory(error, "non-negative least squares", (n * n + 2 * n) * sizeof *memory);
     quadratic of = {.columns = (unsigned)columns, .h = memory, .g = memory + n * n, .length = memory + n * n + n};
     accumulate(&of, rows, a, b);
-    for (size_t i = 0; i < n; i++)
-        x[i] = fmax(0, x[i] * of.length[i]);
+    /* Not from an earlier solution, which may be as large as a column was small. */
+    memset(x, 0, n * sizeof *x);
     weft_code code = minimise(&of, x, error);
     for (size_t i = 0; i < n; i++)
         x[i] = fmax(0, x[i] / of.length[i]);

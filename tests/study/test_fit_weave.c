@@ -213,6 +213,7 @@ static void non_negative_solutions_are_exact_and_stop_at_zero(void **state)
     weft_error error;
     for (int row = 0; row < 4; row++)
         b[row] = a[2 * row] * truth[0] + a[2 * row + 1] * truth[1];
+    x[1] = 1e16; /* what was there before does not matter */
     assert_int_equal(weft_non_negative_least_squares(4, 2, a, b, x, &error), WEFT_OK);
     assert_true(fabs(x[0] - 0.5) < 1e-9 && fabs(x[1] - 2) < 1e-9);
     /* The free solution would be (-1, 2): at the bound the other solves alone. */
