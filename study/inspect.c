@@ -7,7 +7,7 @@
 #include "geometry/tile_mesh.h"
 #include "reflectance/microcylinder_file.h"
 #include "reflectance/weave.h"
-#include "study/file_kind.h"
+#include "btf/file_kind.h"
 #include "study/verify.h"
 
 #include <math.h>
@@ -221,8 +221,11 @@ static weft_code inspect_any(const char *path, const weft_progress *progress, bo
         code = inspect_stitch(path, result, error);
     else if (kind == WEFT_FILE_MICROCYLINDER)
         code = inspect_microcylinder(path, result, error);
-    else
+    else if (kind == WEFT_FILE_WEAVE)
         code = inspect_weave(path, result, error);
+    else
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is none of .btf.h5, .weft, .wv, .mc, .stitch or a session folder",
+                         path);
     if (code == WEFT_OK && !*result)
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' cannot be described: its texts are not UTF-8", path);
     if (code != WEFT_OK) {

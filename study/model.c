@@ -2,7 +2,7 @@
 
 #include "reflectance/lafortune.h"
 #include "reflectance/microcylinder_file.h"
-#include "study/file_kind.h"
+#include "btf/file_kind.h"
 #include "study/raw_btf.h"
 
 #include <stdlib.h>
@@ -67,8 +67,10 @@ weft_code weft_model_open(const char *path, const weft_model_options *options, w
         code = open_dataset(model, path, error);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_MICROCYLINDER)
         code = open_microcylinder(model, path, options, error);
-    else if (code == WEFT_OK)
+    else if (code == WEFT_OK && model->kind == WEFT_FILE_WEAVE)
         code = open_weave(model, path, options, error);
+    else if (code == WEFT_OK)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is no model (.weft, .btf.h5, .wv or .mc)", path);
     if (code != WEFT_OK)
         weft_model_close(model);
     else
