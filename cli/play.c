@@ -1,19 +1,13 @@
 #include "cli/arguments.h"
-#include "cli/scene_errors.h"
-#include "cli/scene_options.h"
-
-#include "player/application.h"
+#include "cli/play_host.h"
 
 #include <limits.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct play_command {
     scene_options scene;
     int frame_limit; /* 0 = until the window is closed */
-    weft_player *player;
 } play_command;
 
 enum { KEY_FRAMES = 0x5000 };
@@ -50,76 +44,34 @@ static const struct argp parser = {
     NULL,
     NULL};
 
-/* ---- What the application asks for ---- */
-
-/* The first free of weft-001.png, weft-002.png, ... in the current folder. */
-static weft_code save_screenshot(void *context, const weft_scene *scene, int width, int height,
-                                 char note[WEFT_NOTE_SIZE], weft_error *error)
-{
-    play_command *command = context;
-    weft_settings *settings = &command->scene.settings;
-    char path[32];
-    int number = 1;
-    do
-        snprintf(path, sizeof path, "weft-%03d.png", number++);
-    while (access(path, F_OK) == 0 && number < 1000);
-    settings->scene = *scene;
-    settings->width = width;
-    settings->height = height;
-    WEFT_TRY(weft_settings_draw(path, command->player, settings, NULL, error));
-    snprintf(note, WEFT_NOTE_SIZE, "saved %s", path);
-    command_say(&command->scene.common, "%s", note);
-    return WEFT_OK;
-}
-
-static weft_code change_mesh(void *context, const char *name, weft_scene *scene, weft_error *error)
-{
-    play_command *command = context;
-    weft_settings *settings = &command->scene.settings;
-    char *old = settings->mesh;
-    settings->mesh = strdup(name);
-    settings->scene = *scene;
-    weft_code code = settings->mesh ? scene_load_mesh(&command->scene, command->player, error)
-                                    : weft_fail_memory(error, name, strlen(name));
-    if (code == WEFT_OK)
-        scene->repeat = settings->scene.repeat;
-    free(code == WEFT_OK ? old : settings->mesh);
-    if (code != WEFT_OK)
-        settings->mesh = old;
-    return code;
-}
-
-static weft_code measure_errors(void *context, const weft_scene *scene, int width, int height,
-                                char note[WEFT_NOTE_SIZE], weft_error *error)
-{
-    const play_command *command = context;
-    return scene_errors_print(command->player, scene, width, height, note, error);
-}
-
 /* ---- The command ---- */
 
-static weft_application_setup setup_of(play_command *command)
+/* `title` outlives the settings, whose names change as files are dropped. */
+static weft_application_setup setup_of(play_command *command, play_host *host, char title[256])
 {
-    const weft_settings *options = &command->scene.settings;
-    const char *first = options->material ? options->material : options->dataset ? options->dataset : options->weave;
+    const weft_settings *settings = &command->scene.settings;
+    const char *first = settings->material  ? settings->material
+                        : settings->dataset ? settings->dataset
+                                            : settings->weave;
     const char *slash = strrchr(first, '/');
+    snprintf(title, 256, "%s", slash ? slash + 1 : first);
     return (weft_application_setup){
-        .title = slash ? slash + 1 : first,
-        .file = {options->dataset, options->material, options->weave},
-        .width = options->width,
-        .height = options->height,
+        .title = title,
+        .width = settings->width,
+        .height = settings->height,
         .frame_limit = command->frame_limit,
-        .host = {.context = command, .save = save_screenshot, .mesh = change_mesh, .measure = measure_errors},
+        .host = play_host_calls(host),
     };
 }
 
-static weft_code play(play_command *command, weft_application **application, weft_error *error)
+/* Reading begins before the window opens. */
+static weft_code play(play_command *command, play_host *host, char title[256], weft_error *error)
 {
-    const weft_application_setup setup = setup_of(command);
-    WEFT_TRY(weft_application_create(&setup, application, error));
-    command->player = weft_application_player(*application);
-    WEFT_TRY(scene_load(&command->scene, command->player, error));
-    return weft_application_run(*application, &command->scene.settings.scene, error);
+    const weft_application_setup setup = setup_of(command, host, title);
+    WEFT_TRY(play_host_create(&command->scene, host, error));
+    WEFT_TRY(weft_application_create(&setup, &host->application, error));
+    WEFT_TRY(scene_loader_attach(host->loader, weft_application_player(host->application), error));
+    return weft_application_run(host->application, &command->scene.settings.scene, error);
 }
 
 int command_play(int argc, char **argv)
@@ -127,16 +79,18 @@ int command_play(int argc, char **argv)
     play_command command = {0};
     command_parse(&parser, argc, argv, &command, &command.scene.common);
     weft_error error = {0};
-    weft_application *application = NULL;
-    weft_code code = play(&command, &application, &error);
+    play_host host = {0};
+    char title[256];
+    weft_code code = play(&command, &host, title, &error);
     if (code == WEFT_OK) {
         long frames;
         double frame_ms;
-        weft_application_speed(application, &frames, &frame_ms);
+        weft_application_speed(host.application, &frames, &frame_ms);
         command_say(&command.scene.common, "%ld frames, %.1f ms each, drawn by %s", frames, frame_ms,
                     weft_gl_renderer());
     }
-    weft_application_free(application);
+    play_host_free(&host);
+    weft_application_free(host.application);
     scene_options_free(&command.scene);
     return command_exit("play", &command.scene.common, code, &error);
 }

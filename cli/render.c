@@ -1,5 +1,6 @@
 #include "cli/arguments.h"
 #include "cli/scene_errors.h"
+#include "cli/scene_load.h"
 #include "cli/sequence.h"
 
 #include "player/context.h"

@@ -1,130 +1,99 @@
-#include "cli/scene_options.h"
+#include "cli/scene_load.h"
 
-#include "btf/dataset_fingerprint.h"
-#include "capture/virtual_cloth.h"
+#include "btf/file_kind.h"
+#include "cli/scene_part.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-typedef struct loading {
-    const scene_options *options;
-    const weft_settings *settings;
-    weft_player *player;
-    double width_mm; /* of the material, or what stands for it; 0 until it is known */
-} loading;
+static const double slice_s = 0.006; /* of each frame, for uploads */
 
-/* The first that says how wide it is says so for all. */
-static void note_width(loading *l, double width_mm)
+struct scene_loader {
+    scene_stage stage;
+    weft_loader *loader;
+    char *waiting_dataset; /* until there is a player */
+    bool starting;         /* what the command line named is not all there yet */
+    weft_scene wanted;     /* its panes */
+};
+
+/* ---- Life ---- */
+
+/* From here on the settings name what is shown: nothing yet. The mesh keeps its name, as the default has one. */
+static weft_code start_all(scene_loader *l, weft_error *error)
 {
-    if (l->width_mm == 0)
-        l->width_mm = width_mm;
-}
-
-/* *metadata is given to the caller. */
-static weft_code load_material(loading *l, char **metadata, weft_error *error)
-{
-    weft_material material = {0};
-    weft_code code = weft_material_read(l->settings->material, &material, error);
-    if (code == WEFT_OK) {
-        note_width(l, material.level[0].width * material.texel_pitch_mm);
-        code = weft_player_set_material(l->player, &material, error);
+    static const scene_slot order[] = {SCENE_MATERIAL, SCENE_MESH, SCENE_WEAVE, SCENE_ENVIRONMENT};
+    for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
+        char **path = scene_stage_path(&l->stage, order[i]), *named = *path;
+        if (!named)
+            continue;
+        WEFT_TRY(scene_part_start(&l->stage, l->loader, order[i], named, false, error));
+        if (order[i] != SCENE_MESH) {
+            free(named);
+            *path = NULL;
+        }
     }
-    *metadata = material.metadata;
-    material.metadata = NULL;
-    weft_material_free(&material);
-    return code;
-}
-
-static weft_code warn_of_another_origin(const loading *l, weft_dataset *dataset, const char *metadata,
-                                        weft_error *error)
-{
-    char warning[WEFT_MESSAGE_SIZE];
-    WEFT_TRY(weft_dataset_fingerprint_compare(dataset, metadata, warning, error));
-    if (warning[0])
-        command_say(&l->options->common, "warning: %s", warning);
+    char **dataset = scene_stage_path(&l->stage, SCENE_DATASET);
+    free(l->waiting_dataset);
+    l->waiting_dataset = *dataset;
+    *dataset = NULL;
+    l->starting = true;
+    l->wanted = l->stage.options->settings.scene;
     return WEFT_OK;
 }
 
-static weft_code upload_dataset(loading *l, weft_dataset *dataset, weft_error *error)
+static void look_down_on_a_plane(scene_options *o)
 {
-    int skipped_levels = 0;
-    weft_progress progress = command_progress(&l->options->common);
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    note_width(l, layout->width * (double)layout->texel_pitch_mm);
-    WEFT_TRY(weft_player_set_dataset(l->player, dataset, &progress, &skipped_levels, error));
-    if (skipped_levels > 0)
-        command_say(&l->options->common,
-                    "'%s' does not fit into graphics memory: its samples are shown at 1/%d of their size",
-                    l->settings->dataset, 1 << skipped_levels);
-    return WEFT_OK;
+    if (strcmp(o->settings.mesh, "plane") == 0 && !o->has_camera && !o->source)
+        o->settings.scene.orbit =
+            (weft_orbit){.azimuth_rad = weft_rad_of_deg(-90), .elevation_rad = weft_rad_of_deg(75), .distance = 3};
 }
 
-/* `metadata` of the material beside it, or NULL. */
-static weft_code load_dataset(loading *l, const char *metadata, weft_error *error)
+weft_code scene_loader_create(scene_options *options, scene_loader **result, weft_error *error)
 {
-    weft_dataset *dataset = NULL;
-    weft_code code = weft_dataset_open(l->settings->dataset, &dataset, error);
-    if (code == WEFT_OK && metadata)
-        code = warn_of_another_origin(l, dataset, metadata, error);
+    *result = NULL;
+    scene_loader *l = calloc(1, sizeof *l);
+    if (!l)
+        return weft_fail_memory(error, "loader", sizeof *l);
+    l->stage.options = options;
+    look_down_on_a_plane(options);
+    weft_code code = weft_loader_create(&l->loader, error);
     if (code == WEFT_OK)
-        code = upload_dataset(l, dataset, error);
-    weft_dataset_close(dataset);
+        code = start_all(l, error);
+    if (code == WEFT_OK)
+        *result = l;
+    else
+        scene_loader_free(l);
     return code;
 }
 
-static weft_code load_weave(loading *l, weft_error *error)
+void scene_loader_free(scene_loader *l)
 {
-    weft_rig_settings rig = weft_rig_settings_default();
-    weft_virtual_cloth cloth = {0};
-    char warning[WEFT_MESSAGE_SIZE];
-    WEFT_TRY(weft_virtual_cloth_read(l->settings->weave, &rig, 0, &cloth, warning, error));
-    if (warning[0])
-        command_say(&l->options->common, "%s", warning);
-    const double *tiles = l->settings->tiles;
-    note_width(l, cloth.opening_mm);
-    weft_code code = weft_player_set_weave(l->player, &cloth.weave, tiles[0] > 0 ? tiles[0] : cloth.tiles_x,
-                                           tiles[1] > 0 ? tiles[1] : cloth.tiles_y, error);
-    weft_virtual_cloth_free(&cloth);
-    return code;
+    if (!l)
+        return;
+    weft_loader_free(l->loader);
+    scene_stage_free(&l->stage);
+    free(l->waiting_dataset);
+    free(l);
 }
 
-static weft_code load_models(loading *l, weft_error *error)
+static weft_code start_dataset(scene_loader *l, weft_error *error)
 {
-    char *metadata = NULL;
-    weft_code code = l->settings->material ? load_material(l, &metadata, error) : WEFT_OK;
-    if (code == WEFT_OK && l->settings->dataset)
-        code = load_dataset(l, metadata, error);
-    free(metadata);
-    WEFT_TRY(code);
-    return l->settings->weave ? load_weave(l, error) : WEFT_OK;
-}
-
-static weft_code load_environment(const loading *l, weft_error *error)
-{
-    weft_image image = {0};
-    weft_error cause = {0};
-    if (!l->settings->environment)
+    if (!l->waiting_dataset)
         return WEFT_OK;
-    WEFT_TRY(weft_image_read(l->settings->environment, &image, NULL, error));
-    weft_code code = weft_player_set_environment(l->player, &image, &cause);
-    weft_image_free(&image);
-    if (code != WEFT_OK)
-        return weft_fail(error, code, "'%s': %s", l->settings->environment, cause.message);
-    return WEFT_OK;
-}
-
-weft_code scene_load_mesh(scene_options *o, weft_player *player, weft_error *error)
-{
-    weft_mesh mesh = {0};
-    weft_settings *s = &o->settings;
-    weft_code code = weft_mesh_open(s->mesh, &mesh, error);
-    if (code == WEFT_OK)
-        code = weft_player_set_mesh(player, &mesh, error);
-    if (code == WEFT_OK)
-        s->scene.repeat = weft_settings_repeat(s, &mesh, o->material_width_mm);
-    weft_mesh_free(&mesh);
+    weft_code code = scene_part_start(&l->stage, l->loader, SCENE_DATASET, l->waiting_dataset, false, error);
+    free(l->waiting_dataset);
+    l->waiting_dataset = NULL;
     return code;
 }
+
+weft_code scene_loader_attach(scene_loader *l, weft_player *player, weft_error *error)
+{
+    l->stage.player = player;
+    return start_dataset(l, error);
+}
+
+/* ---- Panes ---- */
 
 static bool panes_are_there(const weft_scene *scene, const weft_player *player)
 {
@@ -135,37 +104,160 @@ static bool panes_are_there(const weft_scene *scene, const weft_player *player)
 }
 
 /* What was asked for, or stood in the picture; else all that is there for a split or a comparison of two, and the
- * compressed material or what else there is by itself. */
-static weft_code choose_panes(scene_options *o, const weft_player *player, weft_error *error)
+ * compressed material or what else there is by itself. False while a comparison lacks one. */
+static bool choose_panes(scene_loader *l)
 {
     static const weft_mode preference[WEFT_MODE_COUNT] = {WEFT_MODE_COMPRESSED, WEFT_MODE_RAW, WEFT_MODE_ANALYTIC};
+    scene_options *o = l->stage.options;
     weft_scene *scene = &o->settings.scene;
+    scene->layout = l->wanted.layout;
+    scene->pane_count = l->wanted.pane_count;
+    memcpy(scene->pane, l->wanted.pane, sizeof scene->pane);
     bool compares = scene->layout != WEFT_LAYOUT_PANES;
     bool is_chosen = (o->has_modes && !o->split && (scene->pane_count > 1 || !compares)) || (o->source && !o->split);
-    if (is_chosen && panes_are_there(scene, player))
-        return WEFT_OK;
+    if (is_chosen && panes_are_there(scene, l->stage.player))
+        return true;
     bool all = o->split || compares;
     scene->pane_count = 0;
     for (int i = 0; i < WEFT_MODE_COUNT && (all || scene->pane_count == 0); i++) {
         weft_mode mode = all ? (weft_mode)i : preference[i];
-        if (weft_player_has(player, mode))
+        if (weft_player_has(l->stage.player, mode))
             scene->pane[scene->pane_count++] = mode;
     }
-    if (compares && scene->pane_count < 2)
+    if (!compares || scene->pane_count >= 2)
+        return true;
+    scene->layout = WEFT_LAYOUT_PANES;
+    return false;
+}
+
+/* What the user dropped is shown, unless several modes are. */
+static void show_dropped(scene_loader *l)
+{
+    weft_scene *scene = &l->stage.options->settings.scene;
+    if (scene->layout != WEFT_LAYOUT_PANES || scene->pane_count > 1)
+        return;
+    if (l->stage.slot == SCENE_DATASET)
+        scene->pane[0] = WEFT_MODE_RAW;
+    else if (l->stage.slot == SCENE_MATERIAL)
+        scene->pane[0] = WEFT_MODE_COMPRESSED;
+    else if (l->stage.slot == SCENE_WEAVE)
+        scene->pane[0] = WEFT_MODE_ANALYTIC;
+}
+
+/* ---- Progress ---- */
+
+weft_code scene_loader_poll(scene_loader *l, bool *shown, char note[WEFT_MESSAGE_SIZE], weft_error *error)
+{
+    l->stage.note[0] = 0;
+    weft_code code = weft_loader_poll(l->loader, slice_s, shown, error);
+    memcpy(note, l->stage.note, WEFT_MESSAGE_SIZE);
+    if (*shown && l->starting)
+        choose_panes(l);
+    else if (*shown && l->stage.by_user)
+        show_dropped(l);
+    l->starting &= weft_loader_progress(l->loader) >= 0;
+    return code;
+}
+
+weft_code scene_loader_finish(scene_loader *l, weft_error *error)
+{
+    const common_options *common = &l->stage.options->common;
+    weft_progress progress = command_progress(common);
+    bool some = true;
+    while (some) {
+        l->stage.note[0] = 0;
+        WEFT_TRY(weft_loader_wait(l->loader, &progress, &some, error));
+        if (l->stage.note[0])
+            command_say(common, "%s", l->stage.note);
+    }
+    l->starting = false;
+    if (!choose_panes(l))
         return weft_fail(error, WEFT_BAD_USAGE,
                          "a wipe or a difference needs two of a material, --raw NAME.btf.h5 and --weave CLOTH.wv");
     return WEFT_OK;
 }
 
-weft_code scene_load(scene_options *o, weft_player *player, weft_error *error)
+weft_code scene_load(scene_options *options, weft_player *player, weft_error *error)
 {
-    loading l = {o, &o->settings, player, 0};
-    WEFT_TRY(load_models(&l, error));
-    o->material_width_mm = l.width_mm;
-    WEFT_TRY(load_environment(&l, error));
-    WEFT_TRY(scene_load_mesh(o, player, error));
-    if (strcmp(o->settings.mesh, "plane") == 0 && !o->has_camera && !o->source)
-        o->settings.scene.orbit =
-            (weft_orbit){.azimuth_rad = weft_rad_of_deg(-90), .elevation_rad = weft_rad_of_deg(75), .distance = 3};
-    return choose_panes(o, player, error);
+    scene_loader *loader = NULL;
+    WEFT_TRY(scene_loader_create(options, &loader, error));
+    weft_code code = scene_loader_attach(loader, player, error);
+    if (code == WEFT_OK)
+        code = scene_loader_finish(loader, error);
+    scene_loader_free(loader);
+    return code;
+}
+
+double scene_loader_progress(scene_loader *l)
+{
+    return weft_loader_progress(l->loader);
+}
+
+/* ---- Files that replace others ---- */
+
+static weft_code open_picture(scene_loader *l, const char *path, weft_error *error)
+{
+    weft_settings settings = {0};
+    weft_code code = weft_settings_read(path, &settings, error);
+    if (code == WEFT_OK)
+        code = weft_settings_check_files(&settings, path, error);
+    if (code != WEFT_OK) {
+        weft_settings_free(&settings);
+        return code;
+    }
+    scene_options *o = l->stage.options;
+    weft_settings_free(&o->settings);
+    o->settings = settings;
+    o->source = "";
+    o->split = false;
+    WEFT_TRY(start_all(l, error));
+    return start_dataset(l, error);
+}
+
+static weft_code start_by_user(scene_loader *l, scene_slot slot, const char *path, weft_error *error)
+{
+    return scene_part_start(&l->stage, l->loader, slot, path, true, error);
+}
+
+weft_code scene_loader_open(scene_loader *l, const char *path, weft_error *error)
+{
+    weft_file_kind kind;
+    WEFT_TRY(weft_file_kind_of(path, &kind, error));
+    switch (kind) {
+    case WEFT_FILE_MATERIAL:
+        return start_by_user(l, SCENE_MATERIAL, path, error);
+    case WEFT_FILE_DATASET:
+        return start_by_user(l, SCENE_DATASET, path, error);
+    case WEFT_FILE_WEAVE:
+        return start_by_user(l, SCENE_WEAVE, path, error);
+    case WEFT_FILE_MESH:
+        return start_by_user(l, SCENE_MESH, path, error);
+    case WEFT_FILE_RADIANCE:
+        return start_by_user(l, SCENE_ENVIRONMENT, path, error);
+    case WEFT_FILE_PICTURE:
+        return open_picture(l, path, error);
+    default:
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' cannot be shown: drop a .weft, .btf.h5, .wv, .obj, .exr, .hdr or a picture of weft",
+                         path);
+    }
+}
+
+weft_code scene_loader_open_mesh(scene_loader *l, const char *name, weft_error *error)
+{
+    return start_by_user(l, SCENE_MESH, name, error);
+}
+
+weft_code scene_loader_reload_slot(scene_loader *l, int slot, weft_error *error)
+{
+    const char *path = *scene_stage_path(&l->stage, (scene_slot)slot);
+    bool is_file = path && access(path, F_OK) == 0;
+    return is_file ? scene_part_start(&l->stage, l->loader, (scene_slot)slot, path, false, error) : WEFT_OK;
+}
+
+weft_code scene_loader_reload(scene_loader *l, weft_error *error)
+{
+    for (int slot = 0; slot < SCENE_SLOT_COUNT; slot++)
+        WEFT_TRY(scene_loader_reload_slot(l, slot, error));
+    return WEFT_OK;
 }

@@ -13,7 +13,6 @@ typedef struct scene_options {
     const char *source;     /* the picture it starts from, or NULL */
     bool has_modes, split;  /* --mode was given; it is split */
     bool has_camera, has_lights;
-    double material_width_mm; /* once they are loaded */
     /* Kept until the end of the command line, because --settings comes before all others, wherever it stands */
     int option_count;
     struct {
@@ -26,12 +25,5 @@ typedef struct scene_options {
 extern const struct argp scene_argp;
 
 void scene_options_free(scene_options *options);
-
-/* Loads everything that the settings name into the player: mesh, environment and models; chooses the panes and the
- * `repeat`. Notes are told to the user. Errors: those of reading. */
-weft_code scene_load(scene_options *options, weft_player *player, weft_error *error);
-
-/* Loads the mesh that the settings name, and sets `repeat` as they say. Errors: those of weft_mesh_open. */
-weft_code scene_load_mesh(scene_options *options, weft_player *player, weft_error *error);
 
 #endif

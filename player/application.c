@@ -134,6 +134,11 @@ weft_player *weft_application_player(weft_application *a)
     return a->player;
 }
 
+void weft_application_set_file(weft_application *a, weft_mode mode, const char *path)
+{
+    a->setup.file[mode] = path;
+}
+
 void weft_application_speed(const weft_application *a, long *frames, double *frame_ms)
 {
     *frames = a->frame_count;
@@ -300,6 +305,8 @@ static void poll_host(weft_application *a)
         return;
     weft_code code = host->poll(host->context, &a->interaction.scene, &a->progress, &changed, note, &error);
     tell_outcome(a, code, &error, note);
+    if (code != WEFT_OK)
+        a->failure = error;
     a->interaction.changed |= changed;
 }
 
@@ -350,7 +357,8 @@ static void find_modes(weft_application *a)
 static bool has_something(const weft_application *a)
 {
     const bool *has = a->interaction.available;
-    return has[WEFT_MODE_RAW] || has[WEFT_MODE_COMPRESSED] || has[WEFT_MODE_ANALYTIC];
+    bool has_model = has[WEFT_MODE_RAW] || has[WEFT_MODE_COMPRESSED] || has[WEFT_MODE_ANALYTIC];
+    return has_model && weft_player_has_mesh(a->player);
 }
 
 static weft_code step(weft_application *a, weft_error *error)
@@ -359,6 +367,9 @@ static weft_code step(weft_application *a, weft_error *error)
     grant_wishes(a);
     poll_host(a);
     find_modes(a);
+    /* A window that would stay empty closes, and says why. */
+    if (!has_something(a) && a->progress < 0 && a->failure.code != WEFT_OK)
+        return weft_fail(error, a->failure.code, "%s", a->failure.message);
     weft_window_size(a->window, &width, &height);
     int left = weft_application_panel_width(a);
     if (width <= left || height == 0)

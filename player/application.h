@@ -45,6 +45,9 @@ void weft_application_free(weft_application *application);
 /* Its player; what it shows is the caller's to set before weft_application_run. */
 weft_player *weft_application_player(weft_application *application);
 
+/* Names what a mode shows; the text must live on. NULL: nothing. */
+void weft_application_set_file(weft_application *application, weft_mode mode, const char *path);
+
 /* Runs until the window is closed or the frames are drawn. Strings of the setup must live on. Errors: WEFT_SYSTEM where
  * drawing fails. */
 weft_code weft_application_run(weft_application *application, const weft_scene *scene, weft_error *error);

@@ -21,6 +21,7 @@ struct weft_application {
     weft_probe probe; /* of the pixel under the pointer */
     weft_probe_plots plots;
     double progress;
+    weft_error failure;          /* of reading, last */
     char errors[WEFT_NOTE_SIZE]; /* of what is shown, "" until it rests */
     char note[WEFT_NOTE_SIZE];   /* told to the user */
     bool note_is_error;

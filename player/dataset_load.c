@@ -8,6 +8,7 @@ struct weft_dataset_load {
     weft_player *player;
     weft_raw_limits limits;
     weft_raw_texture texture; /* of the drawing thread */
+    double last_ring_z[2];
     weft_load *background;
 };
 
@@ -119,12 +120,15 @@ weft_code weft_dataset_load_read(weft_dataset_load *load, weft_dataset *dataset,
 {
     const weft_raw_sink sink = {load, begin, put, end};
     const weft_progress progress = weft_load_progress(background);
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     load->background = background;
+    load->last_ring_z[0] = weft_player_last_ring_z(layout->view, layout->view_count);
+    load->last_ring_z[1] = weft_player_last_ring_z(layout->light, layout->image_count);
     return weft_raw_stream(dataset, &load->limits, &progress, &sink, error);
 }
 
-void weft_dataset_load_show(weft_dataset_load *load, const weft_dataset_layout *layout, int *skipped_levels)
+void weft_dataset_load_show(weft_dataset_load *load, int *skipped_levels)
 {
     *skipped_levels = load->texture.plan.skipped_levels;
-    weft_player_take_raw(load->player, &load->texture, layout);
+    weft_player_take_raw(load->player, &load->texture, load->last_ring_z);
 }

@@ -13,11 +13,12 @@ typedef struct weft_dataset_load weft_dataset_load;
 weft_code weft_dataset_load_create(weft_player *player, weft_dataset_load **result, weft_error *error);
 void weft_dataset_load_free(weft_dataset_load *load);
 
-/* In the background: reads all of `dataset`, row by row. Errors: those of weft_raw_stream and weft_load_post. */
+/* In the background: reads all of `dataset`, row by row, and needs it no longer. Errors: those of weft_raw_stream and
+ * weft_load_post. */
 weft_code weft_dataset_load_read(weft_dataset_load *load, weft_dataset *dataset, weft_load *background,
                                  weft_error *error);
 
-/* After reading: the player shows it. *skipped_levels as weft_player_set_dataset gives it. `layout`: the dataset's. */
-void weft_dataset_load_show(weft_dataset_load *load, const weft_dataset_layout *layout, int *skipped_levels);
+/* After reading: the player shows it. *skipped_levels as weft_player_set_dataset gives it. */
+void weft_dataset_load_show(weft_dataset_load *load, int *skipped_levels);
 
 #endif

@@ -1,5 +1,6 @@
 #include "player/loader.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <time.h>
@@ -28,7 +29,7 @@ struct weft_load {
 struct weft_loader {
     pthread_t thread;
     pthread_mutex_t mutex;
-    pthread_cond_t started, taken;
+    pthread_cond_t started, taken, handed; /* a load; a piece taken; a piece handed over, or a load read */
     bool stops;
     weft_load *first; /* those not released yet; the first that is not read is the one that runs */
     piece *first_piece, **end_of_pieces;
@@ -65,6 +66,7 @@ static void *run(void *context)
             load->error = error;
         }
         load->read = true;
+        pthread_cond_broadcast(&loader->handed);
     }
     pthread_mutex_unlock(&loader->mutex);
     return NULL;
@@ -89,6 +91,7 @@ weft_code weft_load_post(weft_load *load, weft_load_piece handed, weft_error *er
         *loader->end_of_pieces = added;
         loader->end_of_pieces = &added->next;
         loader->bytes_waiting += handed.bytes;
+        pthread_cond_broadcast(&loader->handed);
     }
     pthread_mutex_unlock(&loader->mutex);
     if (!given_up)
@@ -124,6 +127,7 @@ weft_code weft_loader_create(weft_loader **result, weft_error *error)
     pthread_mutex_init(&loader->mutex, NULL);
     pthread_cond_init(&loader->started, NULL);
     pthread_cond_init(&loader->taken, NULL);
+    pthread_cond_init(&loader->handed, NULL);
     if (pthread_create(&loader->thread, NULL, run, loader) != 0) {
         free(loader);
         return weft_fail(error, WEFT_SYSTEM, "cannot start a thread to load in");
@@ -166,6 +170,7 @@ void weft_loader_free(weft_loader *loader)
     }
     pthread_cond_destroy(&loader->started);
     pthread_cond_destroy(&loader->taken);
+    pthread_cond_destroy(&loader->handed);
     pthread_mutex_destroy(&loader->mutex);
     free(loader);
 }
@@ -255,6 +260,28 @@ weft_code weft_loader_poll(weft_loader *loader, double budget_s, bool *shown, we
             break;
     } while (now_s() < end_s);
     return WEFT_OK;
+}
+
+/* False where nothing will come. */
+static bool wait_for_work(weft_loader *loader)
+{
+    pthread_mutex_lock(&loader->mutex);
+    while (loader->first && !loader->first->read && !loader->first_piece)
+        pthread_cond_wait(&loader->handed, &loader->mutex);
+    bool some = loader->first != NULL;
+    pthread_mutex_unlock(&loader->mutex);
+    return some;
+}
+
+weft_code weft_loader_wait(weft_loader *loader, const weft_progress *progress, bool *some, weft_error *error)
+{
+    const long steps = 1000;
+    bool shown = false;
+    *some = wait_for_work(loader);
+    double share = weft_loader_progress(loader);
+    if (share > 0)
+        weft_progress_report(progress, "loading samples", lrint(share * steps), steps);
+    return *some ? weft_loader_poll(loader, 0, &shown, error) : WEFT_OK;
 }
 
 double weft_loader_progress(weft_loader *loader)

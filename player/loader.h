@@ -37,6 +37,9 @@ weft_code weft_loader_start(weft_loader *loader, int slot, const weft_load_steps
  * that of a load; call again for the others. */
 weft_code weft_loader_poll(weft_loader *loader, double budget_s, bool *shown, weft_error *error);
 
+/* Waits for the next thing to do and does it; *some: there was one, and there may be more. Errors: that of a load. */
+weft_code weft_loader_wait(weft_loader *loader, const weft_progress *progress, bool *some, weft_error *error);
+
 /* Share of the load that runs, 0..1; -1 where nothing is left to do. */
 double weft_loader_progress(weft_loader *loader);
 

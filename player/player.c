@@ -113,7 +113,7 @@ static void has_now(weft_player *p, weft_mode mode, double width, double height)
     p->texel_count[mode][1] = height;
 }
 
-static double smallest_z(const weft_vec3 *direction, int count)
+double weft_player_last_ring_z(const weft_vec3 *direction, int count)
 {
     double smallest = 1;
     for (int i = 0; i < count; i++)
@@ -132,19 +132,19 @@ weft_code weft_player_set_material(weft_player *p, const weft_material *material
     weft_material_texture_free(&p->material);
     p->material = texture;
     double *last = p->last_ring_z[WEFT_MODE_COMPRESSED];
-    last[0] = material->view_count > 0 ? smallest_z(material->view, material->view_count) : 0;
-    last[1] = material->light_count > 0 ? smallest_z(material->light, material->light_count) : last[0];
+    last[0] = material->view_count > 0 ? weft_player_last_ring_z(material->view, material->view_count) : 0;
+    last[1] = material->light_count > 0 ? weft_player_last_ring_z(material->light, material->light_count) : last[0];
     has_now(p, WEFT_MODE_COMPRESSED, material->level[0].width, material->level[0].height);
     return WEFT_OK;
 }
 
-void weft_player_take_raw(weft_player *p, weft_raw_texture *texture, const weft_dataset_layout *layout)
+void weft_player_take_raw(weft_player *p, weft_raw_texture *texture, const double last_ring_z[2])
 {
     weft_raw_texture_free(&p->raw);
     p->raw = *texture;
     *texture = (weft_raw_texture){0};
-    p->last_ring_z[WEFT_MODE_RAW][0] = smallest_z(layout->view, layout->view_count);
-    p->last_ring_z[WEFT_MODE_RAW][1] = smallest_z(layout->light, layout->image_count);
+    p->last_ring_z[WEFT_MODE_RAW][0] = last_ring_z[0];
+    p->last_ring_z[WEFT_MODE_RAW][1] = last_ring_z[1];
     weft_mip_area finest = p->raw.plan.layout.area[0];
     has_now(p, WEFT_MODE_RAW, finest.width, finest.height);
 }
@@ -160,7 +160,10 @@ weft_code weft_player_set_dataset(weft_player *p, weft_dataset *dataset, const w
         return code;
     }
     *skipped_levels = texture.plan.skipped_levels;
-    weft_player_take_raw(p, &texture, weft_dataset_get_layout(dataset));
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    const double last_ring_z[2] = {weft_player_last_ring_z(layout->view, layout->view_count),
+                                   weft_player_last_ring_z(layout->light, layout->image_count)};
+    weft_player_take_raw(p, &texture, last_ring_z);
     return WEFT_OK;
 }
 
@@ -177,6 +180,11 @@ weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, double 
     p->weave = texture;
     has_now(p, WEFT_MODE_ANALYTIC, tiles_u * weave->tile_width, tiles_v * weave->tile_height);
     return WEFT_OK;
+}
+
+bool weft_player_has_mesh(const weft_player *p)
+{
+    return p->index_count > 0;
 }
 
 bool weft_player_has(const weft_player *p, weft_mode mode)

@@ -36,6 +36,7 @@ weft_code weft_player_set_weave(weft_player *player, const weft_weave *weave, do
                                 weft_error *error);
 
 bool weft_player_has(const weft_player *player, weft_mode mode);
+bool weft_player_has_mesh(const weft_player *player);
 
 /* Bytes of graphics memory that the data of a mode take; 0 without it. */
 size_t weft_player_bytes(const weft_player *player, weft_mode mode);

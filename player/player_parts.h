@@ -73,8 +73,11 @@ void weft_player_bind_mode(const weft_player *player, const weft_scene *scene, w
 /* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. */
 void weft_player_draw_shadows(weft_player *player, const weft_scene *scene);
 
-/* Shows `texture`, which is taken, as the samples of a dataset of that layout. */
-void weft_player_take_raw(weft_player *player, weft_raw_texture *texture, const weft_dataset_layout *layout);
+/* Shows `texture`, which is taken. last_ring_z: the smallest z of the views and of the lights. */
+void weft_player_take_raw(weft_player *player, weft_raw_texture *texture, const double last_ring_z[2]);
+
+/* The smallest z of directions, 1 without any. Pure. */
+double weft_player_last_ring_z(const weft_vec3 *direction, int count);
 
 /* Errors: WEFT_BAD_USAGE unless a mesh and the mode are there. */
 weft_code weft_player_check_mode(const weft_player *player, weft_mode mode, weft_error *error);

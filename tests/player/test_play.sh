@@ -24,7 +24,7 @@ cd play
 player=$!
 trap 'kill $player 2>/dev/null || true' EXIT
 window=$(xdotool search --sync --onlyvisible --name '^Weft' | head -n 1)
-xdotool windowfocus "$window"
+xdotool windowfocus --sync "$window"
 
 shots=0
 shoot() { # WHAT: takes a screenshot that must differ from the one before

@@ -1,0 +1,209 @@
+#include "cli/scene_part.h"
+
+#include "btf/dataset_fingerprint.h"
+#include "capture/virtual_cloth.h"
+#include "player/dataset_load.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct part {
+    scene_stage *stage;
+    scene_slot slot;
+    bool by_user;
+    char *path;
+    double width_mm;
+    char note[WEFT_MESSAGE_SIZE];
+    /* One of these */
+    weft_material material;
+    weft_mesh mesh;
+    weft_virtual_cloth cloth;
+    weft_image image;
+    weft_dataset_load *dataset;
+} part;
+
+void scene_stage_free(scene_stage *stage)
+{
+    free(stage->metadata);
+}
+
+char **scene_stage_path(scene_stage *stage, scene_slot slot)
+{
+    weft_settings *settings = &stage->options->settings;
+    char **const path[SCENE_SLOT_COUNT] = {&settings->material, &settings->mesh, &settings->weave,
+                                           &settings->environment, &settings->dataset};
+    return path[slot];
+}
+
+/* ---- Reading, in the background ---- */
+
+static weft_code read_material(part *p, weft_error *error)
+{
+    WEFT_TRY(weft_material_read(p->path, &p->material, error));
+    p->width_mm = p->material.level[0].width * p->material.texel_pitch_mm;
+    free(p->stage->metadata);
+    p->stage->metadata = p->material.metadata;
+    p->material.metadata = NULL;
+    return WEFT_OK;
+}
+
+static weft_code read_weave(part *p, weft_error *error)
+{
+    weft_rig_settings rig = weft_rig_settings_default();
+    WEFT_TRY(weft_virtual_cloth_read(p->path, &rig, 0, &p->cloth, p->note, error));
+    p->width_mm = p->cloth.opening_mm;
+    return WEFT_OK;
+}
+
+static weft_code read_samples(part *p, weft_dataset *dataset, weft_load *load, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    char difference[WEFT_MESSAGE_SIZE] = "";
+    p->width_mm = layout->width * layout->texel_pitch_mm;
+    if (p->stage->metadata)
+        WEFT_TRY(weft_dataset_fingerprint_compare(dataset, p->stage->metadata, difference, error));
+    if (difference[0])
+        snprintf(p->note, sizeof p->note, "warning: %.*s", WEFT_MESSAGE_SIZE - 16, difference);
+    return weft_dataset_load_read(p->dataset, dataset, load, error);
+}
+
+static weft_code read_dataset(part *p, weft_load *load, weft_error *error)
+{
+    weft_dataset *dataset = NULL;
+    weft_code code = weft_dataset_open(p->path, &dataset, error);
+    if (code == WEFT_OK)
+        code = read_samples(p, dataset, load, error);
+    weft_dataset_close(dataset);
+    return code;
+}
+
+static weft_code read_part(void *data, weft_load *load, weft_error *error)
+{
+    part *p = data;
+    switch (p->slot) {
+    case SCENE_MATERIAL:
+        return read_material(p, error);
+    case SCENE_MESH:
+        return weft_mesh_open(p->path, &p->mesh, error);
+    case SCENE_WEAVE:
+        return read_weave(p, error);
+    case SCENE_ENVIRONMENT:
+        return weft_image_read(p->path, &p->image, NULL, error);
+    default:
+        return read_dataset(p, load, error);
+    }
+}
+
+/* ---- Showing ---- */
+
+static weft_code show_weave(part *p, weft_error *error)
+{
+    const double *tiles = p->stage->options->settings.tiles;
+    return weft_player_set_weave(p->stage->player, &p->cloth.weave, tiles[0] > 0 ? tiles[0] : p->cloth.tiles_x,
+                                 tiles[1] > 0 ? tiles[1] : p->cloth.tiles_y, error);
+}
+
+static weft_code show_environment(part *p, weft_error *error)
+{
+    weft_error cause = {0};
+    weft_code code = weft_player_set_environment(p->stage->player, &p->image, &cause);
+    if (code != WEFT_OK)
+        return weft_fail(error, code, "'%s': %s", p->path, cause.message);
+    if (p->by_user)
+        p->stage->options->settings.scene.environment = true;
+    return WEFT_OK;
+}
+
+static weft_code show_mesh(part *p, weft_error *error)
+{
+    WEFT_TRY(weft_player_set_mesh(p->stage->player, &p->mesh, error));
+    p->stage->mesh = p->mesh;
+    p->stage->mesh.vertex = NULL;
+    p->stage->mesh.index = NULL;
+    return WEFT_OK;
+}
+
+static weft_code show_dataset(part *p)
+{
+    int skipped_levels;
+    weft_dataset_load_show(p->dataset, &skipped_levels);
+    if (skipped_levels > 0)
+        snprintf(p->note, sizeof p->note,
+                 "'%.256s' does not fit into graphics memory: its samples are shown at 1/%d of their size", p->path,
+                 1 << skipped_levels);
+    return WEFT_OK;
+}
+
+static weft_code show_in_player(part *p, weft_error *error)
+{
+    switch (p->slot) {
+    case SCENE_MATERIAL:
+        return weft_player_set_material(p->stage->player, &p->material, error);
+    case SCENE_MESH:
+        return show_mesh(p, error);
+    case SCENE_WEAVE:
+        return show_weave(p, error);
+    case SCENE_ENVIRONMENT:
+        return show_environment(p, error);
+    default:
+        return show_dataset(p);
+    }
+}
+
+/* The first model that says how wide it is says so for all. */
+static void lay_out(scene_stage *stage)
+{
+    static const scene_slot order[] = {SCENE_MATERIAL, SCENE_DATASET, SCENE_WEAVE};
+    weft_settings *settings = &stage->options->settings;
+    double width_mm = 0;
+    for (size_t i = 0; i < sizeof order / sizeof *order && width_mm == 0; i++)
+        width_mm = stage->width_mm[order[i]];
+    settings->scene.repeat = weft_settings_repeat(settings, &stage->mesh, width_mm);
+}
+
+static weft_code show_part(void *data, weft_error *error)
+{
+    part *p = data;
+    scene_stage *stage = p->stage;
+    WEFT_TRY(show_in_player(p, error));
+    char **path = scene_stage_path(stage, p->slot);
+    free(*path);
+    *path = p->path;
+    p->path = NULL;
+    stage->width_mm[p->slot] = p->width_mm;
+    stage->slot = p->slot;
+    stage->by_user = p->by_user;
+    memcpy(stage->note, p->note, sizeof stage->note);
+    lay_out(stage);
+    return WEFT_OK;
+}
+
+static void release_part(void *data)
+{
+    part *p = data;
+    weft_material_free(&p->material);
+    weft_mesh_free(&p->mesh);
+    weft_virtual_cloth_free(&p->cloth);
+    weft_image_free(&p->image);
+    weft_dataset_load_free(p->dataset);
+    free(p->path);
+    free(p);
+}
+
+weft_code scene_part_start(scene_stage *stage, weft_loader *loader, scene_slot slot, const char *path, bool by_user,
+                           weft_error *error)
+{
+    static const weft_load_steps steps = {read_part, show_part, release_part};
+    part *p = calloc(1, sizeof *p);
+    if (!p)
+        return weft_fail_memory(error, "load", sizeof *p);
+    *p = (part){.stage = stage, .slot = slot, .by_user = by_user, .path = strdup(path)};
+    weft_code code = p->path ? WEFT_OK : weft_fail_memory(error, "name", strlen(path));
+    if (code == WEFT_OK && slot == SCENE_DATASET)
+        code = weft_dataset_load_create(stage->player, &p->dataset, error);
+    if (code == WEFT_OK)
+        return weft_loader_start(loader, (int)slot, &steps, p, error);
+    release_part(p);
+    return code;
+}
