@@ -2,6 +2,7 @@
 
 #include "btf/dataset_fingerprint.h"
 #include "capture/virtual_cloth.h"
+#include "geometry/stitch.h"
 #include "study/compare_page.h"
 #include "study/representative.h"
 
@@ -158,6 +159,15 @@ static weft_code write_page(const weft_compare_options *options, const weft_data
 
 /* ---- All of it ---- */
 
+/* Before hours of work rather than after them. */
+static weft_code check_stitch(const char *path, weft_error *error)
+{
+    weft_stitch stitch;
+    WEFT_TRY(weft_stitch_read(path, &stitch, error));
+    weft_stitch_free(&stitch);
+    return WEFT_OK;
+}
+
 static weft_code open_files(const weft_compare_options *options, compared_files *files, weft_error *error)
 {
     weft_rig_settings layout = weft_rig_settings_default();
@@ -167,6 +177,8 @@ static weft_code open_files(const weft_compare_options *options, compared_files 
     char warning[WEFT_MESSAGE_SIZE];
     WEFT_TRY(weft_dataset_open(options->dataset, &files->dataset, error));
     WEFT_TRY(weft_material_read(options->material, &files->material, error));
+    if (options->truth)
+        WEFT_TRY(check_stitch(options->truth, error));
     if (options->weave)
         WEFT_TRY(weft_virtual_cloth_read(options->weave, &layout, 0, &files->cloth, warning, error));
     return WEFT_OK;

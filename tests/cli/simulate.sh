@@ -39,6 +39,15 @@ grep -q "triangles" out.log || fail "the triangles are not counted"
 expect_ok simulate "$stitch" --obj open.obj --tiles 2x1 --resolution 30
 grep -q "^vn " open.obj || fail "the surface has no normals"
 
+# The truth beside them; without OpenGL it is left out, and said so.
+sed 's/resolution = [0-9]*/resolution = 24/' "$stitch" >coarse.stitch
+expect_says "near light, compressed against truth: relative RMSE\|no truth: " compare open.btf.h5 open.weft --truth coarse.stitch --paths 4 -o report
+grep -q "<h2>Truth</h2>" report/index.html || fail "the page has no truth"
+expect_error 1 absent.stitch compare open.btf.h5 open.weft --truth absent.stitch -o no
+expect_error 1 "expected 'stitch'" compare open.btf.h5 open.weft --truth "$assets/weaves/cotton_twill.wv" -o no
+expect_error 2 "paths" compare open.btf.h5 open.weft --truth coarse.stitch --paths 0 -o no
+[ ! -e no ] || fail "a report without truth was begun"
+
 expect_error 1 absent.stitch simulate absent.stitch -o no.btf.h5
 expect_error 1 "expected 'stitch'" simulate "$assets/weaves/cotton_twill.wv" -o no.btf.h5
 printf 'theta_deg,phi_deg\n95,0\n' >low.csv

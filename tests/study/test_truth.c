@@ -18,6 +18,12 @@ enum { TEXELS = 8, DIRECTIONS = 8, CELLS = 20, BOUNCES = 1, SIDE = 96 };
 
 static const double noise = 0.03;
 
+static void overwrite(char *at, const char *with)
+{
+    for (; *with; with++)
+        *at++ = *with;
+}
+
 /* The shipped plain weave on a coarse grid, so that hundreds of tiles are few triangles. */
 static void write_stitch(const char *path, const char *name)
 {
@@ -27,10 +33,10 @@ static void write_stitch(const char *path, const char *name)
     expect_ok(weft_read_file(WEFT_ASSETS "/stitches/plain_weave.stitch", 1 << 20, &text, &size, &error), &error);
     at = strstr(text, "resolution = 54");
     assert_non_null(at);
-    memcpy(at, "resolution = 20", strlen("resolution = 20"));
+    overwrite(at, "resolution = 20");
     at = strstr(text, "\"Plain weave\"");
     assert_non_null(at);
-    memcpy(at, name, strlen(name));
+    overwrite(at, name);
     expect_ok(weft_write_file(path, text, size, &error), &error);
     free(text);
 }
