@@ -3,6 +3,7 @@
 #include "player/player.h"
 #include "player/context.h"
 #include "player/environment.h"
+#include "reflectance/lafortune.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -177,6 +178,73 @@ static void time_mode(weft_player *player, weft_mode mode, weft_canvas *canvas)
     }
 }
 
+/* ---- Against memory, and against C ---- */
+
+enum { COPIED = 256 << 20 };
+
+/* GB/s that one thread reads and writes. */
+static double memory_speed(void)
+{
+    char *from = malloc(COPIED), *to = malloc(COPIED);
+    double best_ms = 1e9;
+    for (int i = 0; i < 5 && from && to; i++) {
+        memset(from, i, COPIED);
+        double start = now_ms();
+        memcpy(to, from, COPIED);
+        best_ms = fmin(best_ms, now_ms() - start);
+    }
+    free(from);
+    free(to);
+    return 2 * 1e-6 * COPIED / best_ms;
+}
+
+/* Eight texels of packed words and three entries of each table (player/material_texture.h). */
+static int fetched_bytes(const weft_material *material)
+{
+    int words = 16 * (1 + (3 * material->lobe_count + 1) / 2);
+    return 8 * (words + 3 * 4 * ((material->view_count > 0) + (material->light_count > 0)));
+}
+
+static double sum_of_c(const weft_material *material, const weft_surface_sample *surface, long *pixels)
+{
+    weft_error error = {0};
+    weft_table_directions directions;
+    double sum = 0;
+    stop_on(weft_table_directions_create(material, &directions, &error), &error);
+    *pixels = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const weft_surface_sample *at = &surface[i];
+        if (at->covered == 0)
+            continue;
+        weft_vec3 light = {at->light[0], at->light[1], at->light[2]}, view = {at->view[0], at->view[1], at->view[2]};
+        weft_rgba value = weft_material_sample(material, &directions, at->level, at->u, at->v, light, view);
+        sum += (double)value.g;
+        (*pixels)++;
+    }
+    weft_table_directions_free(&directions);
+    return sum;
+}
+
+/* What an exact frame of the material fetches, and the same pixels by the evaluator in C on one thread. */
+static void judge_material(weft_player *player, const char *path)
+{
+    weft_error error = {0};
+    weft_material material;
+    weft_surface_sample *surface;
+    long pixels;
+    const weft_scene scene = weft_scene_default();
+    stop_on(weft_material_read(path, &material, &error), &error);
+    stop_on(weft_player_read_surface(player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &surface, &error), &error);
+    double start = now_ms(), sum = sum_of_c(&material, surface, &pixels), c_ms = now_ms() - start;
+    double frame_gb = 1e-9 * fetched_bytes(&material) * (double)pixels, speed = memory_speed();
+    printf("compressed: %ld pixels, %d bytes fetched for each; memory would do for %.0f frames/s (%.1f GB/s copied)\n",
+           pixels, fetched_bytes(&material), speed / frame_gb, speed);
+    printf("            the evaluator in C takes %.0f ms on one thread (mean green %.4f)\n", c_ms,
+           sum / (double)pixels);
+    free(surface);
+    weft_material_free(&material);
+}
+
 static void load_weave(weft_player *player, const char *path, double tiles)
 {
     weft_error error = {0};
@@ -259,6 +327,10 @@ int main(int argc, char **argv)
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
         if (weft_player_has(player, (weft_mode)mode))
             time_mode(player, (weft_mode)mode, &canvas);
+    }
+    for (int i = 1; i < argc; i++) {
+        if (has_extension(argv[i], ".weft"))
+            judge_material(player, argv[i]);
     }
     weft_canvas_free(&canvas);
     weft_player_free(player);
