@@ -17,8 +17,8 @@ typedef struct weft_csv {
     int *line;     /* [row_count] line of the file, from 1 */
 } weft_csv;
 
-/* Reads a file of at most 1 GiB and 4096 columns. Errors: WEFT_BAD_INPUT where it is missing, has no line, where a line has another
- * number of cells than the first, or where two columns have one name. */
+/* Reads a file of at most 1 GiB and 4096 columns. Errors: WEFT_BAD_INPUT where it is missing, has no line, where a line
+ * has another number of cells than the first, or where two columns have one name. */
 weft_code weft_csv_read(const char *path, bool has_header, weft_csv *csv, weft_error *error);
 void weft_csv_free(weft_csv *csv);
 
