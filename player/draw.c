@@ -237,12 +237,26 @@ static weft_code draw_difference(weft_player *p, const weft_scene *scene, const 
     return WEFT_OK;
 }
 
-static void draw_labels(const weft_player *p, const weft_scene *scene, int width, int height)
+static weft_code draw_pane_labels(weft_player *p, const weft_scene *scene, int width, int height, int margin,
+                                  weft_error *error)
 {
-    int scale = height / 240 > 1 ? height / 240 : 1, margin = 4 * scale;
-    for (int i = 0; scene->labels && scene->pane_count > 1 && i < scene->pane_count; i++)
-        weft_overlay_text(&p->overlay, width, height, width * i / scene->pane_count + margin, margin, scale,
-                          weft_mode_name(scene->pane[i]));
+    for (int i = 0; scene->pane_count > 1 && i < scene->pane_count; i++)
+        WEFT_TRY(weft_label_draw(&p->labels, width, height, width * i / scene->pane_count + margin, margin, false,
+                                 weft_mode_name(scene->pane[i]), error));
+    return WEFT_OK;
+}
+
+/* A difference is of one kind everywhere, and of no colour that letters could have. */
+static weft_code draw_labels(weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)
+{
+    int margin = weft_label_size(height) / 2;
+    if (!scene->labels || scene->layout == WEFT_LAYOUT_DIFFERENCE)
+        return WEFT_OK;
+    if (scene->layout == WEFT_LAYOUT_PANES)
+        return draw_pane_labels(p, scene, width, height, margin, error);
+    WEFT_TRY(weft_label_draw(&p->labels, width, height, margin, margin, false, weft_mode_name(scene->pane[0]), error));
+    return weft_label_draw(&p->labels, width, height, width - margin, margin, true, weft_mode_name(scene->pane[1]),
+                           error);
 }
 
 static weft_code check_scene(const weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)
@@ -267,6 +281,6 @@ weft_code weft_player_draw(weft_player *p, const weft_scene *scene, int width, i
     const weft_pane whole = {.width = width, .height = height, .sampling = sampling};
     WEFT_TRY(draw[scene->layout](p, scene, &whole, (GLuint)target, error));
     p->frames_drawn++;
-    draw_labels(p, scene, width, height);
+    WEFT_TRY(draw_labels(p, scene, width, height, error));
     return weft_gl_check("drawing", error);
 }

@@ -28,7 +28,7 @@ weft_code weft_player_create(weft_player **result, weft_error *error)
     glGenVertexArrays(1, &p->empty_array);
     weft_code code = build_programs(p, error);
     if (code == WEFT_OK)
-        code = weft_overlay_create(&p->overlay, error);
+        code = weft_labels_create(&p->labels, error);
     if (code == WEFT_OK)
         *result = p;
     else
@@ -65,7 +65,7 @@ void weft_player_free(weft_player *p)
     glDeleteTextures(1, &p->environment_map);
     free(p->environment);
     glDeleteVertexArrays(1, &p->empty_array);
-    weft_overlay_free(&p->overlay);
+    weft_labels_free(&p->labels);
     free(p);
 }
 

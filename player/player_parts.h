@@ -3,9 +3,9 @@
 #define WEFT_PLAYER_PLAYER_PARTS_H
 
 #include "player/environment.h"
+#include "player/label.h"
 #include "player/layer.h"
 #include "player/material_texture.h"
-#include "player/overlay.h"
 #include "player/player.h"
 #include "player/programs.h"
 #include "player/raw_texture.h"
@@ -35,7 +35,7 @@ struct weft_player {
     weft_programs programs;
     GLuint background, environment_background, copy;
     GLuint empty_array;
-    weft_overlay overlay;
+    weft_labels labels;
     weft_layer layer[WEFT_LAYER_COUNT]; /* the second lies behind the first */
     GLuint kept;                        /* picture of the first mode of a difference */
     int kept_width, kept_height;

@@ -1,14 +1,15 @@
 #include "study/model_report.h"
 
 #include "btf/material_models.h"
-#include "player/font.h"
+#include "player/letters.h"
 #include "player/mip_layout.h"
 #include "study/page.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { WANTED_SIDE = 512, LEGEND_WIDTH = 300, LINE_HEIGHT = 14, SWATCH = 10 };
+enum { WANTED_SIDE = 512, LEGEND_WIDTH = 300, LETTER_SIZE = 14, LINE_HEIGHT = 18, SWATCH = 10 };
 
 void weft_model_colour(uint8_t code, float rgb[3])
 {
@@ -30,17 +31,24 @@ static void fill_square(weft_image *image, int x, int y, int width, int height, 
     }
 }
 
-static void write_text(weft_image *image, int x, int y, const char *text)
+static void write_letter(weft_image *image, const weft_letters *letters, const stbtt_bakedchar *glyph, int x, int y)
 {
-    const float black[3] = {0};
-    for (int i = 0; text[i]; i++) {
-        const uint8_t *glyph = weft_font[text[i] - WEFT_FONT_FIRST];
-        for (int row = 0; row < WEFT_FONT_ROWS; row++) {
-            for (int column = 0; column < WEFT_FONT_COLUMNS; column++) {
-                if (glyph[row] >> (WEFT_FONT_COLUMNS - 1 - column) & 1)
-                    fill_square(image, x + i * WEFT_FONT_CELL_WIDTH + column, y + row, 1, 1, black);
-            }
+    for (int row = glyph->y0; row < glyph->y1; row++) {
+        for (int column = glyph->x0; column < glyph->x1; column++) {
+            float share = 1 - (float)letters->coverage[row * letters->side + column] / 255;
+            const float ink[3] = {share, share, share};
+            fill_square(image, x + column - glyph->x0, y + row - glyph->y0, 1, 1, ink);
         }
+    }
+}
+
+/* Black on white, from the left end of the baseline. */
+static void write_text(weft_image *image, const weft_letters *letters, int x, int y, const char *text)
+{
+    for (; *text; text++) {
+        const stbtt_bakedchar *glyph = weft_letters_find(letters, *text);
+        write_letter(image, letters, glyph, x + (int)lroundf(glyph->xoff), y + (int)lroundf(glyph->yoff));
+        x += weft_letters_advance(letters, *text);
     }
 }
 
@@ -79,7 +87,8 @@ static double percent_of(const weft_material_level *level, long count)
     return 100.0 * (double)count / ((double)level->width * level->height);
 }
 
-static void draw_legend(weft_image *image, const weft_material *material, const model_counts *counts, int top)
+static void draw_legend(weft_image *image, const weft_letters *letters, const weft_material *material,
+                        const model_counts *counts, int top)
 {
     for (int i = 0; i < counts->used_count; i++) {
         char name[WEFT_MODEL_NAME], line[WEFT_MODEL_NAME + 16];
@@ -88,8 +97,8 @@ static void draw_legend(weft_image *image, const weft_material *material, const 
         weft_model_print(weft_model_decode((uint8_t)code), name);
         snprintf(line, sizeof line, "%s: %.1f %%", name, percent_of(&material->level[0], counts->count[0][code]));
         weft_model_colour((uint8_t)code, rgb);
-        fill_square(image, 4, y, SWATCH, SWATCH, rgb);
-        write_text(image, 4 + SWATCH + 6, y + 2, line);
+        fill_square(image, 4, y + 2, SWATCH, SWATCH, rgb);
+        write_text(image, letters, 4 + SWATCH + 6, y + SWATCH + 1, line);
     }
 }
 
@@ -104,11 +113,18 @@ weft_code weft_model_picture(const weft_material *material, weft_image *image, w
     int largest = layout.width > layout.height ? layout.width : layout.height;
     int scale = largest < WANTED_SIDE ? WANTED_SIDE / largest : 1, top = layout.height * scale;
     int width = layout.width * scale > LEGEND_WIDTH ? layout.width * scale : LEGEND_WIDTH;
-    WEFT_TRY(weft_image_create(width, top + 8 + counts.used_count * LINE_HEIGHT, image, error));
+    weft_letters letters;
+    WEFT_TRY(weft_letters_bake(LETTER_SIZE, &letters, error));
+    weft_code code = weft_image_create(width, top + 8 + counts.used_count * LINE_HEIGHT, image, error);
+    if (code != WEFT_OK) {
+        weft_letters_free(&letters);
+        return code;
+    }
     fill_square(image, 0, 0, image->width, image->height, white);
     for (int k = 0; k < material->level_count; k++)
         draw_level(image, &material->level[k], layout.area[k], scale);
-    draw_legend(image, material, &counts, top);
+    draw_legend(image, &letters, material, &counts, top);
+    weft_letters_free(&letters);
     return WEFT_OK;
 }
 

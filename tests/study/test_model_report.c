@@ -38,7 +38,7 @@ static void every_texel_has_the_colour_of_its_model(void **state)
     for (int i = 0; i < 8; i++)
         assert_colour(&image, i % 4 * scale + scale / 2, i / 4 * scale + scale / 2, (uint8_t)i);
     for (int i = 0; i < 8; i++)
-        assert_colour(&image, 8, image.height - 8 * 14 + i * 14, (uint8_t)i);
+        assert_colour(&image, 8, image.height - 8 * 18 + i * 18, (uint8_t)i);
     weft_image_free(&image);
     weft_material_free(&material);
 }
