@@ -67,6 +67,13 @@ for key in 1 3 s w x 2 m n bracketright c o; do
 done
 "$weft" render --settings "$next" -o again.png --quiet
 cmp "$next" again.png || { echo "the last screenshot cannot be drawn again"; exit 1; }
+"$weft" compress cloth.btf.h5 -o other.weft --lobes 1 --table off --quiet
+mv other.weft cloth.weft
+sleep 2
+shoot "the material was written again"
+head -c 100 cloth.weft >cut.weft && mv cut.weft cloth.weft
+sleep 2
+kill -0 $player || { echo "a material that was cut while it was shown ended the player"; exit 1; }
 xdotool windowsize "$window" 400 300
 shoot "resize"
 xdotool key q

@@ -1,0 +1,234 @@
+/* Files of a scene that arrive, are dropped, are broken, and change while a player shows them. */
+#include "cli/scene_load.h"
+#include "stage.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { WIDTH = 64, HEIGHT = 48 };
+
+typedef struct fixture {
+    stage *stage;
+    scene_options options;
+    scene_loader *loader;
+} fixture;
+
+static fixture the_fixture;
+
+static void write_material(const char *path, int size)
+{
+    weft_material material = {0};
+    weft_error error = {0};
+    stage_material(size, size, 2, 7, 0, &material);
+    expect_ok(weft_material_write(path, &material, &error), &error);
+    weft_material_free(&material);
+}
+
+static void write_text(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+static int make_files(void **state)
+{
+    if (stage_open(state) != 0)
+        return -1;
+    the_fixture.stage = *state;
+    mkdir("scene_load", 0755);
+    write_material("scene_load/a.weft", 16);
+    write_material("scene_load/b.weft", 8);
+    write_text("scene_load/corrupt.weft", "\x89WEFT\r\n\x1a and then nothing");
+    write_text("scene_load/quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                                      "f 1/1 2/2 3/3 4/4\n");
+    write_text("scene_load/bad.obj", "v 0 0 0\nf 1 2 3\n");
+    stage_dataset("scene_load/a.btf.h5", 8, 7, 7, WEFT_REFLECTANCE_COSINE, false);
+    return 0;
+}
+
+static int close_stage(void **state)
+{
+    *state = the_fixture.stage;
+    return stage_close(state);
+}
+
+/* A loader for a material, perhaps with a dataset. */
+static fixture *open_scene(const char *material, const char *dataset)
+{
+    fixture *f = &the_fixture;
+    weft_error error = {0};
+    f->options = (scene_options){.common.quiet = true};
+    expect_ok(weft_settings_init(&f->options.settings, &error), &error);
+    f->options.settings.material = material ? strdup(material) : NULL;
+    f->options.settings.dataset = dataset ? strdup(dataset) : NULL;
+    expect_ok(scene_loader_create(&f->options, &f->loader, &error), &error);
+    expect_ok(scene_loader_attach(f->loader, f->stage->player, &error), &error);
+    return f;
+}
+
+static void close_scene(fixture *f)
+{
+    scene_loader_free(f->loader);
+    scene_options_free(&f->options);
+}
+
+static int texels_shown(const fixture *f)
+{
+    return (int)weft_player_bytes(f->stage->player, WEFT_MODE_COMPRESSED);
+}
+
+static void expect_picture(const fixture *f)
+{
+    weft_error error = {0};
+    weft_image image = {0};
+    expect_ok(weft_player_picture(f->stage->player, &f->options.settings.scene, WIDTH, HEIGHT, 1, NULL, &image, &error),
+              &error);
+    weft_image_free(&image);
+}
+
+/* Drops a file and waits for what comes of it. */
+static weft_code drop(fixture *f, const char *path, weft_error *error)
+{
+    WEFT_TRY(scene_loader_open(f->loader, path, error));
+    return scene_loader_finish(f->loader, error);
+}
+
+static void everything_named_is_shown_and_named(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    fixture *f = open_scene("scene_load/a.weft", "scene_load/a.btf.h5");
+    assert_null(f->options.settings.material);
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    assert_string_equal(f->options.settings.material, "scene_load/a.weft");
+    assert_string_equal(f->options.settings.dataset, "scene_load/a.btf.h5");
+    assert_true(weft_player_has(f->stage->player, WEFT_MODE_RAW));
+    assert_float_equal(scene_loader_progress(f->loader), -1, 0);
+    expect_picture(f);
+    close_scene(f);
+}
+
+static void a_dropped_material_replaces_the_one_shown(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    fixture *f = open_scene("scene_load/a.weft", NULL);
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    int before = texels_shown(f);
+    expect_ok(drop(f, "scene_load/b.weft", &error), &error);
+    assert_true(texels_shown(f) < before);
+    assert_string_equal(f->options.settings.material, "scene_load/b.weft");
+    close_scene(f);
+}
+
+static void a_corrupt_file_leaves_what_was_shown(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    fixture *f = open_scene("scene_load/a.weft", NULL);
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    int before = texels_shown(f);
+    static const char *const bad[] = {"scene_load/corrupt.weft", "scene_load/bad.obj", "scene_load/none.weft"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_int_equal(drop(f, bad[i], &error), WEFT_BAD_INPUT);
+        assert_non_null(strstr(error.message, bad[i]));
+    }
+    assert_int_equal(texels_shown(f), before);
+    assert_string_equal(f->options.settings.material, "scene_load/a.weft");
+    assert_string_equal(f->options.settings.mesh, "drape");
+    expect_picture(f);
+    close_scene(f);
+}
+
+static void files_that_cannot_be_shown_are_refused(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    fixture *f = open_scene("scene_load/a.weft", NULL);
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    assert_int_equal(drop(f, WEFT_ASSETS "/stitches/plain_knit.stitch", &error), WEFT_BAD_INPUT);
+    assert_int_equal(drop(f, "scene_load", &error), WEFT_BAD_INPUT);
+    close_scene(f);
+}
+
+static void a_dropped_mesh_and_weave_are_shown(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    fixture *f = open_scene("scene_load/a.weft", NULL);
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(drop(f, "scene_load/quad.obj", &error), &error);
+    assert_string_equal(f->options.settings.mesh, "scene_load/quad.obj");
+    expect_ok(drop(f, WEFT_ASSETS "/weaves/polyester_lining.wv", &error), &error);
+    assert_true(weft_player_has(f->stage->player, WEFT_MODE_ANALYTIC));
+    expect_picture(f);
+    close_scene(f);
+}
+
+static void a_picture_brings_its_settings_and_files_back(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    fixture *f = open_scene("scene_load/a.weft", NULL);
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    f->options.settings.scene.exposure = 2.5;
+    f->options.settings.width = WIDTH;
+    f->options.settings.height = HEIGHT;
+    f->options.settings.samples = 1;
+    expect_ok(weft_settings_draw("scene_load/shot.png", f->stage->player, &f->options.settings, NULL, &error), &error);
+    expect_ok(drop(f, "scene_load/b.weft", &error), &error);
+    f->options.settings.scene.exposure = 1;
+    int small = texels_shown(f);
+    expect_ok(drop(f, "scene_load/shot.png", &error), &error);
+    assert_float_equal(f->options.settings.scene.exposure, 2.5, 1e-9);
+    assert_true(texels_shown(f) > small);
+    close_scene(f);
+}
+
+static void a_file_that_was_written_again_is_read_again(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    write_material("scene_load/c.weft", 16);
+    fixture *f = open_scene("scene_load/c.weft", NULL);
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    int before = texels_shown(f);
+    write_material("scene_load/c.weft", 4);
+    expect_ok(scene_loader_reload(f->loader, &error), &error);
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    assert_true(texels_shown(f) < before);
+    close_scene(f);
+}
+
+static void a_scene_may_be_closed_while_it_is_read(void **state)
+{
+    (void)state;
+    for (int pause_us = 0; pause_us < 40000; pause_us += 4000) {
+        weft_error error = {0};
+        bool shown;
+        char note[WEFT_MESSAGE_SIZE];
+        fixture *f = open_scene("scene_load/a.weft", "scene_load/a.btf.h5");
+        usleep((unsigned)pause_us);
+        scene_loader_poll(f->loader, &shown, note, &error);
+        close_scene(f);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(everything_named_is_shown_and_named),
+        cmocka_unit_test(a_dropped_material_replaces_the_one_shown),
+        cmocka_unit_test(a_corrupt_file_leaves_what_was_shown),
+        cmocka_unit_test(files_that_cannot_be_shown_are_refused),
+        cmocka_unit_test(a_dropped_mesh_and_weave_are_shown),
+        cmocka_unit_test(a_picture_brings_its_settings_and_files_back),
+        cmocka_unit_test(a_file_that_was_written_again_is_read_again),
+        cmocka_unit_test(a_scene_may_be_closed_while_it_is_read),
+    };
+    return cmocka_run_group_tests(tests, make_files, close_stage);
+}
