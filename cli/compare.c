@@ -9,13 +9,15 @@ typedef struct compare_command {
     weft_compare_options options;
 } compare_command;
 
-enum { KEY_TILES = 0x2000, KEY_BARD, KEY_TRUTH, KEY_PATHS };
+enum { KEY_TILES = 0x2000, KEY_BARD, KEY_TRUTH, KEY_PATHS, KEY_FIT };
 enum { MAX_PATHS = 65536 };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "REPORT/", 0, "The folder for the page and its pictures", 0},
     {"weave", 'w', "CLOTH.wv", 0, "Compare this analytic cloth, too", 0},
-    {"tiles", KEY_TILES, "X,Y", 0, "Tiles of the weave across the material (default: as the virtual rig lays it)", 0},
+    {"fit", KEY_FIT, NULL, 0, "Fit that cloth to the dataset first (see fit-weave); writes REPORT/fitted.wv", 0},
+    {"tiles", KEY_TILES, "X,Y", 0,
+     "Tiles of the weave across the material (default: as --fit finds or the virtual rig lays it)", 0},
     {"bard", KEY_BARD, "NAME.bard.h5", 0, "Compare what `weft bard` predicted, too", 0},
     {"truth", KEY_TRUTH, "FILE.stitch", 0, "Trace the geometry that the dataset was simulated from, too", 0},
     {"paths", KEY_PATHS, "N", 0, "Paths of light for each pixel of it (default: 64)", 0},
@@ -46,6 +48,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 'w':
         options->weave = argument;
         return 0;
+    case KEY_FIT:
+        options->fit = true;
+        return 0;
     case KEY_BARD:
         options->bard = argument;
         return 0;
@@ -66,6 +71,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (!options->material || !options->folder)
             argp_error(state, "needs a dataset, a material and -o REPORT/");
+        if (options->fit && !options->weave)
+            argp_error(state, "--fit needs --weave, where the fit starts");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -78,7 +85,7 @@ static const struct argp parser = {
     option_table,
     parse_option,
     "NAME.btf.h5 NAME.weft -o REPORT/",
-    "Example: weft compare silk.btf.h5 silk.weft --weave silk.wv -o report/\n\n"
+    "Example: weft compare silk.btf.h5 silk.weft --weave silk.wv --fit -o report/\n\n"
     "Writes one HTML page: dataset, material, analytic cloth and BARD side by side, the errors of each against the "
     "dataset, sample by sample and of the mean BRDF, slices of the mean BRDF, sizes and times. "
     "A dataset of fewer than 30 images is also fitted with each image left out, to see how well the others predict it.",
@@ -125,11 +132,23 @@ static void say_truth(const common_options *common, const weft_traced_truth *tru
                 say_truth_error(common, &truth->scene[i], light, model);
 }
 
+static void say_weave(const common_options *common, const weft_comparison *comparison)
+{
+    if (!comparison->weave_origin[0])
+        return;
+    command_say(common, "analytic: the weave '%s', %s", comparison->weave_name, comparison->weave_origin);
+    if (comparison->fit.image_count > 0)
+        command_say(common,
+                    "analytic before the fit, mean BRDF: median relative error %.2f %%, 80th percentile %.2f %%",
+                    100 * comparison->fit.before.median_relative, 100 * comparison->fit.before.percentile80_relative);
+}
+
 static void say_numbers(const compare_command *command, const weft_comparison *comparison)
 {
     const common_options *common = &command->common;
     if (comparison->warning[0])
         command_say(common, "warning: %s", comparison->warning);
+    say_weave(common, comparison);
     for (int i = 0; i < comparison->model_count; i++) {
         say_error(common, comparison->model[i].name, "samples", &comparison->model[i].texture.all);
         say_error(common, comparison->model[i].name, "mean BRDF", &comparison->model[i].mean);

@@ -1,6 +1,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "study/fit_weave_dataset.h"
+#include "study/fit_weave_origin.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -143,24 +144,13 @@ static void say_report(const fit_weave_command *command, const weft_weave *weave
     say_errors(command, report);
 }
 
-static weft_code write_weave(const fit_weave_command *command, const weft_weave *weave,
-                             const weft_fit_weave_report *report, weft_error *error)
-{
-    char comment[256];
-    snprintf(
-        comment, sizeof comment,
-        "Fitted to the mean of %d images; relative error of the mean BRDF: median %.2f %%, 80th percentile %.2f %%",
-        report->image_count, 100 * report->after.median_relative, 100 * report->after.percentile80_relative);
-    return weft_weave_write(command->output, weave, comment, error);
-}
-
 static weft_code fit(const fit_weave_command *command, weft_weave *weave, weft_dataset *dataset, weft_error *error)
 {
     weft_progress progress = command_progress(&command->common);
     weft_fit_weave_source source;
     weft_fit_weave_report report;
     WEFT_TRY(weft_fit_weave_to_dataset(dataset, weave, &progress, &source, &report, error));
-    WEFT_TRY(write_weave(command, weave, &report, error));
+    WEFT_TRY(weft_fit_weave_write(command->output, weave, dataset, &report, error));
     say_source(command, &source);
     say_report(command, weave, &report);
     return WEFT_OK;

@@ -1,9 +1,9 @@
 #include "study/compare.h"
 
 #include "btf/dataset_fingerprint.h"
-#include "capture/virtual_cloth.h"
 #include "geometry/stitch.h"
 #include "study/compare_page.h"
+#include "study/compare_weave.h"
 #include "study/representative.h"
 
 #include <stdio.h>
@@ -14,7 +14,7 @@
 typedef struct compared_files {
     weft_dataset *dataset;
     weft_material material;
-    weft_virtual_cloth cloth; /* empty without a weave */
+    weft_compared_weave weave;
 } compared_files;
 
 static double file_bytes(const char *path)
@@ -60,7 +60,7 @@ static weft_code measure_material(const compared_files *files, const weft_progre
 static weft_code measure_weave(const compared_files *files, const weft_progress *progress, weft_comparison *comparison,
                                weft_error *error)
 {
-    const weft_virtual_cloth *cloth = &files->cloth;
+    const weft_virtual_cloth *cloth = &files->weave.cloth;
     weft_predictor *predictor;
     WEFT_TRY(weft_predictor_of_weave(files->dataset, &cloth->weave, cloth->tiles_x, cloth->tiles_y, &predictor, error));
     weft_code code = measure_texture(files->dataset, predictor, "analytic", progress, comparison, error);
@@ -86,8 +86,8 @@ static weft_code measure_means(const weft_compare_options *options, const compar
     const weft_dataset_layout *layout = weft_dataset_get_layout(files->dataset);
     weft_prediction_error mean[WEFT_CONTENDER_COUNT];
     weft_contenders contenders;
-    WEFT_TRY(weft_contenders_open(options->dataset, options->material, &files->material, options->weave, options->bard,
-                                  &contenders, error));
+    WEFT_TRY(weft_contenders_open(options->dataset, options->material, &files->material, files->weave.path,
+                                  options->bard, &contenders, error));
     weft_code code = weft_contenders_measure(&contenders, layout, progress, mean, error);
     if (code == WEFT_OK)
         code = weft_slices_make(layout, &contenders, progress, &comparison->slices, error);
@@ -103,9 +103,9 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
     const weft_dataset_layout *layout = weft_dataset_get_layout(files->dataset);
     weigh(options, layout, comparison);
     WEFT_TRY(weft_dataset_fingerprint_compare(files->dataset, files->material.metadata, comparison->warning, error));
-    snprintf(comparison->weave_name, sizeof comparison->weave_name, "%s", files->cloth.weave.name);
-    comparison->tiles_u = files->cloth.tiles_x;
-    comparison->tiles_v = files->cloth.tiles_y;
+    snprintf(comparison->weave_name, sizeof comparison->weave_name, "%s", files->weave.cloth.weave.name);
+    comparison->tiles_u = files->weave.cloth.tiles_x;
+    comparison->tiles_v = files->weave.cloth.tiles_y;
     WEFT_TRY(measure_material(files, progress, comparison, error));
     if (options->weave)
         WEFT_TRY(measure_weave(files, progress, comparison, error));
@@ -114,7 +114,7 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
     WEFT_TRY(measure_means(options, files, progress, comparison, error));
     if (layout->image_count > 1 && layout->image_count < WEFT_LEAVE_ONE_OUT_LIMIT)
         WEFT_TRY(weft_leave_one_out_measure(files->dataset, progress, &comparison->left_out, error));
-    const weft_scenes_request request = {files->dataset, &files->material, options->weave ? &files->cloth : NULL,
+    const weft_scenes_request request = {files->dataset, &files->material, options->weave ? &files->weave.cloth : NULL,
                                          options->bard};
     WEFT_TRY(weft_scenes_draw(&request, progress, &comparison->scenes, error));
     const weft_traced_request truth = {files->dataset, &files->material, options->truth, options->truth_paths, 1};
@@ -168,27 +168,23 @@ static weft_code check_stitch(const char *path, weft_error *error)
     return WEFT_OK;
 }
 
-static weft_code open_files(const weft_compare_options *options, compared_files *files, weft_error *error)
+static weft_code open_files(const weft_compare_options *options, const weft_progress *progress, compared_files *files,
+                            weft_comparison *comparison, weft_error *error)
 {
-    weft_rig_settings layout = weft_rig_settings_default();
-    layout.tiles_x = options->tiles_u;
-    layout.tiles_y = options->tiles_v;
-    layout.cloth_noise = 0;
-    char warning[WEFT_MESSAGE_SIZE];
     WEFT_TRY(weft_dataset_open(options->dataset, &files->dataset, error));
     WEFT_TRY(weft_material_read(options->material, &files->material, error));
     if (options->truth)
         WEFT_TRY(check_stitch(options->truth, error));
-    if (options->weave)
-        WEFT_TRY(weft_virtual_cloth_read(options->weave, &layout, 0, &files->cloth, warning, error));
-    return WEFT_OK;
+    if (!options->weave)
+        return WEFT_OK;
+    return weft_compare_weave_open(options, files->dataset, progress, &files->weave, comparison, error);
 }
 
 static void close_files(compared_files *files)
 {
     weft_dataset_close(files->dataset);
     weft_material_free(&files->material);
-    weft_virtual_cloth_free(&files->cloth);
+    weft_compare_weave_close(&files->weave);
 }
 
 weft_code weft_compare(const weft_compare_options *options, const weft_progress *progress, weft_comparison *comparison,
@@ -196,7 +192,7 @@ weft_code weft_compare(const weft_compare_options *options, const weft_progress 
 {
     compared_files files = {0};
     *comparison = (weft_comparison){0};
-    weft_code code = open_files(options, &files, error);
+    weft_code code = open_files(options, progress, &files, comparison, error);
     if (code == WEFT_OK)
         code = measure(options, &files, progress, comparison, error);
     if (code == WEFT_OK)

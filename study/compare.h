@@ -3,6 +3,7 @@
 #define WEFT_STUDY_COMPARE_H
 
 #include "btf/progress.h"
+#include "study/fit_weave_dataset.h"
 #include "study/leave_one_out.h"
 #include "study/measurement.h"
 #include "study/scenes.h"
@@ -13,6 +14,7 @@ typedef struct weft_compare_options {
     const char *dataset;     /* NAME.btf.h5 */
     const char *material;    /* NAME.weft, fitted to it */
     const char *weave;       /* CLOTH.wv, or NULL */
+    bool fit;                /* the weave to the dataset first, with CLOTH.wv as the start */
     const char *bard;        /* NAME.bard.h5 as `weft bard` writes it, or NULL */
     const char *truth;       /* FILE.stitch from which the dataset was simulated, or NULL */
     int truth_paths;         /* of a pixel */
@@ -35,7 +37,10 @@ typedef struct weft_comparison {
     int model_count;
     weft_compared_model model[WEFT_CONTENDER_COUNT - 1]; /* the first is the material */
     char weave_name[128];                                /* of the analytic cloth, empty without one */
-    double tiles_u, tiles_v;                             /* of it across the material */
+    char weave_origin[WEFT_MESSAGE_SIZE];                /* what it was fitted to, if anything */
+    weft_fit_weave_report fit;                           /* where it was fitted here: image_count > 0 */
+    weft_fit_weave_source fit_source;
+    double tiles_u, tiles_v; /* of it across the material */
     weft_slices slices;
     weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
     double dataset_bytes, half_float_bytes, material_bytes;

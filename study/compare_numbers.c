@@ -43,8 +43,15 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
         return;
     fprintf(page->html, " The analytic cloth is the weave \u201c");
     weft_page_text(page, comparison->weave_name);
-    fprintf(page->html, "\u201d as its file gives it, %.4g \u00d7 %.4g tiles across the material.", comparison->tiles_u,
-            comparison->tiles_v);
+    fprintf(page->html, "\u201d, ");
+    weft_page_text(page, comparison->weave_origin);
+    fprintf(page->html, "; %.4g \u00d7 %.4g tiles across the material.", comparison->tiles_u, comparison->tiles_v);
+    if (comparison->fit.image_count > 0)
+        fprintf(
+            page->html,
+            " Before the fit the relative error of its mean BRDF was %.2f %% (median) and %.2f %% (80th percentile); "
+            "<a href=\"fitted.wv\">fitted.wv</a> is the fitted weave.",
+            100 * comparison->fit.before.median_relative, 100 * comparison->fit.before.percentile80_relative);
 }
 
 static void print_model_error(weft_page *page, const char *name, const weft_prediction_error *e)

@@ -59,11 +59,17 @@ slices_agree "$assets/weaves/wool_gabardine.wv" 13
 sed 's/psi = 30/psi = 38/; s/umax = 30/umax = 24/' "$assets/weaves/wool_gabardine.wv" >start.wv
 expect_says "median" fit-weave cloth.btf.h5 --weave start.wv -o fitted.wv
 grep -q "Fitted to the mean of 32 images" fitted.wv || fail "the fitted weave does not say what it was fitted to"
-error_of() {
-    expect_ok compare cloth.btf.h5 cloth.weft --weave "$1" -o report
+error_of_analytic() {
     sed -n "s/^analytic, mean BRDF: relative RMSE \([0-9.]*\),.*/\1/p" out.log
 }
-awk "BEGIN { exit !($(error_of fitted.wv) < 0.5 * $(error_of start.wv)) }" || fail "the fitted weave is no better than its start"
+expect_says "fitted to no dataset" compare cloth.btf.h5 cloth.weft --weave start.wv -o report
+before=$(error_of_analytic)
+# The comparison fits by itself, to the same weave, and says so.
+expect_says "fitted to this dataset, the mean of 32 images" compare cloth.btf.h5 cloth.weft --weave start.wv --fit -o report
+awk "BEGIN { exit !($(error_of_analytic) < 0.5 * $before) }" || fail "the fitted weave is no better than its start"
+cmp fitted.wv report/fitted.wv || fail "compare --fit and fit-weave find different weaves"
+grep -q "Before the fit" report/index.html || fail "the page does not say what the fit changed"
+expect_error 2 "--weave" compare cloth.btf.h5 cloth.weft --fit -o report
 expect_error 1 "absent.wv" fit-weave cloth.btf.h5 --weave absent.wv -o none.wv
 expect_error 1 "cloth.weft" fit-weave cloth.weft --weave start.wv -o none.wv
 expect_error 2 "needs" fit-weave cloth.btf.h5 -o none.wv
