@@ -6,8 +6,8 @@ int command_info(int argc, char **argv)
     common_options common = {0};
     const char *path = parse_one_file(argc, argv,
                                       "Example: weft info silk.weft\n\n"
-                                      "Says what a material (.weft), a dataset (.btf.h5), a weave (.wv), a stitch "
-                                      "(.stitch) or a session folder holds.",
+                                      "Says what a material (.weft), a dataset (.btf.h5), a weave (.wv), a cloth of "
+                                      "microcylinders (.mc), a stitch (.stitch) or a session folder holds.",
                                       &common);
     weft_error error = {0};
     json_t *description;

@@ -92,6 +92,39 @@ static void an_input_is_never_the_output(void **state)
     expect("verify file.weft", 0, "sound");
 }
 
+/* What the reference vectors give for this cloth and pair of directions (tests/data/reference/microcylinder_cloth.csv),
+ * where threads weigh as printed. */
+static void eval_info_and_verify_take_microcylinder_cloth(void **state)
+{
+    (void)state;
+    const char *pair = "-0.892303704,-0.0608657588,0.447313602,0.0702826786,0.945829084,0.316966385";
+    const char *cloth = WEFT_ASSETS "/microcylinder/plain_matte.mc";
+    char text[512], arguments[512], expected[512];
+    snprintf(text, sizeof text, "lx,ly,lz,vx,vy,vz\n%s\n", pair);
+    write_text("file.csv", text);
+    snprintf(arguments, sizeof arguments, "eval %s --at file.csv --as-printed --quiet", cloth);
+    snprintf(expected, sizeof expected, "lx,ly,lz,vx,vy,vz,r,g,b\n%s,0.0152147184,0.0590503405,0.0736622146\n", pair);
+    expect(arguments, 0, expected);
+    snprintf(arguments, sizeof arguments, "info %s", cloth);
+    expect(arguments, 0, "kind: microcylinder cloth");
+    expect(arguments, 0, "tangents: 4 x 4");
+    snprintf(arguments, sizeof arguments, "verify %s", cloth);
+    expect(arguments, 0, "sound");
+}
+
+static void bad_microcylinder_cloth_is_named_with_line_and_column(void **state)
+{
+    (void)state;
+    write_text("file.csv", "lx,ly,lz,vx,vy,vz\n0,0,1,0,0,1\n");
+    write_text("file.mc", "microcylinder {\n  name = \"no thread\",\n  sigmb = 17\n}\n");
+    expect("verify file.mc", 1, "weft verify: file.mc:3:3: unknown key 'sigmb'");
+    expect("info file.mc", 1, "weft info: file.mc:3:3: unknown key 'sigmb'");
+    expect("eval file.mc --at file.csv", 1, "weft eval: file.mc:3:3: unknown key 'sigmb'");
+    write_text("file.mc", "");
+    expect("verify file.mc", 1, "weft verify: file.mc:1:1: ");
+    unlink("file.mc");
+}
+
 static void info_and_verify_speak_of_the_file(void **state)
 {
     (void)state;
@@ -139,6 +172,8 @@ int main(void)
         cmocka_unit_test(eval_appends_the_brdf_to_every_row),
         cmocka_unit_test(eval_names_what_is_wrong),
         cmocka_unit_test(an_input_is_never_the_output),
+        cmocka_unit_test(eval_info_and_verify_take_microcylinder_cloth),
+        cmocka_unit_test(bad_microcylinder_cloth_is_named_with_line_and_column),
         cmocka_unit_test(info_and_verify_speak_of_the_file),
         cmocka_unit_test(verify_refuses_a_material_cut_anywhere),
         cmocka_unit_test(import_leaves_nothing_when_a_photograph_is_bad),
