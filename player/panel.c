@@ -192,7 +192,6 @@ static void light_section(weft_application *a)
 
 static void material_section(weft_application *a)
 {
-    static const char *const lobe_name[] = {"1", "2", "3"};
     weft_interaction *i = &a->interaction;
     weft_scene *scene = &i->scene;
     int lobes;
@@ -200,7 +199,7 @@ static void material_section(weft_application *a)
     weft_player_material_parts(a->player, &lobes, &view_table, &light_table);
     for (int lobe = 0; lobe < lobes; lobe++) {
         char name[32];
-        snprintf(name, sizeof name, "Lobe %s", lobe_name[lobe]);
+        snprintf(name, sizeof name, "Lobe %d", lobe + 1);
         i->changed |= weft_ui_toggle(name, &scene->lobe[lobe]);
         if (lobe + 1 < lobes)
             weft_ui_same_line();
