@@ -39,7 +39,8 @@ static const struct argp parser = {
     parse_option,
     "[NAME.weft]",
     "Example: weft play silk.weft --raw silk.btf.h5 --weave silk.wv\n\n"
-    "Shows a material in a window; drag to turn it, drag with the right button to move the light, H for all keys.",
+    "Shows a material in a window; drag to turn it, drag with the right button to move the light, H for all keys. "
+    "Files may be dropped on it, and are read again when they change.",
     children,
     NULL,
     NULL};

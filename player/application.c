@@ -12,6 +12,7 @@ enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64, PLOT_SIZE = 142 };
 static const double settle_s = 0.12; /* after the last change the mean of a picture at rest begins */
 static const double hurry_ms = 15;   /* exact frames longer than this are drawn stochastically while things move */
 static const double poll_s = 0.1;
+static const double poll_of_loading_s = 0.01; /* frames that show nothing new would take from the thread that reads */
 
 double weft_application_now_s(void)
 {
@@ -312,11 +313,6 @@ static void poll_host(weft_application *a)
 
 /* ---- The loop ---- */
 
-static bool is_busy(const weft_application *a)
-{
-    return !is_finished(a) || a->interaction.changed || a->progress >= 0;
-}
-
 /* While the picture moves the numbers would be of one frame's choices. */
 static weft_code probe(weft_application *a, weft_error *error)
 {
@@ -361,6 +357,12 @@ static bool has_something(const weft_application *a)
     return has_model && weft_player_has_mesh(a->player);
 }
 
+static double wait_s(const weft_application *a)
+{
+    bool is_drawing = (has_something(a) && !is_finished(a)) || a->interaction.changed;
+    return is_drawing ? 0 : a->progress >= 0 ? poll_of_loading_s : poll_s;
+}
+
 static weft_code step(weft_application *a, weft_error *error)
 {
     int width, height;
@@ -389,7 +391,7 @@ weft_code weft_application_run(weft_application *a, const weft_scene *scene, wef
     a->interaction.before = scene->pane[0];
     find_modes(a);
     long limit = a->setup.frame_limit;
-    while (weft_window_poll(a->window, is_busy(a) ? 0 : poll_s) && (limit == 0 || a->frame_count < limit))
+    while (weft_window_poll(a->window, wait_s(a)) && (limit == 0 || a->frame_count < limit))
         WEFT_TRY(step(a, error));
     return WEFT_OK;
 }

@@ -283,6 +283,8 @@ static const weft_interaction_line lines[] = {
     {"Home", "look from the start"},
     {"D  O  P", "drape, ball, plane"},
     {"R", "read the files again"},
+    {"drop a file", "show it instead of the one of its kind"},
+    {"SpaceMouse", "turn, shift, closer and farther"},
     {"F12", "save the picture"},
     {"Tab", "panel"},
     {"H", "this list"},

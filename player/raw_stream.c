@@ -125,8 +125,8 @@ static weft_code stream_create(const weft_dataset_layout *layout, const weft_raw
 {
     *s = (stream){.plan = plan, .sink = sink, .image_count = layout->image_count, .opaque = true};
     s->level_count = plan->skipped_levels + plan->layout.level_count;
-    int width = layout->width, height = layout->height;
-    for (int level = 0; level < s->level_count; level++) {
+    int width = layout->width, height = layout->height, level = 0;
+    do {
         size_t size = (size_t)width * (size_t)layout->image_count * 4;
         s->width[level] = width;
         s->height[level] = height;
@@ -136,7 +136,7 @@ static weft_code stream_create(const weft_dataset_layout *layout, const weft_raw
             return weft_fail_memory(error, "rows of samples", size * sizeof(float));
         width = (width + 1) / 2;
         height = (height + 1) / 2;
-    }
+    } while (++level < s->level_count);
     return WEFT_OK;
 }
 

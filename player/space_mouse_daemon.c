@@ -21,7 +21,7 @@ bool weft_space_daemon_open(weft_space_daemon *daemon)
         path = "/run/spnav.sock";
     if (strlen(path) >= sizeof address.sun_path)
         return false;
-    strcpy(address.sun_path, path);
+    memcpy(address.sun_path, path, strlen(path) + 1);
     daemon->socket = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     return daemon->socket >= 0 && connect(daemon->socket, (struct sockaddr *)&address, sizeof address) == 0;
 }
