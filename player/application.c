@@ -70,7 +70,7 @@ static void on_key(void *context, int key)
         weft_interaction_key(&a->interaction, key);
 }
 
-static void ask_to_open(weft_application *a, const char *path)
+void weft_application_open(weft_application *a, const char *path)
 {
     const weft_application_host *host = &a->setup.host;
     char note[WEFT_NOTE_SIZE] = "";
@@ -83,7 +83,7 @@ static void ask_to_open(weft_application *a, const char *path)
 
 static void on_drop(void *context, const char *path)
 {
-    ask_to_open(context, path);
+    weft_application_open(context, path);
 }
 
 /* ---- Life ---- */
@@ -125,6 +125,7 @@ void weft_application_free(weft_application *a)
         weft_probe_plots_free(&a->plots);
         weft_ui_free();
     }
+    weft_weave_edit_free(&a->weave);
     weft_player_free(a->player);
     weft_window_free(a->window);
     free(a);
@@ -256,6 +257,15 @@ static weft_code advance(weft_application *a, weft_error *error)
 
 /* ---- Wishes ---- */
 
+/* A picture names the file of its weave; what was changed since is not in that. */
+static void warn_of_changes(const weft_application *a, char note[WEFT_NOTE_SIZE])
+{
+    size_t used = strlen(note);
+    bool shows_changed = a->weave.is_changed && a->weave.revision == weft_player_weave_revision(a->player);
+    if (shows_changed)
+        snprintf(note + used, WEFT_NOTE_SIZE - used, "; it names the weave's file, without your changes");
+}
+
 static void save_picture(weft_application *a)
 {
     const weft_application_host *host = &a->setup.host;
@@ -264,6 +274,7 @@ static void save_picture(weft_application *a)
     weft_code code = WEFT_OK;
     if (host->save)
         code = host->save(host->context, &a->interaction.scene, a->canvas.width, a->canvas.height, note, &error);
+    warn_of_changes(a, note);
     tell_outcome(a, code, &error, note);
 }
 
@@ -286,7 +297,7 @@ static void grant_wishes(weft_application *a)
         change_mesh(a);
     if (i->wants_reload) {
         i->wants_reload = false;
-        ask_to_open(a, NULL);
+        weft_application_open(a, NULL);
     }
     if (i->wants_screenshot) {
         i->wants_screenshot = false;

@@ -5,6 +5,7 @@
 #include "player/application.h"
 #include "player/interaction.h"
 #include "player/probe.h"
+#include "player/weave_edit.h"
 
 struct weft_application {
     weft_application_setup setup;
@@ -20,6 +21,7 @@ struct weft_application {
     bool rests;       /* the mean of the frames so far is of a picture that no longer changes */
     weft_probe probe; /* of the pixel under the pointer */
     weft_probe_plots plots;
+    weft_weave_edit weave; /* what the sliders change */
     double progress;
     weft_error failure;          /* of reading, last */
     char errors[WEFT_NOTE_SIZE]; /* of what is shown, "" until it rests */
@@ -34,10 +36,16 @@ double weft_application_now_s(void);
 /* Tells the user; `is_error` in red. */
 void weft_application_tell(weft_application *application, bool is_error, const char *text);
 
+/* Asks the host to open a file, or all again (NULL), and tells the outcome. */
+void weft_application_open(weft_application *application, const char *path);
+
 /* Pixels that the panel takes from the left of the window. */
 int weft_application_panel_width(const weft_application *application);
 
 /* All widgets of one frame; changes the interaction and its scene. `width`, `height`: of the window. */
 void weft_application_show_panel(weft_application *application, int width, int height);
+
+/* Its section on the weave that is shown. */
+void weft_application_show_weave(weft_application *application);
 
 #endif

@@ -383,6 +383,8 @@ void weft_application_show_panel(weft_application *a, int width, int height)
             light_section(a);
         if (i->available[WEFT_MODE_COMPRESSED] && weft_ui_section("Compressed material", true))
             material_section(a);
+        if (i->available[WEFT_MODE_ANALYTIC] && weft_ui_section("Weave", false))
+            weft_application_show_weave(a);
         if (weft_ui_section("Under the pointer", true))
             probe_section(a);
         if (weft_ui_section("Picture", true))

@@ -178,8 +178,20 @@ weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, double 
     }
     weft_weave_texture_free(&p->weave);
     p->weave = texture;
+    p->weave_revision++;
     has_now(p, WEFT_MODE_ANALYTIC, tiles_u * weave->tile_width, tiles_v * weave->tile_height);
     return WEFT_OK;
+}
+
+long weft_player_weave_revision(const weft_player *p)
+{
+    return p->weave_revision;
+}
+
+void weft_player_weave_tiles(const weft_player *p, double tiles[2])
+{
+    tiles[0] = p->weave.tiles[0];
+    tiles[1] = p->weave.tiles[1];
 }
 
 bool weft_player_has_mesh(const weft_player *p)

@@ -34,6 +34,10 @@ weft_code weft_player_set_dataset(weft_player *player, weft_dataset *dataset, co
 /* tiles_u, tiles_v: tiles of the weave for one material. */
 weft_code weft_player_set_weave(weft_player *player, const weft_weave *weave, double tiles_u, double tiles_v,
                                 weft_error *error);
+/* Grows whenever a weave is set; 0: none yet. */
+long weft_player_weave_revision(const weft_player *player);
+/* Those it was set with last. */
+void weft_player_weave_tiles(const weft_player *player, double tiles[2]);
 
 bool weft_player_has(const weft_player *player, weft_mode mode);
 bool weft_player_has_mesh(const weft_player *player);

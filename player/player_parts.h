@@ -25,6 +25,7 @@ struct weft_player {
     weft_raw_texture raw;
     weft_material_texture material;
     weft_weave_texture weave;
+    long weave_revision;
     double texel_count[WEFT_MODE_COUNT][2]; /* of level 0, for one material */
     double last_ring_z[WEFT_MODE_COUNT][2]; /* smallest z of the measured views and lights */
     /* Light */

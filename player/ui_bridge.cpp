@@ -14,7 +14,7 @@ namespace
 
 double scale_of_all = 1;
 
-const float label_width = 74, text_size = 15;
+const float label_width = 82, text_size = 15;
 const ImVec4 accent(0.86f, 0.47f, 0.30f, 1), dim(0.62f, 0.62f, 0.64f, 1);
 
 float scaled(double length)
@@ -260,7 +260,10 @@ bool weft_ui_choice(const char *label, int *value, const char *const *name, cons
 {
     bool changed = false;
     put_label(label);
-    const float gap = scaled(3), width = (ImGui::GetContentRegionAvail().x - gap * (float)(count - 1)) / (float)count;
+    const float gap = scaled(3), room = ImGui::GetContentRegionAvail().x - gap * (float)(count - 1);
+    float letters = 0;
+    for (int i = 0; i < count; i++)
+        letters += ImGui::CalcTextSize(name[i]).x;
     for (int i = 0; i < count; i++) {
         bool chosen = *value == i;
         if (i > 0)
@@ -270,6 +273,7 @@ bool weft_ui_choice(const char *label, int *value, const char *const *name, cons
         if (chosen)
             ImGui::PushStyleColor(ImGuiCol_Button, accent);
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(0, ImGui::GetStyle().FramePadding.y));
+        const float width = ImGui::CalcTextSize(name[i]).x + (room - letters) / (float)count;
         if (ImGui::Button(name[i], ImVec2(width, 0)) && !chosen) {
             *value = i;
             changed = true;

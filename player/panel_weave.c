@@ -1,0 +1,87 @@
+#include "player/application_parts.h"
+
+#include "player/ui_bridge.h"
+
+#include <stdio.h>
+
+static void tell(weft_application *a, weft_code code, const weft_error *error)
+{
+    if (code != WEFT_OK)
+        weft_application_tell(a, true, error->message);
+}
+
+static bool range_row(weft_weave_edit *edit, const weft_weave_parameter_range *range)
+{
+    double value = weft_weave_edit_get(edit, range);
+    bool changed = range->is_angle
+                       ? weft_ui_angle(range->name, &value, weft_deg_of_rad(range->low), weft_deg_of_rad(range->high))
+                       : weft_ui_slider(range->name, &value, range->low, range->high, "%.3f", range->logarithmic);
+    if (changed)
+        weft_weave_edit_set(edit, range, value);
+    return changed;
+}
+
+static weft_rgb rgb_of(const double value[3])
+{
+    return (weft_rgb){(weft_real)value[0], (weft_real)value[1], (weft_real)value[2]};
+}
+
+static bool colour_rows(weft_weave_edit *edit)
+{
+    const weft_yarn *yarn = &edit->weave.yarn[edit->yarn];
+    double kd[3] = {(double)yarn->kd.r, (double)yarn->kd.g, (double)yarn->kd.b};
+    double ks[3] = {(double)yarn->ks.r, (double)yarn->ks.g, (double)yarn->ks.b};
+    bool changed = weft_ui_colour("Diffuse", kd);
+    changed |= weft_ui_colour("Specular", ks);
+    if (changed)
+        weft_weave_edit_set_colours(edit, rgb_of(kd), rgb_of(ks));
+    return changed;
+}
+
+static void choose_yarn(weft_weave_edit *edit)
+{
+    int number = edit->yarn + 1;
+    char text[64];
+    weft_ui_whole("Yarn", &number, 1, edit->weave.yarn_count);
+    edit->yarn = number - 1;
+    const weft_yarn *yarn = &edit->weave.yarn[edit->yarn];
+    snprintf(text, sizeof text, "%s, %s%s", yarn->warp ? "warp" : "weft",
+             yarn->prepared.filament ? "filament" : "staple",
+             yarn->admissible ? "" : "; no such segment: no highlight");
+    weft_ui_value("", text);
+    weft_ui_toggle("Change all yarns like it", &edit->alike);
+}
+
+/* From then on the saved file is shown, so that pictures name it. */
+static void save(weft_application *a)
+{
+    char path[32], note[WEFT_NOTE_SIZE];
+    weft_error error = {0};
+    weft_code code = weft_weave_edit_save(&a->weave, path, &error);
+    tell(a, code, &error);
+    if (code != WEFT_OK)
+        return;
+    weft_application_open(a, path);
+    snprintf(note, sizeof note, "saved %s", path);
+    weft_application_tell(a, false, note);
+}
+
+void weft_application_show_weave(weft_application *a)
+{
+    weft_weave_edit *edit = &a->weave;
+    weft_error error = {0};
+    tell(a, weft_weave_edit_follow(edit, a->player, a->setup.file[WEFT_MODE_ANALYTIC], &error), &error);
+    if (edit->weave.yarn_count == 0)
+        return;
+    choose_yarn(edit);
+    bool changed = false;
+    for (int i = 0; i < WEFT_WEAVE_RANGES; i++)
+        changed |= range_row(edit, &weft_weave_ranges[i]);
+    changed |= colour_rows(edit);
+    if (changed) {
+        tell(a, weft_weave_edit_show(edit, a->player, &error), &error);
+        a->interaction.changed = true;
+    }
+    if (weft_ui_button("Save this weave"))
+        save(a);
+}

@@ -1,0 +1,47 @@
+/* Changing the weave that a player shows, one parameter at a time. The weave is the file's, until it is changed. */
+#ifndef WEFT_PLAYER_WEAVE_EDIT_H
+#define WEFT_PLAYER_WEAVE_EDIT_H
+
+#include "player/player.h"
+
+typedef struct weft_weave_edit {
+    weft_weave weave; /* no yarns: there is none to edit */
+    int yarn;         /* index of the one that is edited */
+    bool alike;       /* with it all that had the same segment */
+    bool is_changed;  /* not as its file has it */
+    long revision;    /* weft_player_weave_revision of the weave */
+} weft_weave_edit;
+
+/* A parameter of a segment: where it lies in a weft_yarn, and what the slider spans; angles are shown in degrees. */
+typedef struct weft_weave_parameter_range {
+    const char *name;
+    size_t offset;
+    double low, high;
+    bool is_angle, logarithmic;
+} weft_weave_parameter_range;
+
+enum { WEFT_WEAVE_RANGES = 9 };
+extern const weft_weave_parameter_range weft_weave_ranges[WEFT_WEAVE_RANGES];
+
+void weft_weave_edit_free(weft_weave_edit *edit);
+
+/* Reads the file at `path` (NULL: none) unless the player shows what `edit` has: what was changed is lost when another
+ * weave is shown. Reads it once. Errors: those of weft_weave_read; there is nothing to edit then. */
+weft_code weft_weave_edit_follow(weft_weave_edit *edit, const weft_player *player, const char *path, weft_error *error);
+
+/* The chosen yarn's value; radians for angles. Pure. */
+double weft_weave_edit_get(const weft_weave_edit *edit, const weft_weave_parameter_range *range);
+
+/* Change the chosen yarn and, with `alike`, those like it; weft_weave_edit_show makes the player show that. */
+void weft_weave_edit_set(weft_weave_edit *edit, const weft_weave_parameter_range *range, double value);
+void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks);
+
+/* Derives what follows from the segments and uploads all, with as many tiles for a material as before. Errors: those of
+ * weft_player_set_weave. */
+weft_code weft_weave_edit_show(weft_weave_edit *edit, weft_player *player, weft_error *error);
+
+/* Writes weft-001.wv or the first number that is free into the current folder; `path` receives its name. Errors: those
+ * of weft_weave_write. */
+weft_code weft_weave_edit_save(weft_weave_edit *edit, char path[32], weft_error *error);
+
+#endif
