@@ -237,7 +237,8 @@ static weft_code reduce_tables(fitting *of, const weft_texel_source *source, con
     weft_texel_source again = *source;
     weft_dense_job alone = *job;
     weft_dense_result second;
-    WEFT_TRY(weft_material_reduce_tables(material, of->options->table_components, error));
+    WEFT_TRY(
+        weft_material_reduce_tables(source->layout, source->held_out, material, of->options->table_components, error));
     again.tables = material;
     alone.checkpoint_path = NULL;
     WEFT_TRY(weft_dense_fit(of->dataset, &again, &alone, material, &second, error));

@@ -1,20 +1,34 @@
 #include "compress/table_pca.h"
 
-#include "reflectance/lafortune.h"
+#include "btf/processor.h"
+#include "compress/pack.h"
 
 #include <lapacke.h>
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SAMPLED_TEXELS = 8192, SWEEPS = 6 };
+enum { SAMPLED_CODES = 1 << 19, SWEEPS = 6 };
+
+#define LEAST_WEIGHT 1e-3 /* of the mean over the directions */
+
+/* The directions of the dataset, and what a thread needs to evaluate a model under them. */
+typedef struct image_set {
+    weft_bundle bundle;
+    weft_samples samples; /* of cosines alone */
+    int thread_count;
+    weft_fit_workspace **workspace; /* [thread_count] */
+} image_set;
 
 /* The tables T or S of one level, as rows of codes: one for each channel of each texel. */
 typedef struct rows {
     const weft_material *material;
     const weft_material_level *level;
-    const uint8_t *table;       /* [direction][texel][4] */
-    const weft_vec3 *direction; /* [direction_count], of the view or light */
+    const image_set *images;
+    bool of_lights;       /* S, not T */
+    const uint8_t *table; /* [direction][texel][4] */
+    const uint8_t *other; /* the one that is not reduced here, NULL where there is none */
     int direction_count;
     size_t texel_count;
 } rows;
@@ -32,41 +46,45 @@ static void get_codes(const rows *r, size_t row, double *code)
 
 /* ---- Weights ---- */
 
-/* Integral over the hemisphere of (rho + sum_i (c_i . w)^N_i)^2, products of different lobes left out; w is light or
- * view, since f is reciprocal. A cap of cosine powers has 2 pi / (N + 1). */
-static double model_energy(double rho, const weft_lobe *lobe, int lobe_count, weft_vec3 direction)
-{
-    double sum = 2 * WEFT_PI * rho * rho;
-    for (int i = 0; i < lobe_count; i++) {
-        weft_vec3 c = {lobe[i].cx * direction.x, lobe[i].cy * direction.y, lobe[i].cz * direction.z};
-        double n = (double)lobe[i].n, peak = (double)weft_lobe_power(weft_length(c), lobe[i].n);
-        sum += 2 * WEFT_PI * peak * (2 * rho / (n + 1) + peak / (2 * n + 1));
-    }
-    return sum;
-}
-
-static void get_model(const rows *r, size_t row, double *rho, weft_lobe lobe[WEFT_MATERIAL_MAX_LOBES])
+static weft_fit get_model(const rows *r, size_t row)
 {
     size_t texel = row / 3, channel = row % 3;
-    *rho = (double)weft_float_of_half(r->level->diffuse[4 * texel + channel]);
-    for (size_t i = 0; i < (size_t)r->material->lobe_count; i++) {
-        const weft_half *code = r->level->lobe + 4 * ((3 * i + channel) * r->texel_count + texel);
-        lobe[i] = (weft_lobe){weft_float_of_half(code[0]), weft_float_of_half(code[1]), weft_float_of_half(code[2]),
-                              weft_float_of_half(code[3])};
-    }
+    weft_packed packed = {.diffuse = r->level->diffuse[4 * texel + channel]};
+    weft_frame frame = weft_frame_decode(r->level->frame + 3 * texel);
+    for (size_t i = 0; i < (size_t)r->material->lobe_count; i++)
+        memcpy(packed.lobe[i], r->level->lobe + 4 * ((3 * i + channel) * r->texel_count + texel),
+               sizeof packed.lobe[i]);
+    return weft_unpack(&packed, r->material->lobe_count, &frame, 1);
 }
 
-/* What the square of an error of a code does to f: T = (x / 255)^2 errs by 2 x / 255^2, and f by <f|f> times that. */
+/* What the other table makes of a sample. */
+static double other_entry(const rows *r, size_t row, int direction)
+{
+    return r->other ? weft_table_of_code(r->other[4 * ((size_t)direction * r->texel_count + row / 3) + row % 3]) : 1;
+}
+
+/* What the square of an error of a code does to f: T = (x / 255)^2 errs by 2 x / 255^2, and f by <f|f> times that, over
+ * the images of the dataset. Directions that few lights show keep a little. */
 static void get_weights(const rows *r, size_t row, const double *code, double *weight)
 {
-    double rho;
-    weft_lobe lobe[WEFT_MATERIAL_MAX_LOBES];
-    weft_frame frame = weft_frame_decode(r->level->frame + 3 * (row / 3));
-    get_model(r, row, &rho, lobe);
-    for (int d = 0; d < r->direction_count; d++) {
-        weft_vec3 local = weft_frame_local(&frame, r->direction[d]);
-        weight[d] = model_energy(rho, lobe, r->material->lobe_count, local) * (code[d] * code[d] + 1) + 1e-12;
+    const weft_bundle *bundle = &r->images->bundle;
+    const int *own = r->of_lights ? bundle->light_of : bundle->view_of,
+              *across = r->of_lights || !r->other ? bundle->view_of : bundle->light_of;
+    weft_fit fit = get_model(r, row);
+    unsigned state = weft_denormals_off();
+    const float *model =
+        weft_fit_evaluate(bundle, &r->images->samples, r->images->workspace[omp_get_thread_num()], &fit);
+    double sum = 0;
+    memset(weight, 0, (size_t)r->direction_count * sizeof *weight);
+    for (int i = 0; i < bundle->sample_count; i++) {
+        double shown = (double)model[i] * other_entry(r, row, across[i]);
+        weight[own[i]] += shown * shown;
     }
+    weft_denormals_restore(state);
+    for (int d = 0; d < r->direction_count; d++)
+        sum += weight[d];
+    for (int d = 0; d < r->direction_count; d++)
+        weight[d] = (weight[d] + LEAST_WEIGHT * sum / r->direction_count) * (code[d] * code[d] + 1) + 1e-12;
 }
 
 /* ---- Weighted least squares ---- */
@@ -119,8 +137,8 @@ typedef struct learning {
 
 static weft_code learning_create(const rows *r, int components, learning *l, weft_error *error)
 {
-    size_t stride = r->texel_count / SAMPLED_TEXELS + 1, texels = (r->texel_count + stride - 1) / stride;
     size_t n = (size_t)r->direction_count, terms = 1 + (size_t)components;
+    size_t stride = r->texel_count * 3 * n / SAMPLED_CODES + 1, texels = (r->texel_count + stride - 1) / stride;
     *l = (learning){.direction_count = r->direction_count, .component_count = components, .row_count = 3 * texels};
     l->code = malloc(l->row_count * n * sizeof *l->code);
     l->weight = malloc(l->row_count * n * sizeof *l->weight);
@@ -255,8 +273,8 @@ static int16_t limited(double value)
     return (int16_t)lrint(fmin(fmax(value, INT16_MIN), INT16_MAX));
 }
 
-/* Components so long that the coefficients of the rows that were learnt from reach 127; then the integers take the place
- * of what was learnt. */
+/* Components so long that the coefficients of the rows that were learnt from reach 127; then the integers take the
+ * place of what was learnt. */
 static void round_components(learning *l, weft_table_basis *basis)
 {
     size_t n = (size_t)l->direction_count, terms = 1 + (size_t)l->component_count;
@@ -320,16 +338,14 @@ static weft_code fill_basis(const rows *r, weft_table_basis *basis, weft_error *
     return code;
 }
 
-static weft_code reduce(const weft_material *material, const weft_material_level *level, bool of_lights, int components,
+static weft_code reduce(const rows *like, bool of_lights, uint8_t *table, uint8_t *other, int components,
                         weft_table_basis **basis, weft_error *error)
 {
-    uint8_t *table = of_lights ? level->light_table : level->table;
-    const rows r = {.material = material,
-                    .level = level,
-                    .table = table,
-                    .direction = of_lights ? material->light : material->view,
-                    .direction_count = of_lights ? material->light_count : material->view_count,
-                    .texel_count = (size_t)level->width * (size_t)level->height};
+    rows r = *like;
+    r.of_lights = of_lights;
+    r.table = table;
+    r.other = other;
+    r.direction_count = of_lights ? r.material->light_count : r.material->view_count;
     if (!table || r.direction_count == 0)
         return WEFT_OK;
     WEFT_TRY(weft_table_basis_create(components < r.direction_count ? components : r.direction_count, r.direction_count,
@@ -339,15 +355,52 @@ static weft_code reduce(const weft_material *material, const weft_material_level
     return WEFT_OK;
 }
 
-weft_code weft_material_reduce_tables(weft_material *material, int component_count, weft_error *error)
+static weft_code reduce_level(const weft_material *material, weft_material_level *level, const image_set *images,
+                              int components, weft_error *error)
 {
-    weft_code code = WEFT_OK;
-    for (int k = 0; k < material->level_count && code == WEFT_OK; k++) {
-        weft_material_level *level = &material->level[k];
-        code = reduce(material, level, false, component_count, &level->table_basis, error);
-        if (code == WEFT_OK)
-            code = reduce(material, level, true, component_count, &level->light_table_basis, error);
-    }
+    const rows like = {.material = material,
+                       .level = level,
+                       .images = images,
+                       .texel_count = (size_t)level->width * (size_t)level->height};
+    WEFT_TRY(reduce(&like, false, level->table, level->light_table, components, &level->table_basis, error));
+    return reduce(&like, true, level->light_table, level->table, components, &level->light_table_basis, error);
+}
+
+/* ---- The whole ---- */
+
+static weft_code create_images(const weft_dataset_layout *layout, const uint8_t *held_out, image_set *all,
+                               weft_error *error)
+{
+    all->thread_count = omp_get_max_threads();
+    WEFT_TRY(weft_bundle_create(layout, held_out, &all->bundle, error));
+    WEFT_TRY(weft_samples_create(&all->bundle, &all->samples, error));
+    for (int i = 0; i < all->bundle.sample_count; i++)
+        all->samples.cosine[i] = all->bundle.image[i] >= 0 ? fmaxf(all->bundle.light[2][i], 0) : 0;
+    all->workspace = calloc((size_t)all->thread_count, sizeof *all->workspace);
+    if (!all->workspace)
+        return weft_fail_memory(error, "components of tables", (size_t)all->thread_count * sizeof *all->workspace);
+    for (int i = 0; i < all->thread_count; i++)
+        WEFT_TRY(weft_fit_workspace_create(&all->bundle, &all->workspace[i], error));
+    return WEFT_OK;
+}
+
+static void free_images(image_set *all)
+{
+    for (int i = 0; all->workspace && i < all->thread_count; i++)
+        weft_fit_workspace_free(all->workspace[i]);
+    free(all->workspace);
+    weft_samples_free(&all->samples);
+    weft_bundle_free(&all->bundle);
+}
+
+weft_code weft_material_reduce_tables(const weft_dataset_layout *layout, const uint8_t *held_out,
+                                      weft_material *material, int component_count, weft_error *error)
+{
+    image_set all = {0};
+    weft_code code = create_images(layout, held_out, &all, error);
+    for (int k = 0; k < material->level_count && code == WEFT_OK; k++)
+        code = reduce_level(material, &material->level[k], &all, component_count, error);
+    free_images(&all);
     material->has_table_bases = code == WEFT_OK && material->view_count + material->light_count > 0;
     material->has_opacity = weft_material_has_holes(material);
     return code;
