@@ -14,12 +14,18 @@ static int rows_of_block(const weft_dataset_layout *layout)
     return rows < 1 ? 1 : rows > 16 ? 16 : (int)rows;
 }
 
-static void mark_usable(const uint8_t *mask, size_t texels, weft_raw_images *images)
+/* True once every image has a valid sample. */
+static bool mark_usable(const uint8_t *mask, size_t texels, weft_raw_images *images)
 {
     for (size_t t = 0; t < texels; t++) {
         for (int i = 0; i < images->image_count; i++)
             images->usable[i] |= mask[t * (size_t)images->image_count + (size_t)i] == 0;
     }
+    for (int i = 0; i < images->image_count; i++) {
+        if (!images->usable[i])
+            return false;
+    }
+    return true;
 }
 
 static weft_code read_masks(weft_dataset *dataset, weft_raw_images *images, weft_error *error)
@@ -31,11 +37,12 @@ static weft_code read_masks(weft_dataset *dataset, weft_raw_images *images, weft
     if (!mask)
         return weft_fail_memory(error, "masks", row_size * (size_t)rows);
     weft_code code = WEFT_OK;
-    for (int y = 0; code == WEFT_OK && y < layout->height; y += rows) {
+    bool all_usable = false;
+    for (int y = 0; code == WEFT_OK && !all_usable && y < layout->height; y += rows) {
         int count = y + rows <= layout->height ? rows : layout->height - y;
         code = weft_dataset_read_block(dataset, 0, y, layout->width, count, NULL, mask, error);
         if (code == WEFT_OK)
-            mark_usable(mask, (size_t)layout->width * (size_t)count, images);
+            all_usable = mark_usable(mask, (size_t)layout->width * (size_t)count, images);
     }
     free(mask);
     return code;

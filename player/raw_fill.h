@@ -15,8 +15,9 @@ typedef struct weft_raw_images {
     weft_vec3 *direction; /* [image_count] to the light, at the centre of the material */
 } weft_raw_images;
 
-/* Reads the masks of the whole dataset. Errors: those of reading; WEFT_BAD_INPUT where no sample is valid; WEFT_SYSTEM.
- * The caller frees with weft_raw_images_free, also on failure. */
+/* Reads masks until every image is known to have a valid sample: of the whole dataset only where one has none. Errors:
+ * those of reading; WEFT_BAD_INPUT where no sample is valid; WEFT_SYSTEM. The caller frees with weft_raw_images_free,
+ * also on failure. */
 weft_code weft_raw_images_find(weft_dataset *dataset, weft_raw_images *images, weft_error *error);
 void weft_raw_images_free(weft_raw_images *images);
 

@@ -143,6 +143,8 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
 {
     ImGui::SetNextWindowPos(ImVec2((float)x, (float)y), ImGuiCond_Always, ImVec2((float)share_x, (float)share_y));
     ImGui::SetNextWindowBgAlpha(0.92f);
+    /* Text that wraps asks for no width of its own: the window would be one letter wide. */
+    ImGui::SetNextWindowSizeConstraints(ImVec2(scaled(300), 0), ImVec2(FLT_MAX, FLT_MAX));
     ImGui::Begin(name, nullptr,
                  fixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoInputs);
