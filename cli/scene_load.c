@@ -195,6 +195,25 @@ double scene_loader_progress(scene_loader *l)
 
 /* ---- Files that replace others ---- */
 
+/* What the player shows is what the settings name. */
+static weft_code clear_what_is_not_named(scene_loader *l, weft_error *error)
+{
+    const weft_settings *s = &l->stage.options->settings;
+    const char *const named[WEFT_MODE_COUNT] = {s->dataset, s->material, s->weave};
+    static const scene_slot slot[WEFT_MODE_COUNT] = {SCENE_DATASET, SCENE_MATERIAL, SCENE_WEAVE};
+    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
+        if (named[mode])
+            continue;
+        weft_loader_cancel(l->loader, (int)slot[mode]);
+        weft_player_clear(l->stage.player, (weft_mode)mode);
+        l->stage.width_mm[slot[mode]] = 0;
+    }
+    if (s->environment)
+        return WEFT_OK;
+    weft_loader_cancel(l->loader, SCENE_ENVIRONMENT);
+    return weft_player_set_environment(l->stage.player, NULL, error);
+}
+
 static weft_code open_picture(scene_loader *l, const char *path, weft_error *error)
 {
     weft_settings settings = {0};
@@ -210,6 +229,7 @@ static weft_code open_picture(scene_loader *l, const char *path, weft_error *err
     o->settings = settings;
     o->source = "";
     o->split = false;
+    WEFT_TRY(clear_what_is_not_named(l, error));
     WEFT_TRY(start_all(l, error));
     return start_dataset(l, error);
 }

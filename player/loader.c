@@ -175,6 +175,23 @@ void weft_loader_free(weft_loader *loader)
     free(loader);
 }
 
+/* Holding the mutex. */
+static weft_load **cancel(weft_loader *loader, int slot)
+{
+    weft_load **end = &loader->first;
+    for (; *end; end = &(*end)->next)
+        (*end)->cancelled |= (*end)->slot == slot;
+    pthread_cond_broadcast(&loader->taken);
+    return end;
+}
+
+void weft_loader_cancel(weft_loader *loader, int slot)
+{
+    pthread_mutex_lock(&loader->mutex);
+    cancel(loader, slot);
+    pthread_mutex_unlock(&loader->mutex);
+}
+
 weft_code weft_loader_start(weft_loader *loader, int slot, const weft_load_steps *steps, void *data, weft_error *error)
 {
     weft_load *load = calloc(1, sizeof *load);
@@ -184,12 +201,8 @@ weft_code weft_loader_start(weft_loader *loader, int slot, const weft_load_steps
     }
     *load = (weft_load){.loader = loader, .steps = *steps, .data = data, .slot = slot};
     pthread_mutex_lock(&loader->mutex);
-    weft_load **end = &loader->first;
-    for (; *end; end = &(*end)->next)
-        (*end)->cancelled |= (*end)->slot == slot;
-    *end = load;
+    *cancel(loader, slot) = load;
     pthread_cond_broadcast(&loader->started);
-    pthread_cond_broadcast(&loader->taken);
     pthread_mutex_unlock(&loader->mutex);
     return WEFT_OK;
 }

@@ -33,6 +33,9 @@ void weft_loader_free(weft_loader *loader);
  * Errors: WEFT_SYSTEM. */
 weft_code weft_loader_start(weft_loader *loader, int slot, const weft_load_steps *steps, void *data, weft_error *error);
 
+/* Cancels the loads of a slot. */
+void weft_loader_cancel(weft_loader *loader, int slot);
+
 /* Does what loads have handed over, at least one piece and for about budget_s. *shown: one of them is finished. Errors:
  * that of a load; call again for the others. */
 weft_code weft_loader_poll(weft_loader *loader, double budget_s, bool *shown, weft_error *error);

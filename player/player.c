@@ -194,6 +194,17 @@ void weft_player_weave_tiles(const weft_player *p, double tiles[2])
     tiles[1] = p->weave.tiles[1];
 }
 
+void weft_player_clear(weft_player *p, weft_mode mode)
+{
+    p->has[mode] = false;
+    if (mode == WEFT_MODE_RAW)
+        weft_raw_texture_free(&p->raw);
+    else if (mode == WEFT_MODE_COMPRESSED)
+        weft_material_texture_free(&p->material);
+    else
+        weft_weave_texture_free(&p->weave);
+}
+
 bool weft_player_has_mesh(const weft_player *p)
 {
     return p->index_count > 0;

@@ -40,6 +40,8 @@ long weft_player_weave_revision(const weft_player *player);
 void weft_player_weave_tiles(const weft_player *player, double tiles[2]);
 
 bool weft_player_has(const weft_player *player, weft_mode mode);
+/* Takes the data of a mode away. */
+void weft_player_clear(weft_player *player, weft_mode mode);
 bool weft_player_has_mesh(const weft_player *player);
 
 /* Bytes of graphics memory that the data of a mode take; 0 without it. */

@@ -181,11 +181,14 @@ static void a_picture_brings_its_settings_and_files_back(void **state)
     f->options.settings.samples = 1;
     expect_ok(weft_settings_draw("scene_load/shot.png", f->stage->player, &f->options.settings, NULL, &error), &error);
     expect_ok(drop(f, "scene_load/b.weft", &error), &error);
+    expect_ok(drop(f, "scene_load/a.btf.h5", &error), &error);
     f->options.settings.scene.exposure = 1;
     int small = texels_shown(f);
     expect_ok(drop(f, "scene_load/shot.png", &error), &error);
     assert_float_equal(f->options.settings.scene.exposure, 2.5, 1e-9);
     assert_true(texels_shown(f) > small);
+    assert_false(weft_player_has(f->stage->player, WEFT_MODE_RAW)); /* the picture knows of none */
+    expect_picture(f);
     close_scene(f);
 }
 
