@@ -84,19 +84,29 @@ static void list_candidates(auction *of)
     of->judgement.candidate = of->candidate;
 }
 
-/* Fits them all, then measures them all in one pass. */
-static weft_code fit_candidates(auction *of, weft_dense_result *result, weft_error *error)
+static weft_code create_judgement(auction *of, weft_error *error)
 {
-    weft_dense_job job = *of->job;
-    job.checkpoint_path = NULL;
-    for (int i = 0; i < of->family_count; i++)
-        WEFT_TRY(weft_dense_fit(of->dataset, &of->family[i].source, &job, &of->family[i].material, result, error));
-    list_candidates(of);
     for (int k = 0; k < of->material->level_count; k++) {
         size_t count = texel_count(of->material, k) * (size_t)of->judgement.count;
         of->judgement.square_error[k] = calloc(count, sizeof(float));
         if (!of->judgement.square_error[k])
             return weft_fail_memory(error, "errors of candidates", count * sizeof(float));
+    }
+    return WEFT_OK;
+}
+
+/* Fits them all, then measures them all in one pass. All memory is taken before the first fit and
+ * the largest model is fitted first, so that too small a limit is noticed before anything is read. */
+static weft_code fit_candidates(auction *of, weft_dense_result *result, weft_error *error)
+{
+    weft_dense_job job = *of->job;
+    job.checkpoint_path = NULL;
+    list_candidates(of);
+    WEFT_TRY(create_judgement(of, error));
+    for (int i = of->family_count - 1; i >= 0; i--) {
+        weft_dense_result smaller;
+        WEFT_TRY(weft_dense_fit(of->dataset, &of->family[i].source, &job, &of->family[i].material,
+                                i == of->family_count - 1 ? result : &smaller, error));
     }
     weft_texel_source source = of->family[of->family_count - 1].source;
     weft_dense_result judged;

@@ -13,8 +13,8 @@ typedef struct weft_budget_plan {
 } weft_budget_plan;
 
 /* Fits, chooses and measures all levels of `material`, whose shape, directions and opacity are set, and adds maps of
- * models. All candidates are held in memory; no checkpoint is kept. Errors: WEFT_BAD_USAGE where even a diffuse term
- * everywhere is larger; those of weft_dense_fit. */
+ * models. All candidates are held in memory, within job->budget; no checkpoint is kept. Errors: WEFT_BAD_USAGE where
+ * even a diffuse term everywhere is larger; those of weft_dense_fit. */
 weft_code weft_budget_fit(weft_dataset *dataset, const weft_texel_source *source, const weft_dense_job *job,
                           const weft_budget_plan *plan, weft_material *material, weft_dense_result *result,
                           weft_error *error);

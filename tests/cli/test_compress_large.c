@@ -325,6 +325,37 @@ static void threads_change_no_byte(void **state)
     }
 }
 
+/* Without a limit, with one that is too small, and with what that says it needs. */
+static void expect_little_memory_suffices(const char *option, const char *value)
+{
+    const char *const whole[4] = {option, value, "-t", "2"};
+    outcome got = compress_dataset(dataset_path, "large-free.weft", no_limit, whole);
+    expect_says(&got, 0, "fitted in");
+    got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){option, value, "--memory", "1"});
+    expect_says(&got, 2, "more than the limit of 1 MB");
+    const char *needs = strstr(got.said, " needs ");
+    assert_non_null(needs);
+    char limit[32];
+    long least = strtol(needs + strlen(" needs "), NULL, 10) + 2;
+    snprintf(limit, sizeof limit, "%ld", least);
+    got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){option, value, "--memory", limit});
+    expect_says(&got, 0, "fitted in");
+    if (got.peak_kb * 1024 > least * 1000000)
+        fail_msg("%s %s: %ld kB of memory, allowed were %s MB", option, value, got.peak_kb, limit);
+    expect_same_bytes(path, "large-free.weft");
+    unlink(path);
+}
+
+static void other_ways_to_store_keep_to_the_memory_too(void **state)
+{
+    (void)state;
+#if defined(__SANITIZE_ADDRESS__)
+    skip();
+#endif
+    expect_little_memory_suffices("--budget", "0.3");
+    expect_little_memory_suffices("--tables", "pca:8");
+}
+
 static void little_memory_changes_no_byte_and_is_not_exceeded(void **state)
 {
     (void)state;
@@ -362,6 +393,7 @@ int main(void)
         cmocka_unit_test(two_at_a_time_to_one_output_are_refused),
         cmocka_unit_test(threads_change_no_byte),
         cmocka_unit_test(little_memory_changes_no_byte_and_is_not_exceeded),
+        cmocka_unit_test(other_ways_to_store_keep_to_the_memory_too),
     };
     return cmocka_run_group_tests(tests, prepare, NULL);
 }
