@@ -27,7 +27,7 @@ step "4/5 Draw: raw BTF, compressed material and analytic cloth side by side"
     -o "$out/side-by-side.png"
 
 step "5/5 Compare them with numbers"
-"$weft" compare "$out/gabardine.btf.h5" "$out/gabardine.weft" --weave "$weave" -o "$out/compare"
+"$weft" compare "$out/gabardine.btf.h5" "$out/gabardine.weft" --weave "$weave" --fit -o "$out/compare"
 
 if [ -d "$shared/cards-blue" ]; then
     step "And real photographs: nine flash pictures of a card"

@@ -196,7 +196,7 @@ weft_least_squares weft_fit_weave_problem(weft_fit_weave_model *model)
 weft_code weft_fit_weave_cost(weft_fit_weave_model *model, const double *parameters, double *cost, weft_error *error)
 {
     size_t count = 3 * (size_t)model->looked_at;
-    double *residuals = malloc(count * sizeof *residuals);
+    double *residuals = calloc(count, sizeof *residuals);
     if (!residuals)
         return weft_fail_memory(error, "residuals", count * sizeof *residuals);
     compute_residuals(model, parameters, residuals);
