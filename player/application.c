@@ -43,10 +43,16 @@ static double picture_x(const weft_application *a, double x)
     return x - weft_application_panel_width(a);
 }
 
+/* Where the pointer is now: what the widgets know of it is as old as the last frame. */
+static bool is_on_picture(const weft_application *a, double x)
+{
+    return picture_x(a, x) >= 0 && !weft_ui_holds_mouse();
+}
+
 static void on_press(void *context, int button, bool pressed, int modifiers, double x, double y)
 {
     weft_application *a = context;
-    if (!pressed || !weft_ui_wants_mouse())
+    if (!pressed || is_on_picture(a, x))
         weft_interaction_press(&a->interaction, button, pressed, modifiers, picture_x(a, x), y);
 }
 
@@ -59,7 +65,7 @@ static void on_move(void *context, double x, double y)
 static void on_scroll(void *context, double steps)
 {
     weft_application *a = context;
-    if (!weft_ui_wants_mouse())
+    if (is_on_picture(a, a->interaction.x + weft_application_panel_width(a)))
         weft_interaction_scroll(&a->interaction, steps);
 }
 

@@ -13,8 +13,9 @@ namespace
 {
 
 double scale_of_all = 1;
+float wrap_at = 0; /* from the left of the panel or note; 0: its right edge */
 
-const float label_width = 82, text_size = 15;
+const float label_width = 82, text_size = 15, widest_note = 560, narrowest_note = 160;
 const ImVec4 accent(0.86f, 0.47f, 0.30f, 1), dim(0.62f, 0.62f, 0.64f, 1);
 
 float scaled(double length)
@@ -122,9 +123,10 @@ void weft_ui_end(void)
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-bool weft_ui_wants_mouse(void)
+bool weft_ui_holds_mouse(void)
 {
-    return ImGui::GetIO().WantCaptureMouse;
+    const ImGuiPopupFlags any = ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel;
+    return ImGui::IsAnyItemActive() || ImGui::IsPopupOpen("", any);
 }
 
 bool weft_ui_wants_keyboard(void)
@@ -136,6 +138,7 @@ void weft_ui_panel_begin(const char *name, double x, double y, double width, dou
 {
     ImGui::SetNextWindowPos(ImVec2((float)x, (float)y));
     ImGui::SetNextWindowSize(ImVec2((float)width, (float)height));
+    wrap_at = 0;
     ImGui::Begin(name, nullptr, fixed);
 }
 
@@ -143,8 +146,9 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
 {
     ImGui::SetNextWindowPos(ImVec2((float)x, (float)y), ImGuiCond_Always, ImVec2((float)share_x, (float)share_y));
     ImGui::SetNextWindowBgAlpha(0.92f);
-    /* Text that wraps asks for no width of its own: the window would be one letter wide. */
-    ImGui::SetNextWindowSizeConstraints(ImVec2(scaled(300), 0), ImVec2(FLT_MAX, FLT_MAX));
+    /* A note is as wide as its text, so its text cannot wrap where the note ends: it wraps within the picture. */
+    const float half = std::min((float)x, ImGui::GetIO().DisplaySize.x - (float)x);
+    wrap_at = std::min(scaled(widest_note), std::max(scaled(narrowest_note), 2 * (half - scaled(32))));
     ImGui::Begin(name, nullptr,
                  fixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoInputs);
@@ -185,13 +189,13 @@ void weft_ui_enable(void)
 void weft_ui_heading(const char *text)
 {
     ImGui::PushStyleColor(ImGuiCol_Text, accent);
-    ImGui::TextUnformatted(text);
+    weft_ui_text(text);
     ImGui::PopStyleColor();
 }
 
 void weft_ui_text(const char *text)
 {
-    ImGui::PushTextWrapPos(0);
+    ImGui::PushTextWrapPos(wrap_at);
     ImGui::TextUnformatted(text);
     ImGui::PopTextWrapPos();
 }

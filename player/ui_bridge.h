@@ -22,8 +22,8 @@ void weft_ui_begin(void);
 /* Draws the widgets into framebuffer 0. */
 void weft_ui_end(void);
 
-/* Whether the pointer, or the keys, are on a widget and not the picture's. */
-bool weft_ui_wants_mouse(void);
+/* Whether a widget is held, or one that floats over the picture is open; whether the keys are a widget's. */
+bool weft_ui_holds_mouse(void);
 bool weft_ui_wants_keyboard(void);
 
 /* ---- Where widgets stand: pixels from the upper left corner of the window ---- */
