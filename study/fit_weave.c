@@ -197,8 +197,9 @@ weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const we
     weft_fit_weave_model model;
     *report = (weft_fit_weave_report){0};
     WEFT_TRY(weft_fit_weave_measure(mean, weave, &report->before, error));
-    WEFT_TRY(weft_fit_weave_model_create(mean, weave, &model, parameters, error));
-    weft_code code = search(&model, progress, parameters, error);
+    weft_code code = weft_fit_weave_model_create(mean, weave, &model, parameters, error);
+    if (code == WEFT_OK)
+        code = search(&model, progress, parameters, error);
     if (code == WEFT_OK)
         code = refine(&model, progress, parameters, deviation, error);
     if (code == WEFT_OK)
