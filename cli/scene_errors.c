@@ -7,12 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The peak is the radiance that the screen shows as white. */
+static double psnr_db(const weft_prediction_error *e)
+{
+    const double least = 1e-10;
+    return -20 * log10(fmax(e->rmse, least));
+}
+
 static void append(char text[SCENE_ERRORS_SIZE], weft_mode mode, const weft_prediction_error *e)
 {
     size_t used = strlen(text);
-    snprintf(text + used, SCENE_ERRORS_SIZE - used, "%s%s %.1f %% (median %.1f, 80th percentile %.1f)",
+    snprintf(text + used, SCENE_ERRORS_SIZE - used, "%s%s %.1f %% (median %.1f, 80th percentile %.1f; PSNR %.1f dB)",
              used > 0 ? ", " : "from raw: ", weft_mode_name(mode), 100 * e->relative_rmse, 100 * e->median_relative,
-             100 * e->percentile80_relative);
+             100 * e->percentile80_relative, psnr_db(e));
 }
 
 weft_code scene_errors_print(weft_player *player, const weft_scene *scene, int width, int height,

@@ -63,6 +63,8 @@ weft_code weft_prediction_error_of(const weft_prediction *value, long count, wef
         squared_sample += sample * sample;
         relative[result->count++] = (float)(fabs(difference) / fmax(sample, floor_value));
     }
+    if (result->count > 0)
+        result->rmse = sqrt(squared_error / (double)result->count);
     if (squared_sample > 0)
         result->relative_rmse = sqrt(squared_error / squared_sample);
     qsort(relative, (size_t)result->count, sizeof *relative, ascending);

@@ -11,6 +11,7 @@ typedef struct weft_prediction_error {
     double relative_rmse;         /* sqrt(mean (p - s)^2 / mean s^2) */
     double median_relative;       /* median of |p - s| / max(s, floor), floor = 1e-4 of the largest sample */
     double percentile80_relative; /* its 80th percentile */
+    double rmse;                  /* sqrt(mean (p - s)^2) */
 } weft_prediction_error;
 
 /* One value of one channel, and where it was seen and lit from. */

@@ -54,7 +54,7 @@ static weft_prediction_error expected_error(int ring)
     qsort(relative, (size_t)count, sizeof *relative, ascending);
     double median = 0.5 * (relative[count / 2] + relative[(count - 1) / 2]);
     double percentile80 = relative[(4 * count + 4) / 5 - 1];
-    return (weft_prediction_error){count, sqrt(errors / squares), median, percentile80};
+    return (weft_prediction_error){count, sqrt(errors / squares), median, percentile80, sqrt(errors / (double)count)};
 }
 
 /* The same of the means over the texels, without the cosine. */
@@ -82,7 +82,7 @@ static weft_prediction_error expected_mean_error(void)
     }
     qsort(relative, (size_t)count, sizeof *relative, ascending);
     return (weft_prediction_error){count, sqrt(errors / squares), relative[count / 2],
-                                   relative[(4 * count + 4) / 5 - 1]};
+                                   relative[(4 * count + 4) / 5 - 1], sqrt(errors / (double)count)};
 }
 
 static char *read_page(const char *path)

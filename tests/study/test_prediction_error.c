@@ -27,6 +27,7 @@ static void relative_rmse_is_over_the_mean_square_of_the_samples(void **state)
     weft_prediction_error all = error_of((weft_prediction_choice){WEFT_CHOOSE_ALL, 0});
     assert_int_equal(all.count, 4);
     assert_float_equal(all.relative_rmse, sqrt((0.01 + 4 + 0.25) / 26), 1e-6);
+    assert_float_equal(all.rmse, sqrt((0.01 + 4 + 0.25) / 4), 1e-6);
 }
 
 static void the_median_floors_small_samples(void **state)
@@ -46,9 +47,10 @@ static void rings_choose_their_own_values(void **state)
     weft_prediction_error light = error_of((weft_prediction_choice){WEFT_CHOOSE_LIGHT_RING, 1});
     weft_prediction_error none = error_of((weft_prediction_choice){WEFT_CHOOSE_LIGHT_RING, 5});
     assert_float_equal(view.relative_rmse, sqrt(4.01 / 17), 1e-6);
+    assert_float_equal(view.rmse, sqrt(4.01 / 2), 1e-6);
     assert_float_equal(light.relative_rmse, sqrt(0.01 / 10), 1e-6);
     assert_int_equal(none.count, 0);
-    assert_true(none.relative_rmse == 0 && none.median_relative == 0);
+    assert_true(none.relative_rmse == 0 && none.rmse == 0 && none.median_relative == 0);
 }
 
 int main(void)
