@@ -3,6 +3,7 @@
 #include "compress/workspace.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { MOST_ROUNDS = 12, PASSES_A_ROUND = 2 };
 
@@ -76,12 +77,24 @@ static void advance(weft_fit_workspace *workspace, int count, bool remembers, do
     }
 }
 
+/* A round that went too far leaves more than the one before: what left least is kept. */
+static void keep_best(const weft_bundle *bundle, const weft_fit *fit, const double *table, const double *light,
+                      weft_fit_workspace *workspace, weft_fit *best)
+{
+    if (!(fit->residual < best->residual))
+        return;
+    *best = *fit;
+    memcpy(workspace->table_best, table, (size_t)bundle->view_count * sizeof *table);
+    memcpy(workspace->light_best, light, (size_t)bundle->light_count * sizeof *light);
+}
+
 weft_samples weft_light_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                                const weft_fit_options *options, weft_fit_workspace *workspace, float *cosine,
                                weft_fit *fit, double *table, double *light)
 {
     weft_fit_options few = *options;
     few.max_passes = PASSES_A_ROUND;
+    weft_fit best = {.residual = INFINITY};
     double before = INFINITY;
     int passes = 0;
     bool remembers = false;
@@ -89,14 +102,18 @@ weft_samples weft_light_refine(const weft_bundle *bundle, const weft_samples *sa
         weft_samples lit = weft_light_apply(bundle, samples, light, cosine);
         weft_fit_refine(bundle, &lit, channel, &few, workspace, fit, table);
         passes += fit->passes;
+        keep_best(bundle, fit, table, light, workspace, &best);
         double gain = before - fit->residual;
-        if (round == MOST_ROUNDS || (gain >= 0 && gain < options->tolerance * fit->residual)) {
-            fit->passes = passes;
-            return lit;
-        }
+        if (round == MOST_ROUNDS || (gain >= 0 && gain < options->tolerance * fit->residual))
+            break;
         remembers = round > 0 && gain > 0;
         before = fit->residual;
         solve_light(bundle, samples, channel, workspace, fit, table, workspace->light);
         advance(workspace, bundle->light_count, remembers, light);
     }
+    *fit = best;
+    fit->passes = passes;
+    memcpy(table, workspace->table_best, (size_t)bundle->view_count * sizeof *table);
+    memcpy(light, workspace->light_best, (size_t)bundle->light_count * sizeof *light);
+    return weft_light_apply(bundle, samples, light, cosine);
 }

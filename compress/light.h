@@ -14,9 +14,9 @@ weft_samples weft_light_apply(const weft_bundle *bundle, const weft_samples *sam
                               float *cosine);
 
 /* Improves `fit`, `table` [view_count] and `light` [light_count], start and result, until a round gains less than the
- * tolerance: the joint fit for given S, then S(l) = <T f | r>_l / <T f | T f>_l for the rest. S of a light without
- * samples is the mean of the others; the mean is 1. Returns the samples with S applied to them, see weft_light_apply;
- * the workspace has seen them last. */
+ * tolerance, and leaves what the best round did: the joint fit for given S, then S(l) = <T f | r>_l / <T f | T f>_l for
+ * the rest. S of a light without samples is the mean of the others; the mean is 1. Returns the samples with S applied
+ * to them, see weft_light_apply; the workspace has seen them last. */
 weft_samples weft_light_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                                const weft_fit_options *options, weft_fit_workspace *workspace, float *cosine,
                                weft_fit *fit, double *table, double *light);

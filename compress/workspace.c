@@ -41,8 +41,8 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
         return weft_fail_memory(error, "workspace of a fit", sizeof *workspace);
     size_t views = (size_t)bundle->view_stride;
     workspace->table = allocate_rows(1, views, sizeof *workspace->table);
-    workspace->scratch[0] = allocate_rows(2, views, sizeof *workspace->scratch[0]);
-    workspace->light = allocate_rows(4, (size_t)bundle->light_count + 1, sizeof *workspace->light);
+    workspace->scratch[0] = allocate_rows(3, views, sizeof *workspace->scratch[0]);
+    workspace->light = allocate_rows(5, (size_t)bundle->light_count + 1, sizeof *workspace->light);
     workspace->model = allocate_rows((size_t)bundle->sample_count + WEFT_STRIP_LANES, 1, sizeof *workspace->model);
     bool complete = create_trial(bundle->view_stride, &workspace->trial[0]);
     complete = create_trial(bundle->view_stride, &workspace->trial[1]) && complete && workspace->table &&
@@ -52,9 +52,11 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
         return weft_fail_memory(error, "workspace of a fit", views * 2048);
     }
     workspace->scratch[1] = workspace->scratch[0] + views;
+    workspace->table_best = workspace->scratch[1] + views;
     workspace->light_energy = workspace->light + bundle->light_count;
     workspace->light_before = workspace->light_energy + bundle->light_count;
     workspace->light_step = workspace->light_before + bundle->light_count;
+    workspace->light_best = workspace->light_step + bundle->light_count;
     *result = workspace;
     return WEFT_OK;
 }

@@ -5,11 +5,12 @@
 #include "compress/kernels.h"
 
 struct weft_fit_workspace {
-    weft_trial trial[2];                                      /* the point reached, and the one being tried */
-    float *table;                                             /* [view_stride] T to begin with */
-    double *scratch[2];                                       /* [view_stride] */
-    double *light, *light_energy, *light_before, *light_step; /* [light_count] of compress/light.c */
-    float *model;                                             /* [sample_count] */
+    weft_trial trial[2]; /* the point reached, and the one being tried */
+    float *table;        /* [view_stride] T to begin with */
+    double *scratch[2];  /* [view_stride] */
+    double *light, *light_energy, *light_before, *light_step, *light_best; /* [light_count] of compress/light.c */
+    double *table_best;                                                    /* [view_stride] of the same */
+    float *model;                                                          /* [sample_count] */
 };
 
 /* One pass at trial->fit with T = `table` in e (NULL: 0; without options->table: 1). Fills sums, linear parts, T,
