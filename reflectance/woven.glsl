@@ -43,6 +43,7 @@ float spine_radius(Segment segment, Spine spine, float inside, float sin_u, floa
 {
     float sin_abs_u = abs(sin_u);
     float end = (1.0 + segment.kappa) * (spine.sin_umax + spine.cos_umax);
+    cos_u = max(cos_u, spine.cos_umax);
     float e = spine.shape < 0.0
                   ? (sin(max(inside, 0.0)) + end * sin_abs_u) / spine.sin_umax * (cos_u - spine.shape * sin_abs_u)
                   : cos_u * cos_u + spine.shape * spine.shape * sin_u * sin_u;

@@ -124,6 +124,7 @@ WEFT_INLINE lane_spine lanes_spine(lanes kappa, lanes width, lanes length, lanes
 /* R at u; `inside` = umax - |u|. */
 WEFT_INLINE lanes lanes_spine_radius(lanes kappa, const lane_spine *spine, lanes inside, lanes sin_u, lanes cos_u)
 {
+    cos_u = lanes_max(cos_u, spine->cos_umax);
     lanes sin_abs_u = lanes_abs(sin_u), end = (1 + kappa) * (spine->sin_umax + spine->cos_umax);
     lanes hyperbola = (lanes_sin(lanes_max(inside, lanes_of(0))) + end * sin_abs_u) / spine->sin_umax *
                       (cos_u - spine->shape * sin_abs_u);

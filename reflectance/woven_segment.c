@@ -87,6 +87,8 @@ static weft_real hyperbola_factor(const weft_segment *segment, const weft_spine 
 weft_real spine_radius(const weft_segment *segment, const weft_spine *spine, weft_real inside, weft_real sin_u,
                        weft_real cos_u)
 {
+    /* A u that is rounded beyond umax must not leave the spine: R has its pole just there. */
+    cos_u = fmax(cos_u, spine->cos_umax);
     weft_real e = spine->shape < 0 ? hyperbola_factor(segment, spine, fmax(inside, 0), sin_u, cos_u)
                                    : cos_u * cos_u + spine->shape * spine->shape * sin_u * sin_u;
     return spine->scale / (e * sqrt(e));
