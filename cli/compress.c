@@ -168,6 +168,8 @@ static void say_model(const compress_command *command, const weft_dataset_layout
     const char *table = report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "";
     command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height, layout->image_count,
                 report->lobe_count, table, report->light_count > 0 ? " and a light table" : "");
+    if (command->options.table_components > 0 && report->table_components == 0)
+        command_say(common, "these images carry no tables: --tables changes nothing");
     if (report->model == WEFT_COMPRESS_SPARSE)
         command_say(common,
                     "%d images cannot carry lobes in every texel: exponents and normals are shared with the "

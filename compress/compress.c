@@ -136,8 +136,8 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
     }
     if (fit && options->budget_bytes > 0)
         json_object_set_new(fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
-    if (fit && options->table_components > 0)
-        json_object_set_new(fit, "table_components", json_integer(options->table_components));
+    if (fit && report->table_components > 0)
+        json_object_set_new(fit, "table_components", json_integer(report->table_components));
     if (fit && report->model == WEFT_COMPRESS_SPARSE) {
         json_object_set_new(fit, "largest_exponent", json_real(setting->largest_exponent));
         json_object_set_new(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
@@ -273,8 +273,10 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
     source.options.table = report->model == WEFT_COMPRESS_TABLE;
     source.options.max_exponent = options->max_exponent;
     WEFT_TRY(fit_chosen(of, &source, &job, material, &result, error));
-    if (options->table_components > 0 && material->view_count + material->light_count > 0)
+    if (options->table_components > 0 && material->view_count + material->light_count > 0) {
         WEFT_TRY(reduce_tables(of, &source, &job, material, &result, error));
+        report->table_components = options->table_components;
+    }
     /* What is free is given back to the system, so that writing the material has room. */
     malloc_trim(0);
     of->counts = result.counts;

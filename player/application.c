@@ -207,8 +207,6 @@ static void note_time(weft_application *a, double elapsed_ms, bool is_exact)
     double *smooth[2] = {&a->frame_ms, is_exact ? &a->exact_ms : NULL};
     for (int i = 0; i < 2 && smooth[i]; i++)
         *smooth[i] = *smooth[i] > 0 ? 0.8 * *smooth[i] + 0.2 * elapsed_ms : elapsed_ms;
-    a->total_ms += elapsed_ms;
-    a->frame_count++;
 }
 
 static weft_code draw_frame(weft_application *a, weft_error *error)
@@ -220,11 +218,11 @@ static weft_code draw_frame(weft_application *a, weft_error *error)
     WEFT_TRY(weft_player_draw(a->player, scene, a->canvas.width, a->canvas.height, sampling, error));
     weft_canvas_end_frame(&a->canvas);
     glFinish();
+    double elapsed_ms = 1000 * (weft_application_now_s() - start);
+    a->total_ms += elapsed_ms;
     /* The first frame builds programs and is no measure of the others. */
-    if (a->frame_count > 0)
-        note_time(a, 1000 * (weft_application_now_s() - start), scene->filter == WEFT_FILTER_AUTO && !sampling.hurry);
-    else
-        a->frame_count = 1;
+    if (a->frame_count++ > 0)
+        note_time(a, elapsed_ms, scene->filter == WEFT_FILTER_AUTO && !sampling.hurry);
     return WEFT_OK;
 }
 

@@ -28,9 +28,12 @@ static weft_vec3 direction_at(double column, double row, int width, int height)
                         (weft_real)cos(theta_rad));
 }
 
+/* A limit that leaves room for sums over the sphere in single precision. */
+static const double largest_radiance = 1e30;
+
 static double positive(float value)
 {
-    return value > 0 && isfinite(value) ? (double)value : 0;
+    return value > 0 && isfinite(value) ? fmin((double)value, largest_radiance) : 0;
 }
 
 /* The mean of the pixels that fall into one of the map: those of rows with more of the sphere count more, but within a

@@ -117,7 +117,6 @@ static void map_legend(const weft_application *a)
     weft_ui_dim_text(text);
 }
 
-/* Colour and strength apart: a light keeps its hue when it is dimmed. */
 static bool light_rows(weft_light *light, bool removable, bool *removed)
 {
     double theta_rad = light->direction.theta_rad, phi_rad = light->direction.phi_rad;

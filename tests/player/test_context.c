@@ -1,5 +1,7 @@
 /* What OpenGL must not notice: programs that only one profile takes, objects left behind, errors passed over. */
 #include "../support/keep_modules.h"
+#include "player/probe.h"
+#include "player/programs.h"
 #include "stage.h"
 
 #include <stdio.h>
@@ -19,19 +21,67 @@ static weft_headless *open_context(weft_gl_profile profile)
     return headless;
 }
 
-static void every_shader_compiles_for_opengl_es_too(void **state)
+/* The bits of `choice` say what the program does. */
+static weft_program_kind kind_of(weft_mode mode, int plot, int choice)
 {
-    (void)state;
+    bool compressed = mode == WEFT_MODE_COMPRESSED;
+    return (weft_program_kind){.mode = mode,
+                               .plot = plot,
+                               .stochastic = choice & 1,
+                               .shadows = choice & 2,
+                               .one_light = choice & 4,
+                               .lobe_count = compressed && choice & 8 ? 3 : 0,
+                               .view_table = compressed && choice & 16,
+                               .light_table = compressed && choice & 32};
+}
+
+/* Programs are built when they are first used: all of them are asked for here. */
+static void build_every_program(void)
+{
     weft_error error = {0};
-    weft_headless *headless = open_context(WEFT_GL_ES);
+    weft_programs programs = {0};
+    GLuint program;
+    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
+        for (int i = 0; i < 3 * (mode == WEFT_MODE_COMPRESSED ? 64 : 8); i++) {
+            const weft_program_kind kind = kind_of((weft_mode)mode, i % 3, i / 3);
+            expect_ok(weft_programs_find(&programs, &kind, &program, &error), &error);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        expect_ok(weft_programs_find_surface(&programs, i, &program, &error), &error);
+        expect_ok(weft_programs_find_geometry(&programs, i, &program, &error), &error);
+    }
+    weft_programs_free(&programs);
+}
+
+static void every_shader_compiles_for(weft_gl_profile profile)
+{
+    weft_error error = {0};
+    weft_headless *headless = open_context(profile);
     weft_player *player;
     weft_canvas canvas;
-    assert_false(epoxy_is_desktop_gl());
+    weft_probe_plots plots;
+    assert_int_equal(epoxy_is_desktop_gl(), profile == WEFT_GL_CORE);
     expect_ok(weft_player_create(&player, &error), &error);
     expect_ok(weft_canvas_create(16, 16, &canvas, &error), &error);
+    expect_ok(weft_probe_plots_create(16, &plots, &error), &error);
+    build_every_program();
+    weft_probe_plots_free(&plots);
     weft_canvas_free(&canvas);
     weft_player_free(player);
     weft_headless_free(headless);
+}
+
+static void every_shader_compiles_for_opengl(void **state)
+{
+    (void)state;
+    every_shader_compiles_for(WEFT_GL_CORE);
+}
+
+static void every_shader_compiles_for_opengl_es_too(void **state)
+{
+    (void)state;
+    every_shader_compiles_for(WEFT_GL_ES);
 }
 
 static void expect_no_objects(void)
@@ -84,6 +134,15 @@ static void nothing_stays_behind_when_a_player_is_freed(void **state)
     expect_ok(weft_player_picture(player, &scene, 64, 48, 2, NULL, &image, &error), &error);
     expect_ok(weft_player_read_surface(player, &scene, WEFT_MODE_RAW, 64, 48, &surface, &error), &error);
     free(surface);
+    weft_image_free(&image);
+    scene.layout = WEFT_LAYOUT_DIFFERENCE;
+    scene.shadows = scene.environment = true;
+    expect_ok(weft_image_create(4, 2, &image, &error), &error);
+    image.pixels[0] = 1;
+    expect_ok(weft_player_set_environment(player, &image, &error), &error);
+    expect_ok(weft_player_set_environment(player, &image, &error), &error);
+    weft_image_free(&image);
+    expect_ok(weft_player_picture(player, &scene, 40, 30, 1, NULL, &image, &error), &error);
     weft_image_free(&image);
     weft_player_free(player);
     expect_no_objects();
@@ -163,6 +222,7 @@ int main(int argc, char **argv)
         return cmocka_run_group_tests(tests, NULL, NULL);
     }
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_shader_compiles_for_opengl),
         cmocka_unit_test(every_shader_compiles_for_opengl_es_too),
         cmocka_unit_test(nothing_stays_behind_when_a_player_is_freed),
         cmocka_unit_test(an_opengl_error_comes_back_with_what_was_done),

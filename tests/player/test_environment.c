@@ -129,6 +129,27 @@ static void black_and_square_maps_are_refused_and_spoilt_pixels_are_black(void *
     weft_image_free(&image);
 }
 
+static void maps_of_two_pixels_and_of_enormous_values_give_finite_lights(void **state)
+{
+    (void)state;
+    weft_image image = map_of(3e38f);
+    for (int width = WIDTH; width >= 2; width = width == WIDTH ? 2 : 0) {
+        image.width = width;
+        image.height = width / 2;
+        weft_environment *environment = environment_of(&image);
+        for (int i = 0; i < WEFT_ENVIRONMENT_REGIONS * (1 + WEFT_ENVIRONMENT_PARTS); i++) {
+            const weft_distant_light *light = i < WEFT_ENVIRONMENT_REGIONS
+                                                  ? &environment->region[i]
+                                                  : &environment->part[0][i - WEFT_ENVIRONMENT_REGIONS];
+            assert_float_equal(weft_length(light->direction), 1, 1e-6);
+            for (int c = 0; c < 3; c++)
+                assert_true(isfinite(light->irradiance[c]) && light->irradiance[c] >= 0);
+        }
+        free(environment);
+    }
+    weft_image_free(&image);
+}
+
 static void the_scene_lists_its_lights_before_those_of_the_map(void **state)
 {
     (void)state;
@@ -158,6 +179,7 @@ int main(void)
         cmocka_unit_test(the_parts_of_a_region_carry_its_power_in_equal_shares),
         cmocka_unit_test(a_bright_pixel_becomes_a_light_where_the_map_has_it),
         cmocka_unit_test(black_and_square_maps_are_refused_and_spoilt_pixels_are_black),
+        cmocka_unit_test(maps_of_two_pixels_and_of_enormous_values_give_finite_lights),
         cmocka_unit_test(the_scene_lists_its_lights_before_those_of_the_map),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
