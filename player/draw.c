@@ -72,8 +72,8 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
         break;
     case WEFT_MODE_COMPRESSED:
         weft_material_texture_bind(&p->material, program);
-        glUniform1iv(glGetUniformLocation(program, "lobe_on"), WEFT_SCENE_MAX_LOBES,
-                     (const GLint[]){scene->lobe[0], scene->lobe[1], scene->lobe[2]});
+        glUniform1fv(glGetUniformLocation(program, "lobe_share"), WEFT_SCENE_MAX_LOBES,
+                     (const GLfloat[]){scene->lobe[0], scene->lobe[1], scene->lobe[2]});
         weft_gl_set_float(program, "view_table_share", scene->view_table);
         weft_gl_set_float(program, "light_table_share", scene->light_table);
         weft_gl_set_float(program, "table_steps", (1 << scene->table_bits) - 1);
@@ -104,6 +104,7 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         kind.lobe_count = p->material.lobe_count;
         kind.view_table = p->material.table.count > 0;
         kind.light_table = p->material.light_table.count > 0;
+        kind.fewer_bits = scene->table_bits < 8;
     }
     return kind;
 }

@@ -15,6 +15,7 @@ typedef struct weft_program_kind {
     /* Of the compressed material: */
     int lobe_count;
     bool view_table, light_table;
+    bool fewer_bits; /* of T and S than they have */
 } weft_program_kind;
 
 enum { WEFT_PROGRAM_CAPACITY = 32 };

@@ -16,7 +16,8 @@ struct Corners {
 vec4 simplex_entry(int simplex, int column)
 {
     int row = simplex / DIRECTION_SIMPLICES_PER_ROW;
-    return texelFetch(direction_simplex, ivec2(4 * (simplex - row * DIRECTION_SIMPLICES_PER_ROW) + column, row), 0);
+    vec2 place = vec2(4 * (simplex - row * DIRECTION_SIMPLICES_PER_ROW) + column, row) + 0.5;
+    return textureLod(direction_simplex, place / vec2(textureSize(direction_simplex, 0)), 0.0);
 }
 
 int first_simplex(int set, vec3 direction)
@@ -26,7 +27,7 @@ int first_simplex(int set, vec3 direction)
     ivec2 cell = clamp(ivec2(square * float(DIRECTION_GRID)), 0, DIRECTION_GRID - 1);
     int row = set / DIRECTION_SETS_PER_ROW;
     ivec2 map = ivec2(set - row * DIRECTION_SETS_PER_ROW, row) * DIRECTION_GRID;
-    return texelFetch(direction_cell, map + cell, 0).r;
+    return textureLod(direction_cell, (vec2(map + cell) + 0.5) / vec2(textureSize(direction_cell, 0)), 0.0).r;
 }
 
 float smallest_of(vec3 weight)

@@ -1,5 +1,5 @@
 // What every mode needs to know of the surface behind a pixel (written by surface.frag.glsl), and of the light on it.
-// Constants defined by player/programs.c: MAX_LIGHTS, LIGHT_COUNT (light_count, or 1), STOCHASTIC, SHADOWS, and PLOT: 0 for
+// Constants defined by player/programs.c: MAX_LIGHTS, LIGHT_COUNT (light_count, or 1), ONE_LIGHT, STOCHASTIC, SHADOWS, and PLOT: 0 for
 // the picture; else a disc of directions at one place of the material, 1 of lights, 2 of views (player/probe.h).
 uniform sampler2D surface_rotation;
 uniform sampler2D surface_place;
@@ -85,12 +85,12 @@ SurfacePoint surface_point()
 {
     if (PLOT != 0)
         return plotted_point();
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 place = texelFetch(surface_place, pixel, 0);
+    vec2 pixel = gl_FragCoord.xy / vec2(textureSize(surface_place, 0));
+    vec4 place = textureLod(surface_place, pixel, 0.0);
     vec2 at = gl_FragCoord.xy - pane_origin;
     vec3 ray = at.x * ray_right + at.y * ray_up + ray_forward;
     SurfacePoint point;
-    point.axes = axes_of_quaternion(texelFetch(surface_rotation, pixel, 0));
+    point.axes = axes_of_quaternion(textureLod(surface_rotation, pixel, 0.0));
     point.axes[1] *= sign(place.w);
     point.view = above_horizon(-normalize(ray) * point.axes);
     point.coordinate = place.xy;
