@@ -55,7 +55,7 @@ static void set_shown(const weft_player *p, GLuint program, const weft_scene *sc
 weft_code weft_player_check_mode(const weft_player *p, weft_mode mode, weft_error *error)
 {
     static const char *const needs[WEFT_MODE_COUNT] = {"a dataset", "a material", "a weave"};
-    if (!p->index_count)
+    if (!p->triangle_count)
         return weft_fail(error, WEFT_BAD_USAGE, "there is no mesh to draw");
     if (!p->has[mode])
         return weft_fail(error, WEFT_BAD_USAGE, "mode '%s' needs %s", weft_mode_name(mode), needs[mode]);

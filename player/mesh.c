@@ -15,7 +15,7 @@ weft_code weft_mesh_allocate(int vertex_count, int triangle_count, weft_mesh *me
     mesh->triangle_count = triangle_count;
     mesh->size = mesh->coordinate_length = 1;
     mesh->vertex = calloc((size_t)vertex_count, sizeof *mesh->vertex);
-    mesh->index = calloc((size_t)triangle_count, sizeof *mesh->index);
+    mesh->index = calloc((size_t)triangle_count + (size_t)triangle_count / 4, sizeof *mesh->index);
     if (mesh->vertex && mesh->index)
         return WEFT_OK;
     weft_mesh_free(mesh);

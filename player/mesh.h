@@ -17,15 +17,17 @@ typedef struct weft_vertex {
 /* Triangles run counter-clockwise seen from the side of the normal. Owned arrays. */
 typedef struct weft_mesh {
     int vertex_count, triangle_count;
+    int coarse_count;     /* triangles between every other vertex, for small pictures; 0: there are none */
     weft_vertex *vertex;  /* [vertex_count] */
-    uint32_t (*index)[3]; /* [triangle_count] */
+    uint32_t (*index)[3]; /* [triangle_count + coarse_count] */
     double size;          /* side of the plane or of the cloth, diameter of the sphere, longest side of a file's box */
     double coordinate_length; /* of the surface for one unit of texture coordinates */
 } weft_mesh;
 
 enum { WEFT_MESH_MAX_VERTICES = 1 << 26, WEFT_MESH_MAX_TRIANGLES = 1 << 26 };
 
-/* Zeroed arrays; both lengths 1. Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. */
+/* Zeroed arrays, with room for a quarter as many coarse triangles; both lengths 1. Errors: WEFT_BAD_USAGE for counts
+ * out of range, WEFT_SYSTEM. */
 weft_code weft_mesh_allocate(int vertex_count, int triangle_count, weft_mesh *mesh, weft_error *error);
 void weft_mesh_free(weft_mesh *mesh);
 
@@ -40,7 +42,8 @@ weft_code weft_mesh_compute_normals(weft_mesh *mesh, const uint32_t *group, weft
  * any perpendicular where the coordinates are degenerate. Errors: WEFT_SYSTEM. */
 weft_code weft_mesh_compute_tangents(weft_mesh *mesh, weft_error *error);
 
-/* Two triangles for each cell of a grid of columns x rows vertices, row-major; the mesh has room for them. */
+/* Two triangles for each cell of a grid of columns x rows vertices, row-major, and where both are odd two coarse ones
+ * for every four cells; the mesh has room for them. */
 void weft_mesh_index_grid(weft_mesh *mesh, int columns, int rows);
 
 /* ---- Built in. The caller frees with weft_mesh_free. Errors: WEFT_SYSTEM. ---- */

@@ -42,7 +42,7 @@ static void free_mesh(weft_player *p)
     glDeleteBuffers(1, &p->vertex_buffer);
     glDeleteBuffers(1, &p->index_buffer);
     p->vertex_array = p->vertex_buffer = p->index_buffer = 0;
-    p->index_count = 0;
+    p->triangle_count = p->coarse_count = 0;
 }
 
 void weft_player_free(weft_player *p)
@@ -87,7 +87,8 @@ weft_code weft_player_set_mesh(weft_player *p, const weft_mesh *mesh, weft_error
     weft_shadow_map_forget(&p->shadow);
     p->centre = weft_vec3_of((weft_real)centre[0], (weft_real)centre[1], (weft_real)centre[2]);
     p->radius = (double)radius;
-    p->index_count = 3 * mesh->triangle_count;
+    p->triangle_count = mesh->triangle_count;
+    p->coarse_count = mesh->coarse_count;
     glGenVertexArrays(1, &p->vertex_array);
     glGenBuffers(1, &p->vertex_buffer);
     glGenBuffers(1, &p->index_buffer);
@@ -96,8 +97,8 @@ weft_code weft_player_set_mesh(weft_player *p, const weft_mesh *mesh, weft_error
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, p->index_buffer);
     glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)mesh->vertex_count * (GLsizeiptr)sizeof *mesh->vertex, mesh->vertex,
                  GL_STATIC_DRAW);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)mesh->triangle_count * (GLsizeiptr)sizeof *mesh->index,
-                 mesh->index, GL_STATIC_DRAW);
+    GLsizeiptr triangles = (GLsizeiptr)mesh->triangle_count + mesh->coarse_count;
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, triangles * (GLsizeiptr)sizeof *mesh->index, mesh->index, GL_STATIC_DRAW);
     describe_attribute(WEFT_ATTRIBUTE_POSITION, 3, offsetof(weft_vertex, position));
     describe_attribute(WEFT_ATTRIBUTE_NORMAL, 3, offsetof(weft_vertex, normal));
     describe_attribute(WEFT_ATTRIBUTE_TANGENT, 4, offsetof(weft_vertex, tangent));
@@ -207,7 +208,7 @@ void weft_player_clear(weft_player *p, weft_mode mode)
 
 bool weft_player_has_mesh(const weft_player *p)
 {
-    return p->index_count > 0;
+    return p->triangle_count > 0;
 }
 
 bool weft_player_has(const weft_player *p, weft_mode mode)

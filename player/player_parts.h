@@ -17,7 +17,7 @@ enum { WEFT_LAYER_COUNT = 2 };
 struct weft_player {
     /* Mesh */
     GLuint vertex_array, vertex_buffer, index_buffer;
-    GLsizei index_count;
+    int triangle_count, coarse_count; /* coarse ones come after the others (player/mesh.h) */
     weft_vec3 centre;
     double radius;
     /* What may lie on it */

@@ -3,6 +3,7 @@
 #include "player/player.h"
 
 static const double automatic = -1000, finest_of_all = -100;
+static const double smallest_triangle = 8; /* pixels */
 
 static double level_uniform(const weft_scene *scene)
 {
@@ -16,11 +17,22 @@ static double level_uniform(const weft_scene *scene)
     }
 }
 
-static void draw_mesh(const weft_player *p)
+static void draw_mesh(const weft_player *p, bool coarse)
 {
+    size_t first = coarse ? (size_t)p->triangle_count : 0;
     glBindVertexArray(p->vertex_array);
-    glDrawElements(GL_TRIANGLES, p->index_count, GL_UNSIGNED_INT, NULL);
+    glDrawElements(GL_TRIANGLES, 3 * (coarse ? p->coarse_count : p->triangle_count), GL_UNSIGNED_INT,
+                   (void *)(first * sizeof(uint32_t[3])));
     glBindVertexArray(0);
+}
+
+/* Rasterisers take blocks of some 4 x 4 pixels, so that smaller triangles cost as much. The pixels (of which a sampled
+ * picture has more) are those of the ball round the mesh. */
+static bool wants_coarse(const weft_player *p, const weft_scene *scene, const weft_pane *pane)
+{
+    double side = pane->width < pane->height ? pane->width : pane->height;
+    double radius = exp2(-pane->sampling.level_bias) * side / (2 * weft_orbit_slope() * scene->orbit.distance);
+    return p->coarse_count > 0 && WEFT_PI * radius * radius < smallest_triangle * p->triangle_count;
 }
 
 /* Width by height of what is shown. A cell of a weave need not be square, a texel is. */
@@ -59,7 +71,7 @@ static weft_code draw_layer(weft_player *p, const weft_scene *scene, const weft_
     set_view(p, program, scene, pane);
     if (front)
         weft_gl_bind(program, "front_depth", 0, GL_TEXTURE_2D, front->depth);
-    draw_mesh(p);
+    draw_mesh(p, wants_coarse(p, scene, pane));
     glDisable(GL_DEPTH_TEST);
     return WEFT_OK;
 }
@@ -98,7 +110,7 @@ void weft_player_draw_shadows(weft_player *p, const weft_scene *scene)
         return;
     weft_vec3 light = weft_direction_of_angles(scene->light[0].direction);
     if (weft_shadow_map_begin(&p->shadow, light, p->centre, p->radius)) {
-        draw_mesh(p);
+        draw_mesh(p, false);
         weft_shadow_map_end();
     }
 }

@@ -114,6 +114,32 @@ static void the_drape_keeps_the_size_of_the_cloth(void **state)
     weft_mesh_free(&mesh);
 }
 
+/* As a mesh of their own, which shares its vertices and indices. */
+static weft_mesh coarse_part(const weft_mesh *mesh)
+{
+    weft_mesh part = *mesh;
+    part.index += mesh->triangle_count;
+    part.triangle_count = mesh->coarse_count;
+    part.coarse_count = 0;
+    return part;
+}
+
+static void coarse_triangles_are_a_quarter_as_many_on_the_same_surface(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"drape", "sphere"};
+    for (int i = 0; i < 2; i++) {
+        weft_mesh mesh = built_in(names[i]), coarse = coarse_part(&mesh);
+        assert_int_equal(4 * mesh.coarse_count, mesh.triangle_count);
+        assert_float_equal(area(&coarse) / area(&mesh), 1, 0.005);
+        expect_frames(&coarse);
+        weft_mesh_free(&mesh);
+    }
+    weft_mesh plane = built_in("plane");
+    assert_int_equal(plane.coarse_count, 0);
+    weft_mesh_free(&plane);
+}
+
 static void the_drape_lies_on_its_table_and_hangs_over_the_rim(void **state)
 {
     (void)state;
@@ -265,6 +291,7 @@ int main(void)
         cmocka_unit_test(the_sphere_has_its_area_and_normals_that_point_out),
         cmocka_unit_test(computed_tangents_of_the_sphere_equal_the_exact_ones),
         cmocka_unit_test(the_drape_keeps_the_size_of_the_cloth),
+        cmocka_unit_test(coarse_triangles_are_a_quarter_as_many_on_the_same_surface),
         cmocka_unit_test(the_drape_lies_on_its_table_and_hangs_over_the_rim),
         cmocka_unit_test(the_drape_is_the_same_every_time),
         cmocka_unit_test(an_obj_polygon_becomes_a_fan_with_computed_frames_and_z_up),

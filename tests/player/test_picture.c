@@ -249,6 +249,36 @@ static void what_is_shown_rises_with_radiance_and_keeps_highlights_apart(void **
     weft_image_free(&image);
 }
 
+static void set_drape(void **state, bool coarse)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_mesh mesh;
+    expect_ok(weft_mesh_drape(&mesh, &error), &error);
+    mesh.coarse_count = coarse ? mesh.coarse_count : 0;
+    expect_ok(weft_player_set_mesh(s->player, &mesh, &error), &error);
+    weft_mesh_free(&mesh);
+}
+
+static void coarse_triangles_of_a_small_picture_hardly_change_it(void **state)
+{
+    weft_scene scene = scene_of(WEFT_MODE_COMPRESSED);
+    weft_image coarse = draw(state, scene, 1), sampled = draw(state, scene, 6);
+    set_drape(state, false);
+    weft_image fine = draw(state, scene, 1), fine_sampled = draw(state, scene, 6);
+    set_drape(state, true);
+    double mean = 0;
+    for (int i = 0; i < 3 * PIXELS; i++)
+        mean += fabs((double)coarse.pixels[i] - (double)fine.pixels[i]) / (3 * PIXELS);
+    assert_true(mean > 0 && mean < 0.01);
+    /* Thirty-six times the pixels are worth the finer ones. */
+    assert_memory_equal(sampled.pixels, fine_sampled.pixels, 3 * PIXELS * sizeof *fine_sampled.pixels);
+    weft_image_free(&coarse);
+    weft_image_free(&sampled);
+    weft_image_free(&fine);
+    weft_image_free(&fine_sampled);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -259,6 +289,7 @@ int main(void)
         cmocka_unit_test(lights_add_up),
         cmocka_unit_test(a_matt_surface_under_a_white_sky_shows_its_albedo),
         cmocka_unit_test(switches_of_the_material_take_its_parts_away),
+        cmocka_unit_test(coarse_triangles_of_a_small_picture_hardly_change_it),
         cmocka_unit_test(what_is_shown_rises_with_radiance_and_keeps_highlights_apart),
     };
     return cmocka_run_group_tests(tests, open_with_models, stage_close);
