@@ -1,5 +1,6 @@
 #include "cli/arguments.h"
 #include "cli/play_host.h"
+#include "cli/scene_values.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -10,7 +11,7 @@ typedef struct play_command {
     int frame_limit; /* 0 = until the window is closed */
 } play_command;
 
-enum { KEY_FRAMES = 0x5000 };
+enum { KEY_FRAMES = 0x5000, WINDOW_WIDTH = 1280, WINDOW_HEIGHT = 800 };
 
 static const struct argp_option option_table[] = {
     {"frames", KEY_FRAMES, "N", 0, "Quit after N frames", 0},
@@ -47,6 +48,18 @@ static const struct argp parser = {
 
 /* ---- The command ---- */
 
+/* A window has a panel beside its picture. */
+static void choose_size(scene_options *scene)
+{
+    bool is_given = scene->source != NULL;
+    for (int i = 0; i < scene->option_count; i++)
+        is_given |= scene->option[i].key == KEY_SIZE;
+    if (is_given)
+        return;
+    scene->settings.width = WINDOW_WIDTH;
+    scene->settings.height = WINDOW_HEIGHT;
+}
+
 /* `title` outlives the settings, whose names change as files are dropped. */
 static weft_application_setup setup_of(play_command *command, play_host *host, char title[256])
 {
@@ -79,6 +92,7 @@ int command_play(int argc, char **argv)
 {
     play_command command = {0};
     command_parse(&parser, argc, argv, &command, &command.scene.common);
+    choose_size(&command.scene);
     weft_error error = {0};
     play_host host = {0};
     char title[256];

@@ -71,6 +71,7 @@ static weft_code follow_files(play_host *host, weft_error *error)
     weft_application_set_file(host->application, WEFT_MODE_COMPRESSED, s->material);
     weft_application_set_file(host->application, WEFT_MODE_ANALYTIC, s->weave);
     weft_application_set_file(host->application, WEFT_MODE_RAW, s->dataset);
+    weft_application_set_mesh(host->application, s->mesh);
     for (int slot = 0; host->watch && slot < SCENE_SLOT_COUNT; slot++) {
         bool is_file = path[slot] && access(path[slot], F_OK) == 0;
         WEFT_TRY(weft_watch_set(host->watch, slot, is_file ? path[slot] : NULL, error));

@@ -1,7 +1,10 @@
 #include "player/application_parts.h"
 
+#include "player/keys.h"
 #include "player/ui_bridge.h"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +15,8 @@ enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64, PLOT_SIZE = 142 };
 static const double settle_s = 0.12; /* after the last change the mean of a picture at rest begins */
 static const double hurry_ms = 15;   /* exact frames longer than this are drawn stochastically while things move */
 static const double poll_s = 0.1;
+static const double turn_rad_per_s = 0.5;
+static const double note_s = 8, short_note_s = 1.5;
 static const double poll_of_loading_s = 0.01; /* frames that show nothing new would take from the thread that reads */
 
 double weft_application_now_s(void)
@@ -27,7 +32,7 @@ void weft_application_tell(weft_application *a, bool is_error, const char *text)
         return;
     snprintf(a->note, sizeof a->note, "%s", text);
     a->note_is_error = is_error;
-    a->noted_s = weft_application_now_s();
+    a->note_ends_s = weft_application_now_s() + note_s;
 }
 
 /* What the host could not do is told and the window stays. */
@@ -65,15 +70,25 @@ static void on_move(void *context, double x, double y)
 static void on_scroll(void *context, double steps)
 {
     weft_application *a = context;
-    if (is_on_picture(a, a->interaction.x + weft_application_panel_width(a)))
+    bool scrolls_list = a->interaction.shows_help;
+    if (!scrolls_list && is_on_picture(a, a->interaction.x + weft_application_panel_width(a)))
         weft_interaction_scroll(&a->interaction, steps);
 }
 
-static void on_key(void *context, int key)
+/* A key that was pressed over the picture is released wherever the keys go by then. */
+static void on_key(void *context, int key, int action, int modifiers)
 {
     weft_application *a = context;
-    if (!weft_ui_wants_keyboard())
-        weft_interaction_key(&a->interaction, key);
+    weft_interaction *i = &a->interaction;
+    if (action == GLFW_RELEASE)
+        weft_keys_release(i, key);
+    else if (!weft_ui_wants_keyboard())
+        weft_keys_press(i, key, modifiers, action == GLFW_REPEAT);
+    if (i->said[0]) {
+        weft_application_tell(a, false, i->said);
+        a->note_ends_s = weft_application_now_s() + short_note_s;
+        i->said[0] = 0;
+    }
 }
 
 void weft_application_open(weft_application *a, const char *path)
@@ -145,6 +160,11 @@ weft_player *weft_application_player(weft_application *a)
 void weft_application_set_file(weft_application *a, weft_mode mode, const char *path)
 {
     a->setup.file[mode] = path;
+}
+
+void weft_application_set_mesh(weft_application *a, const char *name)
+{
+    a->mesh = name;
 }
 
 void weft_application_speed(const weft_application *a, long *frames, double *frame_ms)
@@ -307,8 +327,17 @@ static void grant_wishes(weft_application *a)
         i->wants_screenshot = false;
         save_picture(a);
     }
+    weft_window_set_full_screen(a->window, i->full_screen);
     if (i->wants_quit)
         weft_window_close(a->window);
+}
+
+static void turn_by_itself(weft_application *a)
+{
+    double now = weft_application_now_s();
+    if (a->interaction.turns && a->interaction.drag == WEFT_DRAG_NONE)
+        weft_interaction_turn(&a->interaction, turn_rad_per_s * (now - a->stepped_s), 0);
+    a->stepped_s = now;
 }
 
 static void poll_host(weft_application *a)
@@ -334,8 +363,12 @@ static weft_code probe(weft_application *a, weft_error *error)
     const weft_interaction *i = &a->interaction;
     if (!a->rests || weft_application_panel_width(a) == 0 || i->drag != WEFT_DRAG_NONE)
         return WEFT_OK;
-    WEFT_TRY(weft_probe_read(a->player, &i->scene, &a->canvas, (int)i->x, (int)i->y, &a->probe, error));
-    return a->probe.on_mesh ? weft_probe_plots_draw(&a->plots, a->player, &i->scene, &a->probe, error) : WEFT_OK;
+    weft_probe probe;
+    WEFT_TRY(weft_probe_read(a->player, &i->scene, &a->canvas, (int)i->x, (int)i->y, &probe, error));
+    if (!probe.on_mesh)
+        return WEFT_OK;
+    a->probe = probe;
+    return weft_probe_plots_draw(&a->plots, a->player, &i->scene, &a->probe, error);
 }
 
 static void show(weft_application *a, int width, int height)
@@ -355,6 +388,8 @@ static void show(weft_application *a, int width, int height)
 static void find_modes(weft_application *a)
 {
     weft_interaction *i = &a->interaction;
+    i->is_reading = a->progress >= 0;
+    i->has_environment = weft_player_has_environment(a->player);
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++)
         i->available[mode] = weft_player_has(a->player, (weft_mode)mode);
     for (int pane = 0; pane < weft_scene_panes(&i->scene); pane++) {
@@ -382,6 +417,7 @@ static weft_code step(weft_application *a, weft_error *error)
 {
     int width, height;
     grant_wishes(a);
+    turn_by_itself(a);
     poll_host(a);
     find_modes(a);
     /* A window that would stay empty closes, and says why. */
@@ -402,8 +438,9 @@ static weft_code step(weft_application *a, weft_error *error)
 
 weft_code weft_application_run(weft_application *a, const weft_scene *scene, weft_error *error)
 {
-    a->interaction = (weft_interaction){.scene = *scene, .changed = true, .shows_panel = true};
+    a->interaction = (weft_interaction){.scene = *scene, .start = *scene, .changed = true, .shows_panel = true};
     a->interaction.before = scene->pane[0];
+    a->stepped_s = weft_application_now_s();
     find_modes(a);
     long limit = a->setup.frame_limit;
     while (weft_window_poll(a->window, wait_s(a)) && (limit == 0 || a->frame_count < limit))

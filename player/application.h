@@ -48,6 +48,9 @@ weft_player *weft_application_player(weft_application *application);
 /* Names what a mode shows; the text must live on. NULL: nothing. */
 void weft_application_set_file(weft_application *application, weft_mode mode, const char *path);
 
+/* Names the mesh that is shown; the text must live on. */
+void weft_application_set_mesh(weft_application *application, const char *name);
+
 /* Runs until the window is closed or the frames are drawn. Strings of the setup must live on. Errors: WEFT_SYSTEM where
  * drawing fails. */
 weft_code weft_application_run(weft_application *application, const weft_scene *scene, weft_error *error);

@@ -27,8 +27,8 @@ typedef struct weft_window_events {
     void (*press)(void *context, int button, bool pressed, int modifiers, double x, double y); /* GLFW's */
     void (*move)(void *context, double x, double y);
     void (*scroll)(void *context, double steps);
-    void (*key)(void *context, int key);           /* a GLFW key code, on press and repeat */
-    void (*drop)(void *context, const char *path); /* a file, once for each that was dropped */
+    void (*key)(void *context, int key, int action, int modifiers); /* GLFW's */
+    void (*drop)(void *context, const char *path);                  /* a file, once for each that was dropped */
     void *context;
 } weft_window_events;
 
@@ -44,6 +44,8 @@ void weft_window_free(weft_window *window);
  * closed the window. */
 bool weft_window_poll(weft_window *window, double wait_s);
 void weft_window_close(weft_window *window);
+/* All of the screen that the window is on, or as large as before. */
+void weft_window_set_full_screen(weft_window *window, bool full);
 /* Size of the framebuffer in pixels; 0 x 0 while minimised. */
 void weft_window_size(const weft_window *window, int *width, int *height);
 void weft_window_set_title(weft_window *window, const char *title);

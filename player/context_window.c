@@ -8,6 +8,7 @@
 struct weft_window {
     GLFWwindow *handle;
     weft_window_events events;
+    int left, top, width, height; /* in the desktop, before it filled the screen */
 };
 
 /* GLFW counts positions in screen coordinates, which differ from pixels on dense displays. */
@@ -46,10 +47,8 @@ static void on_scroll(GLFWwindow *handle, double x, double y)
 static void on_key(GLFWwindow *handle, int key, int scancode, int action, int modifiers)
 {
     (void)scancode;
-    (void)modifiers;
     weft_window *window = glfwGetWindowUserPointer(handle);
-    if (action != GLFW_RELEASE)
-        window->events.key(window->events.context, key);
+    window->events.key(window->events.context, key, action, modifiers);
 }
 
 static void on_drop(GLFWwindow *handle, int count, const char **path)
@@ -90,7 +89,7 @@ weft_code weft_window_create(const char *title, int width, int height, const wef
         glfwTerminate();
         return code;
     }
-    *window = (weft_window){handle, *events};
+    *window = (weft_window){.handle = handle, .events = *events};
     glfwSetWindowUserPointer(handle, window);
     glfwSetMouseButtonCallback(handle, on_button);
     glfwSetCursorPosCallback(handle, on_move);
@@ -124,6 +123,39 @@ bool weft_window_poll(weft_window *window, double wait_s)
 void weft_window_close(weft_window *window)
 {
     glfwSetWindowShouldClose(window->handle, GLFW_TRUE);
+}
+
+/* The screen with the window's middle; the first where that lies beside all. */
+static GLFWmonitor *screen_of(GLFWwindow *handle)
+{
+    int count, left, top, width, height;
+    GLFWmonitor **screen = glfwGetMonitors(&count);
+    glfwGetWindowPos(handle, &left, &top);
+    glfwGetWindowSize(handle, &width, &height);
+    for (int i = 0; i < count; i++) {
+        int x, y;
+        const GLFWvidmode *mode = glfwGetVideoMode(screen[i]);
+        glfwGetMonitorPos(screen[i], &x, &y);
+        int right = left + width / 2 - x, down = top + height / 2 - y;
+        if (right >= 0 && down >= 0 && right < mode->width && down < mode->height)
+            return screen[i];
+    }
+    return count > 0 ? screen[0] : NULL;
+}
+
+void weft_window_set_full_screen(weft_window *w, bool full)
+{
+    GLFWmonitor *screen = full ? screen_of(w->handle) : NULL;
+    if (full == (glfwGetWindowMonitor(w->handle) != NULL) || (full && !screen))
+        return;
+    if (!full) {
+        glfwSetWindowMonitor(w->handle, NULL, w->left, w->top, w->width, w->height, GLFW_DONT_CARE);
+        return;
+    }
+    const GLFWvidmode *mode = glfwGetVideoMode(screen);
+    glfwGetWindowPos(w->handle, &w->left, &w->top);
+    glfwGetWindowSize(w->handle, &w->width, &w->height);
+    glfwSetWindowMonitor(w->handle, screen, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
 
 void weft_window_size(const weft_window *window, int *width, int *height)

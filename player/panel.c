@@ -62,13 +62,12 @@ static void view_section(weft_interaction *i)
 
 /* ---- Light ---- */
 
-/* Equal areas: the radius of a direction is sin(theta / 2) sqrt(2). */
-static void place_on_map(weft_vec3 direction, const weft_ui_area *area, double radius, double *x, double *y)
+void weft_application_place(weft_vec3 direction, double x, double y, double radius, double *at_x, double *at_y)
 {
     double across = hypot((double)direction.x, (double)direction.y);
     double r = radius * sqrt(fmax(0, 1 - fabs((double)direction.z))), scale = across > 0 ? r / across : 0;
-    *x = area->x + radius + (double)direction.x * scale;
-    *y = area->y + radius - (double)direction.y * scale;
+    *at_x = x + radius + (double)direction.x * scale;
+    *at_y = y + radius - (double)direction.y * scale;
 }
 
 static void drag_on_map(weft_light *light, const weft_ui_area *area, double radius)
@@ -99,10 +98,10 @@ static void direction_map(weft_application *a)
         draw_ring(&area, radius, weft_rad_of_deg(15 * ring), 0xffffff18, a->scale);
     draw_ring(&area, radius, light_rad, accent & 0xffffff90, a->scale);
     weft_ui_ring(area.x + radius, area.y + radius, radius, a->scale, faint);
-    place_on_map(weft_orbit_axes_of(&i->scene.orbit).backward, &area, radius, &x, &y);
+    weft_application_place(weft_orbit_axes_of(&i->scene.orbit).backward, area.x, area.y, radius, &x, &y);
     weft_ui_ring(x, y, 4 * a->scale, 1.5 * a->scale, ink);
     for (int l = 0; l < i->scene.light_count; l++) {
-        place_on_map(weft_direction_of_angles(i->scene.light[l].direction), &area, radius, &x, &y);
+        weft_application_place(weft_direction_of_angles(i->scene.light[l].direction), area.x, area.y, radius, &x, &y);
         weft_ui_disc(x, y, (l == 0 ? 5 : 3.5) * a->scale, 0xffd27fff);
     }
 }
@@ -168,6 +167,7 @@ static void environment_rows(weft_application *a)
     if (!weft_player_has_environment(a->player))
         return;
     i->changed |= weft_ui_toggle("Environment", &scene->environment);
+    weft_scene_keep_lit(scene);
     if (!scene->environment)
         return;
     i->changed |= weft_ui_slider("Strength", &scene->environment_strength, 0.01, 20, "%.2f", true);
@@ -215,13 +215,20 @@ static void material_section(weft_application *a)
 
 /* ---- Picture ---- */
 
+static void mesh_row(weft_application *a)
+{
+    static const char *const name[] = {"Drape", "Ball", "Plane"}, *const wish[] = {"drape", "sphere", "plane"};
+    int chosen = -1;
+    for (int mesh = 0; a->mesh && mesh < 3; mesh++)
+        chosen = strcmp(a->mesh, wish[mesh]) == 0 ? mesh : chosen;
+    if (weft_ui_choice("Mesh", &chosen, name, NULL, 3))
+        a->interaction.wants_mesh = wish[chosen];
+}
+
 static void surface_rows(weft_interaction *i)
 {
-    static const char *const mesh[] = {"Drape", "Ball", "Plane"}, *const wish[] = {"drape", "sphere", "plane"};
     static const char *const level[] = {"Trilinear", "Nearest", "None"};
-    int chosen = -1, choice = (int)i->scene.level_choice;
-    if (weft_ui_choice("Mesh", &chosen, mesh, NULL, 3))
-        i->wants_mesh = wish[chosen];
+    int choice = (int)i->scene.level_choice;
     i->changed |= weft_ui_slider("Repeats", &i->scene.repeat, 0.25, 64, "%.2f", true);
     if (weft_ui_choice("Mip levels", &choice, level, NULL, 3)) {
         i->scene.level_choice = (weft_level_choice)choice;
@@ -229,11 +236,13 @@ static void surface_rows(weft_interaction *i)
     }
 }
 
-static void picture_section(weft_interaction *i)
+static void picture_section(weft_application *a)
 {
+    weft_interaction *i = &a->interaction;
     static const char *const tone[] = {"Clip", "Soft"}, *const filter[] = {"Auto", "Exact", "Stochastic"};
     weft_scene *scene = &i->scene;
     int tone_choice = (int)scene->tone, filter_choice = (int)scene->filter;
+    mesh_row(a);
     surface_rows(i);
     i->changed |= weft_ui_slider("Exposure", &scene->exposure, 0.05, 20, "%.2f", true);
     i->changed |= weft_ui_choice("Highlights", &tone_choice, tone, NULL, WEFT_TONE_COUNT);
@@ -243,55 +252,6 @@ static void picture_section(weft_interaction *i)
     i->changed |= weft_ui_toggle("Show levels", &scene->show_level);
     weft_ui_same_line();
     i->changed |= weft_ui_toggle("Tint extrapolation", &scene->show_extrapolation);
-}
-
-/* ---- Under the pointer ---- */
-
-static void probe_rows(const weft_probe *probe)
-{
-    char text[96];
-    snprintf(text, sizeof text, "%.4f  %.4f  %.4f", probe->radiance[0], probe->radiance[1], probe->radiance[2]);
-    weft_ui_value("Linear", text);
-    snprintf(text, sizeof text, "%d, %d of level %d   (%.2f)", probe->texel_x, probe->texel_y, probe->texel_level,
-             probe->level);
-    weft_ui_value("Texel", text);
-    snprintf(text, sizeof text, "light %.1f\xc2\xb0   view %.1f\xc2\xb0",
-             weft_deg_of_rad(acos(weft_clamp(probe->light.z, -1, 1))),
-             weft_deg_of_rad(acos(weft_clamp(probe->view.z, -1, 1))));
-    weft_ui_value("Angles", text);
-}
-
-/* Where a direction lies in a disc of the plots. */
-static void mark_direction(weft_vec3 direction, double x, double y, double radius, double scale)
-{
-    const weft_ui_area area = {.x = x, .y = y};
-    double at_x, at_y;
-    place_on_map(direction, &area, radius, &at_x, &at_y);
-    weft_ui_ring(at_x, at_y, 3.5 * scale, 1.5 * scale, ink);
-}
-
-/* Reflectance over lights and over views, with the ring of what is. */
-static void probe_plots(const weft_application *a)
-{
-    double size = a->plots.size, radius = size / 2;
-    weft_ui_area area = weft_ui_here();
-    weft_ui_picture(a->plots.shown, 2 * size, size);
-    for (int disc = 0; disc < 2; disc++) {
-        double x = area.x + disc * size;
-        weft_ui_ring(x + radius, area.y + radius, radius, a->scale, faint);
-        mark_direction(disc == 0 ? a->probe.light : a->probe.view, x, area.y, radius, a->scale);
-    }
-    weft_ui_dim_text("pi BRDF over lights               over views");
-}
-
-static void probe_section(const weft_application *a)
-{
-    if (!a->probe.on_mesh) {
-        weft_ui_dim_text("Point at the cloth.");
-        return;
-    }
-    probe_rows(&a->probe);
-    probe_plots(a);
 }
 
 /* ---- Facts ---- */
@@ -330,46 +290,6 @@ static void facts_section(const weft_application *a)
     weft_ui_dim_text(a->errors[0] ? a->errors : "The errors of what is visible are measured once the picture rests.");
 }
 
-/* ---- Notes over the picture ---- */
-
-static void show_note(const weft_application *a, int width, int height)
-{
-    const double life_s = 8;
-    if (!a->note[0] || weft_application_now_s() - a->noted_s > life_s)
-        return;
-    double middle = (width + weft_application_panel_width(a)) / 2.0;
-    weft_ui_note_begin("note", middle, height - 24 * a->scale, 0.5, 1);
-    if (a->note_is_error)
-        weft_ui_heading(a->note);
-    else
-        weft_ui_text(a->note);
-    weft_ui_panel_end();
-}
-
-static void show_help(const weft_application *a, int width, int height)
-{
-    if (!a->interaction.shows_help)
-        return;
-    double middle = (width + weft_application_panel_width(a)) / 2.0;
-    weft_ui_note_begin("help", middle, height / 2.0, 0.5, 0.5);
-    weft_ui_heading("Mouse and keys");
-    for (const weft_interaction_line *line = weft_interaction_help(); line->meaning; line++)
-        weft_ui_row(line->key, line->meaning);
-    weft_ui_panel_end();
-}
-
-static void show_hint(const weft_application *a, int width, int height)
-{
-    if (a->progress < 0)
-        return;
-    double middle = (width + weft_application_panel_width(a)) / 2.0;
-    char text[64];
-    snprintf(text, sizeof text, "Reading %.0f %%", 100 * a->progress);
-    weft_ui_note_begin("progress", middle, height - 24 * a->scale, 0.5, 1);
-    weft_ui_text(text);
-    weft_ui_panel_end();
-}
-
 void weft_application_show_panel(weft_application *a, int width, int height)
 {
     weft_interaction *i = &a->interaction;
@@ -380,21 +300,19 @@ void weft_application_show_panel(weft_application *a, int width, int height)
         view_section(i);
         if (weft_ui_section("Light", true))
             light_section(a);
+        if (weft_ui_section("Under the pointer", true))
+            weft_application_show_probe(a);
         if (i->available[WEFT_MODE_COMPRESSED] && weft_ui_section("Compressed material", true))
             material_section(a);
         if (i->available[WEFT_MODE_ANALYTIC] && weft_ui_section("Weave", false))
             weft_application_show_weave(a);
-        if (weft_ui_section("Under the pointer", true))
-            probe_section(a);
         if (weft_ui_section("Picture", true))
-            picture_section(i);
+            picture_section(a);
         if (weft_ui_section("Size and error", true))
             facts_section(a);
         weft_ui_gap();
         weft_ui_dim_text("H: mouse and keys");
         weft_ui_panel_end();
     }
-    show_note(a, width, height);
-    show_hint(a, width, height);
-    show_help(a, width, height);
+    weft_application_show_notes(a, width, height);
 }

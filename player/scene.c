@@ -41,6 +41,14 @@ bool weft_scene_has_shadows(const weft_scene *scene)
     return scene->shadows && scene->light_count > 0;
 }
 
+void weft_scene_keep_lit(weft_scene *scene)
+{
+    if (scene->environment || scene->light_count > 0)
+        return;
+    scene->light[0] = weft_scene_default().light[0];
+    scene->light_count = 1;
+}
+
 static float tone_of_linear(weft_tone tone, float linear)
 {
     float above = fmaxf(linear - 0.5f, 0);

@@ -81,6 +81,9 @@ int weft_scene_panes(const weft_scene *scene);
 /* Whether there is a key light, and it casts shadows. Pure. */
 bool weft_scene_has_shadows(const weft_scene *scene);
 
+/* A scene without any light gets the default one. In place. */
+void weft_scene_keep_lit(weft_scene *scene);
+
 /* Linear radiance as the screen shows it (GLSL twin: player/shaders/present.frag.glsl): tone, sRGB, and the line of a
  * wipe; or a signed difference in false colour. In place. */
 void weft_scene_show(const weft_scene *scene, weft_image *image);

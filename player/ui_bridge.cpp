@@ -15,7 +15,7 @@ namespace
 double scale_of_all = 1;
 float wrap_at = 0; /* from the left of the panel or note; 0: its right edge */
 
-const float label_width = 82, text_size = 15, widest_note = 560, narrowest_note = 160;
+const float label_width = 82, text_size = 15, widest_note = 560, narrowest_note = 160, smallest_list = 0.75f;
 const ImVec4 accent(0.86f, 0.47f, 0.30f, 1), dim(0.62f, 0.62f, 0.64f, 1);
 
 float scaled(double length)
@@ -38,7 +38,7 @@ void set_colours(ImGuiStyle &style)
     c[ImGuiCol_ButtonActive] = accent;
     c[ImGuiCol_Header] = ImVec4(0, 0, 0, 0);
     c[ImGuiCol_HeaderHovered] = c[ImGuiCol_HeaderActive] = ImVec4(1, 1, 1, 0.05f);
-    c[ImGuiCol_SliderGrab] = ImVec4(0.62f, 0.62f, 0.64f, 1);
+    c[ImGuiCol_SliderGrab] = ImVec4(0.40f, 0.405f, 0.42f, 1);
     c[ImGuiCol_SliderGrabActive] = c[ImGuiCol_CheckMark] = c[ImGuiCol_PlotHistogram] = accent;
     c[ImGuiCol_Separator] = ImVec4(1, 1, 1, 0.08f);
 }
@@ -50,9 +50,9 @@ void set_style()
     style.FrameRounding = 4;
     style.GrabRounding = 3;
     style.WindowBorderSize = 0;
-    style.WindowPadding = ImVec2(14, 12);
+    style.WindowPadding = ImVec2(14, 10);
     style.FramePadding = ImVec2(7, 4);
-    style.ItemSpacing = ImVec2(7, 7);
+    style.ItemSpacing = ImVec2(7, 5);
     style.ScrollbarSize = 10;
     set_colours(style);
     style.ScaleAllSizes((float)scale_of_all);
@@ -80,6 +80,54 @@ void put_label(const char *label)
 ImU32 colour_of(uint32_t rgba)
 {
     return IM_COL32(rgba >> 24, rgba >> 16 & 255, rgba >> 8 & 255, rgba & 255);
+}
+
+/* Of a list of names and meanings, in letters of the usual size. */
+struct list_shape {
+    size_t middle, longest;
+    bool has_second;
+    float name, meaning;
+    float gap = scaled(28), spacing = scaled(4);
+
+    float width() const
+    {
+        return (name + meaning) * (has_second ? 2.0f : 1.0f) + (has_second ? gap : 0);
+    }
+
+    float height() const
+    {
+        return (float)longest * (ImGui::GetFontSize() + spacing);
+    }
+};
+
+list_shape shape_of(const weft_ui_entry *line, size_t count, size_t middle)
+{
+    list_shape shape = {middle, std::max(middle, count - middle), middle < count, 0, 0};
+    for (size_t i = 0; i < count; i++) {
+        if (line[i].meaning) {
+            shape.name = std::max(shape.name, ImGui::CalcTextSize(line[i].name).x);
+            shape.meaning = std::max(shape.meaning, ImGui::CalcTextSize(line[i].meaning).x);
+        }
+    }
+    shape.name += scaled(32);
+    return shape;
+}
+
+void put_column(const weft_ui_entry *line, size_t count, float name_width)
+{
+    ImGui::BeginGroup();
+    for (size_t i = 0; i < count; i++) {
+        ImGui::PushStyleColor(ImGuiCol_Text, line[i].meaning ? ImGui::GetStyle().Colors[ImGuiCol_Text] : accent);
+        ImGui::TextUnformatted(line[i].name);
+        ImGui::PopStyleColor();
+        if (!line[i].meaning)
+            continue;
+        ImGui::SameLine(name_width);
+        ImGui::PushStyleColor(ImGuiCol_Text, dim);
+        ImGui::TextUnformatted(line[i].meaning);
+        ImGui::PopStyleColor();
+    }
+    ImGui::EndGroup();
 }
 
 const ImGuiWindowFlags fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
@@ -154,6 +202,29 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
                      ImGuiWindowFlags_NoInputs);
 }
 
+void weft_ui_list(const char *name, const weft_ui_entry *line, size_t count, size_t middle, const weft_ui_box *room)
+{
+    const ImVec2 size((float)room->width, (float)room->height), padding = ImGui::GetStyle().WindowPadding;
+    list_shape shape = shape_of(line, count, middle);
+    const ImVec2 free(size.x - 2 * padding.x - scaled(16), size.y - 2 * padding.y - scaled(16));
+    if (shape.width() > free.x / smallest_list)
+        shape = shape_of(line, count, count);
+    const float letters = std::max(smallest_list, std::min({1.0f, free.x / shape.width(), free.y / shape.height()}));
+    ImGui::SetNextWindowPos(ImVec2((float)room->x + size.x / 2, (float)room->y + size.y / 2), ImGuiCond_Always,
+                            ImVec2(0.5f, 0.5f));
+    ImGui::SetNextWindowSize(ImVec2(std::min(shape.width() * letters + 2 * padding.x + scaled(12), size.x),
+                                    std::min(shape.height() * letters + 2 * padding.y, size.y)));
+    ImGui::SetNextWindowBgAlpha(0.94f);
+    ImGui::Begin(name, nullptr, fixed);
+    ImGui::SetWindowFontScale(letters);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, shape.spacing * letters));
+    put_column(line, shape.middle, shape.name * letters);
+    ImGui::SameLine(0, shape.gap * letters);
+    put_column(line + shape.middle, count - shape.middle, shape.name * letters);
+    ImGui::PopStyleVar();
+    ImGui::End();
+}
+
 void weft_ui_panel_end(void)
 {
     ImGui::End();
@@ -161,7 +232,6 @@ void weft_ui_panel_end(void)
 
 bool weft_ui_section(const char *name, bool open_at_first)
 {
-    ImGui::Dummy(ImVec2(0, scaled(1)));
     ImGui::Separator();
     return ImGui::CollapsingHeader(name, open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
 }
@@ -212,15 +282,6 @@ void weft_ui_value(const char *label, const char *value)
     put_label(label);
     ImGui::TextUnformatted(value);
     ImGui::PopID();
-}
-
-void weft_ui_row(const char *key, const char *meaning)
-{
-    ImGui::TextUnformatted(key);
-    ImGui::SameLine(scaled(190));
-    ImGui::PushStyleColor(ImGuiCol_Text, dim);
-    ImGui::TextUnformatted(meaning);
-    ImGui::PopStyleColor();
 }
 
 bool weft_ui_button(const char *label)

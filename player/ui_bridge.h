@@ -7,6 +7,7 @@
 #include "btf/status.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -34,6 +35,19 @@ void weft_ui_panel_begin(const char *name, double x, double y, double width, dou
 void weft_ui_note_begin(const char *name, double x, double y, double share_x, double share_y);
 void weft_ui_panel_end(void);
 
+typedef struct weft_ui_box {
+    double x, y, width, height;
+} weft_ui_box;
+
+/* Without a meaning: a heading. */
+typedef struct weft_ui_entry {
+    const char *name, *meaning;
+} weft_ui_entry;
+
+/* A note in the middle of `room` with a list of names and what they mean, in two columns where that is wide enough, the
+ * second from line `middle` on; its letters are smaller in a small room, and it scrolls in a smaller one. */
+void weft_ui_list(const char *name, const weft_ui_entry *line, size_t count, size_t middle, const weft_ui_box *room);
+
 /* A heading that folds what follows; whether that is shown. */
 bool weft_ui_section(const char *name, bool open_at_first);
 void weft_ui_same_line(void);
@@ -48,8 +62,6 @@ void weft_ui_heading(const char *text);
 void weft_ui_text(const char *text);
 void weft_ui_dim_text(const char *text);
 void weft_ui_value(const char *label, const char *value);
-/* Two columns: what to press, what it does. */
-void weft_ui_row(const char *key, const char *meaning);
 bool weft_ui_button(const char *label);
 bool weft_ui_toggle(const char *label, bool *value);
 /* `format` as printf takes it for one double; `logarithmic` needs 0 < low. */

@@ -15,15 +15,17 @@ vec3 level_colour(float level)
     return mix(palette[lower], palette[lower + 1], level - float(lower));
 }
 
-// Beyond the last ring nothing was measured: magenta where the view is, cyan where the first light is.
-vec3 extrapolation_tint(SurfacePoint point)
+// Beyond the last ring nothing was measured: magenta where the view is, cyan where the first light is, whatever colour
+// the cloth has.
+vec3 extrapolation_tinted(vec3 value, SurfacePoint point)
 {
-    vec3 tint = vec3(1.0);
+    vec3 tint = vec3(0.0);
     if (point.view.z < last_ring.x)
-        tint *= vec3(1.0, 0.35, 1.0);
+        tint += vec3(0.7, 0.03, 0.45);
     if (surface_light(point, 0).z < last_ring.y)
-        tint *= vec3(0.35, 1.0, 1.0);
-    return tint;
+        tint += vec3(0.0, 0.45, 0.6);
+    bool is_measured = tint == vec3(0.0);
+    return is_measured ? value : 0.3 * value + (0.3 + 0.7 * dot(value, vec3(1.0 / 3.0))) * tint;
 }
 
 bool is_lit(SurfacePoint point)
@@ -42,7 +44,7 @@ void main()
         value = radiance(point);
     value.rgb *= exposure;
     if (show_extrapolation)
-        value.rgb = (value.rgb + 0.04) * extrapolation_tint(point);
+        value.rgb = extrapolation_tinted(value.rgb, point);
     if (show_level)
         value.rgb = (0.25 + 0.75 * dot(value.rgb, vec3(1.0 / 3.0))) * level_colour(point.level);
     if (PLOT != 0 && plotted_direction().z <= 0.0)

@@ -1,13 +1,18 @@
 #include "../btf/cmocka_all.h"
-#include "player/interaction.h"
+#include "player/keys.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <stdio.h>
+#include <string.h>
 
 static weft_interaction fresh(void)
 {
-    return (weft_interaction){
-        .scene = weft_scene_default(), .width = 800, .height = 400, .available = {true, true, false}};
+    return (weft_interaction){.scene = weft_scene_default(),
+                              .start = weft_scene_default(),
+                              .width = 800,
+                              .height = 400,
+                              .available = {true, true, false}};
 }
 
 static void drag(weft_interaction *i, int button, int modifiers, double x, double y)
@@ -39,7 +44,7 @@ static void a_right_or_shifted_drag_moves_only_the_light(void **state)
     assert_float_equal(i.scene.light[0].direction.theta_rad - theta_rad, WEFT_PI / 10, 1e-9);
     drag(&i, GLFW_MOUSE_BUTTON_LEFT, GLFW_MOD_SHIFT, 0, -40);
     assert_float_equal(i.scene.light[0].direction.theta_rad, theta_rad, 1e-9);
-    weft_interaction_key(&i, GLFW_KEY_L);
+    weft_keys_press(&i, GLFW_KEY_L, 0, false);
     drag(&i, GLFW_MOUSE_BUTTON_LEFT, 0, 0, 40);
     assert_true(i.scene.light[0].direction.theta_rad > theta_rad);
     assert_memory_equal(&orbit, &i.scene.orbit, sizeof orbit);
@@ -75,13 +80,13 @@ static void mode_keys_show_what_is_there_and_ignore_what_is_not(void **state)
 {
     (void)state;
     weft_interaction i = fresh();
-    weft_interaction_key(&i, GLFW_KEY_1);
+    weft_keys_press(&i, GLFW_KEY_1, 0, false);
     assert_int_equal(i.scene.pane[0], WEFT_MODE_RAW);
-    weft_interaction_key(&i, GLFW_KEY_3);
+    weft_keys_press(&i, GLFW_KEY_3, 0, false);
     assert_int_equal(i.scene.pane[0], WEFT_MODE_RAW);
-    weft_interaction_key(&i, GLFW_KEY_S);
+    weft_keys_press(&i, GLFW_KEY_S, 0, false);
     assert_int_equal(i.scene.pane_count, 2);
-    weft_interaction_key(&i, GLFW_KEY_2);
+    weft_keys_press(&i, GLFW_KEY_2, 0, false);
     assert_int_equal(i.scene.pane_count, 1);
     assert_int_equal(i.scene.pane[0], WEFT_MODE_COMPRESSED);
 }
@@ -92,18 +97,18 @@ static void keys_toggle_and_undo_themselves(void **state)
     weft_interaction i = fresh();
     double exposure = i.scene.exposure;
     for (int choice = WEFT_LEVEL_NEAREST; choice <= WEFT_LEVEL_NONE; choice++) {
-        weft_interaction_key(&i, GLFW_KEY_M);
+        weft_keys_press(&i, GLFW_KEY_M, 0, false);
         assert_int_equal(i.scene.level_choice, choice);
     }
-    weft_interaction_key(&i, GLFW_KEY_M);
+    weft_keys_press(&i, GLFW_KEY_M, 0, false);
     assert_int_equal(i.scene.level_choice, WEFT_LEVEL_TRILINEAR);
-    weft_interaction_key(&i, GLFW_KEY_RIGHT_BRACKET);
+    weft_keys_press(&i, GLFW_KEY_RIGHT_BRACKET, 0, false);
     assert_true(i.scene.exposure > exposure);
-    weft_interaction_key(&i, GLFW_KEY_LEFT_BRACKET);
+    weft_keys_press(&i, GLFW_KEY_LEFT_BRACKET, 0, false);
     assert_float_equal(i.scene.exposure, exposure, 1e-12);
-    weft_interaction_key(&i, GLFW_KEY_H);
+    weft_keys_press(&i, GLFW_KEY_H, 0, false);
     assert_true(i.shows_help);
-    weft_interaction_key(&i, GLFW_KEY_H);
+    weft_keys_press(&i, GLFW_KEY_H, 0, false);
     assert_false(i.shows_help);
 }
 
@@ -111,9 +116,9 @@ static void other_keys_are_wishes_for_the_caller(void **state)
 {
     (void)state;
     weft_interaction i = fresh();
-    weft_interaction_key(&i, GLFW_KEY_F12);
-    weft_interaction_key(&i, GLFW_KEY_O);
-    weft_interaction_key(&i, GLFW_KEY_ESCAPE);
+    weft_keys_press(&i, GLFW_KEY_F12, 0, false);
+    weft_keys_press(&i, GLFW_KEY_O, 0, false);
+    weft_keys_press(&i, GLFW_KEY_ESCAPE, 0, false);
     assert_true(i.wants_screenshot);
     assert_string_equal(i.wants_mesh, "sphere");
     assert_true(i.wants_quit);
@@ -126,9 +131,9 @@ static void space_flips_between_the_last_two_modes(void **state)
     weft_interaction i = fresh();
     weft_interaction_show(&i, WEFT_MODE_RAW);
     weft_interaction_show(&i, WEFT_MODE_COMPRESSED);
-    weft_interaction_key(&i, GLFW_KEY_SPACE);
+    weft_keys_press(&i, GLFW_KEY_SPACE, 0, false);
     assert_int_equal(i.scene.pane[0], WEFT_MODE_RAW);
-    weft_interaction_key(&i, GLFW_KEY_SPACE);
+    weft_keys_press(&i, GLFW_KEY_SPACE, 0, false);
     assert_int_equal(i.scene.pane[0], WEFT_MODE_COMPRESSED);
 }
 
@@ -136,7 +141,7 @@ static void the_divider_of_a_wipe_follows_the_pointer_and_stays_in_the_picture(v
 {
     (void)state;
     weft_interaction i = fresh();
-    weft_interaction_key(&i, GLFW_KEY_W);
+    weft_keys_press(&i, GLFW_KEY_W, 0, false);
     assert_int_equal(i.scene.layout, WEFT_LAYOUT_WIPE);
     assert_int_equal(i.scene.pane[0], WEFT_MODE_RAW);
     assert_int_equal(i.scene.pane[1], WEFT_MODE_COMPRESSED);
@@ -154,7 +159,7 @@ static void one_mode_alone_cannot_be_compared(void **state)
     (void)state;
     weft_interaction i = fresh();
     i.available[WEFT_MODE_RAW] = false;
-    weft_interaction_key(&i, GLFW_KEY_X);
+    weft_keys_press(&i, GLFW_KEY_X, 0, false);
     assert_int_equal(i.scene.layout, WEFT_LAYOUT_PANES);
     assert_int_equal(i.scene.pane_count, 1);
     assert_int_equal(i.scene.pane[0], WEFT_MODE_COMPRESSED);
@@ -173,6 +178,125 @@ static void a_pan_moves_the_picture_with_the_pointer(void **state)
     assert_float_equal(i.scene.orbit.pan_right, height / 4, 1e-12);
 }
 
+static void raw_is_shown_while_its_key_is_held_and_then_what_was_before(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_keys_press(&i, GLFW_KEY_W, 0, false);
+    const weft_scene before = i.scene;
+    weft_keys_press(&i, GLFW_KEY_B, 0, false);
+    weft_keys_press(&i, GLFW_KEY_B, 0, true);
+    assert_int_equal(i.scene.layout, WEFT_LAYOUT_PANES);
+    assert_int_equal(i.scene.pane_count, 1);
+    assert_int_equal(i.scene.pane[0], WEFT_MODE_RAW);
+    i.scene.exposure = 2;
+    weft_keys_release(&i, GLFW_KEY_B);
+    assert_float_equal(i.scene.exposure, 2, 0);
+    i.scene.exposure = before.exposure;
+    assert_memory_equal(&before, &i.scene, sizeof before);
+}
+
+static void a_mode_that_is_chosen_while_raw_is_held_stays(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_keys_press(&i, GLFW_KEY_W, 0, false);
+    weft_keys_press(&i, GLFW_KEY_B, 0, false);
+    weft_keys_press(&i, GLFW_KEY_2, 0, false);
+    weft_keys_release(&i, GLFW_KEY_B);
+    assert_int_equal(i.scene.layout, WEFT_LAYOUT_PANES);
+    assert_int_equal(i.scene.pane[0], WEFT_MODE_COMPRESSED);
+}
+
+static void only_some_keys_repeat_while_they_are_held(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    double exposure = i.scene.exposure;
+    weft_keys_press(&i, GLFW_KEY_C, 0, true);
+    assert_false(i.scene.shadows);
+    weft_keys_press(&i, GLFW_KEY_RIGHT_BRACKET, 0, true);
+    assert_true(i.scene.exposure > exposure);
+}
+
+static void a_key_with_control_is_another_key(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_keys_press(&i, GLFW_KEY_S, GLFW_MOD_CONTROL, false);
+    assert_true(i.wants_screenshot);
+    assert_int_equal(i.scene.pane_count, 1);
+    weft_keys_press(&i, GLFW_KEY_W, GLFW_MOD_CONTROL, false);
+    assert_int_equal(i.scene.layout, WEFT_LAYOUT_PANES);
+}
+
+static void a_key_that_can_do_nothing_says_what_is_missing(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_keys_press(&i, GLFW_KEY_3, 0, false);
+    assert_non_null(strstr(i.said, "--weave"));
+    weft_keys_press(&i, GLFW_KEY_E, 0, false);
+    assert_non_null(strstr(i.said, "--environment"));
+    assert_false(i.scene.environment);
+    assert_false(i.changed);
+}
+
+static void a_scene_whose_only_light_was_its_environment_gets_another(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    i.has_environment = i.scene.environment = true;
+    i.scene.light_count = 0;
+    drag(&i, GLFW_MOUSE_BUTTON_RIGHT, 0, 200, 0);
+    assert_float_equal(i.scene.environment_turn_rad, WEFT_PI / 2, 1e-9);
+    weft_keys_press(&i, GLFW_KEY_E, 0, false);
+    assert_int_equal(i.scene.light_count, 1);
+}
+
+static void arrows_turn_what_a_plain_drag_turns(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_scene before = i.scene;
+    weft_keys_press(&i, GLFW_KEY_RIGHT, 0, false);
+    assert_true(i.scene.orbit.azimuth_rad < before.orbit.azimuth_rad);
+    weft_keys_press(&i, GLFW_KEY_HOME, 0, false);
+    assert_memory_equal(&i.scene.orbit, &before.orbit, sizeof before.orbit);
+    weft_keys_press(&i, GLFW_KEY_L, 0, false);
+    weft_keys_press(&i, GLFW_KEY_DOWN, 0, true);
+    assert_true(i.scene.light[0].direction.theta_rad > before.light[0].direction.theta_rad);
+    weft_keys_press(&i, GLFW_KEY_0, 0, false);
+    assert_memory_equal(&i.scene, &before, sizeof before);
+}
+
+/* The table of docs/player.md is the table of the keys, line by line. */
+static void the_docs_list_every_key_in_order(void **state)
+{
+    (void)state;
+    static char page[65536];
+    FILE *file = fopen(WEFT_TEST_DOCS "/player.md", "rb");
+    assert_non_null(file);
+    page[fread(page, 1, sizeof page - 1, file)] = 0;
+    fclose(file);
+    size_t count;
+    const weft_key *key = weft_keys(&count);
+    const char *at = page;
+    for (size_t k = 0; k < count; k++) {
+        char line[256];
+        if (!key[k].name)
+            continue;
+        if (key[k].meaning)
+            snprintf(line, sizeof line, "\n| %s | %s |\n", key[k].name, key[k].meaning);
+        else
+            snprintf(line, sizeof line, "\n| **%s** | |\n", key[k].name);
+        const char *found = strstr(at, line);
+        if (!found)
+            fail_msg("docs/player.md lacks, or has in another place:%s", line);
+        at = found + strlen(line) - 1;
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -187,6 +311,14 @@ int main(void)
         cmocka_unit_test(the_divider_of_a_wipe_follows_the_pointer_and_stays_in_the_picture),
         cmocka_unit_test(one_mode_alone_cannot_be_compared),
         cmocka_unit_test(a_pan_moves_the_picture_with_the_pointer),
+        cmocka_unit_test(raw_is_shown_while_its_key_is_held_and_then_what_was_before),
+        cmocka_unit_test(a_mode_that_is_chosen_while_raw_is_held_stays),
+        cmocka_unit_test(only_some_keys_repeat_while_they_are_held),
+        cmocka_unit_test(a_key_with_control_is_another_key),
+        cmocka_unit_test(a_key_that_can_do_nothing_says_what_is_missing),
+        cmocka_unit_test(a_scene_whose_only_light_was_its_environment_gets_another),
+        cmocka_unit_test(arrows_turn_what_a_plain_drag_turns),
+        cmocka_unit_test(the_docs_list_every_key_in_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

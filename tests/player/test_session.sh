@@ -75,12 +75,12 @@ drag 1 555 360 60 20
 shoot && differ "$start" "$next" "orbit"
 
 # The map of directions: light from straight above, then along the table.
-drag 1 72 260 0 -30
+drag 1 72 236 0 -30
 shoot && before=$next
-drag 1 72 230 0 57
+drag 1 72 206 0 57
 shoot
 expect "light along the table" "2 * $(mean "$next" $table) < $(mean "$before" $table)"
-drag 1 72 287 0 -57
+drag 1 72 263 0 -57
 shoot && same "$before" "$next" "light moved there and back"
 
 compressed=$next
@@ -88,6 +88,11 @@ xdotool key 1
 shoot && raw=$next && differ "$compressed" "$raw" "raw"
 xdotool key space
 shoot && same "$compressed" "$next" "flipped back"
+
+xdotool keydown b
+shoot && same "$raw" "$next" "raw while its key is held"
+xdotool keyup b
+shoot && same "$compressed" "$next" "compressed again when it is released"
 
 xdotool key w
 shoot
@@ -100,16 +105,17 @@ shoot
 expect "line where it was dragged" "$(mean "$next" 2x600+324+60) > 900"
 expect "no line where it was" "$(mean "$next" 2x600+224+60) < 900"
 
-# Folded sections make room: light, material; then the weave opens.
+# Folded sections make room: light, pointer, material; then the weave opens.
 xdotool key 3
 shoot && analytic=$next
-click 50 153
-click 50 198
-click 50 243
-drag 1 200 363 60 0
+click 50 131
+click 50 164
+click 50 197
+click 50 230
+drag 1 200 340 60 0
 shoot && differ "$analytic" "$next" "a slider of the weave"
 import -window root edited.png
-click 60 693
+click 60 650
 for _ in $(seq 100); do
     [ -s weft-001.wv ] && break
     sleep 0.1
