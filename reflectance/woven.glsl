@@ -31,7 +31,7 @@ Spine segment_spine(Segment segment, float umax)
 {
     float sine = sin(umax);
     float cosine = max(cos(umax), 0.0);
-    float shape = 1.0 + segment.kappa * (1.0 + cosine / sine);
+    float shape = (1.0 + segment.kappa) + segment.kappa * (cosine / sine);
     float end = shape < 0.0 ? (1.0 + segment.kappa) * (cosine + sine) * (cosine - shape * sine)
                             : cosine * cosine + shape * shape * sine * sine;
     float half_length = 0.5 * (segment.size - segment.width * sine);

@@ -32,6 +32,20 @@ typedef struct staple_piece {
     interval t;
 } staple_piece;
 
+/* Of u: below this its rounding shows in R. */
+#define STEEP_COSINE 0.1
+
+/* R at a point of the yarn. Where the yarn ends steeply R has its spike, as wide as cos(umax); the distance `inside`
+ * from the end is known better than u. */
+static weft_real radius_at(const weft_prepared_segment *prepared, weft_real inside, const mirror *at)
+{
+    const weft_spine *spine = &prepared->spine;
+    weft_real cos_u = at->cos_u;
+    if (cos_u < (weft_real)STEEP_COSINE)
+        cos_u = spine->cos_umax * cos(inside) + spine->sin_umax * sin(inside);
+    return spine_radius(&prepared->segment, spine, inside, at->sin_u, cos_u);
+}
+
 /* The integrand without its constant factors. */
 static weft_real staple_integrand(const void *context, const abscissa *where)
 {
@@ -43,7 +57,7 @@ static weft_real staple_integrand(const void *context, const abscissa *where)
         return 0;
     weft_real from_low = piece->t.low - problem->range.low + where->from_low;
     weft_real to_high = problem->range.high - piece->t.high + where->to_high;
-    weft_real radius = spine_radius(&prepared->segment, &prepared->spine, fmin(from_low, to_high), at.sin_u, at.cos_u);
+    weft_real radius = radius_at(prepared, fmin(from_low, to_high), &at);
     return yarn_area(&prepared->segment, radius, at.cos_v) * (at.light_share * at.view_share);
 }
 

@@ -113,7 +113,7 @@ typedef struct lane_spine {
 WEFT_INLINE lane_spine lanes_spine(lanes kappa, lanes width, lanes length, lanes umax)
 {
     lane_spine s = {.umax = umax, .sin_umax = lanes_sin(umax), .cos_umax = lanes_cos(umax)};
-    s.shape = 1 + kappa * (1 + s.cos_umax / s.sin_umax);
+    s.shape = (1 + kappa) + kappa * (s.cos_umax / s.sin_umax);
     lanes hyperbola = (1 + kappa) * (s.cos_umax + s.sin_umax) * (s.cos_umax - s.shape * s.sin_umax);
     lanes ellipse = s.cos_umax * s.cos_umax + s.shape * s.shape * s.sin_umax * s.sin_umax;
     lanes end = lanes_select(s.shape < 0.0f, hyperbola, ellipse);
