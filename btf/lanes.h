@@ -85,58 +85,76 @@ WEFT_INLINE lane_bits lane_bits_load(const int32_t *from)
 
 WEFT_INLINE float lanes_sum(lanes x)
 {
-    float sum = 0;
-    for (int i = 0; i < LANES; i++)
-        sum += x[i];
-    return sum;
+    lane_bits other = {0};
+#pragma GCC unroll 4
+    for (int step = LANES / 2; step > 0; step /= 2) {
+        for (int i = 0; i < LANES; i++)
+            other[i] = i ^ step;
+        x += __builtin_shuffle(x, other);
+    }
+    return x[0];
 }
+
+/* Several vectors in step, so that the long chain of one hides behind the others: the processor looks ahead too little
+ * to overlap them where one comes after the other. */
+enum { WEFT_EACH_MAX = 3 };
+#define WEFT_EACH(count) _Pragma("GCC unroll 4") for (int i = 0; i < (count); i++)
 
 /* log2 of positive normal floats: t P(t) with the mantissa 1 + t in [sqrt(1/2), sqrt(2)) and P the polynomial of
  * degree 8 of least relative error (2.6e-8), so that the result stays accurate near 1, which high exponents need. */
-WEFT_INLINE lanes lanes_log2(lanes x)
+WEFT_INLINE void lanes_log2_each(int count, const lanes *x, lanes *result)
 {
-    lane_bits bits = (lane_bits)x;
-    lane_bits exponent = (bits - 0x3f3504f3) >> 23;
-    lanes t = (lanes)(bits - (exponent << 23)) - 1;
-    lanes p = -0.207269818f + t * 0.125837043f;
-    p = -0.238944814f + t * (0.215715632f + t * p);
-    p = -0.360703677f + t * (0.287916243f + t * p);
-    p = -0.721347332f + t * (0.480910629f + t * p);
-    return __builtin_convertvector(exponent, lanes) + t * (1.44269502f + t * p);
+    static const float coefficient[] = {0.125837043f,  -0.207269818f, 0.215715632f,  -0.238944814f, 0.287916243f,
+                                        -0.360703677f, 0.480910629f,  -0.721347332f, 1.44269502f};
+    lanes t[WEFT_EACH_MAX], p[WEFT_EACH_MAX], whole[WEFT_EACH_MAX];
+    WEFT_EACH(count)
+    {
+        lane_bits bits = (lane_bits)x[i], exponent = (bits - 0x3f3504f3) >> 23;
+        t[i] = (lanes)(bits - (exponent << 23)) - 1;
+        whole[i] = __builtin_convertvector(exponent, lanes);
+        p[i] = lanes_of(coefficient[0]);
+    }
+#pragma GCC unroll 8
+    for (int k = 1; k < 9; k++)
+        WEFT_EACH(count) p[i] = coefficient[k] + t[i] * p[i];
+    WEFT_EACH(count) result[i] = whole[i] + t[i] * p[i];
 }
 
-/* x = n + f with a whole n and f in [-1/2, 1/2]; returns f. */
-WEFT_INLINE lanes lanes_split(lanes x, lanes *n)
+/* 2^x for x <= 127; below x = -126 a number of at most 2^-126. An integer power and, for the rest in [-1/2, 1/2], the
+ * polynomial of degree 5 of least relative error (7.5e-8). */
+WEFT_INLINE void lanes_exp2_each(int count, const lanes *x, lanes *result)
 {
+    static const float coefficient[] = {0.00132764725f, 0.00967554189f, 0.0555071309f,
+                                        0.240221202f,   0.693146944f,   1.00000012f};
+    lanes n[WEFT_EACH_MAX], f[WEFT_EACH_MAX], p[WEFT_EACH_MAX];
+    WEFT_EACH(count)
+    {
 #if defined(__AVX512F__)
-    *n = (lanes)_mm512_roundscale_ps((__m512)x, _MM_FROUND_TO_NEAREST_INT);
+        n[i] = (lanes)_mm512_roundscale_ps((__m512)x[i], _MM_FROUND_TO_NEAREST_INT);
+        f[i] = x[i] - n[i];
 #else
-    *n = __builtin_convertvector(__builtin_convertvector(x + 127.5f, lane_bits), lanes) - 127;
+        /* 3 2^22 leaves no bits for a fraction: the last bits of the sum are the nearest whole number. */
+        lanes clamped = lanes_select(x[i] > -126.0f, x[i], lanes_of(-126));
+        n[i] = clamped + 12582912.0f;
+        f[i] = clamped - (n[i] - 12582912.0f);
 #endif
-    return x - *n;
-}
-
-/* p 2^n for a whole n from -126 to 127. */
-WEFT_INLINE lanes lanes_scale(lanes p, lanes n)
-{
+        p[i] = lanes_of(coefficient[0]);
+    }
+#pragma GCC unroll 8
+    for (int k = 1; k < 6; k++)
+        WEFT_EACH(count) p[i] = coefficient[k] + f[i] * p[i];
 #if defined(__AVX512F__)
-    return (lanes)_mm512_scalef_ps((__m512)p, (__m512)n);
+    WEFT_EACH(count) result[i] = (lanes)_mm512_scalef_ps((__m512)p[i], (__m512)n[i]);
 #else
-    return p * (lanes)(__builtin_convertvector(n + 127, lane_bits) << 23);
+    WEFT_EACH(count) result[i] = (lanes)((lane_bits)p[i] + ((lane_bits)n[i] << 23));
 #endif
 }
 
-/* 2^x for x <= 127; below x = -126 a number of at most 2^-126. An integer power and, for the rest, the polynomial of
- * degree 5 of least relative error (7.5e-8). */
 WEFT_INLINE lanes lanes_exp2(lanes x)
 {
-#if !defined(__AVX512F__)
-    x = lanes_select(x > -126.0f, x, lanes_of(-126));
-#endif
-    lanes n, f = lanes_split(x, &n);
-    lanes p = 0.00967554189f + f * 0.00132764725f;
-    p = 0.240221202f + f * (0.0555071309f + f * p);
-    return lanes_scale(1.00000012f + f * (0.693146944f + f * p), n);
+    lanes result;
+    lanes_exp2_each(1, &x, &result);
+    return result;
 }
 
 #endif

@@ -13,6 +13,8 @@ enum {
     LAST = WEFT_GRAM_COLUMNS + TILE /* columns are read by whole tiles */
 };
 
+#define LEAST_BASE 1e-30f /* of a power; lobes are black below */
+
 /* What the lanes of a strip have in common over its slots. */
 typedef struct strip_lanes {
     lanes m[WEFT_GRAM_LOBES][3]; /* M_i v */
@@ -37,14 +39,27 @@ WEFT_INLINE strip_lanes lanes_of_strip(const weft_bundle *bundle, const weft_str
     return own;
 }
 
-/* k b^(N - 1), b and log2 b; the first is 0 where b <= 0. */
-WEFT_INLINE lanes lobe_column(const lanes l[3], lanes k, const lanes m[3], float exponent, lanes *b, lanes *log2_b)
+/* What the columns of the lobes are made of at one sample. */
+typedef struct lobe_lanes {
+    lanes b[WEFT_GRAM_LOBES], log2_b[WEFT_GRAM_LOBES], h[WEFT_GRAM_LOBES]; /* h = k b^(N - 1), 0 where b <= 0 */
+} lobe_lanes;
+
+WEFT_INLINE lobe_lanes lobes_at(const lanes l[3], lanes k, const weft_gram_point *point, int lobe_count,
+                                const strip_lanes *own)
 {
-    lanes dot = l[0] * m[0] + l[1] * m[1] + l[2] * m[2];
-    lane_bits positive = dot > 1e-30f;
-    *b = lanes_where(positive, dot);
-    *log2_b = lanes_log2(lanes_select(positive, dot, lanes_of(1e-30f)));
-    return lanes_where(positive, k * lanes_exp2((exponent - 1) * *log2_b));
+    lobe_lanes at;
+    lanes dot[WEFT_GRAM_LOBES], base[WEFT_GRAM_LOBES], power[WEFT_GRAM_LOBES];
+    WEFT_EACH(lobe_count) dot[i] = l[0] * own->m[i][0] + l[1] * own->m[i][1] + l[2] * own->m[i][2];
+    WEFT_EACH(lobe_count) base[i] = lanes_select(dot[i] > LEAST_BASE, dot[i], lanes_of(LEAST_BASE));
+    lanes_log2_each(lobe_count, base, at.log2_b);
+    WEFT_EACH(lobe_count) power[i] = (point->exponent[i] - 1) * at.log2_b[i];
+    lanes_exp2_each(lobe_count, power, power);
+    WEFT_EACH(lobe_count)
+    {
+        at.b[i] = lanes_where(dot[i] > LEAST_BASE, dot[i]);
+        at.h[i] = lanes_where(dot[i] > LEAST_BASE, k * power[i]);
+    }
+    return at;
 }
 
 /* Columns of one slot. */
@@ -56,16 +71,34 @@ WEFT_INLINE void write_columns(const weft_bundle *bundle, const float *cosine, c
                         lanes_load(bundle->light[2] + sample)};
     lanes k = lanes_load(cosine + sample), f = k * point->diffuse;
     columns[0][slot] = k;
-    for (int i = 0; i < lobe_count; i++) {
-        lanes b, log2_b;
-        lanes h = lobe_column(l, k, own->m[i], point->exponent[i], &b, &log2_b);
-        lanes g = h * b;
+    const lobe_lanes at = lobes_at(l, k, point, lobe_count, own);
+    WEFT_EACH(lobe_count)
+    {
+        lanes g = at.h[i] * at.b[i];
         f += point->amplitude[i] * g;
         for (int axis = 0; axis < 3; axis++)
-            columns[1 + 4 * i + axis][slot] = h * l[axis];
-        columns[4 + 4 * i][slot] = g * log2_b;
+            columns[1 + 4 * i + axis][slot] = at.h[i] * l[axis];
+        columns[4 + 4 * i][slot] = g * at.log2_b[i];
     }
     columns[1 + 4 * lobe_count][slot] = lanes_load(value + sample) - own->table * f;
+}
+
+/* <h_i l_a | h_j l_b> = <h_i l_b | h_j l_a>: the product of columns p < q of two lobes is that of two others which are
+ * summed anyway. Swaps the axes then. */
+WEFT_INLINE bool swap_axes(int *p, int *q)
+{
+    int lobe_p = (*p - 1) / 4, lobe_q = (*q - 1) / 4, axis_p = (*p - 1) % 4, axis_q = (*q - 1) % 4;
+    if (*p == 0 || lobe_p == lobe_q || axis_p == 3 || axis_q == 3 || axis_p <= axis_q)
+        return false;
+    *p = 1 + 4 * lobe_p + axis_q;
+    *q = 1 + 4 * lobe_q + axis_p;
+    return true;
+}
+
+/* Is the product of columns p and q one to be summed? e, the last of `count`, is no column of a lobe. */
+WEFT_INLINE bool is_summed(int p, int q, int count)
+{
+    return p <= q && q < count && (q == count - 1 || !swap_axes(&p, &q));
 }
 
 /* Adds the products of the columns from a with those from b, as many sums as fit the registers. */
@@ -81,15 +114,17 @@ WEFT_INLINE void add_tile(lanes columns[LAST][PIECE], int slots, int a, int b, i
         for (int i = 0; i < TILE; i++) {
             lanes left = columns[a + i][slot];
 #pragma GCC unroll 8
-            for (int j = a == b ? i : 0; j < TILE; j++)
-                sum[i][j] += left * right[j];
+            for (int j = 0; j < TILE; j++) {
+                if (is_summed(a + i, b + j, count))
+                    sum[i][j] += left * right[j];
+            }
         }
     }
 #pragma GCC unroll 8
     for (int i = 0; i < TILE; i++) {
 #pragma GCC unroll 8
-        for (int j = a == b ? i : 0; j < TILE; j++) {
-            if (a + i < count && b + j < count)
+        for (int j = 0; j < TILE; j++) {
+            if (is_summed(a + i, b + j, count))
                 sums[weft_gram_product(a + i, b + j, count)] += sum[i][j];
         }
     }
@@ -107,14 +142,22 @@ WEFT_INLINE void add_products(lanes columns[LAST][PIECE], int slots, int count, 
     }
 }
 
-static void store_sums(const weft_strip *strip, int lane, const lanes *own, int products, int stride, float *sums)
+WEFT_INLINE void store_sums(const weft_strip *strip, int lane, const lanes *own, int count, int stride, float *sums)
 {
-    for (int p = 0; p < products; p++) {
-        float *to = sums + (size_t)p * (size_t)stride + strip->view;
-        if (strip->split)
-            *to += lanes_sum(own[p]);
-        else
-            lanes_store(to + lane, own[p]);
+#pragma GCC unroll 16
+    for (int a = 0; a < count; a++) {
+#pragma GCC unroll 16
+        for (int b = a; b < count; b++) {
+            int p = a, q = b;
+            if (b < count - 1)
+                swap_axes(&p, &q);
+            const lanes *from = own + weft_gram_product(p, q, count);
+            float *to = sums + (size_t)weft_gram_product(a, b, count) * (size_t)stride + strip->view;
+            if (strip->split)
+                *to = (lane ? *to : 0) + lanes_sum(*from);
+            else
+                lanes_store(to + lane, *from);
+        }
     }
 }
 
@@ -125,7 +168,6 @@ WEFT_INLINE void accumulate(const weft_bundle *bundle, const float *cosine, cons
     lanes columns[LAST][PIECE], own_sums[WEFT_GRAM_PRODUCTS];
     int count = weft_gram_columns(lobe_count), products = count * (count + 1) / 2;
     memset(columns[count], 0, TILE * sizeof columns[0]);
-    memset(sums, 0, (size_t)products * (size_t)bundle->view_stride * sizeof *sums);
     for (int s = 0; s < bundle->strip_count; s++) {
         const weft_strip *strip = &bundle->strip[s];
         int slots = coarse ? strip->coarse_slots : strip->slots;
@@ -139,7 +181,7 @@ WEFT_INLINE void accumulate(const weft_bundle *bundle, const float *cosine, cons
                                   strip->first + (first + slot) * WEFT_STRIP_LANES + lane, slot, columns);
                 add_products(columns, piece, count, own_sums);
             }
-            store_sums(strip, lane, own_sums, products, bundle->view_stride, sums);
+            store_sums(strip, lane, own_sums, count, bundle->view_stride, sums);
         }
     }
 }
@@ -175,11 +217,9 @@ void WEFT_KERNEL(weft_gram_evaluate)(const weft_bundle *bundle, const float *cos
                 const lanes l[3] = {lanes_load(bundle->light[0] + sample), lanes_load(bundle->light[1] + sample),
                                     lanes_load(bundle->light[2] + sample)};
                 lanes k = lanes_load(cosine + sample), f = k * point->diffuse;
-                for (int i = 0; i < point->lobe_count; i++) {
-                    lanes b, log2_b;
-                    lanes h = lobe_column(l, k, own.m[i], point->exponent[i], &b, &log2_b);
-                    f += point->amplitude[i] * h * b;
-                }
+                const lobe_lanes at = lobes_at(l, k, point, point->lobe_count, &own);
+                for (int i = 0; i < point->lobe_count; i++)
+                    f += point->amplitude[i] * at.h[i] * at.b[i];
                 lanes_store(result + sample, f);
             }
         }

@@ -8,7 +8,8 @@
 
 struct weft_fit_kernels {
     /* sums [WEFT_GRAM_PRODUCTS][view_stride]: products of columns (see compress/gram.h) summed over the samples of each
-     * view, only its coarse slots with `coarse`. table [view_stride] is T(v) in e. */
+     * view, only its coarse slots with `coarse`. table [view_stride] is T(v) in e. Views without samples keep what
+     * their sums were. */
     void (*accumulate)(const weft_bundle *bundle, const float *cosine, const float *value, const weft_gram_point *point,
                        const float *table, bool coarse, float *sums);
     /* The samples of a texel: see weft_samples_gather. */
@@ -20,15 +21,15 @@ struct weft_fit_kernels {
                     const float *table, weft_error_sums *sums);
     /* k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [sample_count]. */
     void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
-    /* The linear rows of a trial from its sums, and their totals. Returns the sum of <f|f> without T. */
-    double (*digest)(const weft_bundle *bundle, weft_trial *trial);
-    /* Residual at other linear parameters than those of the pass; their T into table [view_stride] unless NULL. */
+    /* The linear rows of a trial from its sums at `point`, and their totals. Returns the sum of <f|f> without T. */
+    double (*digest)(const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial);
+    /* Residual at other linear parameters than those of the pass; their T into table [view_stride]. */
     double (*residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, const weft_linear *linear,
                        float *table);
-    /* Normal equations of the linear parameters alone at `linear`, T eliminated: h [n][n], g [n]. */
-    void (*linear_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
-                          const weft_linear *linear, double *h, double *g);
-    /* See weft_normal_of_trial; the lower triangle only, and without the curvature of the scale, which it returns. */
+    /* The same residual, and normal equations of the linear parameters alone, T eliminated: h [n][n], g [n]. */
+    double (*linear_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
+                            const weft_linear *linear, double *h, double *g);
+    /* See weft_normal_of_trial; without the curvature of the scale, which it returns. */
     double (*normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,
                      weft_normal *normal);
 };
@@ -43,13 +44,13 @@ struct weft_fit_kernels {
                                    const float *model, const float *table, weft_error_sums *sums);                     \
     void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \
                                   float *result);                                                                      \
-    double weft_views_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                      \
-    double weft_views_residual_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,              \
-                                     const weft_linear *linear, float *table);                                         \
-    void weft_views_linear_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,           \
-                                        const weft_linear *linear, double *h, double *g);                              \
-    double weft_views_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,   \
-                                   weft_normal *normal)
+    double weft_linear_digest_##set(const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial);       \
+    double weft_linear_residual_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,             \
+                                      const weft_linear *linear, float *table);                                        \
+    double weft_linear_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,               \
+                                    const weft_linear *linear, double *h, double *g);                                  \
+    double weft_fit_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,     \
+                                 weft_normal *normal)
 #define WEFT_DECLARE_FIT_KERNELS(set) WEFT_DECLARE_FIT_KERNELS_OF(set)
 
 /* Those of an instruction set of this processor. */

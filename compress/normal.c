@@ -5,6 +5,9 @@
 #include <math.h>
 #include <string.h>
 
+#define LINEAR_TOLERANCE 1e-5 /* part of the residual that a further step of rho and the amplitudes must promise */
+enum { LINEAR_ROUNDS = 4 };
+
 void weft_frame_rows(const weft_frame *frame, double rows[3][3])
 {
     const weft_vec3 axis[3] = {frame->tangent, frame->bitangent, frame->normal};
@@ -62,51 +65,58 @@ static void linear_to_fit(const weft_linear *linear, weft_fit *fit)
 
 /* ---- Linear parameters ---- */
 
-void weft_trial_digest(const weft_bundle *bundle, bool with_table, weft_trial *trial)
+void weft_trial_digest(const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial)
 {
     trial->at = linear_of_fit(&trial->fit);
-    double energy = trial->kernels->digest(bundle, trial);
-    trial->negligible = 1e-9 * energy / bundle->view_count;
-    trial->residual = trial->kernels->residual(bundle, trial, with_table, &trial->at, trial->table);
+    trial->negligible = 1e-9 * trial->kernels->digest(bundle, point, trial) / bundle->view_count;
 }
 
-/* One step of rho and the amplitudes; false where it gains too little for another. */
-static bool linear_step(const weft_bundle *bundle, bool with_table, const double *least, weft_trial *trial)
+/* The residual and its normal equations at some linear parameters. */
+typedef struct linear_state {
+    weft_linear linear;
+    double residual, h[WEFT_LINEAR_MAX * WEFT_LINEAR_MAX], g[WEFT_LINEAR_MAX];
+} linear_state;
+
+/* Gauss-Newton, the amplitudes no lower than `least` and no higher than can be believed; false where it promises no
+ * more than `least_gain`. */
+static bool linear_step(const linear_state *now, int n, const double *least, double least_gain, weft_linear *next)
 {
-    int n = trial->fit.lobe_count + 1;
-    double h[WEFT_LINEAR_MAX * WEFT_LINEAR_MAX], g[WEFT_LINEAR_MAX], low[WEFT_LINEAR_MAX], high[WEFT_LINEAR_MAX];
+    double h[WEFT_LINEAR_MAX * WEFT_LINEAR_MAX], low[WEFT_LINEAR_MAX], high[WEFT_LINEAR_MAX];
     double d[WEFT_LINEAR_MAX] = {0}, trace = 0;
-    weft_linear now = linear_of_fit(&trial->fit), next = now;
-    trial->kernels->linear_normal(bundle, trial, with_table, &now, h, g);
+    memcpy(h, now->h, sizeof h);
     for (int j = 0; j < n; j++) {
-        low[j] = (j ? least[j - 1] : 0) - now.x[j];
-        low[j] = low[j] < 0 ? low[j] : 0;
-        high[j] = fmax(0, WEFT_LARGEST_AMPLITUDE - now.x[j]);
+        low[j] = fmin(0, (j ? least[j - 1] : 0) - now->linear.x[j]);
+        high[j] = fmax(0, WEFT_LARGEST_AMPLITUDE - now->linear.x[j]);
         trace += h[j * n + j];
     }
     for (int j = 0; j < n; j++)
         h[j * n + j] += 1e-7 * h[j * n + j] + 1e-12 * trace + 1e-300;
-    if (!weft_solve_box(n, h, g, low, high, d))
+    if (!weft_solve_box(n, h, now->g, low, high, d))
         return false;
-    for (int j = 0; j < n; j++)
-        next.x[j] += d[j];
-    double residual = trial->kernels->residual(bundle, trial, with_table, &next, NULL);
-    if (!(residual < trial->residual))
-        return false;
-    bool worthwhile = residual < (1 - 1e-4) * trial->residual;
-    trial->residual = residual;
-    linear_to_fit(&next, &trial->fit);
-    return worthwhile;
+    double gain = 0;
+    for (int j = 0; j < n; j++) {
+        next->x[j] = now->linear.x[j] + d[j];
+        gain += d[j] * now->g[j];
+    }
+    return gain > least_gain;
 }
 
 void weft_trial_solve_linear(const weft_bundle *bundle, bool with_table, const double *least, weft_trial *trial)
 {
-    for (int round = 0; round < 4; round++) {
-        if (!linear_step(bundle, with_table, least, trial))
+    const weft_fit_kernels *kernels = trial->kernels;
+    linear_state now = {.linear = linear_of_fit(&trial->fit)}, next;
+    now.residual = kernels->linear_normal(bundle, trial, with_table, &now.linear, now.h, now.g);
+    for (int round = 0; round < LINEAR_ROUNDS; round++) {
+        double least_gain = round == 0 ? 0 : LINEAR_TOLERANCE * now.residual;
+        if (!linear_step(&now, trial->fit.lobe_count + 1, least, least_gain, &next.linear))
             break;
+        next.residual = kernels->linear_normal(bundle, trial, with_table, &next.linear, next.h, next.g);
+        if (!(next.residual < now.residual))
+            break;
+        now = next;
     }
-    weft_linear linear = linear_of_fit(&trial->fit);
-    trial->residual = trial->kernels->residual(bundle, trial, with_table, &linear, trial->table);
+    linear_to_fit(&now.linear, &trial->fit);
+    trial->residual = kernels->residual(bundle, trial, with_table, &now.linear, trial->table);
 }
 
 void weft_trial_model_energy(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *energy)
@@ -193,10 +203,5 @@ void weft_normal_of_trial(const weft_bundle *bundle, bool with_table, bool rotat
 {
     *normal = (weft_normal){.n = 1 + 4 * trial->fit.lobe_count + (rotate && trial->fit.lobe_count ? 3 : 0)};
     double scale = trial->kernels->normal(bundle, trial, with_table, rotate, normal);
-    int n = normal->n;
-    for (int p = 0; p < n; p++) {
-        for (int q = 0; q < p; q++)
-            normal->h[q * n + p] = normal->h[p * n + q];
-    }
     fix_scale(&trial->fit, scale, normal);
 }

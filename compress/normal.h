@@ -66,8 +66,8 @@ void weft_frame_rows(const weft_frame *frame, double rows[3][3]);
 /* Index of the component of c held at +-1. */
 int weft_lobe_fixed(const weft_fit_lobe *lobe);
 
-/* After a pass: the linear rows, then T and the residual at the parameters of the pass. */
-void weft_trial_digest(const weft_bundle *bundle, bool with_table, weft_trial *trial);
+/* After a pass at `point`: the linear rows. */
+void weft_trial_digest(const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial);
 
 /* Moves rho and the amplitudes to where the residual is smallest with T eliminated; the amplitudes stay at or above
  * `least` [lobe_count]. Needs no samples. */

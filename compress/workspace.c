@@ -90,7 +90,7 @@ void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples,
         trial->fit.lobe[i].amplitude = (double)point.amplitude[i];
     trial->kernels->accumulate(bundle, samples->cosine, samples->value[channel], &point, trial->pass_table,
                                options->coarse, trial->sums);
-    weft_trial_digest(bundle, options->table, trial);
+    weft_trial_digest(bundle, &point, trial);
     trial->fit.passes += 1;
 }
 
@@ -131,9 +131,7 @@ static void solve_start(const weft_bundle *bundle, const weft_fit_options *optio
     trial->fit.diffuse = strength[0] > 0 ? 0.5 * sqrt(energy / strength[0]) : 0;
     for (int i = 0; i < trial->fit.lobe_count; i++)
         trial->fit.lobe[i].amplitude = least[i];
-    trial->residual = INFINITY;
     weft_trial_solve_linear(bundle, false, least, trial);
-    trial->residual = INFINITY;
     weft_trial_solve_linear(bundle, options->table, least, trial);
 }
 
