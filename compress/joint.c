@@ -137,7 +137,7 @@ void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *sample
                 return;
             next->fit = now->fit;
             if (make_step(&normal, damping, options, &next->fit, &gain)) {
-                if (gain < least_gain)
+                if (gain < 0.5 * least_gain)
                     return;
                 weft_workspace_begin_warm(bundle, samples, channel, options, now->table, next);
                 accepted = next->residual < now->residual;
