@@ -368,6 +368,9 @@ static weft_code probe(weft_application *a, weft_error *error)
     if (!probe.on_mesh)
         return WEFT_OK;
     a->probe = probe;
+    if (probe.mode == WEFT_MODE_COMPRESSED)
+        WEFT_TRY(weft_texel_read(a->player, probe.texel_level, probe.texel_x, probe.texel_y, probe.light, probe.view,
+                                 &a->texel, error));
     return weft_probe_plots_draw(&a->plots, a->player, &i->scene, &a->probe, error);
 }
 

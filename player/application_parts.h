@@ -5,6 +5,7 @@
 #include "player/application.h"
 #include "player/interaction.h"
 #include "player/probe.h"
+#include "player/texel.h"
 #include "player/weave_edit.h"
 
 struct weft_application {
@@ -21,6 +22,7 @@ struct weft_application {
     bool rests;       /* the mean of the frames so far is of a picture that no longer changes */
     const char *mesh; /* that is shown: a file or the name of a built-in one */
     weft_probe probe; /* of the pixel of the mesh that the pointer was over last */
+    weft_texel texel; /* of it, where that is compressed */
     weft_probe_plots plots;
     weft_weave_edit weave; /* what the sliders change */
     double progress;

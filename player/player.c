@@ -53,6 +53,7 @@ void weft_player_free(weft_player *p)
     free_mesh(p);
     weft_raw_texture_free(&p->raw);
     weft_material_texture_free(&p->material);
+    weft_table_directions_free(&p->directions);
     weft_weave_texture_free(&p->weave);
     weft_programs_free(&p->programs);
     weft_shadow_map_free(&p->shadow);
@@ -125,13 +126,18 @@ double weft_player_last_ring_z(const weft_vec3 *direction, int count)
 weft_code weft_player_set_material(weft_player *p, const weft_material *material, weft_error *error)
 {
     weft_material_texture texture;
+    weft_table_directions directions = {0};
     weft_code code = weft_material_texture_upload(material, &texture, error);
+    if (code == WEFT_OK)
+        code = weft_table_directions_create(material, &directions, error);
     if (code != WEFT_OK) {
         weft_material_texture_free(&texture);
         return code;
     }
     weft_material_texture_free(&p->material);
+    weft_table_directions_free(&p->directions);
     p->material = texture;
+    p->directions = directions;
     double *last = p->last_ring_z[WEFT_MODE_COMPRESSED];
     last[0] = material->view_count > 0 ? weft_player_last_ring_z(material->view, material->view_count) : 0;
     last[1] = material->light_count > 0 ? weft_player_last_ring_z(material->light, material->light_count) : last[0];

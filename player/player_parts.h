@@ -11,6 +11,7 @@
 #include "player/raw_texture.h"
 #include "player/shadow.h"
 #include "player/weave_texture.h"
+#include "reflectance/lafortune.h"
 
 enum { WEFT_LAYER_COUNT = 2 };
 
@@ -24,6 +25,7 @@ struct weft_player {
     bool has[WEFT_MODE_COUNT];
     weft_raw_texture raw;
     weft_material_texture material;
+    weft_table_directions directions; /* of its tables */
     weft_weave_texture weave;
     long weave_revision;
     double texel_count[WEFT_MODE_COUNT][2]; /* of level 0, for one material */

@@ -72,14 +72,21 @@ static void find_directions(const weft_scene *scene, const weft_pane *pane, cons
     probe->view = weft_unit(probe->view);
 }
 
+static int last_level(const weft_player *p, weft_mode mode)
+{
+    return mode == WEFT_MODE_COMPRESSED ? p->material.layout.level_count - 1
+           : mode == WEFT_MODE_RAW      ? p->raw.plan.layout.level_count - 1
+                                        : 0;
+}
+
 static void find_texel(const weft_player *p, weft_probe *probe)
 {
     double width = p->texel_count[probe->mode][0], height = p->texel_count[probe->mode][1];
-    probe->texel_level = probe->level > 0 ? (int)lround(probe->level) : 0;
+    probe->texel_level = (int)weft_clamp(round(probe->level), 0, last_level(p, probe->mode));
     double columns = fmax(1, ceil(ldexp(width, -probe->texel_level)));
     double rows = fmax(1, ceil(ldexp(height, -probe->texel_level)));
-    probe->texel_x = (int)floor((probe->u - floor(probe->u)) * columns);
-    probe->texel_y = (int)floor((-probe->v - floor(-probe->v)) * rows);
+    probe->texel_x = (int)fmin(floor((probe->u - floor(probe->u)) * columns), columns - 1);
+    probe->texel_y = (int)fmin(floor((-probe->v - floor(-probe->v)) * rows), rows - 1);
 }
 
 weft_code weft_probe_read(weft_player *p, const weft_scene *scene, const weft_canvas *canvas, int x, int y,

@@ -1,5 +1,6 @@
 /* What the panel says of the pixel under the pointer. */
 #include "player/probe.h"
+#include "player/texel.h"
 #include "stage.h"
 
 #include <math.h>
@@ -131,11 +132,62 @@ static void both_plots_pass_through_the_value_of_the_pixel(void **state)
     release(&d);
 }
 
+/* Directions of the frame are packed in 16 bits; everything else comes back as it was coded. */
+static void a_texel_that_is_read_evaluates_to_the_materials_value(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_material material;
+    weft_table_directions directions;
+    stage_material(20, 13, 2, 81, 30, &material);
+    expect_ok(weft_player_set_material(s->player, &material, &error), &error);
+    expect_ok(weft_table_directions_create(&material, &directions, &error), &error);
+    const weft_vec3 light = weft_unit((weft_vec3){0.3, -0.5, 0.8}), view = weft_unit((weft_vec3){-0.4, 0.2, 0.7});
+    for (int level = 0; level < 3; level++) {
+        int x = material.level[level].width - 1, y = material.level[level].height / 2;
+        weft_texel texel;
+        expect_ok(weft_texel_read(s->player, level, x, y, light, view, &texel, &error), &error);
+        weft_rgba expected = weft_material_texel(&material, &directions, level, x, y, light, view);
+        const double channel[] = {(double)expected.r, (double)expected.g, (double)expected.b};
+        for (int c = 0; c < 3; c++) {
+            const weft_lobe lobes[] = {texel.lobe[0][c], texel.lobe[1][c]};
+            weft_real sum = weft_lafortune((weft_real)texel.diffuse[c], lobes, 2, weft_frame_local(&texel.frame, light),
+                                           weft_frame_local(&texel.frame, view));
+            double value = (double)sum * texel.view_table[c] * texel.light_table[c];
+            assert_float_equal(value / channel[c], 1, 2e-3);
+        }
+    }
+    weft_texel texel;
+    assert_int_equal(weft_texel_read(s->player, 0, 20, 0, light, view, &texel, &error), WEFT_BAD_USAGE);
+    weft_table_directions_free(&directions);
+    weft_material_free(&material);
+}
+
+/* (l . d)^1 about the normal: the integral of cos^2 over the hemisphere is 2 pi / 3. Half of cos^N at 10 degrees. */
+static void the_shape_of_a_lobe_follows_its_parameters(void **state)
+{
+    (void)state;
+    const weft_frame frame = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
+    const double table[] = {0.5, 0.5, 0.5};
+    const weft_lobe broad[] = {{0, 0, 1, 1}, {0, 0, 1, 1}, {0, 0, 1, 1}};
+    weft_lobe_shape shape = weft_lobe_shape_of(broad, &frame, (weft_vec3){0, 0, 1}, table);
+    assert_float_equal(shape.albedo, 0.5 * 2 / 3.0, 1e-3);
+    assert_float_equal(shape.half_width_rad, WEFT_PI / 3, 1e-9);
+    double n = log(0.5) / log(cos(WEFT_PI / 18));
+    const weft_lobe mirror = {-1, -1, 1, (weft_real)n}, mirrors[] = {mirror, mirror, mirror};
+    shape = weft_lobe_shape_of(mirrors, &frame, weft_unit((weft_vec3){0.6, 0, 0.8}), table);
+    assert_float_equal(shape.half_width_rad, WEFT_PI / 18, 1e-4);
+    assert_float_equal(shape.direction.x, -0.6, 1e-6);
+    assert_float_equal(shape.direction.z, 0.8, 1e-6);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_probe_says_what_the_shader_saw),
         cmocka_unit_test(both_plots_pass_through_the_value_of_the_pixel),
+        cmocka_unit_test(a_texel_that_is_read_evaluates_to_the_materials_value),
+        cmocka_unit_test(the_shape_of_a_lobe_follows_its_parameters),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);
 }
