@@ -1,34 +1,10 @@
-#include "compress/texel.h"
-
-#include "compress/kernels.h"
 #include "compress/light.h"
 #include "compress/model_ladder.h"
-#include "compress/pack.h"
+#include "compress/texel_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-struct weft_texel_fitter {
-    const weft_texel_source *source;
-    weft_bundle bundle;
-    weft_samples samples;
-    weft_fit_workspace *workspace;
-    weft_frame_search frames;
-    bool turns, second_start; /* the last model's frame was turned; its lobes began as thrown back to the light */
-    double *table;            /* of one channel */
-    weft_packed packed[WEFT_CHANNELS]; /* the last model that was fitted */
-    weft_fit as_read[WEFT_CHANNELS];   /* the same as it will be read */
-    int16_t frame[3];                  /* its code */
-    uint8_t *code;                     /* [2][channel][view_count] its T; then room for a copy */
-    float *decoded;                    /* T of one channel as it will be read */
-    int light_count;                   /* of S; 0 without */
-    double *light, *decoded_light;     /* S of one channel, and as it will be read */
-    uint8_t *light_code;               /* [2][channel][light_count] alike */
-    float *cosine;                     /* with S */
-    const weft_fit_kernels *kernels;
-    weft_error_tally *tally;
-};
 
 static weft_code create_light(weft_texel_fitter *fitter, weft_error *error)
 {
@@ -117,8 +93,6 @@ int weft_texel_group(const weft_dataset_layout *layout, int level, int x, int y,
     return (extent[2] - extent[0]) * (extent[3] - extent[1]);
 }
 
-/* ---- Storing and measuring ---- */
-
 void weft_texel_store(weft_material *material, int level, int x, int y, int channel, const weft_packed *packed,
                       const uint8_t *code, const uint8_t *light_code)
 {
@@ -133,58 +107,6 @@ void weft_texel_store(weft_material *material, int level, int x, int y, int chan
         to->table[((size_t)view * texels + texel) * 4 + (size_t)channel] = code[view];
     for (int light = 0; light_code && light < material->light_count; light++)
         to->light_table[((size_t)light * texels + texel) * 4 + (size_t)channel] = light_code[light];
-}
-
-/* In a level of many texels this share of them is enough for percentiles. */
-enum { TALLIED_TEXELS = 1024 };
-
-static bool is_tallied(const weft_material_level *level, int x, int y)
-{
-    int stride = level->width * level->height / TALLIED_TEXELS;
-    return stride < 2 || (y * level->width + x) % stride == 0;
-}
-
-static void tally_channel(weft_texel_fitter *fitter, int channel, const float *model, const float *table)
-{
-    const weft_bundle *bundle = &fitter->bundle;
-    const weft_samples *samples = &fitter->samples;
-    for (int i = 0; i < bundle->sample_count; i++) {
-        float cosine = samples->cosine[i];
-        if (!(cosine > 0))
-            continue;
-        float scale = (float)samples->scale * bundle->light[2][i] / cosine;
-        weft_error_tally_add(fitter->tally, samples->value[channel][i] * scale,
-                             model[i] * table[bundle->view_of[i]] * scale);
-    }
-}
-
-/* The samples of a channel with S as it will be read on their cosines. */
-static weft_samples samples_as_lit(weft_texel_fitter *fitter, int channel)
-{
-    if (fitter->light_count == 0)
-        return fitter->samples;
-    const uint8_t *code = fitter->light_code + (size_t)channel * (size_t)fitter->light_count;
-    for (int l = 0; l < fitter->light_count; l++)
-        fitter->decoded_light[l] = weft_table_of_code(code[l]);
-    return weft_light_apply(&fitter->bundle, &fitter->samples, fitter->decoded_light, fitter->cosine);
-}
-
-/* The last model as it will be read, against the samples. */
-static weft_error_sums measure_model(weft_texel_fitter *fitter, bool tallied)
-{
-    const weft_bundle *bundle = &fitter->bundle;
-    weft_error_sums sums = {0};
-    for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
-        const uint8_t *code = fitter->code + (size_t)channel * (size_t)bundle->view_count;
-        weft_samples lit = samples_as_lit(fitter, channel);
-        const float *model = weft_fit_evaluate(bundle, &lit, fitter->workspace, &fitter->as_read[channel]);
-        for (int view = 0; view < bundle->view_count; view++)
-            fitter->decoded[view] = (float)weft_table_of_code(code[view]);
-        fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, &sums);
-        if (tallied)
-            tally_channel(fitter, channel, model, fitter->decoded);
-    }
-    return sums;
 }
 
 static void store_model(const weft_texel_fitter *fitter, weft_material *material, int level, int x, int y)
@@ -215,7 +137,7 @@ static void refine_with_light(weft_texel_fitter *fitter, const weft_fit_options 
         largest = fmax(largest, fitter->light[l]);
     for (int l = 0; l < fitter->light_count; l++)
         code[l] = weft_code_of_table(largest > 0 ? fitter->light[l] / largest : 1);
-    weft_samples lit = samples_as_lit(fitter, channel);
+    weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
     once.max_passes = 1;
     weft_fit_refine(bundle, &lit, channel, &once, fitter->workspace, fit, fitter->table);
 }
@@ -235,7 +157,7 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
         refine_with_light(fitter, options, channel, &fit);
     else
         weft_fit_refine(&fitter->bundle, &fitter->samples, channel, options, fitter->workspace, &fit, fitter->table);
-    weft_samples lit = samples_as_lit(fitter, channel);
+    weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
     weft_pack_channel(&fitter->bundle, &lit, channel, options, fitter->workspace, &fit, fitter->table,
                       &fitter->packed[channel], code);
     fitter->as_read[channel] = weft_unpack(&fitter->packed[channel], options->lobe_count, frame, fitter->samples.scale);
@@ -254,73 +176,6 @@ static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options
         fit_channel(fitter, options, light, channel, start, &frame);
 }
 
-/* ---- Models that are given ---- */
-
-static void load_channel(weft_texel_fitter *fitter, const weft_candidate *from, const weft_material_level *level,
-                         size_t texel, int channel, const weft_frame *frame)
-{
-    const weft_material *material = from->material;
-    size_t texels = (size_t)level->width * (size_t)level->height, c = (size_t)channel;
-    size_t views = (size_t)fitter->bundle.view_count, lights = (size_t)fitter->light_count;
-    weft_packed *packed = &fitter->packed[channel];
-    packed->diffuse = level->diffuse[4 * texel + c];
-    for (size_t i = 0; i < (size_t)material->lobe_count; i++)
-        memcpy(packed->lobe[i], level->lobe + 4 * ((3 * i + c) * texels + texel), sizeof packed->lobe[i]);
-    fitter->as_read[channel] = weft_unpack(packed, material->lobe_count, frame, fitter->samples.scale);
-    for (size_t view = 0; view < views; view++)
-        fitter->code[c * views + view] =
-            level->table
-                ? weft_table_code_rounded(level->table[4 * (view * texels + texel) + c], from->parts.table_bits)
-                : 255;
-    for (size_t l = 0; l < lights; l++)
-        fitter->light_code[c * lights + l] =
-            level->light_table ? weft_table_code_rounded(level->light_table[4 * (l * texels + texel) + c],
-                                                         from->parts.light_table_bits)
-                               : 255;
-}
-
-/* Measures every candidate; returns the sums of the last. */
-static weft_error_sums judge_texel(weft_texel_fitter *fitter, int level, int x, int y)
-{
-    const weft_judgement *judgement = fitter->source->judgement;
-    weft_error_sums sums = {0};
-    for (int i = 0; i < judgement->count; i++) {
-        const weft_candidate *candidate = &judgement->candidate[i];
-        const weft_material_level *at = &candidate->material->level[level];
-        size_t texel = (size_t)y * (size_t)at->width + (size_t)x;
-        weft_frame frame = weft_frame_decode(at->frame + 3 * texel);
-        for (int channel = 0; channel < WEFT_CHANNELS; channel++)
-            load_channel(fitter, candidate, at, texel, channel, &frame);
-        sums = measure_model(fitter, judgement->count == 1 && is_tallied(at, x, y));
-        if (judgement->square_error[level])
-            judgement->square_error[level][texel * (size_t)judgement->count + (size_t)i] = (float)sums.square_error;
-    }
-    return sums;
-}
-
-/* Lobes for tables that are given. */
-static void refit_texel(weft_texel_fitter *fitter, const weft_material *from, int level, size_t texel)
-{
-    const weft_candidate whole = {from, {from->lobe_count, 8, 8}};
-    const weft_material_level *at = &from->level[level];
-    weft_frame frame = weft_frame_decode(at->frame + 3 * texel);
-    weft_fit_options options = fitter->source->options;
-    options.lobe_count = from->lobe_count;
-    memcpy(fitter->frame, at->frame + 3 * texel, sizeof fitter->frame);
-    fitter->turns = fitter->second_start = false;
-    for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
-        const uint8_t *code = fitter->code + (size_t)channel * (size_t)fitter->bundle.view_count;
-        load_channel(fitter, &whole, at, texel, channel, &frame);
-        if (!(fitter->samples.energy[channel] > 0))
-            continue;
-        weft_samples lit = samples_as_lit(fitter, channel);
-        weft_pack_given_table(&fitter->bundle, &lit, channel, &options, fitter->workspace, &fitter->as_read[channel],
-                              code, &fitter->packed[channel]);
-        fitter->as_read[channel] =
-            weft_unpack(&fitter->packed[channel], options.lobe_count, &frame, fitter->samples.scale);
-    }
-}
-
 /* ---- The model that suffices ---- */
 
 /* The largest model that the samples can carry. */
@@ -335,7 +190,7 @@ static weft_fit_options whole_model(const weft_texel_fitter *fitter)
 static bool meets_target(weft_texel_fitter *fitter)
 {
     double target = fitter->source->target_error;
-    weft_error_sums sums = measure_model(fitter, false);
+    weft_error_sums sums = weft_texel_measure(fitter, false);
     return sums.square_error <= target * target * sums.square;
 }
 
@@ -406,7 +261,7 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
     counts->texels++;
     counts->empty += fitter->samples.valid_count == 0;
     if (fitter->source->judgement) {
-        weft_error_sums judged = judge_texel(fitter, level, x, y);
+        weft_error_sums judged = weft_texel_judge(fitter, level, x, y);
         weft_error_sums_add(&counts->sums, &judged);
         return;
     }
@@ -414,13 +269,13 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
     weft_frame frame;
     const weft_frame *given = find_given(fitter->source->given, level, x, y, &frame);
     if (fitter->source->tables)
-        refit_texel(fitter, fitter->source->tables, level,
-                    (size_t)y * (size_t)material->level[level].width + (size_t)x);
+        weft_texel_refit(fitter, fitter->source->tables, level,
+                         (size_t)y * (size_t)material->level[level].width + (size_t)x);
     else if (fitter->source->target_error > 0)
         counts->missed += !fit_smallest(fitter, &whole, given);
     else
         fit_model(fitter, &whole, fitter->light_count > 0, given);
-    weft_error_sums sums = measure_model(fitter, is_tallied(&material->level[level], x, y));
+    weft_error_sums sums = weft_texel_measure(fitter, weft_texel_is_tallied(&material->level[level], x, y));
     weft_error_sums_add(&counts->sums, &sums);
     store_model(fitter, material, level, x, y);
     counts->turned += fitter->turns;

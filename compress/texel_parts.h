@@ -1,0 +1,44 @@
+/* What the sources of a texel's fit share. Private to texel*.c. */
+#ifndef WEFT_COMPRESS_TEXEL_PARTS_H
+#define WEFT_COMPRESS_TEXEL_PARTS_H
+
+#include "compress/kernels.h"
+#include "compress/texel.h"
+
+struct weft_texel_fitter {
+    const weft_texel_source *source;
+    weft_bundle bundle;
+    weft_samples samples;
+    weft_fit_workspace *workspace;
+    weft_frame_search frames;
+    bool turns, second_start; /* the last model's frame was turned; its lobes began as thrown back to the light */
+    double *table;            /* of one channel */
+    weft_packed packed[WEFT_CHANNELS]; /* the last model that was fitted */
+    weft_fit as_read[WEFT_CHANNELS];   /* the same as it will be read */
+    int16_t frame[3];                  /* its code */
+    uint8_t *code;                     /* [2][channel][view_count] its T; then room for a copy */
+    float *decoded;                    /* T of one channel as it will be read */
+    int light_count;                   /* of S; 0 without */
+    double *light, *decoded_light;     /* S of one channel, and as it will be read */
+    uint8_t *light_code;               /* [2][channel][light_count] alike */
+    float *cosine;                     /* with S */
+    const weft_fit_kernels *kernels;
+    weft_error_tally *tally;
+};
+
+/* Is this one of the texels whose errors go into the percentiles? */
+bool weft_texel_is_tallied(const weft_material_level *level, int x, int y);
+
+/* The samples of a channel with S as it will be read on their cosines. */
+weft_samples weft_texel_samples_as_lit(weft_texel_fitter *fitter, int channel);
+
+/* The last model as it will be read, against the samples. */
+weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied);
+
+/* Measures every candidate of the source's judgement; returns the sums of the last. */
+weft_error_sums weft_texel_judge(weft_texel_fitter *fitter, int level, int x, int y);
+
+/* Lobes for tables that are given. */
+void weft_texel_refit(weft_texel_fitter *fitter, const weft_material *from, int level, size_t texel);
+
+#endif
