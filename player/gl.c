@@ -153,6 +153,15 @@ int weft_gl_max_layers(void)
     return layers;
 }
 
+bool weft_gl_has_bc6h(void)
+{
+    int version = epoxy_gl_version();
+    if (!epoxy_is_desktop_gl())
+        return epoxy_has_gl_extension("GL_EXT_texture_compression_bptc");
+    return version >= 42 || (epoxy_has_gl_extension("GL_ARB_texture_compression_bptc") &&
+                             epoxy_has_gl_extension("GL_ARB_texture_storage"));
+}
+
 static void set_nearest(GLenum target)
 {
     glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -173,7 +182,9 @@ weft_code weft_gl_texture(weft_texture_format format, int width, int height, int
     glGenTextures(1, texture);
     glBindTexture(target, *texture);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    if (layers > 0)
+    if (format.layout == 0)
+        glTexStorage3D(target, 1, format.internal, width, height, layers);
+    else if (layers > 0)
         glTexImage3D(target, 0, (GLint)format.internal, width, height, layers, 0, format.layout, format.type, data);
     else
         glTexImage2D(target, 0, (GLint)format.internal, width, height, 0, format.layout, format.type, data);

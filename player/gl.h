@@ -5,6 +5,7 @@
 #include "btf/status.h"
 
 #include <epoxy/gl.h>
+#include <stdbool.h>
 
 /* Reports and clears OpenGL's error flags. Errors: WEFT_SYSTEM "OpenGL: invalid operation while ACTION". */
 weft_code weft_gl_check(const char *action, weft_error *error);
@@ -28,8 +29,8 @@ void weft_gl_set_vec3(GLuint program, const char *name, double x, double y, doub
 void weft_gl_bind(GLuint program, const char *name, int unit, GLenum target, GLuint texture);
 
 /* A texture of one level, fetched by texel: nearest, clamped. `layers` 0 makes a 2D texture, otherwise an array. `data`
- * may be NULL. Bound to the active unit on return. Errors: WEFT_SYSTEM where the size is over the driver's limit
- * or memory. The caller deletes *texture. */
+ * may be NULL. `layout` 0 makes an array of compressed blocks, filled later. Bound to the active unit on return.
+ * Errors: WEFT_SYSTEM where the size is over the driver's limit or memory. The caller deletes *texture. */
 typedef struct weft_texture_format {
     GLenum internal, layout, type;
 } weft_texture_format;
@@ -39,5 +40,8 @@ weft_code weft_gl_texture(weft_texture_format format, int width, int height, int
 /* Limits of the driver. */
 int weft_gl_max_size(void);
 int weft_gl_max_layers(void);
+
+/* The driver decodes player/bc6h.h: part of OpenGL 4.2, an extension of 3.3 and of ES 3.0. */
+bool weft_gl_has_bc6h(void);
 
 #endif
