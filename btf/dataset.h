@@ -84,6 +84,9 @@ weft_code weft_dataset_read_block(weft_dataset *dataset, int x, int y, int width
  * All 1 where the dataset holds none. Not thread-safe. */
 weft_code weft_dataset_read_opacity(weft_dataset *dataset, int y, int height, float *opacity, weft_error *error);
 
+/* Whether the dataset holds opacity; it may still be 1 everywhere. */
+bool weft_dataset_has_opacity(const weft_dataset *dataset);
+
 /* Whether the dataset knows the average frame of its texels. */
 bool weft_dataset_has_frames(const weft_dataset *dataset);
 

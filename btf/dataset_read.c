@@ -128,6 +128,11 @@ weft_code weft_dataset_read_opacity(weft_dataset *dataset, int y, int height, fl
     return WEFT_OK;
 }
 
+bool weft_dataset_has_opacity(const weft_dataset *dataset)
+{
+    return dataset->opacity >= 0;
+}
+
 bool weft_dataset_has_frames(const weft_dataset *dataset)
 {
     return dataset->frames >= 0;

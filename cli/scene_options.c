@@ -11,6 +11,11 @@ static const struct argp_option option_table[] = {
     {"settings", KEY_SETTINGS, "PICTURE", 0,
      "Start from the settings in a picture of Weft's, or in a .json file; other options change them", 1},
     {"raw", KEY_RAW, "NAME.btf.h5", 0, "Show this dataset in mode raw", 1},
+    {"raw-format", KEY_RAW_FORMAT, "auto|half|rgb9e5|bc6h", 0,
+     "Keep its samples as half floats (8 bytes), with a shared exponent (4) or in compressed blocks (1); auto: the "
+     "best "
+     "that fits",
+     1},
     {"weave", KEY_WEAVE, "CLOTH.wv", 0, "Show this weave in mode analytic", 1},
     {"tiles", KEY_TILES, "X,Y", 0, "Tiles of the weave across the material (default: as the virtual rig lays it)", 1},
     {"mode", KEY_MODE, "MODE[,MODE...]", 0, "raw, compressed, analytic: one pane each; split: all that are given", 1},

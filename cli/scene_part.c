@@ -126,12 +126,19 @@ static weft_code show_mesh(part *p, weft_error *error)
 
 static weft_code show_dataset(part *p)
 {
-    int skipped_levels;
-    weft_dataset_load_show(p->dataset, &skipped_levels);
-    if (skipped_levels > 0)
-        snprintf(p->note, sizeof p->note,
-                 "'%.256s' does not fit into graphics memory: its samples are shown at 1/%d of their size", p->path,
-                 1 << skipped_levels);
+    weft_raw_plan plan;
+    weft_dataset_load_show(p->dataset, &plan);
+    weft_raw_format format = plan.tiles[WEFT_RAW_SAMPLES].format;
+    if (format == WEFT_RAW_HALF && plan.skipped_levels == 0)
+        return WEFT_OK;
+    size_t used = strlen(p->note);
+    int length =
+        snprintf(p->note + used, sizeof p->note - used, "%s'%.200s': %.3g MB of samples as %s (%.3g MB as half floats)",
+                 used > 0 ? "; " : "", p->path, 1e-6 * (double)weft_raw_plan_bytes(&plan, format),
+                 weft_raw_format_name(format), 1e-6 * (double)weft_raw_plan_bytes(&plan, WEFT_RAW_HALF));
+    used += (size_t)length;
+    if (plan.skipped_levels > 0 && used < sizeof p->note)
+        snprintf(p->note + used, sizeof p->note - used, ", at 1/%d of their size", 1 << plan.skipped_levels);
     return WEFT_OK;
 }
 
@@ -201,7 +208,7 @@ weft_code scene_part_start(scene_stage *stage, weft_loader *loader, scene_slot s
     *p = (part){.stage = stage, .slot = slot, .by_user = by_user, .path = strdup(path)};
     weft_code code = p->path ? WEFT_OK : weft_fail_memory(error, "name", strlen(path));
     if (code == WEFT_OK && slot == SCENE_DATASET)
-        code = weft_dataset_load_create(stage->player, &p->dataset, error);
+        code = weft_dataset_load_create(stage->player, stage->options->settings.raw_format, &p->dataset, error);
     if (code == WEFT_OK)
         return weft_loader_start(loader, (int)slot, &steps, p, error);
     release_part(p);

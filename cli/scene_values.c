@@ -77,6 +77,7 @@ static void apply_tiles(weft_settings *s, const char *argument, struct argp_stat
 static bool apply_shown(scene_options *o, int key, const char *argument, struct argp_state *state)
 {
     static const char *const layout_words[] = {"panes", "wipe", "difference", NULL};
+    static const char *const format_words[] = {"auto", "half", "rgb9e5", "bc6h", NULL};
     weft_settings *s = &o->settings;
     switch (key) {
     case ARGP_KEY_ARG:
@@ -87,6 +88,9 @@ static bool apply_shown(scene_options *o, int key, const char *argument, struct 
         return true;
     case KEY_WEAVE:
         set_text(&s->weave, argument, state);
+        return true;
+    case KEY_RAW_FORMAT:
+        s->raw_format = (weft_raw_format)parse_word("raw-format", argument, format_words, state);
         return true;
     case KEY_TILES:
         apply_tiles(s, argument, state);

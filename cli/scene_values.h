@@ -7,6 +7,7 @@
 enum {
     KEY_SETTINGS = 0x3000,
     KEY_RAW,
+    KEY_RAW_FORMAT,
     KEY_WEAVE,
     KEY_TILES,
     KEY_MODE,

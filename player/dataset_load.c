@@ -12,13 +12,14 @@ struct weft_dataset_load {
     weft_load *background;
 };
 
-weft_code weft_dataset_load_create(weft_player *player, weft_dataset_load **result, weft_error *error)
+weft_code weft_dataset_load_create(weft_player *player, weft_raw_format format, weft_dataset_load **result,
+                                   weft_error *error)
 {
     *result = calloc(1, sizeof **result);
     if (!*result)
         return weft_fail_memory(error, "load", sizeof **result);
     (*result)->player = player;
-    (*result)->limits = weft_raw_texture_limits();
+    (*result)->limits = weft_raw_texture_limits(format);
     return WEFT_OK;
 }
 
@@ -127,8 +128,8 @@ weft_code weft_dataset_load_read(weft_dataset_load *load, weft_dataset *dataset,
     return weft_raw_stream(dataset, &load->limits, &progress, &sink, error);
 }
 
-void weft_dataset_load_show(weft_dataset_load *load, int *skipped_levels)
+void weft_dataset_load_show(weft_dataset_load *load, weft_raw_plan *plan)
 {
-    *skipped_levels = load->texture.plan.skipped_levels;
+    *plan = load->texture.plan;
     weft_player_take_raw(load->player, &load->texture, load->last_ring_z);
 }

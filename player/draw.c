@@ -146,8 +146,7 @@ static weft_code shade_layer(weft_player *p, const weft_scene *scene, const weft
 
 static bool is_opaque(const weft_player *p, weft_mode mode)
 {
-    return mode == WEFT_MODE_ANALYTIC ||
-           (mode == WEFT_MODE_RAW ? p->raw.opaque || p->raw.plan.packed : p->material.opaque);
+    return mode == WEFT_MODE_ANALYTIC || (mode == WEFT_MODE_RAW ? p->raw.opaque : p->material.opaque);
 }
 
 /* Through the holes of the cloth one more layer is seen, and the background. Reflectance is that of the whole texel,

@@ -131,7 +131,7 @@ static weft_code upload_directions(const weft_material *material, weft_material_
 weft_code weft_material_texture_upload(const weft_material *material, weft_material_texture *t, weft_error *error)
 {
     *t = (weft_material_texture){
-        .layout = weft_mip_layout_of(material->level[0].width, material->level[0].height, material->level_count, 0),
+        .layout = weft_mip_layout_of(material->level[0].width, material->level[0].height, material->level_count, 0, 1),
         .lobe_count = material->lobe_count,
         .opaque = !weft_material_has_holes(material),
     };

@@ -5,16 +5,32 @@ static int larger(int a, int b)
     return a > b ? a : b;
 }
 
-weft_mip_layout weft_mip_layout_of(int width, int height, int level_count, int border)
+static int rounded_up(int size, int block)
+{
+    return (size + block - 1) / block * block;
+}
+
+/* Level 1 decides how wide the part at the right of level 0 is; the smaller ones stand below it in shelves. */
+weft_mip_layout weft_mip_layout_of(int width, int height, int level_count, int border, int block)
 {
     weft_mip_layout layout = {.level_count = level_count};
-    int column = 0, row = 0;
+    int x = 0, y = 0, left = 0, right = 0, below = 0;
     for (int level = 0; level < level_count; level++) {
-        layout.area[level] = (weft_mip_area){column + border, row + border, width, height};
-        layout.width = larger(layout.width, column + width + 2 * border);
-        layout.height = larger(layout.height, row + height + 2 * border);
-        row = level == 0 ? 0 : row + height + 2 * border;
-        column = level == 0 ? width + 2 * border : column;
+        int across = rounded_up(width + border, block), down = rounded_up(height + border, block);
+        if (level == 1)
+            right = x + across;
+        if (level > 1 && x + across > right) {
+            x = left;
+            y = below;
+        }
+        layout.area[level] = (weft_mip_area){x, y, width, height};
+        layout.width = larger(layout.width, x + across);
+        layout.height = larger(layout.height, y + down);
+        if (level == 0)
+            left = across;
+        else if (x == left)
+            below = y + down;
+        x += across;
         width = (width + 1) / 2;
         height = (height + 1) / 2;
     }

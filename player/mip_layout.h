@@ -1,6 +1,5 @@
-/* Where the mip levels of an image lie in one texture: level 0 at the left, the others in a column at its right, so
- * that a shader fetches any level from one sampler (OpenGL's own mip chain halves sizes downward, a material's upward).
- * Pure. */
+/* Where the mip levels of an image lie in one texture: level 0 at the left, the others at its right, so that a shader
+ * fetches any level from one sampler (OpenGL's own mip chain halves sizes downward, a material's upward). Pure. */
 #ifndef WEFT_PLAYER_MIP_LAYOUT_H
 #define WEFT_PLAYER_MIP_LAYOUT_H
 
@@ -16,8 +15,9 @@ typedef struct weft_mip_layout {
     int width, height;                   /* of the whole */
 } weft_mip_layout;
 
-/* `border` texels are left free around each level. Level k + 1 has ceil half the size of level k. */
-weft_mip_layout weft_mip_layout_of(int width, int height, int level_count, int border);
+/* Level k + 1 has ceil half the size of level k. At the end of its rows and columns `border` texels are left free, and
+ * more up to the next multiple of `block`: every level begins at one. */
+weft_mip_layout weft_mip_layout_of(int width, int height, int level_count, int border, int block);
 
 /* Number of levels down to 1 x 1, at most WEFT_MIP_LEVELS. */
 int weft_mip_level_count(int width, int height);

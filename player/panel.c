@@ -264,7 +264,8 @@ static void size_rows(const weft_application *a)
         const char *path = a->setup.file[mode] ? a->setup.file[mode] : "";
         const char *slash = strrchr(path, '/');
         char text[160];
-        snprintf(text, sizeof text, "%.3g MB   %s", 1e-6 * (double)bytes, slash ? slash + 1 : path);
+        snprintf(text, sizeof text, "%.3g MB %s  %s", 1e-6 * (double)bytes,
+                 mode == WEFT_MODE_RAW ? weft_player_raw_format(a->player) : "", slash ? slash + 1 : path);
         if (bytes > 0)
             weft_ui_value(name[mode], text);
     }

@@ -160,7 +160,7 @@ weft_code weft_player_set_dataset(weft_player *p, weft_dataset *dataset, const w
                                   int *skipped_levels, weft_error *error)
 {
     weft_raw_texture texture;
-    weft_raw_limits limits = weft_raw_texture_limits();
+    weft_raw_limits limits = weft_raw_texture_limits(WEFT_RAW_FITTING);
     weft_code code = weft_raw_texture_upload(dataset, &limits, progress, &texture, error);
     if (code != WEFT_OK) {
         weft_raw_texture_free(&texture);
@@ -287,4 +287,9 @@ size_t weft_player_bytes(const weft_player *p, weft_mode mode)
     default:
         return weft_weave_texture_bytes(&p->weave);
     }
+}
+
+const char *weft_player_raw_format(const weft_player *p)
+{
+    return p->has[WEFT_MODE_RAW] ? weft_raw_format_name(p->raw.plan.tiles[WEFT_RAW_SAMPLES].format) : "";
 }

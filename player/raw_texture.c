@@ -3,53 +3,67 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BORDER = WEFT_RAW_BORDER };
+enum { BLOCK = WEFT_RAW_BLOCK };
 
-static const weft_texture_format half_format = {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
-static const weft_texture_format packed_format = {GL_RGB9_E5, GL_RGB, GL_UNSIGNED_INT_5_9_9_9_REV};
-
-static const weft_texture_format *format_of(const weft_raw_texture *t)
+static const weft_texture_format *format_of(const weft_raw_tiles *tiles)
 {
-    return t->plan.packed ? &packed_format : &half_format;
+    static const weft_texture_format format[WEFT_RAW_FORMATS] = {
+        [WEFT_RAW_HALF] = {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT},
+        [WEFT_RAW_SHARED_EXPONENT] = {GL_RGB9_E5, GL_RGB, GL_UNSIGNED_INT_5_9_9_9_REV},
+        [WEFT_RAW_BC6H] = {GL_COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT, 0, 0},
+        [WEFT_RAW_EIGHT_BITS] = {GL_R8, GL_RED, GL_UNSIGNED_BYTE}};
+    return &format[tiles->format];
 }
 
-weft_raw_limits weft_raw_texture_limits(void)
+weft_raw_limits weft_raw_texture_limits(weft_raw_format format)
 {
     const size_t mebibyte = (size_t)1 << 20;
-    return (weft_raw_limits){512 * mebibyte, 1000 * mebibyte, weft_gl_max_size(), weft_gl_max_layers()};
+    return (weft_raw_limits){.half_bytes = 512 * mebibyte,
+                             .bytes = 1000 * mebibyte,
+                             .size = weft_gl_max_size(),
+                             .layers = weft_gl_max_layers(),
+                             .has_bc6h = weft_gl_has_bc6h(),
+                             .format = format};
 }
 
 /* ---- Filling ---- */
+
+static weft_code make_part(weft_raw_texture *t, int part, weft_error *error)
+{
+    const weft_raw_tiles *tiles = &t->plan.tiles[part];
+    if (tiles->count == 0)
+        return WEFT_OK;
+    WEFT_TRY(weft_gl_texture(*format_of(tiles), t->plan.layout.width * tiles->columns, t->plan.layout.height,
+                             tiles->layers, NULL, &t->part[part], error));
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    return WEFT_OK;
+}
 
 weft_code weft_raw_texture_begin(const weft_raw_plan *plan, const weft_direction_map *directions, weft_raw_texture *t,
                                  weft_error *error)
 {
     *t = (weft_raw_texture){.plan = *plan};
     WEFT_TRY(weft_direction_texture_upload(directions, &t->directions, error));
-    WEFT_TRY(weft_gl_texture(*format_of(t), plan->layout.width * plan->columns, plan->layout.height, plan->layers, NULL,
-                             &t->sample, error));
-    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    for (int part = 0; part < WEFT_RAW_PARTS; part++)
+        WEFT_TRY(make_part(t, part, error));
     return WEFT_OK;
-}
-
-static void put_row(const weft_raw_texture *t, const weft_raw_strip *strip, int y)
-{
-    const weft_texture_format *format = format_of(t);
-    weft_mip_area area = t->plan.layout.area[strip->level];
-    glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, strip->column * t->plan.layout.width + area.x - BORDER, area.y + y, 0,
-                    area.width + 2 * BORDER, 1, t->plan.layers, format->layout, format->type, strip->texels);
 }
 
 weft_code weft_raw_texture_put(const weft_raw_texture *t, const weft_raw_strip *strip, weft_error *error)
 {
-    int height = t->plan.layout.area[strip->level].height;
-    glBindTexture(GL_TEXTURE_2D_ARRAY, t->sample);
-    put_row(t, strip, strip->y);
-    if (strip->y == 0)
-        put_row(t, strip, height);
-    if (strip->y == height - 1)
-        put_row(t, strip, -1);
+    const weft_raw_tiles *tiles = &t->plan.tiles[strip->part];
+    const weft_texture_format *format = format_of(tiles);
+    weft_mip_area area = t->plan.layout.area[strip->level];
+    int x = strip->column * t->plan.layout.width + area.x, y = area.y + BLOCK * strip->row;
+    int width = (int)(strip->bytes / weft_raw_block_bytes(tiles->format)) / tiles->layers * BLOCK;
+    glBindTexture(GL_TEXTURE_2D_ARRAY, t->part[strip->part]);
+    if (format->layout == 0)
+        glCompressedTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, x, y, 0, width, BLOCK, tiles->layers, format->internal,
+                                  (GLsizei)strip->bytes, strip->texels);
+    else
+        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, x, y, 0, width, BLOCK, tiles->layers, format->layout, format->type,
+                        strip->texels);
     return weft_gl_check("uploading samples", error);
 }
 
@@ -85,16 +99,22 @@ weft_code weft_raw_texture_upload(weft_dataset *dataset, const weft_raw_limits *
 
 void weft_raw_texture_free(weft_raw_texture *t)
 {
-    glDeleteTextures(1, &t->sample);
+    glDeleteTextures(WEFT_RAW_PARTS, t->part);
     weft_direction_texture_free(&t->directions);
     *t = (weft_raw_texture){0};
 }
 
 size_t weft_raw_texture_bytes(const weft_raw_texture *t)
 {
-    size_t texels =
-        (size_t)t->plan.layout.width * (size_t)t->plan.layout.height * (size_t)t->plan.columns * (size_t)t->plan.layers;
-    return texels * (t->plan.packed ? 4 : 8);
+    return weft_raw_plan_bytes(&t->plan, t->plan.tiles[WEFT_RAW_SAMPLES].format);
+}
+
+static void set_tiles(const weft_raw_texture *t, int part, GLuint program, const char *shape, const char *size)
+{
+    const weft_raw_tiles *tiles = &t->plan.tiles[part];
+    int width = t->plan.layout.width;
+    glUniform2i(glGetUniformLocation(program, shape), tiles->layers, width);
+    weft_gl_set_vec2(program, size, (double)width * tiles->columns, t->plan.layout.height);
 }
 
 void weft_raw_texture_bind(const weft_raw_texture *t, GLuint program)
@@ -104,11 +124,15 @@ void weft_raw_texture_bind(const weft_raw_texture *t, GLuint program)
         weft_mip_area a = t->plan.layout.area[level];
         memcpy(area[level], (float[4]){(float)a.x, (float)a.y, (float)a.width, (float)a.height}, sizeof area[level]);
     }
-    weft_gl_bind(program, "raw_sample", 0, GL_TEXTURE_2D_ARRAY, t->sample);
+    /* A sampler needs a texture even where it is never fetched. */
+    int opacity = t->opaque ? WEFT_RAW_SAMPLES : WEFT_RAW_OPACITY;
+    weft_gl_bind(program, "raw_sample", 0, GL_TEXTURE_2D_ARRAY, t->part[WEFT_RAW_SAMPLES]);
     weft_direction_texture_bind(&t->directions, program, 1);
+    weft_gl_bind(program, "raw_opacity", 3, GL_TEXTURE_2D_ARRAY, t->part[opacity]);
     weft_gl_set_int(program, "level_count", t->plan.layout.level_count);
-    weft_gl_set_int(program, "opaque", t->opaque || t->plan.packed);
-    glUniform2i(glGetUniformLocation(program, "raw_tiles"), t->plan.columns, t->plan.layout.width);
-    weft_gl_set_vec2(program, "raw_atlas_size", (double)t->plan.layout.width * t->plan.columns, t->plan.layout.height);
+    weft_gl_set_int(program, "opaque", t->opaque);
+    weft_gl_set_int(program, "has_opacity", !t->opaque);
+    set_tiles(t, WEFT_RAW_SAMPLES, program, "raw_tiles", "raw_atlas_size");
+    set_tiles(t, opacity, program, "opacity_tiles", "opacity_atlas_size");
     glUniform4fv(glGetUniformLocation(program, "level_area"), t->plan.layout.level_count, area[0]);
 }

@@ -8,22 +8,22 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* The texture holds BRDF x pi. Each image is a tile with its mip levels (box means of the samples), each with a border
- * of one texel that repeats the opposite side, so that the hardware's bilinear filter wraps round. Samples that the
- * mask rules out are filled from the nearest valid light of the same view; images and views without a valid sample are
- * left out of the triangulations. Alpha is the opacity of the texel in that view. */
+/* The textures hold BRDF x pi of each image, and opacity of each view: tiles with their mip levels (box means), each of
+ * whose rows and columns ends with its first texel again, so that the hardware's bilinear filter wraps round. Samples
+ * that the mask rules out are filled from the nearest valid light of the same view; images and views without a valid
+ * sample are left out of the triangulations. */
 typedef struct weft_raw_texture {
     weft_raw_plan plan;
-    GLuint sample;
+    GLuint part[WEFT_RAW_PARTS];
     weft_direction_texture directions; /* set 0: views; the label of a view is the set of its lights */
     bool opaque;                       /* no texel has an opacity below 1 */
 } weft_raw_texture;
 
 /* Of the current context; half floats up to 512 MiB, 1000 MiB at all. */
-weft_raw_limits weft_raw_texture_limits(void);
+weft_raw_limits weft_raw_texture_limits(weft_raw_format format);
 
-/* What the sink of weft_raw_stream calls: makes the texture, then fills it strip by strip. `opaque` is the caller's to
- * set at the end. Errors: WEFT_SYSTEM. The caller frees with weft_raw_texture_free, also on failure. */
+/* What the sink of weft_raw_stream calls: makes the textures, then fills them strip by strip. `opaque` is the caller's
+ * to set at the end. Errors: WEFT_SYSTEM. The caller frees with weft_raw_texture_free, also on failure. */
 weft_code weft_raw_texture_begin(const weft_raw_plan *plan, const weft_direction_map *directions,
                                  weft_raw_texture *texture, weft_error *error);
 weft_code weft_raw_texture_put(const weft_raw_texture *texture, const weft_raw_strip *strip, weft_error *error);

@@ -4,12 +4,14 @@
 #define WEFT_PLAYER_SETTINGS_H
 
 #include "player/player.h"
+#include "player/raw_format.h"
 #include "player/scene.h"
 
 /* Every text is owned; NULL: none. */
 typedef struct weft_settings {
     char *material, *dataset, *weave, *environment; /* files */
     char *mesh;                                     /* "drape", "sphere", "plane" or a file */
+    weft_raw_format raw_format;                     /* how samples of the dataset are kept */
     double mesh_size_mm; /* length of the mesh's `size`; 0: WEFT_SETTINGS_MESH_MM, or as mesh_unit_mm says */
     double mesh_unit_mm; /* length of a file's unit; 0: not known */
     bool real_size;      /* the scene's `repeat` follows from the sizes of cloth and mesh */

@@ -11,7 +11,7 @@
 
 _Static_assert(sizeof(weft_mode) == sizeof(int) && sizeof(weft_layout) == sizeof(int) &&
                    sizeof(weft_level_choice) == sizeof(int) && sizeof(weft_filter) == sizeof(int) &&
-                   sizeof(weft_tone) == sizeof(int),
+                   sizeof(weft_tone) == sizeof(int) && sizeof(weft_raw_format) == sizeof(int),
                "choices are read and written as int");
 
 enum { VERSION = 1 };
@@ -22,6 +22,7 @@ static const char *const mode_names[] = {"raw", "compressed", "analytic", NULL};
 static const char *const layout_names[] = {"panes", "wipe", "difference", NULL};
 static const char *const level_names[] = {"trilinear", "nearest", "none", "fixed", NULL};
 static const char *const filter_names[] = {"auto", "exact", "stochastic", NULL};
+static const char *const raw_format_names[] = {"auto", "half", "rgb9e5", "bc6h", NULL};
 static const char *const tone_names[] = {"clip", "soft", NULL};
 
 /* As far as a camera may have been turned, degrees. */
@@ -168,6 +169,10 @@ static const field mip_fields[] = {
 static const field switch_element = {.kind = WEFT_JSON_SWITCH};
 
 static const field model_fields[] = {
+    {.name = "raw_format",
+     .kind = WEFT_JSON_CHOICE,
+     .offset = offsetof(weft_settings, raw_format),
+     .choice = raw_format_names},
     {.name = "lobes",
      .kind = WEFT_JSON_LIST,
      .offset = offsetof(weft_settings, scene.lobe),

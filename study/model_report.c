@@ -108,7 +108,7 @@ weft_code weft_model_picture(const weft_material *material, weft_image *image, w
     if (!material->has_models)
         return weft_fail(error, WEFT_BAD_USAGE, "the material does not say which model its texels have");
     weft_mip_layout layout =
-        weft_mip_layout_of(material->level[0].width, material->level[0].height, material->level_count, 0);
+        weft_mip_layout_of(material->level[0].width, material->level[0].height, material->level_count, 0, 1);
     model_counts counts = count_models(material);
     int largest = layout.width > layout.height ? layout.width : layout.height;
     int scale = largest < WANTED_SIDE ? WANTED_SIDE / largest : 1, top = layout.height * scale;

@@ -1,23 +1,36 @@
 // The measured samples: barycentric in views and, for each of the three views, in its lights; nine bilinear fetches.
-// Every image is a tile with all its levels, each with a border of one texel (player/raw_texture.h).
-uniform sampler2DArray raw_sample;
+// Every image is a tile with all its levels, and so is the opacity of every view (player/raw_plan.h).
+uniform sampler2DArray raw_sample, raw_opacity;
+uniform bool has_opacity;
 uniform int level_count;
-uniform ivec2 raw_tiles;      // columns and their width
-uniform vec2 raw_atlas_size;  // texels
-uniform vec4 level_area[16];  // x, y, width, height
+uniform ivec2 raw_tiles, opacity_tiles;           // layers, and width of a tile
+uniform vec2 raw_atlas_size, opacity_atlas_size;  // texels
+uniform vec4 level_area[16];                      // x, y, width, height
 
-vec4 image_value(int image, int level, vec2 coordinate)
+// Texture coordinates and layer. After the last texel of a row or column comes the first one.
+vec3 place_in_tiles(ivec2 tiles, vec2 atlas_size, int tile, int level, vec2 coordinate)
 {
     vec4 area = level_area[level];
-    vec2 position = area.xy + fract(vec2(coordinate.x, -coordinate.y)) * area.zw;
-    int layer = image / raw_tiles.x;
-    position.x += float((image - layer * raw_tiles.x) * raw_tiles.y);
-    return textureLod(raw_sample, vec3(position / raw_atlas_size, float(layer)), 0.0);
+    vec2 position = area.xy + 0.5 + fract(vec2(coordinate.x, -coordinate.y) - 0.5 / area.zw) * area.zw;
+    int column = tile / tiles.x;
+    position.x += float(column * tiles.y);
+    return vec3(position / atlas_size, float(tile - column * tiles.x));
 }
 
-vec4 corners_value(int level, vec2 coordinate, Corners lights)
+vec3 image_value(int image, int level, vec2 coordinate)
 {
-    vec4 sum = vec4(0.0);
+    return textureLod(raw_sample, place_in_tiles(raw_tiles, raw_atlas_size, image, level, coordinate), 0.0).rgb;
+}
+
+// `view` is the label of one, counted from 1.
+float opacity_value(int view, int level, vec2 coordinate)
+{
+    return textureLod(raw_opacity, place_in_tiles(opacity_tiles, opacity_atlas_size, view - 1, level, coordinate), 0.0).r;
+}
+
+vec3 corners_value(int level, vec2 coordinate, Corners lights)
+{
+    vec3 sum = vec3(0.0);
     for (int i = 0; i < 3; i++) {
         if (lights.weight[i] > 0.0)
             sum += lights.weight[i] * image_value(lights.label[i], level, coordinate);
@@ -25,14 +38,14 @@ vec4 corners_value(int level, vec2 coordinate, Corners lights)
     return sum;
 }
 
-vec4 trilinear_value(vec3 light, SurfacePoint point, Corners views, int fine, float share)
+vec3 trilinear_value(vec3 light, SurfacePoint point, Corners views, int fine, float share)
 {
-    vec4 sum = vec4(0.0);
+    vec3 sum = vec3(0.0);
     for (int i = 0; i < 3; i++) {
         if (views.weight[i] == 0.0)
             continue;
         Corners lights = find_corners(views.label[i], light);
-        vec4 value = corners_value(fine, point.coordinate, lights);
+        vec3 value = corners_value(fine, point.coordinate, lights);
         if (share > 0.0)
             value = mix(value, corners_value(fine + 1, point.coordinate, lights), share);
         sum += views.weight[i] * value;
@@ -48,7 +61,7 @@ int chosen_corner(Corners corners, inout float chance)
     return happens(chance, rest > 0.0 ? corners.weight.y / rest : 1.0) ? corners.label.y : corners.label.z;
 }
 
-vec4 chosen_value(vec3 light, SurfacePoint point, Corners views, int fine, float share)
+vec3 chosen_value(vec3 light, SurfacePoint point, Corners views, int fine, float share)
 {
     int level = happens(point.chance, share) ? fine + 1 : fine;
     int view = chosen_corner(views, point.chance);
@@ -56,7 +69,26 @@ vec4 chosen_value(vec3 light, SurfacePoint point, Corners views, int fine, float
     return image_value(image, level, point.coordinate);
 }
 
-// Opacity depends on the view alone; the first light tells it also where the surface is dark.
+float trilinear_opacity(SurfacePoint point, Corners views, int fine, float share)
+{
+    float sum = 0.0;
+    for (int i = 0; i < 3; i++) {
+        if (views.weight[i] == 0.0)
+            continue;
+        float value = opacity_value(views.label[i], fine, point.coordinate);
+        if (share > 0.0)
+            value = mix(value, opacity_value(views.label[i], fine + 1, point.coordinate), share);
+        sum += views.weight[i] * value;
+    }
+    return sum;
+}
+
+float chosen_opacity(SurfacePoint point, Corners views, int fine, float share)
+{
+    int level = happens(point.chance, share) ? fine + 1 : fine;
+    return opacity_value(chosen_corner(views, point.chance), level, point.coordinate);
+}
+
 vec4 radiance(SurfacePoint point)
 {
     Corners views = find_corners(0, point.view);
@@ -64,14 +96,15 @@ vec4 radiance(SurfacePoint point)
     int fine = int(level);
     float share = level - float(fine);
     vec4 sum = vec4(0.0, 0.0, 0.0, 1.0);
+    if (has_opacity)
+        sum.a = STOCHASTIC ? chosen_opacity(point, views, fine, share) : trilinear_opacity(point, views, fine, share);
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i);
-        if (i > 0 && irradiance == vec3(0.0))
+        if (irradiance == vec3(0.0))
             continue;
         vec3 light = surface_light(point, i);
-        vec4 value = STOCHASTIC ? chosen_value(light, point, views, fine, share)
-                                : trilinear_value(light, point, views, fine, share);
-        sum = vec4(sum.rgb + irradiance * value.rgb, i == 0 ? value.a : sum.a);
+        sum.rgb += irradiance * (STOCHASTIC ? chosen_value(light, point, views, fine, share)
+                                            : trilinear_value(light, point, views, fine, share));
         point.chance = fract(point.chance + 0.61803399);
     }
     return sum;

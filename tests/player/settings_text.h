@@ -15,7 +15,8 @@
     "  \"shadows\": true, \"exposure\": 1.7, \"tone\": \"soft\",\n"                                                    \
     "  \"environment\": {\"lit\": true, \"turn_deg\": 33.3, \"strength\": 0.9, \"reference\": true}},\n"               \
     " \"mip\": {\"level\": \"fixed\", \"fixed_level\": 1.1, \"filter\": \"stochastic\"},\n"                            \
-    " \"model\": {\"lobes\": [true, false, true], \"view_table\": false, \"light_table\": false,\n"                    \
+    " \"model\": {\"raw_format\": \"bc6h\", \"lobes\": [true, false, true], \"view_table\": false, \"light_table\": "  \
+    "false,\n"                                                                                                         \
     "  \"table_bits\": 3},\n"                                                                                          \
     " \"view\": {\"layout\": \"wipe\", \"modes\": [\"analytic\", \"raw\", \"compressed\"], \"panes\": 2,\n"            \
     "  \"divider\": 0.25, \"show_level\": true, \"show_extrapolation\": true, \"labels\": false}}\n"

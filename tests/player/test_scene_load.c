@@ -1,5 +1,6 @@
 /* Files of a scene that arrive, are dropped, are broken, and change while a player shows them. */
 #include "cli/scene_load.h"
+#include "player/gl.h"
 #include "stage.h"
 
 #include <stdio.h>
@@ -56,18 +57,24 @@ static int close_stage(void **state)
     return stage_close(state);
 }
 
-/* A loader for a material, perhaps with a dataset. */
-static fixture *open_scene(const char *material, const char *dataset)
+static fixture *open_scene_as(const char *material, const char *dataset, weft_raw_format format)
 {
     fixture *f = &the_fixture;
     weft_error error = {0};
     f->options = (scene_options){.common.quiet = true};
     expect_ok(weft_settings_init(&f->options.settings, &error), &error);
+    f->options.settings.raw_format = format;
     f->options.settings.material = material ? strdup(material) : NULL;
     f->options.settings.dataset = dataset ? strdup(dataset) : NULL;
     expect_ok(scene_loader_create(&f->options, &f->loader, &error), &error);
     expect_ok(scene_loader_attach(f->loader, f->stage->player, &error), &error);
     return f;
+}
+
+/* A loader for a material, perhaps with a dataset. */
+static fixture *open_scene(const char *material, const char *dataset)
+{
+    return open_scene_as(material, dataset, WEFT_RAW_FITTING);
 }
 
 static void close_scene(fixture *f)
@@ -110,6 +117,26 @@ static void everything_named_is_shown_and_named(void **state)
     assert_float_equal(scene_loader_progress(f->loader), -1, 0);
     expect_picture(f);
     close_scene(f);
+}
+
+static void samples_are_kept_in_the_format_that_the_settings_name(void **state)
+{
+    (void)state;
+    static const char *const name[] = {"half floats", "half floats", "RGB with a shared exponent", "BC6H"};
+    for (int format = WEFT_RAW_FITTING; format <= (weft_gl_has_bc6h() ? WEFT_RAW_BC6H : WEFT_RAW_SHARED_EXPONENT);
+         format++) {
+        weft_error error = {0};
+        fixture *f = open_scene_as(NULL, "scene_load/a.btf.h5", (weft_raw_format)format);
+        bool shown, said = false;
+        while (scene_loader_progress(f->loader) >= 0) {
+            char note[WEFT_MESSAGE_SIZE];
+            expect_ok(scene_loader_poll(f->loader, &shown, note, &error), &error);
+            said |= strstr(note, name[format]) != NULL;
+        }
+        assert_string_equal(weft_player_raw_format(f->stage->player), name[format]);
+        assert_int_equal(said, format > WEFT_RAW_HALF);
+        close_scene(f);
+    }
 }
 
 static void a_dropped_material_replaces_the_one_shown(void **state)
@@ -225,6 +252,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything_named_is_shown_and_named),
+        cmocka_unit_test(samples_are_kept_in_the_format_that_the_settings_name),
         cmocka_unit_test(a_dropped_material_replaces_the_one_shown),
         cmocka_unit_test(a_corrupt_file_leaves_what_was_shown),
         cmocka_unit_test(files_that_cannot_be_shown_are_refused),

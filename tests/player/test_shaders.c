@@ -138,10 +138,11 @@ static weft_rgba evaluate_raw_mean(void *context, const weft_surface_sample *at)
     return lit_raw(brdf, light);
 }
 
-static raw_model open_raw(stage *s, int size, int views, int lights, weft_values values, size_t half_bytes,
+static raw_model open_raw(stage *s, int size, int views, int lights, weft_values values, weft_raw_format format,
                           size_t bytes)
 {
-    const weft_raw_limits limits = {half_bytes, bytes, weft_gl_max_size(), weft_gl_max_layers()};
+    weft_raw_limits limits = weft_raw_texture_limits(format);
+    limits.bytes = bytes;
     weft_error error = {0};
     raw_model model;
     int skipped;
@@ -166,11 +167,10 @@ static void raw_equals_c_interpolation_in_views_and_lights(void **state)
     stage *s = *state;
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_NONE;
-    raw_model model = open_raw(s, 8, 81, 81, WEFT_REFLECTANCE_COSINE, SIZE_MAX, SIZE_MAX);
-    assert_false(s->player->raw.plan.packed);
+    raw_model model = open_raw(s, 8, 81, 81, WEFT_REFLECTANCE_COSINE, WEFT_RAW_HALF, SIZE_MAX);
     expect_small("raw 81 x 81", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
     close_raw(&model);
-    model = open_raw(s, 5, 19, 37, WEFT_REFLECTANCE, SIZE_MAX, SIZE_MAX);
+    model = open_raw(s, 5, 19, 37, WEFT_REFLECTANCE, WEFT_RAW_HALF, SIZE_MAX);
     expect_small("raw 19 x 37", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
     close_raw(&model);
 }
@@ -180,8 +180,7 @@ static void raw_with_a_shared_exponent_equals_c_too(void **state)
     stage *s = *state;
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_NONE;
-    raw_model model = open_raw(s, 6, 37, 37, WEFT_REFLECTANCE_COSINE, 0, SIZE_MAX);
-    assert_true(s->player->raw.plan.packed);
+    raw_model model = open_raw(s, 6, 37, 37, WEFT_REFLECTANCE_COSINE, WEFT_RAW_SHARED_EXPONENT, SIZE_MAX);
     expect_small("raw packed", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
     close_raw(&model);
 }
@@ -192,7 +191,7 @@ static void the_last_raw_level_is_the_mean_of_all_texels(void **state)
     weft_scene scene = weft_scene_default();
     scene.level_choice = WEFT_LEVEL_FIXED;
     scene.level = 99;
-    raw_model model = open_raw(s, 8, 19, 37, WEFT_REFLECTANCE_COSINE, SIZE_MAX, SIZE_MAX);
+    raw_model model = open_raw(s, 8, 19, 37, WEFT_REFLECTANCE_COSINE, WEFT_RAW_HALF, SIZE_MAX);
     expect_small("raw mean", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw_mean, &model));
     close_raw(&model);
 }
@@ -202,8 +201,9 @@ static void a_dataset_that_does_not_fit_loses_its_finest_levels_first(void **sta
     stage *s = *state;
     weft_error error = {0};
     weft_raw_texture texture;
-    const weft_raw_limits small = {0, 49 * 4, weft_gl_max_size(), weft_gl_max_layers()};
-    raw_model model = open_raw(s, 8, 7, 7, WEFT_REFLECTANCE_COSINE, 0, (size_t)49 * 9 * 16 * 4);
+    weft_raw_limits small = weft_raw_texture_limits(WEFT_RAW_HALF);
+    small.bytes = (size_t)49 * 4;
+    raw_model model = open_raw(s, 8, 7, 7, WEFT_REFLECTANCE_COSINE, WEFT_RAW_HALF, (size_t)49 * 16 * 8 * 8);
     assert_int_equal(s->player->raw.plan.skipped_levels, 1);
     assert_int_equal(s->player->raw.plan.layout.area[0].width, 4);
     assert_int_equal(weft_raw_texture_upload(model.dataset, &small, NULL, &texture, &error), WEFT_BAD_INPUT);
