@@ -20,7 +20,7 @@ static const struct argp_option option_table[] = {
     {"tiles", KEY_TILES, "X,Y", 0, "Tiles of the weave across the material (default: as the virtual rig lays it)", 1},
     {"mode", KEY_MODE, "MODE[,MODE...]", 0, "raw, compressed, analytic: one pane each; split: all that are given", 1},
     {"layout", KEY_LAYOUT, "LAYOUT", 0,
-     "panes (default): side by side; wipe: first mode left of the divider, second right; difference: first - second",
+     "panes (default): side by side; wipe: first mode left of the divider, second right; difference: second - first",
      1},
     {"divider", KEY_DIVIDER, "X", 0, "Where a wipe changes, 0 (left) to 1 (default: 0.5)", 1},
     {0, 0, 0, 0, "Mesh and camera:", 2},

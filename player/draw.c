@@ -1,5 +1,6 @@
 #include "player/player.h"
 
+#include "player/legend.h"
 #include "player/lighting.h"
 #include "player/player_parts.h"
 
@@ -228,7 +229,7 @@ static weft_code draw_difference(weft_player *p, const weft_scene *scene, const 
     WEFT_TRY(draw_pane(p, scene, &pane, target, error));
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
-    glBlendEquation(GL_FUNC_SUBTRACT);
+    glBlendEquation(GL_FUNC_REVERSE_SUBTRACT);
     glUseProgram(p->copy);
     weft_gl_bind(p->copy, "frame", 0, GL_TEXTURE_2D, p->kept);
     draw_screen(p);
@@ -242,21 +243,23 @@ static weft_code draw_pane_labels(weft_player *p, const weft_scene *scene, int w
 {
     for (int i = 0; scene->pane_count > 1 && i < scene->pane_count; i++)
         WEFT_TRY(weft_label_draw(&p->labels, width, height, width * i / scene->pane_count + margin, margin, false,
-                                 weft_mode_name(scene->pane[i]), error));
+                                 weft_mode_name(scene->pane[i]), &weft_plain_ink, error));
     return WEFT_OK;
 }
 
-/* A difference is of one kind everywhere, and of no colour that letters could have. */
 static weft_code draw_labels(weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)
 {
     int margin = weft_label_size(height) / 2;
-    if (!scene->labels || scene->layout == WEFT_LAYOUT_DIFFERENCE)
+    if (!scene->labels)
         return WEFT_OK;
+    if (scene->layout == WEFT_LAYOUT_DIFFERENCE)
+        return weft_legend_draw(&p->labels, width, height, scene->pane[1], error);
     if (scene->layout == WEFT_LAYOUT_PANES)
         return draw_pane_labels(p, scene, width, height, margin, error);
-    WEFT_TRY(weft_label_draw(&p->labels, width, height, margin, margin, false, weft_mode_name(scene->pane[0]), error));
+    WEFT_TRY(weft_label_draw(&p->labels, width, height, margin, margin, false, weft_mode_name(scene->pane[0]),
+                             &weft_plain_ink, error));
     return weft_label_draw(&p->labels, width, height, width - margin, margin, true, weft_mode_name(scene->pane[1]),
-                           error);
+                           &weft_plain_ink, error);
 }
 
 static weft_code check_scene(const weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)

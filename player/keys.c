@@ -64,7 +64,7 @@ static void peek(weft_interaction *i)
 
 static void lay_out(weft_interaction *i, weft_layout layout)
 {
-    static const char *const said[WEFT_LAYOUT_COUNT] = {"side by side", "wipe", "difference"};
+    static const char *const said[WEFT_LAYOUT_COUNT] = {"side by side", "wipe", "difference: second minus first"};
     weft_interaction_lay_out(i, layout);
     if (weft_scene_panes(&i->scene) > 1)
         snprintf(i->said, sizeof i->said, "%s", said[layout]);
@@ -293,7 +293,7 @@ static const weft_key keys[] = {
     {"B, held", "raw, until it is released", GLFW_KEY_B, .press = peek, .release = weft_interaction_end_peek},
     {"S", "side by side", GLFW_KEY_S, .press = show_all},
     {"W", "wipe: drag the line", GLFW_KEY_W, .press = wipe},
-    {"X", "difference", GLFW_KEY_X, .press = subtract},
+    {"X", "difference: second minus first", GLFW_KEY_X, .press = subtract},
     {"N", "mip level in false colour", GLFW_KEY_N, .press = toggle_levels},
     {"T", "tint where nothing was measured", GLFW_KEY_T, .press = toggle_extrapolation},
     {"M", "mip levels: trilinear, nearest, none", GLFW_KEY_M, .press = next_level_choice},

@@ -17,6 +17,8 @@ typedef struct rectangle {
     float left, top, right, bottom;
 } rectangle;
 
+const weft_label_ink weft_plain_ink = {{0.01f, 0.01f, 0.01f, 0.6f}, {0.85f, 0.85f, 0.85f, 1}};
+
 weft_code weft_labels_create(weft_labels *labels, weft_error *error)
 {
     const char *const vertex[] = {weft_glsl_text_vert, NULL}, *const fragment[] = {weft_glsl_text_frag, NULL};
@@ -85,7 +87,8 @@ static int set_letters(const weft_letters *letters, label_vertex *vertex, const 
     return count;
 }
 
-static void draw(const weft_labels *labels, int width, int height, const label_vertex *vertex, int count)
+static void draw(const weft_labels *labels, int width, int height, const label_vertex *vertex, int count,
+                 const weft_label_ink *colours)
 {
     GLint ink = glGetUniformLocation(labels->program, "ink");
     glBindVertexArray(labels->vertex_array);
@@ -97,15 +100,15 @@ static void draw(const weft_labels *labels, int width, int height, const label_v
     glUseProgram(labels->program);
     weft_gl_set_vec2(labels->program, "viewport", width, height);
     weft_gl_bind(labels->program, "font", 0, GL_TEXTURE_2D, labels->font);
-    glUniform4f(ink, 0.01f, 0.01f, 0.01f, 0.6f);
+    glUniform4fv(ink, 1, colours->plate);
     glDrawArrays(GL_TRIANGLES, 0, VERTICES);
-    glUniform4f(ink, 0.85f, 0.85f, 0.85f, 1);
+    glUniform4fv(ink, 1, colours->letters);
     glDrawArrays(GL_TRIANGLES, VERTICES, count - VERTICES);
     glDisable(GL_BLEND);
 }
 
 weft_code weft_label_draw(weft_labels *labels, int width, int height, int x, int y, bool to_the_left, const char *text,
-                          weft_error *error)
+                          const weft_label_ink *ink, weft_error *error)
 {
     label_vertex vertex[VERTICES * (1 + LONGEST)];
     char line[LONGEST + 1];
@@ -119,6 +122,6 @@ weft_code weft_label_draw(weft_labels *labels, int width, int height, int x, int
     set_quad(vertex, (rectangle){left, top, left + plate_width, top + roundf(1.5f * (float)size)}, (rectangle){0});
     int count =
         set_letters(&labels->letters, vertex + VERTICES, line, left + margin, top + roundf(1.08f * (float)size));
-    draw(labels, width, height, vertex, VERTICES + count);
+    draw(labels, width, height, vertex, VERTICES + count, ink);
     return WEFT_OK;
 }

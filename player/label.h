@@ -19,10 +19,18 @@ void weft_labels_free(weft_labels *labels);
 /* Height of the letters that suits a picture, pixels. Pure. */
 int weft_label_size(int picture_height);
 
-/* Draws a line of ASCII, other characters as '?', on a dark plate in a viewport of width x height pixels. The plate's
+/* Linear radiance, and how much of what is behind is covered. */
+typedef struct weft_label_ink {
+    float plate[4], letters[4];
+} weft_label_ink;
+
+/* Light letters on a dark plate. */
+extern const weft_label_ink weft_plain_ink;
+
+/* Draws a line of ASCII, other characters as '?', on a plate in a viewport of width x height pixels. The plate's
  * corner lies at (x, y) pixels from the upper left: its upper left one, or, to_the_left, its upper right one. Errors:
  * WEFT_SYSTEM. */
 weft_code weft_label_draw(weft_labels *labels, int width, int height, int x, int y, bool to_the_left, const char *text,
-                          weft_error *error);
+                          const weft_label_ink *ink, weft_error *error);
 
 #endif

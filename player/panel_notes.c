@@ -1,6 +1,7 @@
 #include "player/application_parts.h"
 
 #include "player/keys.h"
+#include "player/label.h"
 #include "player/ui_bridge.h"
 
 #include <stdio.h>
@@ -25,6 +26,55 @@ static void show_note(const weft_application *a, double middle, double bottom)
         weft_ui_heading(a->note);
     else
         weft_ui_text(a->note);
+    weft_ui_panel_end();
+}
+
+/* ---- What colours mean ---- */
+
+/* As shade.frag.glsl has them, on cloth of a middle brightness. */
+static void show_levels(void)
+{
+    static const uint32_t colour[] = {0xc8c8c8ff, 0x6492ccff, 0x5db892ff, 0xcbbb67ff, 0xcb9255ff, 0xb74d6fff};
+    static const char *const name[] = {"0", "1", "2", "3", "4", "5 and more"};
+    weft_ui_text("Mip level");
+    for (int level = 0; level < 6; level++) {
+        weft_ui_same_line();
+        weft_ui_swatch(colour[level], name[level]);
+    }
+}
+
+static void show_tints(void)
+{
+    weft_ui_text("Not measured:");
+    weft_ui_same_line();
+    weft_ui_swatch(0xb3248fff, "view");
+    weft_ui_same_line();
+    weft_ui_swatch(0x1895a8ff, "light");
+    weft_ui_same_line();
+    weft_ui_swatch(0xa595c8ff, "both");
+}
+
+static void show_colours(const weft_scene *scene, double left, double bottom, double scale)
+{
+    if ((!scene->show_level && !scene->show_extrapolation) || scene->layout == WEFT_LAYOUT_DIFFERENCE)
+        return;
+    weft_ui_note_begin("colours", left + 12 * scale, bottom - 12 * scale, 0, 1);
+    if (scene->show_level)
+        show_levels();
+    else
+        show_tints();
+    weft_ui_panel_end();
+}
+
+/* How far what is compared is from raw; over the scale of a difference. */
+static void show_errors(const weft_application *a, double right, double bottom)
+{
+    const weft_scene *scene = &a->interaction.scene;
+    if (!a->errors[0] || weft_scene_panes(scene) < 2)
+        return;
+    double scale_height = scene->layout == WEFT_LAYOUT_DIFFERENCE ? 2.2 * weft_label_size(a->canvas.height) : 0;
+    weft_ui_note_begin("errors", right - 12 * a->scale, bottom - 12 * a->scale - scale_height, 1, 1);
+    weft_ui_text(a->errors);
     weft_ui_panel_end();
 }
 
@@ -57,6 +107,8 @@ static void show_help(const weft_ui_box *room)
 void weft_application_show_notes(const weft_application *a, int width, int height)
 {
     double left = weft_application_panel_width(a), middle = (left + width) / 2, bottom = height - MARGIN * a->scale;
+    show_colours(&a->interaction.scene, left, height, a->scale);
+    show_errors(a, width, height);
     const weft_ui_box room = {left, 0, width - left, height};
     if (a->progress >= 0) {
         show_progress(a, middle, bottom);

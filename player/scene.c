@@ -55,28 +55,13 @@ static float tone_of_linear(weft_tone tone, float linear)
     return tone == WEFT_TONE_SOFT ? fminf(linear, 0.5f) + above / (1 + 2 * above) : linear;
 }
 
-static float mixed(float a, float b, float share)
-{
-    return a + share * (b - a);
-}
-
-static void show_difference(float rgb[3])
-{
-    static const float middle[2][3] = {{0.12f, 0.45f, 0.95f}, {0.9f, 0.25f, 0.12f}};
-    static const float end[2][3] = {{0.65f, 0.95f, 1}, {1, 0.9f, 0.6f}};
-    float value = (rgb[0] + rgb[1] + rgb[2]) / 3, size = fminf(4 * fabsf(value), 1);
-    for (int c = 0; c < 3; c++)
-        rgb[c] = size < 0.5f ? mixed(0.06f, middle[value > 0][c], 2 * size)
-                             : mixed(middle[value > 0][c], end[value > 0][c], 2 * size - 1);
-}
-
 void weft_scene_show(const weft_scene *scene, weft_image *image)
 {
     double line = scene->divider * image->width;
     for (int i = 0; i < image->width * image->height; i++) {
         float *rgb = image->pixels + 3 * (size_t)i;
         if (scene->layout == WEFT_LAYOUT_DIFFERENCE)
-            show_difference(rgb);
+            weft_difference_colour(weft_channel_mean(rgb) / WEFT_SCENE_FULL_DIFFERENCE, rgb);
         bool on_line = scene->layout == WEFT_LAYOUT_WIPE && fabs(i % image->width + 0.5 - line) < 1;
         for (int c = 0; c < 3 && scene->layout != WEFT_LAYOUT_DIFFERENCE; c++)
             rgb[c] = on_line ? 0.95f : weft_srgb_of_linear(fminf(tone_of_linear(scene->tone, rgb[c]), 1));

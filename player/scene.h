@@ -14,7 +14,7 @@ typedef enum weft_mode { WEFT_MODE_RAW, WEFT_MODE_COMPRESSED, WEFT_MODE_ANALYTIC
 const char *weft_mode_name(weft_mode mode);
 
 /* How the modes share the picture. PANES: side by side with one camera. WIPE: pane[0] left of the divider, pane[1]
- * right of it. DIFFERENCE: pane[0] - pane[1] in false colour, red where pane[0] is brighter, blue where darker. */
+ * right of it. DIFFERENCE: pane[1] - pane[0] in false colour, red where pane[1] is brighter, blue where darker. */
 typedef enum weft_layout { WEFT_LAYOUT_PANES, WEFT_LAYOUT_WIPE, WEFT_LAYOUT_DIFFERENCE, WEFT_LAYOUT_COUNT } weft_layout;
 
 /* Which mip level is shown: between the two that fit the pixel's footprint, the nearest of them, the finest everywhere,
@@ -40,6 +40,9 @@ typedef struct weft_light {
     weft_angles direction;
     double irradiance[3]; /* on a surface that faces it, divided by pi: 1 shows reflectance */
 } weft_light;
+
+/* Of radiance, mean of the channels: where the colours of a difference end. */
+#define WEFT_SCENE_FULL_DIFFERENCE 0.1f
 
 enum { WEFT_SCENE_MAX_LIGHTS = 4, WEFT_SCENE_MAX_LOBES = 3 };
 

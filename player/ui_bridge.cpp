@@ -195,8 +195,9 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
     ImGui::SetNextWindowPos(ImVec2((float)x, (float)y), ImGuiCond_Always, ImVec2((float)share_x, (float)share_y));
     ImGui::SetNextWindowBgAlpha(0.92f);
     /* A note is as wide as its text, so its text cannot wrap where the note ends: it wraps within the picture. */
-    const float half = std::min((float)x, ImGui::GetIO().DisplaySize.x - (float)x);
-    wrap_at = std::min(scaled(widest_note), std::max(scaled(narrowest_note), 2 * (half - scaled(32))));
+    const float before = (float)x / std::max((float)share_x, 0.01f),
+                after = (ImGui::GetIO().DisplaySize.x - (float)x) / std::max(1 - (float)share_x, 0.01f);
+    wrap_at = std::min(scaled(widest_note), std::max(scaled(narrowest_note), std::min(before, after) - scaled(64)));
     ImGui::Begin(name, nullptr,
                  fixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoInputs);
@@ -275,6 +276,17 @@ void weft_ui_dim_text(const char *text)
     ImGui::PushStyleColor(ImGuiCol_Text, dim);
     weft_ui_text(text);
     ImGui::PopStyleColor();
+}
+
+void weft_ui_swatch(uint32_t colour, const char *meaning)
+{
+    const float side = ImGui::GetFontSize();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, ImVec2(corner.x + side, corner.y + side), colour_of(colour),
+                                              scaled(3));
+    ImGui::Dummy(ImVec2(side, side));
+    ImGui::SameLine();
+    ImGui::TextUnformatted(meaning);
 }
 
 void weft_ui_value(const char *label, const char *value)

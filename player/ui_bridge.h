@@ -61,6 +61,8 @@ void weft_ui_enable(void);
 void weft_ui_heading(const char *text);
 void weft_ui_text(const char *text);
 void weft_ui_dim_text(const char *text);
+/* A patch of that colour (0xRRGGBBAA) and what it means. */
+void weft_ui_swatch(uint32_t colour, const char *meaning);
 void weft_ui_value(const char *label, const char *value);
 bool weft_ui_button(const char *label);
 bool weft_ui_toggle(const char *label, bool *value);

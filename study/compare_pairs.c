@@ -1,5 +1,6 @@
 #include "study/compare_page.h"
 
+#include "btf/colour.h"
 #include "study/picture.h"
 #include "study/representative.h"
 
@@ -40,14 +41,31 @@ weft_code weft_page_pair(weft_page *page, const char *name, const weft_image_pai
     return WEFT_OK;
 }
 
+/* The colours of differences, as the pictures have them. */
+static void put_scale(weft_page *page)
+{
+    enum { STOPS = 11 };
+    fprintf(page->html,
+            "<p class=\"note\">%.2f darker <span style=\"display:inline-block;width:220px;height:1em;"
+            "vertical-align:-0.15em;background:linear-gradient(to right",
+            WEFT_PICTURE_FULL_DIFFERENCE);
+    for (int i = 0; i < STOPS; i++) {
+        float rgb[3];
+        weft_difference_colour(2 * (float)i / (STOPS - 1) - 1, rgb);
+        fprintf(page->html, ",rgb(%.0f,%.0f,%.0f)", 255 * (double)rgb[0], 255 * (double)rgb[1], 255 * (double)rgb[2]);
+    }
+    fprintf(page->html, ")\"></span> %.2f brighter</p>\n", WEFT_PICTURE_FULL_DIFFERENCE);
+}
+
 static void explain_pictures(weft_page *page)
 {
     fputs("<p class=\"note\">Reflectance in linear light, brightened so that the 99th percentile of the photograph "
           "comes to 0.9, shown "
-          "as sRGB. Difference: luminance under the same exposure, red where the prediction is brighter, blue where it "
-          "is "
-          "darker, full colour at 0.25. Grey: masked.</p>\n",
+          "as sRGB. Difference: mean of the channels under the same exposure, red where the prediction is brighter, "
+          "blue where it "
+          "is darker. Grey: masked.</p>\n",
           page->html);
+    put_scale(page);
 }
 
 /* The photograph, then what each model makes of it. */

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double full_difference = 0.25;
 static const float masked_grey = 0.55f;
 
 static int ascending(const void *a, const void *b)
@@ -42,15 +41,6 @@ weft_code weft_picture_encode(const weft_image *linear, const uint8_t *mask, dou
     return WEFT_OK;
 }
 
-/* White to a full red (positive) or blue. */
-static void difference_colour(double difference, float rgb[3])
-{
-    float strength = (float)fmin(fabs(difference) / full_difference, 1);
-    float full[2][3] = {{0.70f, 0.05f, 0.10f}, {0.05f, 0.20f, 0.70f}};
-    for (int c = 0; c < 3; c++)
-        rgb[c] = 1 + strength * (full[difference < 0][c] - 1);
-}
-
 weft_code weft_picture_difference(const weft_image *a, const weft_image *b, const uint8_t *mask, double exposure,
                                   weft_image *result, weft_error *error)
 {
@@ -61,8 +51,9 @@ weft_code weft_picture_difference(const weft_image *a, const weft_image *b, cons
         if (mask && mask[i])
             rgb[0] = rgb[1] = rgb[2] = masked_grey;
         else
-            difference_colour(
-                exposure * (double)(weft_luminance(b->pixels + 3 * i) - weft_luminance(a->pixels + 3 * i)), rgb);
+            weft_difference_colour((float)(exposure / WEFT_PICTURE_FULL_DIFFERENCE) *
+                                       (weft_channel_mean(b->pixels + 3 * i) - weft_channel_mean(a->pixels + 3 * i)),
+                                   rgb);
     }
     return WEFT_OK;
 }

@@ -13,8 +13,11 @@ double weft_picture_exposure(const weft_image *image, const uint8_t *mask);
 weft_code weft_picture_encode(const weft_image *linear, const uint8_t *mask, double exposure, weft_image *result,
                               weft_error *error);
 
-/* Luminance of (b - a) x exposure in false colour: white 0, red b brighter, blue b darker, full at +-0.25; masked
- * pixels are grey. */
+/* Where the colours of differences end. */
+#define WEFT_PICTURE_FULL_DIFFERENCE 0.25
+
+/* Mean of the channels of (b - a) x exposure in false colour (weft_difference_colour): red b brighter, blue b darker;
+ * masked pixels are grey. */
 weft_code weft_picture_difference(const weft_image *a, const weft_image *b, const uint8_t *mask, double exposure,
                                   weft_image *result, weft_error *error);
 

@@ -4,9 +4,10 @@ uniform sampler2D sum;
 uniform float frame_share; // 1 / number of frames
 uniform int left;        // of the picture on the screen, pixels
 uniform int tone;        // 0 clips, 1 is soft
-uniform bool difference; // signed: dark is equal
+uniform bool difference; // signed
 uniform bool keeps_opacity; // else 1
 uniform float divider;   // a line there, as a share of the width; none below 0
+const float FULL_DIFFERENCE = 0.1; // WEFT_SCENE_FULL_DIFFERENCE
 out vec4 colour;
 
 // The identity up to 1/2, then bent with a continuous slope toward 1.
@@ -25,21 +26,25 @@ vec3 srgb_of_linear(vec3 linear)
     return mix(high, low, vec3(lessThanEqual(linear, vec3(0.0031308))));
 }
 
-// sRGB; red where the first is brighter, blue where the second is. A quarter of white is the brightest colour.
-vec3 difference_colour(vec3 signed_difference)
+// sRGB. C twin: weft_difference_colour.
+vec3 difference_colour(float difference)
 {
-    float value = dot(signed_difference, vec3(1.0 / 3.0));
-    float size = min(4.0 * abs(value), 1.0);
-    vec3 middle = value > 0.0 ? vec3(0.9, 0.25, 0.12) : vec3(0.12, 0.45, 0.95);
-    vec3 end = value > 0.0 ? vec3(1.0, 0.9, 0.6) : vec3(0.65, 0.95, 1.0);
-    return size < 0.5 ? mix(vec3(0.06), middle, 2.0 * size) : mix(middle, end, 2.0 * size - 1.0);
+    vec3 above[6] = vec3[](vec3(0.969), vec3(0.992, 0.859, 0.780), vec3(0.957, 0.647, 0.510),
+                           vec3(0.839, 0.376, 0.302), vec3(0.698, 0.094, 0.169), vec3(0.404, 0.000, 0.122));
+    vec3 below[6] = vec3[](vec3(0.969), vec3(0.820, 0.898, 0.941), vec3(0.573, 0.773, 0.871),
+                           vec3(0.263, 0.576, 0.765), vec3(0.129, 0.400, 0.675), vec3(0.020, 0.188, 0.380));
+    float size = 5.0 * min(abs(difference), 1.0);
+    int lower = min(int(size), 4);
+    vec3 a = difference < 0.0 ? below[lower] : above[lower];
+    vec3 b = difference < 0.0 ? below[lower + 1] : above[lower + 1];
+    return mix(a, b, size - float(lower));
 }
 
 void main()
 {
     vec4 total = texelFetch(sum, ivec2(gl_FragCoord.xy) - ivec2(left, 0), 0);
     vec3 linear = frame_share * total.rgb;
-    vec3 shown = difference ? difference_colour(linear) : srgb_of_linear(tone_of_linear(linear));
+    vec3 shown = difference ? difference_colour(dot(linear, vec3(1.0 / 3.0)) / FULL_DIFFERENCE) : srgb_of_linear(tone_of_linear(linear));
     if (divider >= 0.0 && abs(gl_FragCoord.x - float(left) - divider * float(textureSize(sum, 0).x)) < 1.0)
         shown = vec3(0.95);
     colour = vec4(shown, keeps_opacity ? min(total.a, 1.0) : 1.0);

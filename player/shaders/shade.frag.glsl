@@ -22,10 +22,12 @@ vec3 extrapolation_tinted(vec3 value, SurfacePoint point)
     vec3 tint = vec3(0.0);
     if (point.view.z < last_ring.x)
         tint += vec3(0.7, 0.03, 0.45);
-    if (surface_light(point, 0).z < last_ring.y)
+    float height = surface_light(point, 0).z;
+    if (height > 0.0 && height < last_ring.y)
         tint += vec3(0.0, 0.45, 0.6);
     bool is_measured = tint == vec3(0.0);
-    return is_measured ? value : 0.3 * value + (0.3 + 0.7 * dot(value, vec3(1.0 / 3.0))) * tint;
+    float brightness = sqrt(max(dot(value, vec3(1.0 / 3.0)), 0.0));
+    return is_measured ? value : 0.3 * value + (0.1 + 0.9 * brightness) * tint;
 }
 
 bool is_lit(SurfacePoint point)

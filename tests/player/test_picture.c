@@ -1,4 +1,5 @@
 /* Layouts, filters and lights of whole pictures. */
+#include "btf/colour.h"
 #include "stage.h"
 
 #include <math.h>
@@ -87,7 +88,7 @@ static void a_difference_is_signed_and_vanishes_for_equal_modes(void **state)
     weft_image difference = draw(state, scene, 2);
     int brighter = 0, darker = 0;
     for (int i = 0; i < 3 * PIXELS; i++) {
-        assert_float_equal(difference.pixels[i], first.pixels[i] - second.pixels[i], 1e-6);
+        assert_float_equal(difference.pixels[i], second.pixels[i] - first.pixels[i], 1e-6);
         brighter += difference.pixels[i] > 0.01f;
         darker += difference.pixels[i] < -0.01f;
     }
@@ -249,6 +250,31 @@ static void what_is_shown_rises_with_radiance_and_keeps_highlights_apart(void **
     weft_image_free(&image);
 }
 
+/* White without a difference, red above, blue below, ever darker. */
+static void differences_are_told_by_hue_and_darkness(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_image image;
+    weft_scene scene = weft_scene_default();
+    scene.layout = WEFT_LAYOUT_DIFFERENCE;
+    expect_ok(weft_image_create(41, 1, &image, &error), &error);
+    for (int x = 0; x < 41; x++) {
+        for (int c = 0; c < 3; c++)
+            image.pixels[3 * x + c] = WEFT_SCENE_FULL_DIFFERENCE * (float)(x - 20) / 20;
+    }
+    weft_scene_show(&scene, &image);
+    const float *zero = image.pixels + 3 * 20;
+    assert_true(zero[0] > 0.95f && zero[0] == zero[1] && zero[1] == zero[2]);
+    for (int x = 21; x < 41; x++) {
+        const float *above = image.pixels + 3 * x, *below = image.pixels + 3 * (40 - x);
+        assert_true(above[0] > above[2] && below[2] > below[0]);
+        assert_true(weft_luminance(above) < weft_luminance(above - 3));
+        assert_true(weft_luminance(below) < weft_luminance(below + 3));
+    }
+    weft_image_free(&image);
+}
+
 static void set_drape(void **state, bool coarse)
 {
     stage *s = *state;
@@ -291,6 +317,7 @@ int main(void)
         cmocka_unit_test(switches_of_the_material_take_its_parts_away),
         cmocka_unit_test(coarse_triangles_of_a_small_picture_hardly_change_it),
         cmocka_unit_test(what_is_shown_rises_with_radiance_and_keeps_highlights_apart),
+        cmocka_unit_test(differences_are_told_by_hue_and_darkness),
     };
     return cmocka_run_group_tests(tests, open_with_models, stage_close);
 }
