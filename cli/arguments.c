@@ -52,9 +52,21 @@ void parse_size(const char *option, const char *text, int limit, int *width, int
     char *end;
     if (!whole_from(text, &w, &end) || *end != 'x' || !whole_from(end + 1, &h, &end) || *end || w < 1 || h < 1 ||
         w > most || h > most)
-        argp_error(state, "--%s needs WIDTHxHEIGHT up to %dx%d, not '%s'", option, limit, limit, text);
+        argp_error(state, "--%s needs WxH up to %dx%d, not '%s'", option, limit, limit, text);
     *width = (int)w;
     *height = (int)h;
+}
+
+void parse_tiles(const char *option, const char *text, double *tiles_u, double *tiles_v, struct argp_state *state)
+{
+    double tiles[2];
+    parse_numbers(option, text, 2, tiles, state);
+    for (int i = 0; i < 2; i++) {
+        if (!(tiles[i] > 0 && tiles[i] <= 1e6))
+            argp_error(state, "--%s needs two numbers above 0, up to 1e6, not '%s'", option, text);
+    }
+    *tiles_u = tiles[0];
+    *tiles_v = tiles[1];
 }
 
 bool parse_switch(const char *option, const char *text, struct argp_state *state)

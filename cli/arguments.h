@@ -16,8 +16,11 @@ void parse_numbers(const char *option, const char *text, int count, double *numb
 unsigned long long parse_whole(const char *option, const char *text, unsigned long long low, unsigned long long high,
                                struct argp_state *state);
 
-/* "WIDTHxHEIGHT", each from 1 to `limit`. */
+/* "WxH", each from 1 to `limit`. */
 void parse_size(const char *option, const char *text, int limit, int *width, int *height, struct argp_state *state);
+
+/* "X,Y": tiles of a weave across a material, each above 0 and up to 1e6. */
+void parse_tiles(const char *option, const char *text, double *tiles_u, double *tiles_v, struct argp_state *state);
 
 /* "on" or "off". */
 bool parse_switch(const char *option, const char *text, struct argp_state *state);

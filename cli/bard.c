@@ -6,8 +6,7 @@
 #include <string.h>
 
 typedef struct bard_command {
-    common_options common;
-    const char *input, *output;
+    conversion files;
     weft_bard_options options;
 } bard_command;
 
@@ -35,29 +34,14 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     bard_command *command = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &command->common;
-        return 0;
-    case 'o':
-        command->output = argument;
-        return 0;
     case KEY_DIFFUSE:
         command->options.diffuse_share = parse_number("diffuse", argument, 0, 1, state);
         return 0;
     case KEY_MAP:
         command->options.map = map_argument(argument, state);
         return 0;
-    case ARGP_KEY_ARG:
-        if (command->input)
-            argp_error(state, "one dataset at a time: '%s' is one too many", argument);
-        command->input = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!command->input || !command->output)
-            argp_error(state, "needs NAME.btf.h5 and -o NAME.bard.h5");
-        return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_conversion(key, argument, state, &command->files);
     }
 }
 
@@ -88,9 +72,9 @@ static void say_ring(const common_options *common, const char *name, const weft_
 
 static void say_report(const bard_command *command, const weft_bard_report *report)
 {
-    const common_options *common = &command->common;
+    const common_options *common = &command->files.common;
     command_say(common, "%s: predicted from %d photographs of %d, lit within %.1f degrees of the normal",
-                command->output, report->photograph_count, report->image_count, report->largest_tilt_deg);
+                command->files.output, report->photograph_count, report->image_count, report->largest_tilt_deg);
     if (report->filled_count > 0 || report->empty_texel_count > 0)
         command_say(common, "masked: %ld samples taken from the nearest valid view; %ld texels without any",
                     report->filled_count, report->empty_texel_count);
@@ -106,17 +90,18 @@ static void say_report(const bard_command *command, const weft_bard_report *repo
 
 int command_bard(int argc, char **argv)
 {
-    bard_command command = {.options = weft_bard_defaults()};
-    command_parse(&parser, argc, argv, &command, &command.common);
-    weft_progress progress = command_progress(&command.common);
+    bard_command command = {.files = {.noun = "dataset", .needed = "NAME.btf.h5 and -o NAME.bard.h5"},
+                            .options = weft_bard_defaults()};
+    command_parse(&parser, argc, argv, &command, &command.files.common);
+    weft_progress progress = command_progress(&command.files.common);
     weft_bard_report report;
     weft_error error = {0};
     weft_dataset *dataset = NULL;
-    weft_code code = weft_dataset_open(command.input, &dataset, &error);
+    weft_code code = weft_dataset_open(command.files.input, &dataset, &error);
     if (code == WEFT_OK)
-        code = weft_bard_predict(dataset, command.output, &command.options, &progress, &report, &error);
+        code = weft_bard_predict(dataset, command.files.output, &command.options, &progress, &report, &error);
     if (code == WEFT_OK)
         say_report(&command, &report);
     weft_dataset_close(dataset);
-    return command_exit("bard", &command.common, code, &error);
+    return command_exit("bard", &command.files.common, code, &error);
 }

@@ -25,10 +25,10 @@ static const struct argp_option option_table[] = {
      "phi_light_deg, "
      "theta_view_deg, phi_view_deg",
      0},
-    {"seed", KEY_SEED, "N", 0, "Of everything random in the virtual rig (default: 1)", 0},
+    {"seed", KEY_SEED, "N", 0, "Start of the random numbers of the virtual rig (default: 1)", 0},
     {"truth", KEY_TRUTH, "FILE.h5", 0, "Where the ground truth goes (default: SESSION.truth.h5)", 0},
-    {"truth-size", KEY_TRUTH_SIZE, "N", 0, "Texels along a side of the true reflectance (default: 64)", 0},
-    {"truth-images", KEY_TRUTH_IMAGES, "N", 0, "Photographs of which it is computed (default: 81)", 0},
+    {"truth-size", KEY_TRUTH_SIZE, "N", 0, "Texels along a side of the truth (default: 64)", 0},
+    {"truth-images", KEY_TRUTH_IMAGES, "N", 0, "Photographs of which the truth is computed (default: 81)", 0},
     {"dry-run", KEY_DRY_RUN, 0, 0, "Say what would be done and what it needs; write nothing", 0},
     {0},
 };

@@ -52,6 +52,32 @@ void command_parse(const struct argp *parser, int argc, char **argv, void *input
         omp_set_num_threads(common->threads);
 }
 
+/* ---- One file of another ---- */
+
+error_t parse_conversion(int key, char *argument, struct argp_state *state, conversion *files)
+{
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &files->common;
+        return 0;
+    case 'o':
+        files->output = argument;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (files->input)
+            argp_error(state, "one %s at a time: '%s' is one too many", files->noun, argument);
+        files->input = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (files->needed && (!files->input || !files->output))
+            argp_error(state, "needs %s", files->needed);
+        refuse_same_file(files->output, files->input, state);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
 /* ---- Speaking ---- */
 
 static double now_s(void)

@@ -17,6 +17,19 @@ typedef struct common_options {
 
 extern const struct argp common_argp;
 
+/* Most commands make one file of another: what they are given alike. */
+typedef struct conversion {
+    common_options common;
+    const char *input, *output; /* the one argument, and -o */
+    const char *noun;           /* what the input is called */
+    const char *needed;         /* said where either is missing; NULL: the command sees to that itself */
+} conversion;
+
+/* What is left over by the parser of such a command, whose option table has its own words for 'o': -o, the one
+ * argument, the common options as its only child, and in the end that input and output are there, and not the same
+ * file. */
+error_t parse_conversion(int key, char *argument, struct argp_state *state, conversion *files);
+
 /* Parses a command line with argp; wrong usage prints a hint and exits with WEFT_BAD_USAGE. Then applies the common
  * options. */
 void command_parse(const struct argp *parser, int argc, char **argv, void *input, common_options *common);

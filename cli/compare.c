@@ -9,30 +9,20 @@ typedef struct compare_command {
     weft_compare_options options;
 } compare_command;
 
-enum { KEY_TILES = 0x2000, KEY_BARD, KEY_TRUTH, KEY_PATHS, KEY_FIT };
+enum { KEY_TILES = 0x2000, KEY_WEAVE, KEY_BARD, KEY_TRUTH, KEY_PATHS, KEY_FIT };
 enum { MAX_PATHS = 65536 };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "REPORT/", 0, "The folder for the page and its pictures", 0},
-    {"weave", 'w', "CLOTH.wv", 0, "Compare this analytic cloth, too", 0},
+    {"weave", KEY_WEAVE, "CLOTH.wv", 0, "Compare this analytic cloth, too", 0},
     {"fit", KEY_FIT, NULL, 0, "Fit that cloth to the dataset first (see fit-weave); writes REPORT/fitted.wv", 0},
     {"tiles", KEY_TILES, "X,Y", 0,
      "Tiles of the weave across the material (default: as --fit finds or the virtual rig lays it)", 0},
     {"bard", KEY_BARD, "NAME.bard.h5", 0, "Compare what `weft bard` predicted, too", 0},
     {"truth", KEY_TRUTH, "FILE.stitch", 0, "Trace the geometry that the dataset was simulated from, too", 0},
-    {"paths", KEY_PATHS, "N", 0, "Paths of light for each pixel of it (default: 64)", 0},
+    {"paths", KEY_PATHS, "N", 0, "With --truth: paths of light for each pixel (default: 64)", 0},
     {0},
 };
-
-static void parse_tiles(const char *argument, weft_compare_options *options, struct argp_state *state)
-{
-    double tiles[2];
-    parse_numbers("tiles", argument, 2, tiles, state);
-    if (!(tiles[0] > 0) || !(tiles[1] > 0))
-        argp_error(state, "--tiles needs two positive numbers, not '%s'", argument);
-    options->tiles_u = tiles[0];
-    options->tiles_v = tiles[1];
-}
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
@@ -45,7 +35,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 'o':
         options->folder = argument;
         return 0;
-    case 'w':
+    case KEY_WEAVE:
         options->weave = argument;
         return 0;
     case KEY_FIT:
@@ -61,7 +51,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         options->truth_paths = (int)parse_whole("paths", argument, 4, MAX_PATHS, state);
         return 0;
     case KEY_TILES:
-        parse_tiles(argument, options, state);
+        parse_tiles("tiles", argument, &options->tiles_u, &options->tiles_v, state);
         return 0;
     case ARGP_KEY_ARG:
         if (state->arg_num > 1)

@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 typedef struct compress_command {
-    common_options common;
-    const char *input, *output, *report;
+    conversion files;
+    const char *report;
     weft_compress_options options;
 } compress_command;
 
@@ -84,12 +84,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     compress_command *command = state->input;
     weft_compress_options *options = &command->options;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &command->common;
-        return 0;
-    case 'o':
-        command->output = argument;
-        return 0;
     case KEY_LOBES:
         options->lobe_count = (int)parse_whole("lobes", argument, 0, WEFT_MATERIAL_MAX_LOBES, state);
         return 0;
@@ -123,24 +117,16 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_MEMORY:
         options->memory_bytes = 1000000 * parse_whole("memory", argument, 1, 1000000000, state);
         return 0;
-    case ARGP_KEY_ARG:
-        if (command->input)
-            argp_error(state, "one dataset at a time: '%s' is one too many", argument);
-        command->input = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!command->input || !command->output)
-            argp_error(state, "needs NAME.btf.h5 and -o NAME.weft");
         if (options->target_error > 0 && options->budget_bytes > 0)
             argp_error(state, "give --error or --budget, not both");
         if (options->table_components > 0 && (options->target_error > 0 || options->budget_bytes > 0))
             argp_error(state, "--tables pca:K is shared by all texels: leave out --error and --budget");
         if (command->report && !(options->target_error > 0 || options->budget_bytes > 0))
             argp_error(state, "--report needs --error or --budget: else all texels have the same model");
-        refuse_same_file(command->output, command->input, state);
-        return 0;
+        return parse_conversion(key, argument, state, &command->files);
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_conversion(key, argument, state, &command->files);
     }
 }
 
@@ -164,7 +150,7 @@ static const struct argp parser = {option_table,
 static void say_model(const compress_command *command, const weft_dataset_layout *layout,
                       const weft_compress_report *report)
 {
-    const common_options *common = &command->common;
+    const common_options *common = &command->files.common;
     const char *table = report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "";
     command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height, layout->image_count,
                 report->lobe_count, table, report->light_count > 0 ? " and a light table" : "");
@@ -191,7 +177,7 @@ static void say_model(const compress_command *command, const weft_dataset_layout
 static void say_target(const compress_command *command, const weft_compress_report *report)
 {
     if (command->options.target_error > 0)
-        command_say(&command->common, "relative RMSE above %g %% with the whole model: %ld of %ld texels",
+        command_say(&command->files.common, "relative RMSE above %g %% with the whole model: %ld of %ld texels",
                     100 * command->options.target_error, report->missed_texel_count, report->texel_count);
 }
 
@@ -224,15 +210,16 @@ static void say_sizes(const compress_command *command, const weft_dataset_layout
                       const weft_compress_report *report)
 {
     double samples = 6.0 * layout->width * layout->height * layout->image_count;
-    double material = file_bytes(command->output);
-    command_say(&command->common, "%s: %.2f MB, 1:%.0f of the samples as half floats (%.1f MB; the file has %.1f MB)",
-                command->output, material * 1e-6, material > 0 ? samples / material : 0, samples * 1e-6,
-                file_bytes(command->input) * 1e-6);
+    double material = file_bytes(command->files.output);
+    command_say(&command->files.common,
+                "%s: %.2f MB, 1:%.0f of the samples as half floats (%.1f MB; the file has %.1f MB)",
+                command->files.output, material * 1e-6, material > 0 ? samples / material : 0, samples * 1e-6,
+                file_bytes(command->files.input) * 1e-6);
     if (report->read_seconds > 0)
-        command_say(&command->common, "read %.1f MB in %ld blocks at %.0f MB/s; the fit waited for it %.1f s",
+        command_say(&command->files.common, "read %.1f MB in %ld blocks at %.0f MB/s; the fit waited for it %.1f s",
                     report->read_bytes * 1e-6, report->block_count - report->resumed_block_count,
                     report->read_bytes * 1e-6 / report->read_seconds, report->starved_seconds);
-    command_say(&command->common, "fitted in %.1f s", report->seconds);
+    command_say(&command->files.common, "fitted in %.1f s", report->seconds);
 }
 
 static void say_note(void *context, const char *text)
@@ -251,18 +238,18 @@ static weft_code check_output(const char *path, weft_error *error)
 
 static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
 {
-    weft_progress progress = command_progress(&command->common);
+    weft_progress progress = command_progress(&command->files.common);
     weft_compress_options options = command->options;
     options.checkpoint_path = partial_path;
-    options.note = (weft_note){say_note, (void *)&command->common};
+    options.note = (weft_note){say_note, (void *)&command->files.common};
     weft_dataset *dataset = NULL;
     weft_material material = {0};
     weft_compress_report report;
-    weft_code code = weft_dataset_open(command->input, &dataset, error);
+    weft_code code = weft_dataset_open(command->files.input, &dataset, error);
     if (code == WEFT_OK)
         code = weft_compress(dataset, &options, &progress, &material, &report, error);
     if (code == WEFT_OK)
-        code = weft_material_write(command->output, &material, error);
+        code = weft_material_write(command->files.output, &material, error);
     if (code == WEFT_OK && command->report)
         code = weft_model_report_write(command->report, &material, error);
     if (code == WEFT_OK) {
@@ -270,7 +257,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
         unlink(partial_path);
         say_model(command, layout, &report);
         say_target(command, &report);
-        say_errors(&command->common, &material);
+        say_errors(&command->files.common, &material);
         say_sizes(command, layout, &report);
     }
     weft_material_free(&material);
@@ -280,14 +267,15 @@ static weft_code compress_dataset(const compress_command *command, const char *p
 
 int command_compress(int argc, char **argv)
 {
-    compress_command command = {.options = weft_compress_default_options()};
-    command_parse(&parser, argc, argv, &command, &command.common);
+    compress_command command = {.files = {.noun = "dataset", .needed = "NAME.btf.h5 and -o NAME.weft"},
+                                .options = weft_compress_default_options()};
+    command_parse(&parser, argc, argv, &command, &command.files.common);
     weft_error error = {0};
     char partial_path[PATH_MAX];
-    weft_code code = check_output(command.output, &error);
+    weft_code code = check_output(command.files.output, &error);
     if (code == WEFT_OK) {
-        snprintf(partial_path, sizeof partial_path, "%s.partial", command.output);
+        snprintf(partial_path, sizeof partial_path, "%s.partial", command.files.output);
         code = compress_dataset(&command, partial_path, &error);
     }
-    return command_exit("compress", &command.common, code, &error);
+    return command_exit("compress", &command.files.common, code, &error);
 }

@@ -10,8 +10,8 @@
 enum { PARAMETER_LIMIT = 256 };
 
 typedef struct eval_command {
-    common_options common;
-    const char *model, *directions, *output;
+    conversion files;
+    const char *directions;
     weft_model_options options;
     weft_weave_parameter parameter[PARAMETER_LIMIT];
 } eval_command;
@@ -56,14 +56,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     eval_command *command = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &command->common;
-        return 0;
     case 'a':
         command->directions = argument;
-        return 0;
-    case 'o':
-        command->output = argument;
         return 0;
     case KEY_NOISE:
         command->options.noise_seed = parse_whole("noise", argument, 1, UINT64_MAX, state);
@@ -74,21 +68,15 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 's':
         add_parameter(command, argument, state);
         return 0;
-    case ARGP_KEY_ARG:
-        if (command->model)
-            argp_error(state, "one model at a time: '%s' is one too many", argument);
-        command->model = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!command->model || !command->directions)
+        if (!command->files.input || !command->directions)
             argp_error(state, "needs a model and --at DIRECTIONS.csv");
-        if (command->common.json && !command->output)
+        if (command->files.common.json && !command->files.output)
             argp_error(state, "--json and the table cannot share standard output: add -o FILE.csv");
-        refuse_same_file(command->output, command->model, state);
-        refuse_same_file(command->output, command->directions, state);
-        return 0;
+        refuse_same_file(command->files.output, command->directions, state);
+        return parse_conversion(key, argument, state, &command->files);
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_conversion(key, argument, state, &command->files);
     }
 }
 
@@ -110,7 +98,7 @@ static weft_code evaluate(const eval_command *command, weft_model *model, char *
 {
     weft_csv table;
     WEFT_TRY(weft_csv_read(command->directions, true, &table, error));
-    weft_progress progress = command_progress(&command->common);
+    weft_progress progress = command_progress(&command->files.common);
     FILE *memory = open_memstream(text, size);
     weft_code code = memory ? weft_model_evaluate_table(model, &table, &progress, memory, error)
                             : weft_fail_memory(error, "table", (unsigned long long)table.row_count);
@@ -122,8 +110,8 @@ static weft_code evaluate(const eval_command *command, weft_model *model, char *
 
 static weft_code write_table(const eval_command *command, const char *text, size_t size, weft_error *error)
 {
-    if (command->output)
-        return weft_write_file(command->output, text, size, error);
+    if (command->files.output)
+        return weft_write_file(command->files.output, text, size, error);
     if (fwrite(text, 1, size, stdout) != size || fflush(stdout) != 0)
         return weft_fail_errno(error, "write", "standard output");
     return WEFT_OK;
@@ -131,19 +119,19 @@ static weft_code write_table(const eval_command *command, const char *text, size
 
 int command_eval(int argc, char **argv)
 {
-    eval_command command = {0};
+    eval_command command = {.files = {.noun = "model"}};
     command.options.parameter = command.parameter;
-    command_parse(&parser, argc, argv, &command, &command.common);
+    command_parse(&parser, argc, argv, &command, &command.files.common);
     weft_error error = {0};
     weft_model *model = NULL;
     char *text = NULL;
     size_t size = 0;
-    weft_code code = weft_model_open(command.model, &command.options, &model, &error);
+    weft_code code = weft_model_open(command.files.input, &command.options, &model, &error);
     if (code == WEFT_OK)
         code = evaluate(&command, model, &text, &size, &error);
     if (code == WEFT_OK)
         code = write_table(&command, text, size, &error);
     free(text);
     weft_model_close(model);
-    return command_exit("eval", &command.common, code, &error);
+    return command_exit("eval", &command.files.common, code, &error);
 }

@@ -8,8 +8,8 @@
 #include <string.h>
 
 typedef struct fit_weave_command {
-    common_options common;
-    const char *input, *weave, *output;
+    conversion files;
+    const char *weave;
 } fit_weave_command;
 
 enum { KEY_WEAVE = 0x2000 };
@@ -24,27 +24,15 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     fit_weave_command *command = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &command->common;
-        return 0;
     case KEY_WEAVE:
         command->weave = argument;
         return 0;
-    case 'o':
-        command->output = argument;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (command->input)
-            argp_error(state, "one dataset at a time: '%s' is one too many", argument);
-        command->input = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!command->input || !command->weave || !command->output)
-            argp_error(state, "needs NAME.btf.h5, --weave START.wv and -o FITTED.wv");
-        refuse_same_file(command->output, command->input, state);
-        return 0;
+        if (!command->weave)
+            argp_error(state, "needs %s", command->files.needed);
+        return parse_conversion(key, argument, state, &command->files);
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_conversion(key, argument, state, &command->files);
     }
 }
 
@@ -64,7 +52,7 @@ static const struct argp parser = {option_table,
 
 static void say_errors(const fit_weave_command *command, const weft_fit_weave_report *report)
 {
-    command_say(&command->common,
+    command_say(&command->files.common,
                 "relative error of the mean BRDF, median / 80th percentile: %.1f %% / %.1f %% before, "
                 "%.1f %% / %.1f %% after",
                 100 * report->before.median_relative, 100 * report->before.percentile80_relative,
@@ -76,7 +64,7 @@ static void say_errors(const fit_weave_command *command, const weft_fit_weave_re
              report->image_count, report->before.median_relative, report->before.percentile80_relative,
              report->after.median_relative, report->after.percentile80_relative, report->alpha, report->beta,
              report->seconds);
-    command_event(&command->common, event);
+    command_event(&command->files.common, event);
 }
 
 /* "30.12 +- 0.04", or that the data do not say. */
@@ -100,7 +88,7 @@ static void say_group(const fit_weave_command *command, const weft_fit_weave_gro
         print_value(width, sizeof width, group->width, group->width_deviation);
     else
         snprintf(width, sizeof width, "%.4g (as given: the data tell it no better)", group->width);
-    command_say(&command->common, "%s (yarn %d): psi %s, umax %s degrees, kappa %s, width %s, ks %.4g %.4g %.4g",
+    command_say(&command->files.common, "%s (yarn %d): psi %s, umax %s degrees, kappa %s, width %s, ks %.4g %.4g %.4g",
                 group->warp ? "warp" : "weft", group->yarn + 1, psi, umax, kappa, width, (double)ks.r, (double)ks.g,
                 (double)ks.b);
     char event[320];
@@ -109,17 +97,17 @@ static void say_group(const fit_weave_command *command, const weft_fit_weave_gro
              "\"width\":%.9g,\"width_fitted\":%s}",
              group->warp ? "warp" : "weft", group->yarn + 1, group->psi_deg, group->umax_deg, group->kappa,
              group->width, group->width_fitted ? "true" : "false");
-    command_event(&command->common, event);
+    command_event(&command->files.common, event);
 }
 
 static void say_source(const fit_weave_command *command, const weft_fit_weave_source *source)
 {
     const weft_tile *tile = &source->tile.tile;
     if (!source->tiled) {
-        command_say(&command->common, "mean of the whole material: %s", source->why_whole);
+        command_say(&command->files.common, "mean of the whole material: %s", source->why_whole);
         return;
     }
-    command_say(&command->common,
+    command_say(&command->files.common,
                 "mean of %d x %d tiles of %.2f x %.2f texels, corner at %.2f, %.2f (likeness to the start: %.2f)",
                 source->tiles_x, source->tiles_y, tile->width, tile->height, tile->left, tile->top,
                 source->tile.likeness);
@@ -128,7 +116,7 @@ static void say_source(const fit_weave_command *command, const weft_fit_weave_so
              "{\"event\":\"tile\",\"size_texels\":[%.6g,%.6g],\"corner_texels\":[%.6g,%.6g],\"likeness\":%.4g,"
              "\"averaged\":[%d,%d]}",
              tile->width, tile->height, tile->left, tile->top, source->tile.likeness, source->tiles_x, source->tiles_y);
-    command_event(&command->common, event);
+    command_event(&command->files.common, event);
 }
 
 static void say_report(const fit_weave_command *command, const weft_weave *weave, const weft_fit_weave_report *report)
@@ -136,21 +124,21 @@ static void say_report(const fit_weave_command *command, const weft_weave *weave
     char alpha[64], beta[64];
     print_value(alpha, sizeof alpha, report->alpha, report->alpha_deviation);
     print_value(beta, sizeof beta, report->beta, report->beta_deviation);
-    command_say(&command->common, "%s: fitted to the mean of %d images in %.1f s", command->output, report->image_count,
-                report->seconds);
+    command_say(&command->files.common, "%s: fitted to the mean of %d images in %.1f s", command->files.output,
+                report->image_count, report->seconds);
     for (int group = 0; group < report->group_count; group++)
         say_group(command, &report->group[group], weave);
-    command_say(&command->common, "fibres: alpha %s, beta %s", alpha, beta);
+    command_say(&command->files.common, "fibres: alpha %s, beta %s", alpha, beta);
     say_errors(command, report);
 }
 
 static weft_code fit(const fit_weave_command *command, weft_weave *weave, weft_dataset *dataset, weft_error *error)
 {
-    weft_progress progress = command_progress(&command->common);
+    weft_progress progress = command_progress(&command->files.common);
     weft_fit_weave_source source;
     weft_fit_weave_report report;
     WEFT_TRY(weft_fit_weave_to_dataset(dataset, weave, &progress, &source, &report, error));
-    WEFT_TRY(weft_fit_weave_write(command->output, weave, dataset, &report, error));
+    WEFT_TRY(weft_fit_weave_write(command->files.output, weave, dataset, &report, error));
     say_source(command, &source);
     say_report(command, weave, &report);
     return WEFT_OK;
@@ -158,20 +146,21 @@ static weft_code fit(const fit_weave_command *command, weft_weave *weave, weft_d
 
 int command_fit_weave(int argc, char **argv)
 {
-    fit_weave_command command = {0};
-    command_parse(&parser, argc, argv, &command, &command.common);
+    fit_weave_command command = {
+        .files = {.noun = "dataset", .needed = "NAME.btf.h5, --weave START.wv and -o FITTED.wv"}};
+    command_parse(&parser, argc, argv, &command, &command.files.common);
     weft_error error = {0};
     weft_dataset *dataset = NULL;
     weft_weave weave = {0};
     char warning[WEFT_MESSAGE_SIZE];
     weft_code code = weft_weave_read(command.weave, NULL, 0, &weave, warning, &error);
     if (code == WEFT_OK && warning[0])
-        command_say(&command.common, "%s", warning);
+        command_say(&command.files.common, "%s", warning);
     if (code == WEFT_OK)
-        code = weft_dataset_open(command.input, &dataset, &error);
+        code = weft_dataset_open(command.files.input, &dataset, &error);
     if (code == WEFT_OK)
         code = fit(&command, &weave, dataset, &error);
     weft_dataset_close(dataset);
     weft_weave_free(&weave);
-    return command_exit("fit-weave", &command.common, code, &error);
+    return command_exit("fit-weave", &command.files.common, code, &error);
 }

@@ -7,8 +7,7 @@
 #include <string.h>
 
 typedef struct import_command {
-    common_options common;
-    const char *source, *output;
+    conversion files;
     weft_import_options options;
 } import_command;
 
@@ -37,12 +36,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     import_command *command = state->input;
     weft_import_options *options = &command->options;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &command->common;
-        return 0;
-    case 'o':
-        command->output = argument;
-        return 0;
     case 's':
         options->width = (int)parse_whole("size", argument, 1, 65536, state);
         return 0;
@@ -58,17 +51,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_SKIP_BAD:
         options->skip_bad = true;
         return 0;
-    case ARGP_KEY_ARG:
-        if (command->source)
-            argp_error(state, "one folder at a time: '%s' is one too many", argument);
-        command->source = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!command->source || !command->output)
-            argp_error(state, "needs a folder of photographs and -o NAME.btf.h5");
-        return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_conversion(key, argument, state, &command->files);
     }
 }
 
@@ -89,26 +73,28 @@ static const struct argp parser = {option_table,
 
 static void say_report(const import_command *command, const weft_import_report *report)
 {
-    const common_options *common = &command->common;
+    const common_options *common = &command->files.common;
     for (int i = 0; i < report->notes.count; i++)
         command_say(common, "%s", report->notes.line[i]);
-    command_say(common, "%s: %s, %d x %d texels, %d images from %d views", command->output, report->kind, report->width,
-                report->height, report->image_count, report->view_count);
+    command_say(common, "%s: %s, %d x %d texels, %d images from %d views", command->files.output, report->kind,
+                report->width, report->height, report->image_count, report->view_count);
     command_say(common, "masked: %d missing, %d skipped, %.2f %% of the samples saturated", report->missing_count,
                 report->skipped_count, 100 * report->saturated_fraction);
 }
 
 int command_import(int argc, char **argv)
 {
-    import_command command = {.options = weft_import_defaults()};
-    command_parse(&parser, argc, argv, &command, &command.common);
-    weft_progress progress = command_progress(&command.common);
+    import_command command = {.files = {.noun = "folder", .needed = "a folder of photographs and -o NAME.btf.h5"},
+                              .options = weft_import_defaults()};
+    command_parse(&parser, argc, argv, &command, &command.files.common);
+    weft_progress progress = command_progress(&command.files.common);
     weft_import_report report;
     weft_error error = {0};
-    weft_code code = weft_import(command.source, command.output, &command.options, &progress, &report, &error);
+    weft_code code =
+        weft_import(command.files.input, command.files.output, &command.options, &progress, &report, &error);
     if (code == WEFT_OK) {
         say_report(&command, &report);
         weft_import_report_free(&report);
     }
-    return command_exit("import", &command.common, code, &error);
+    return command_exit("import", &command.files.common, code, &error);
 }

@@ -6,26 +6,28 @@
 #include <string.h>
 
 typedef struct command {
+    const char *heading; /* before it, or NULL */
     const char *name;
     int (*run)(int argc, char **argv);
     const char *summary;
 } command;
 
 static const command commands[] = {
-    {"capture", command_capture, "photograph a sample under all views and lights"},
-    {"simulate", command_simulate, "make a dataset of cloth from the geometry of its yarns"},
-    {"register", command_register, "turn the photographs of a session into a dataset"},
-    {"import", command_import, "turn foreign photographs into a dataset"},
-    {"compress", command_compress, "fit lobes and a view table to a dataset"},
-    {"tile", command_tile, "average the repeats of a dataset into one tile"},
-    {"bard", command_bard, "predict a dataset from the photographs under one light"},
-    {"fit-weave", command_fit_weave, "fit a weave to a dataset"},
-    {"render", command_render, "draw a material to an image file"},
-    {"play", command_play, "draw a material in a window"},
-    {"compare", command_compare, "put dataset, material and analytic cloth side by side"},
-    {"eval", command_eval, "evaluate any model at listed directions"},
-    {"info", command_info, "say what a file holds"},
-    {"verify", command_verify, "check a file from end to end"},
+    {"Photographs and geometry to a dataset:", "capture", command_capture,
+     "photograph a sample under all views and lights"},
+    {NULL, "simulate", command_simulate, "make a dataset of cloth from the geometry of its yarns"},
+    {NULL, "register", command_register, "turn the photographs of a session into a dataset"},
+    {NULL, "import", command_import, "turn foreign photographs into a dataset"},
+    {NULL, "tile", command_tile, "average the repeats of a dataset into one tile"},
+    {NULL, "bard", command_bard, "predict a dataset from the photographs under one light"},
+    {"A dataset to a model:", "compress", command_compress, "fit lobes and a view table to a dataset"},
+    {NULL, "fit-weave", command_fit_weave, "fit a weave to a dataset"},
+    {"Look and measure:", "render", command_render, "draw a material to an image file"},
+    {NULL, "play", command_play, "draw a material in a window"},
+    {NULL, "compare", command_compare, "put dataset, material and analytic cloth side by side"},
+    {NULL, "eval", command_eval, "evaluate any model at listed directions"},
+    {NULL, "info", command_info, "say what a file holds"},
+    {NULL, "verify", command_verify, "check a file from end to end"},
 };
 
 static void print_usage(FILE *stream)
@@ -34,8 +36,11 @@ static void print_usage(FILE *stream)
           "Usage: weft COMMAND [OPTION...]\n"
           "Turns photographs of a material into something you can play back in real time.\n\n",
           stream);
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        if (commands[i].heading)
+            fprintf(stream, "%s%s\n", i > 0 ? "\n" : "", commands[i].heading);
         fprintf(stream, "  %-10s %s\n", commands[i].name, commands[i].summary);
+    }
     fputs("\n'weft COMMAND --help' explains a command. 'weft --version' prints the version.\n"
           "Exit codes: 0 done, 1 bad input, 2 bad usage, 3 device or system failure.\n",
           stream);

@@ -8,8 +8,8 @@
 #include <string.h>
 
 typedef struct register_command {
-    common_options common;
-    const char *session, *output, *report_folder;
+    conversion files;
+    const char *report_folder;
     int width, height;
     bool allow_unfinished;
 } register_command;
@@ -28,12 +28,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     register_command *command = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &command->common;
-        return 0;
-    case 'o':
-        command->output = argument;
-        return 0;
     case 's':
         parse_size("size", argument, LARGEST_SIZE, &command->width, &command->height, state);
         return 0;
@@ -43,17 +37,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_ALLOW_UNFINISHED:
         command->allow_unfinished = true;
         return 0;
-    case ARGP_KEY_ARG:
-        if (command->session)
-            argp_error(state, "one session at a time: '%s' is one too many", argument);
-        command->session = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!command->session || !command->output)
-            argp_error(state, "needs a session and -o NAME.btf.h5");
-        return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_conversion(key, argument, state, &command->files);
     }
 }
 
@@ -75,16 +60,17 @@ static void say_faults(const register_command *command, const weft_session *sess
     for (int stay = 0; stay < r->survey.stay_count; stay++) {
         const weft_stay *one = &r->survey.stay[stay];
         if (r->pose[stay].remark[0])
-            command_say(&command->common, "view %s, stay %d: %s%s", weft_view_name_of(r->survey.view[one->view]).text,
-                        one->stay, r->pose[stay].source == WEFT_POSE_FAILED ? "masked: " : "kept the markers' pose: ",
+            command_say(&command->files.common, "view %s, stay %d: %s%s",
+                        weft_view_name_of(r->survey.view[one->view]).text, one->stay,
+                        r->pose[stay].source == WEFT_POSE_FAILED ? "masked: " : "kept the markers' pose: ",
                         r->pose[stay].remark);
     }
     for (int shot = 0; shot < session->shot_count; shot++) {
         if (r->fault[shot].reason[0])
-            command_say(&command->common, "masked: %s", r->fault[shot].reason);
+            command_say(&command->files.common, "masked: %s", r->fault[shot].reason);
     }
     if (r->estimated_whites)
-        command_say(&command->common,
+        command_say(&command->files.common,
                     "%d photographs show no usable white reference; they use the light's power measured in the others",
                     r->estimated_whites);
 }
@@ -93,38 +79,39 @@ static void say_outcome(const register_command *command, const weft_session *ses
 {
     weft_ring_summary all = weft_ring_summarise(session, r, -1);
     say_faults(command, session, r);
-    command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %d of %d stays registered",
-                command->output, r->settings.width, r->settings.height, r->image_count, session->shot_count,
+    command_say(&command->files.common, "%s: %d x %d texels, %d of %d photographs, %d of %d stays registered",
+                command->files.output, r->settings.width, r->settings.height, r->image_count, session->shot_count,
                 r->survey.stay_count - r->failed_stays, r->survey.stay_count);
     command_say(
-        &command->common,
+        &command->files.common,
         "random error of a position, estimated: %.4f texels median, %.4f worst; %.3f %% of the samples saturated",
         all.median_uncertainty, all.worst_uncertainty, 100 * all.saturated);
     if (command->report_folder)
-        command_say(&command->common, "report: %s/index.html", command->report_folder);
+        command_say(&command->files.common, "report: %s/index.html", command->report_folder);
 }
 
 int command_register(int argc, char **argv)
 {
-    register_command command = {.width = 64, .height = 64};
-    command_parse(&parser, argc, argv, &command, &command.common);
-    weft_progress progress = command_progress(&command.common);
+    register_command command = {
+        .files = {.noun = "session", .needed = "a session and -o NAME.btf.h5"}, .width = 64, .height = 64};
+    command_parse(&parser, argc, argv, &command, &command.files.common);
+    weft_progress progress = command_progress(&command.files.common);
     weft_session session;
     weft_registration registration;
     weft_error error = {0};
-    weft_code code = weft_session_open(command.session, &session, &error);
+    weft_code code = weft_session_open(command.files.input, &session, &error);
     if (code != WEFT_OK)
-        return command_exit("register", &command.common, code, &error);
+        return command_exit("register", &command.files.common, code, &error);
     weft_registration_settings settings = weft_registration_defaults(&session);
     settings.width = command.width;
     settings.height = command.height;
     settings.allow_unfinished = command.allow_unfinished;
     settings.report_folder = command.report_folder;
-    code = weft_register_session(&session, command.output, &settings, &progress, &registration, &error);
+    code = weft_register_session(&session, command.files.output, &settings, &progress, &registration, &error);
     if (code == WEFT_OK) {
         say_outcome(&command, &session, &registration);
         weft_registration_free(&registration);
     }
     weft_session_free(&session);
-    return command_exit("register", &command.common, code, &error);
+    return command_exit("register", &command.files.common, code, &error);
 }

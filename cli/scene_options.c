@@ -62,7 +62,7 @@ static const struct argp_option option_table[] = {
     {"table-bits", KEY_TABLE_BITS, "N", 0, "Tables as if coded with N bits, 1 to 8", 4},
     {"show", KEY_SHOW, "level|extrapolation|none", 0,
      "The mip level in false colour; a tint where view or light lies beyond what was measured", 4},
-    {"no-labels", KEY_NO_LABELS, 0, 0, "Leave the names of the modes out", 4},
+    {"no-labels", KEY_NO_LABELS, 0, 0, "Leave out the names of the modes and the scale of a difference", 4},
     {0},
 };
 

@@ -67,13 +67,6 @@ static void apply_mode(scene_options *o, const char *argument, struct argp_state
     parse_words("mode", argument, mode_words, o, take_mode, state);
 }
 
-static void apply_tiles(weft_settings *s, const char *argument, struct argp_state *state)
-{
-    parse_numbers("tiles", argument, 2, s->tiles, state);
-    if (!(s->tiles[0] > 0 && s->tiles[0] <= 1e6) || !(s->tiles[1] > 0 && s->tiles[1] <= 1e6))
-        argp_error(state, "--tiles needs two positive numbers, not '%s'", argument);
-}
-
 static bool apply_shown(scene_options *o, int key, const char *argument, struct argp_state *state)
 {
     static const char *const layout_words[] = {"panes", "wipe", "difference", NULL};
@@ -93,7 +86,7 @@ static bool apply_shown(scene_options *o, int key, const char *argument, struct 
         s->raw_format = (weft_raw_format)parse_word("raw-format", argument, format_words, state);
         return true;
     case KEY_TILES:
-        apply_tiles(s, argument, state);
+        parse_tiles("tiles", argument, &s->tiles[0], &s->tiles[1], state);
         return true;
     case KEY_MODE:
         apply_mode(o, argument, state);

@@ -11,15 +11,15 @@ enum { KEY_DIRECTIONS = 0x2000, KEY_BOUNCES, KEY_NOISE, KEY_SEED, KEY_OBJ, KEY_T
 enum { MAX_DIRECTIONS = 1024, MAX_TEXELS_ACROSS = 4096, MAX_BOUNCES = 256, MAX_TILES_ACROSS = 64 };
 
 typedef struct simulate_command {
-    common_options common;
-    const char *stitch, *output, *obj, *directions;
+    conversion files;
+    const char *obj, *directions;
     int tiles_x, tiles_y, resolution;
     weft_acquisition_options options;
 } simulate_command;
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "NAME.btf.h5", 0, "The dataset to write", 0},
-    {"size", 's', "WIDTHxHEIGHT", 0, "Texels of the tile (default: 32x32)", 0},
+    {"size", 's', "WxH", 0, "Texels of the tile (default: 32x32)", 0},
     {"directions", KEY_DIRECTIONS, "WHICH", 0,
      "Directions of views and lights: 64 (default) spread evenly within 80 degrees of the normal, ubo81, or a CSV with "
      "the columns "
@@ -28,19 +28,18 @@ static const struct argp_option option_table[] = {
     {"bounces", KEY_BOUNCES, "N", 0, "Follow light over so many bounces between yarns (default: 3)", 0},
     {"noise", KEY_NOISE, "PERCENT", 0,
      "Stop when the standard error of each view is this part of its samples, RMS (default: 1)", 0},
-    {"seed", KEY_SEED, "S", 0, "Start of the random numbers (default: 1)", 0},
+    {"seed", KEY_SEED, "N", 0, "Start of the random numbers (default: 1)", 0},
     {"resolution", KEY_RESOLUTION, "N", 0, "Cells of the mesh across the tile (default: what the stitch says)", 0},
     {"obj", KEY_OBJ, "FILE.obj", 0, "Write the surface of the yarns too; without -o, only that", 0},
-    {"tiles", KEY_TILES, "COLUMNSxROWS", 0, "Tiles in the OBJ file (default: 1x1)", 0},
+    {"tiles", KEY_TILES, "WxH", 0, "Tiles in the OBJ file (default: 1x1)", 0},
     {0},
 };
 
 static void check_complete(const simulate_command *command, struct argp_state *state)
 {
-    if (!command->stitch || (!command->output && !command->obj))
+    if (!command->files.input || (!command->files.output && !command->obj))
         argp_error(state, "needs a stitch, and -o NAME.btf.h5 or --obj FILE.obj");
-    refuse_same_file(command->output, command->stitch, state);
-    refuse_same_file(command->obj, command->stitch, state);
+    refuse_same_file(command->obj, command->files.input, state);
 }
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
@@ -48,12 +47,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     simulate_command *command = state->input;
     weft_acquisition_options *options = &command->options;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &command->common;
-        return 0;
-    case 'o':
-        command->output = argument;
-        return 0;
     case 's':
         parse_size("size", argument, MAX_TEXELS_ACROSS, &options->width, &options->height, state);
         return 0;
@@ -78,16 +71,11 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_TILES:
         parse_size("tiles", argument, MAX_TILES_ACROSS, &command->tiles_x, &command->tiles_y, state);
         return 0;
-    case ARGP_KEY_ARG:
-        if (command->stitch)
-            argp_error(state, "one stitch at a time: '%s' is one too many", argument);
-        command->stitch = argument;
-        return 0;
     case ARGP_KEY_END:
         check_complete(command, state);
-        return 0;
+        return parse_conversion(key, argument, state, &command->files);
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_conversion(key, argument, state, &command->files);
     }
 }
 
@@ -158,16 +146,17 @@ static weft_code choose_directions(const char *which, weft_vec3 *direction, int 
 static weft_code acquire(const simulate_command *command, const weft_stitch *stitch, const weft_tile_mesh *mesh,
                          weft_error *error)
 {
-    const common_options *common = &command->common;
+    const common_options *common = &command->files.common;
     const weft_acquisition_options *options = &command->options;
     weft_vec3 direction[MAX_DIRECTIONS];
     weft_acquisition_report report;
     weft_progress progress = command_progress(common);
     int count;
     WEFT_TRY(choose_directions(command->directions, direction, &count, error));
-    WEFT_TRY(weft_acquire(stitch, mesh, direction, count, options, command->output, &progress, &report, error));
-    command_say(common, "%s: %d x %d texels of %.3g x %.3g mm, %d views x %d lights", command->output, options->width,
-                options->height, stitch->width / options->width, stitch->height / options->height, count, count);
+    WEFT_TRY(weft_acquire(stitch, mesh, direction, count, options, command->files.output, &progress, &report, error));
+    command_say(common, "%s: %d x %d texels of %.3g x %.3g mm, %d views x %d lights", command->files.output,
+                options->width, options->height, stitch->width / options->width, stitch->height / options->height,
+                count, count);
     command_say(common,
                 "noise of the worst view: %.2f %%, with %.0f paths per texel and view; %.1f %% of the tile covered",
                 100 * report.noise, report.paths_per_texel, 100 * report.covered);
@@ -178,13 +167,13 @@ static weft_code simulate(const simulate_command *command, weft_error *error)
 {
     weft_stitch stitch;
     weft_tile_mesh mesh = {0};
-    WEFT_TRY(weft_stitch_read(command->stitch, &stitch, error));
-    weft_code code = weft_tile_mesh_create(&stitch, command->resolution, command->stitch, &mesh, error);
+    WEFT_TRY(weft_stitch_read(command->files.input, &stitch, error));
+    weft_code code = weft_tile_mesh_create(&stitch, command->resolution, command->files.input, &mesh, error);
     if (code == WEFT_OK)
-        command_say(&command->common, "%s: %d triangles", command->stitch, mesh.triangle_count);
+        command_say(&command->files.common, "%s: %d triangles", command->files.input, mesh.triangle_count);
     if (code == WEFT_OK && command->obj)
         code = weft_tile_mesh_write_obj(command->obj, &mesh, command->tiles_x, command->tiles_y, error);
-    if (code == WEFT_OK && command->output)
+    if (code == WEFT_OK && command->files.output)
         code = acquire(command, &stitch, &mesh, error);
     weft_tile_mesh_free(&mesh);
     weft_stitch_free(&stitch);
@@ -193,10 +182,12 @@ static weft_code simulate(const simulate_command *command, weft_error *error)
 
 int command_simulate(int argc, char **argv)
 {
-    simulate_command command = {
-        .tiles_x = 1, .tiles_y = 1, .options = {.width = 32, .height = 32, .bounces = 3, .noise = 0.01, .seed = 1}};
-    command_parse(&parser, argc, argv, &command, &command.common);
+    simulate_command command = {.files = {.noun = "stitch"},
+                                .tiles_x = 1,
+                                .tiles_y = 1,
+                                .options = {.width = 32, .height = 32, .bounces = 3, .noise = 0.01, .seed = 1}};
+    command_parse(&parser, argc, argv, &command, &command.files.common);
     weft_error error = {0};
     weft_code code = simulate(&command, &error);
-    return command_exit("simulate", &command.common, code, &error);
+    return command_exit("simulate", &command.files.common, code, &error);
 }

@@ -5,8 +5,8 @@
 #include <stdio.h>
 
 typedef struct tile_command {
-    common_options common;
-    const char *input, *output, *weave;
+    conversion files;
+    const char *weave;
 } tile_command;
 
 enum { KEY_WEAVE = 0x2100 };
@@ -25,28 +25,14 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     tile_command *command = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &command->common;
-        return 0;
-    case 'o':
-        command->output = argument;
-        return 0;
     case KEY_WEAVE:
         command->weave = argument;
         return 0;
-    case ARGP_KEY_ARG:
-        if (command->input)
-            argp_error(state, "one dataset at a time: '%s' is one too many", argument);
-        command->input = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!command->input || !command->output)
-            argp_error(state, "needs NAME.btf.h5 and -o TILE.btf.h5");
-        refuse_same_file(command->output, command->input, state);
-        refuse_same_file(command->output, command->weave, state);
-        return 0;
+        refuse_same_file(command->files.output, command->weave, state);
+        return parse_conversion(key, argument, state, &command->files);
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_conversion(key, argument, state, &command->files);
     }
 }
 
@@ -65,7 +51,7 @@ static const struct argp parser = {option_table,
 
 static void say_report(const tile_command *command, const weft_tile_report *report)
 {
-    const common_options *common = &command->common;
+    const common_options *common = &command->files.common;
     const weft_tile *tile = &report->tile;
     command_say(common, "tile      %.4g x %.4g mm, %.2f x %.2f texels, found in %d photographs (repeats: %.2f, %.2f)",
                 report->width_mm, report->height_mm, tile->width, tile->height, report->picture_count, report->repeat_x,
@@ -79,7 +65,7 @@ static void say_report(const tile_command *command, const weft_tile_report *repo
                 100 * report->residual_share, 100 * report->residual_relative);
     if (report->empty_count > 0)
         command_say(common, "missing   %ld samples, masked in every tile", report->empty_count);
-    command_say(common, "%s: %d x %d texels", command->output, report->texels_x, report->texels_y);
+    command_say(common, "%s: %d x %d texels", command->files.output, report->texels_x, report->texels_y);
     char event[512];
     snprintf(event, sizeof event,
              "{\"event\":\"tile\",\"size_mm\":[%.6g,%.6g],\"size_texels\":[%.6g,%.6g],\"corner_texels\":[%.6g,%.6g],"
@@ -94,27 +80,27 @@ static void say_report(const tile_command *command, const weft_tile_report *repo
 static weft_code make_tile(const tile_command *command, weft_dataset *dataset, const weft_weave *weave,
                            weft_error *error)
 {
-    weft_progress progress = command_progress(&command->common);
+    weft_progress progress = command_progress(&command->files.common);
     weft_tile_report report;
     WEFT_TRY(weft_tile_find(dataset, weave, &progress, &report, error));
-    WEFT_TRY(weft_tile_write(dataset, command->output, &progress, &report, error));
+    WEFT_TRY(weft_tile_write(dataset, command->files.output, &progress, &report, error));
     say_report(command, &report);
     return WEFT_OK;
 }
 
 int command_tile(int argc, char **argv)
 {
-    tile_command command = {0};
-    command_parse(&parser, argc, argv, &command, &command.common);
+    tile_command command = {.files = {.noun = "dataset", .needed = "NAME.btf.h5 and -o TILE.btf.h5"}};
+    command_parse(&parser, argc, argv, &command, &command.files.common);
     weft_error error = {0};
     weft_dataset *dataset = NULL;
     weft_weave weave = {0};
-    weft_code code = weft_dataset_open(command.input, &dataset, &error);
+    weft_code code = weft_dataset_open(command.files.input, &dataset, &error);
     if (code == WEFT_OK && command.weave)
         code = weft_weave_read(command.weave, NULL, 0, &weave, NULL, &error);
     if (code == WEFT_OK)
         code = make_tile(&command, dataset, command.weave ? &weave : NULL, &error);
     weft_weave_free(&weave);
     weft_dataset_close(dataset);
-    return command_exit("tile", &command.common, code, &error);
+    return command_exit("tile", &command.files.common, code, &error);
 }

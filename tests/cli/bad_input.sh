@@ -49,7 +49,9 @@ spoil && sed -i '3s/.*/garbage/' spoilt/journal.jsonl && expect_error 1 "line 3"
 spoil && sed -i '20,$d' spoilt/journal.jsonl && expect_error 1 spoilt register spoilt -o spoilt.btf.h5
 expect_no_file spoilt.btf.h5
 expect_error 1 absent register absent -o spoilt.btf.h5
-expect_error 2 "a folder" register good --size 16x16 -o good
+mkdir folder
+expect_error 2 "a folder" register good --size 16x16 -o folder
+expect_error 2 "would overwrite" register good --size 16x16 -o good
 expect_error 2 "does not name a file" register good --size 16x16 -o absent/
 expect_error 3 "'absent'" register good --size 16x16 -o absent/good.btf.h5
 

@@ -1,0 +1,37 @@
+#!/bin/sh
+# What the commands say of themselves. Usage: help.sh WEFT ASSETS PYTHON
+set -eu
+weft=$1
+docs="$2/../docs"
+. "$(dirname "$0")/expect.sh"
+scratch=$(mktemp -d "$PWD/help-XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+expect_ok --help
+sed -n 's/^  \([a-z-]*\)  *\(.*\)$/\1|\2/p' out.log >commands
+[ "$(wc -l <commands)" -ge 14 ] || fail "weft --help lists too few commands"
+while IFS='|' read -r name summary; do
+    grep -qF "| $name | $summary" "$docs/commands.md" || fail "docs/commands.md lacks '$name', or says other words than '$summary'"
+    expect_ok "$name" --help
+    grep -q "^Example: weft $name " out.log || fail "weft $name --help has no example"
+    for option in --quiet --json --threads; do
+        grep -q -- " $option" out.log || fail "weft $name --help lacks $option"
+    done
+    expect_error 2 "unrecognized option" "$name" --no-such-option
+done <commands
+[ "$(grep -c '^| [a-z-]* | [a-z]' "$docs/commands.md")" = "$(wc -l <commands)" ] || fail "docs/commands.md lists a command that is none"
+
+# What is not given, given twice, or both read and written.
+expect_error 2 "needs NAME.btf.h5 and -o NAME.weft" compress cloth.btf.h5
+expect_error 2 "needs NAME.btf.h5 and -o TILE.btf.h5" tile -o tile.btf.h5
+expect_error 2 "one session at a time" register one two -o no.btf.h5
+expect_error 2 "one dataset at a time" bard one.btf.h5 two.btf.h5 -o no.btf.h5
+touch same.btf.h5
+for name in compress tile bard; do
+    expect_error 2 "would overwrite" "$name" same.btf.h5 -o ./same.btf.h5
+done
+expect_error 2 "--size needs WxH" register session -o no.btf.h5 --size 64
+expect_error 2 "--tiles needs two numbers above 0" render --weave cloth.wv --tiles 0,3 -o no.png
+expect_error 2 "--tiles needs two numbers above 0" compare a.btf.h5 a.weft --tiles 2,-1 -o report
+echo "$passed commands as expected"
