@@ -12,7 +12,7 @@ vec3 place_in_tiles(ivec2 tiles, vec2 atlas_size, int tile, int level, vec2 coor
 {
     vec4 area = level_area[level];
     vec2 position = area.xy + 0.5 + fract(vec2(coordinate.x, -coordinate.y) - 0.5 / area.zw) * area.zw;
-    int column = tile / tiles.x;
+    int column = int((float(tile) + 0.5) / float(tiles.x));
     position.x += float(column * tiles.y);
     return vec3(position / atlas_size, float(tile - column * tiles.x));
 }
