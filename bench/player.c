@@ -1,5 +1,6 @@
-/* Frame times of the player, each mode at 730 x 400: median of FRAMES frames, by the GPU's own timestamps and by the
- * wall. Usage: bench_player [NAME.weft] [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
+/* Frame times of the player, each mode at 730 x 400, from the scene to what a window would show: median of FRAMES
+ * frames by the wall and by the GPU's own timestamps, and the mean processor time. Usage: bench_player [NAME.weft]
+ * [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
 #include "player/player.h"
 #include "player/context.h"
 #include "player/environment.h"
@@ -47,27 +48,42 @@ static double median(double *times)
     return times[FRAMES / 2];
 }
 
-static void draw(weft_player *player, const weft_scene *scene, weft_canvas *canvas)
+/* What stands for the window. */
+static void create_screen(GLuint *buffer, GLuint *texture)
+{
+    weft_error error = {0};
+    const weft_texture_format format = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    stop_on(weft_gl_texture(format, WIDTH, HEIGHT, 0, NULL, texture, &error), &error);
+    glGenFramebuffers(1, buffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, *buffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, *texture, 0);
+}
+
+static void draw(weft_player *player, const weft_scene *scene, weft_canvas *canvas, GLuint screen)
 {
     weft_error error = {0};
     const weft_sampling moving = {.frame = -1};
+    weft_canvas_clear(canvas);
     weft_canvas_begin_frame(canvas);
     stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, moving, &error), &error);
     weft_canvas_end_frame(canvas);
+    glBindFramebuffer(GL_FRAMEBUFFER, screen);
+    weft_canvas_present(canvas, scene, 0);
 }
 
 /* The camera turns a little between frames, so that no driver can reuse one. */
 static void time_scene(weft_player *player, weft_scene scene, const char *what, weft_canvas *canvas)
 {
     double wall[FRAMES], gpu[FRAMES], cpu_ms = 0;
-    GLuint query[2];
+    GLuint query[2], screen, screen_texture;
     glGenQueries(2, query);
+    create_screen(&screen, &screen_texture);
     for (int frame = -WARM_UP; frame < FRAMES; frame++) {
         GLuint64 begin, end;
         scene.orbit.azimuth_rad += 0.01;
         double start = now_ms(), cpu_start = cpu_now_ms();
         glQueryCounter(query[0], GL_TIMESTAMP);
-        draw(player, &scene, canvas);
+        draw(player, &scene, canvas, screen);
         glQueryCounter(query[1], GL_TIMESTAMP);
         glFinish();
         glGetQueryObjectui64v(query[0], GL_QUERY_RESULT, &begin);
@@ -79,6 +95,8 @@ static void time_scene(weft_player *player, weft_scene scene, const char *what, 
         }
     }
     glDeleteQueries(2, query);
+    glDeleteFramebuffers(1, &screen);
+    glDeleteTextures(1, &screen_texture);
     double wall_ms = median(wall);
     printf("%-28s %8.2f ms wall %8.2f ms timestamps %8.2f ms processor %7.1f frames/s\n", what, wall_ms, median(gpu),
            cpu_ms, 1000 / wall_ms);

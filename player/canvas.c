@@ -92,7 +92,6 @@ void weft_canvas_end_frame(weft_canvas *c)
 
 void weft_canvas_present(const weft_canvas *c, const weft_scene *scene, int left)
 {
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glDisable(GL_BLEND);
     glUseProgram(c->present_program);
     weft_gl_set_float(c->present_program, "frame_share", 1.0 / (c->frame_count > 0 ? c->frame_count : 1));

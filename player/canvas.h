@@ -26,8 +26,8 @@ void weft_canvas_clear(weft_canvas *canvas);
 void weft_canvas_begin_frame(weft_canvas *canvas);
 void weft_canvas_end_frame(weft_canvas *canvas);
 
-/* Draws the mean of the frames as the screen shows it (weft_scene_show) into framebuffer 0, `left` pixels from its left
- * edge. */
+/* Draws the mean of the frames as the screen shows it (weft_scene_show) into the framebuffer that is bound, `left`
+ * pixels from its left edge. */
 void weft_canvas_present(const weft_canvas *canvas, const weft_scene *scene, int left);
 
 /* The mean of the frames, linear. The caller frees the image. Errors: WEFT_SYSTEM. */
