@@ -39,23 +39,21 @@ Corners find_corners(int set, vec3 query)
 {
     int simplex = first_simplex(set, query);
     int previous = -1;
-    vec4 a = simplex_entry(simplex, 0);
-    vec4 b = simplex_entry(simplex, 1);
-    vec4 c = simplex_entry(simplex, 2);
-    vec3 weight = query * mat3(a.xyz, b.xyz, c.xyz);
-    for (int i = 0; i < DIRECTION_MAX_STEPS && smallest_of(weight) < 0.0; i++) {
-        vec4 next = simplex_entry(simplex, 3);
-        float smallest = smallest_of(weight);
-        int target = int(smallest == weight.x ? next.x : smallest == weight.y ? next.y : next.z);
-        // Sent back: the query lies on the border of the two, within rounding.
-        if (target < 0 || target == previous)
-            break;
-        previous = simplex;
-        simplex = target;
+    vec4 a, b, c;
+    vec3 weight;
+    for (int i = 0; i < DIRECTION_MAX_STEPS; i++) {
         a = simplex_entry(simplex, 0);
         b = simplex_entry(simplex, 1);
         c = simplex_entry(simplex, 2);
         weight = query * mat3(a.xyz, b.xyz, c.xyz);
+        vec4 next = simplex_entry(simplex, 3);
+        float smallest = smallest_of(weight);
+        int target = int(smallest == weight.x ? next.x : smallest == weight.y ? next.y : next.z);
+        // Found; or sent back: the query lies on the border of the two, within rounding.
+        if (smallest >= 0.0 || target < 0 || target == previous)
+            break;
+        previous = simplex;
+        simplex = target;
     }
     bool arc = c.w < 0.0;
     weight = max(arc ? vec3(weight.xy, 0.0) : weight, vec3(0.0));
