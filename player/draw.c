@@ -101,6 +101,8 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         .shadows = weft_scene_has_shadows(scene),
         .one_light = weft_lighting_count(scene, p->environment) == 1,
     };
+    if (pane->mode == WEFT_MODE_RAW)
+        kind.opacity = !p->raw.opaque;
     if (pane->mode == WEFT_MODE_COMPRESSED) {
         kind.lobe_count = p->material.lobe_count;
         kind.view_table = p->material.table.count > 0;

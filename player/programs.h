@@ -12,6 +12,7 @@ typedef struct weft_program_kind {
     weft_mode mode;
     bool stochastic, shadows, one_light;
     int plot; /* 0: of the picture; 1, 2: of lights, of views (player/probe.h) */
+    bool opacity; /* raw: some is below 1 */
     /* Of the compressed material: */
     int lobe_count;
     bool view_table, light_table;

@@ -131,7 +131,6 @@ void weft_raw_texture_bind(const weft_raw_texture *t, GLuint program)
     weft_gl_bind(program, "raw_opacity", 3, GL_TEXTURE_2D_ARRAY, t->part[opacity]);
     weft_gl_set_int(program, "level_count", t->plan.layout.level_count);
     weft_gl_set_int(program, "opaque", t->opaque);
-    weft_gl_set_int(program, "has_opacity", !t->opaque);
     set_tiles(t, WEFT_RAW_SAMPLES, program, "raw_tiles", "raw_atlas_size");
     set_tiles(t, opacity, program, "opacity_tiles", "opacity_atlas_size");
     glUniform4fv(glGetUniformLocation(program, "level_area"), t->plan.layout.level_count, area[0]);

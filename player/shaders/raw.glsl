@@ -1,7 +1,7 @@
 // The measured samples: barycentric in views and, for each of the three views, in its lights; nine bilinear fetches.
 // Every image is a tile with all its levels, and so is the opacity of every view (player/raw_plan.h).
+// Constant defined by player/programs.c: OPACITY, whether there is any below 1.
 uniform sampler2DArray raw_sample, raw_opacity;
-uniform bool has_opacity;
 uniform int level_count;
 uniform ivec2 raw_tiles, opacity_tiles;           // layers, and width of a tile
 uniform vec2 raw_atlas_size, opacity_atlas_size;  // texels
@@ -96,7 +96,7 @@ vec4 radiance(SurfacePoint point)
     int fine = int(level);
     float share = level - float(fine);
     vec4 sum = vec4(0.0, 0.0, 0.0, 1.0);
-    if (has_opacity)
+    if (OPACITY)
         sum.a = STOCHASTIC ? chosen_opacity(point, views, fine, share) : trilinear_opacity(point, views, fine, share);
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i);
