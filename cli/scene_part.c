@@ -133,7 +133,7 @@ static weft_code show_dataset(part *p)
         return WEFT_OK;
     size_t used = strlen(p->note);
     int length =
-        snprintf(p->note + used, sizeof p->note - used, "%s'%.200s': %.3g MB of samples as %s (%.3g MB as half floats)",
+        snprintf(p->note + used, sizeof p->note - used, "%s'%.200s': %.1f MB of samples as %s (%.1f MB as half floats)",
                  used > 0 ? "; " : "", p->path, 1e-6 * (double)weft_raw_plan_bytes(&plan, format),
                  weft_raw_format_name(format), 1e-6 * (double)weft_raw_plan_bytes(&plan, WEFT_RAW_HALF));
     used += (size_t)length;

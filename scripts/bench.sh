@@ -17,7 +17,7 @@ heading() {
     printf '\n== %s\n' "$*"
 }
 
-cmake --build "$build" --target bench_reflectance bench_fit bench_large_dataset bench_compress bench_player bench_aliasing bench_truth bench_paper weft
+cmake --build "$build" --target bench_reflectance bench_fit bench_large_dataset bench_compress bench_player bench_raw_formats bench_aliasing bench_truth bench_paper weft
 
 heading "Evaluations a second of the models, one core"
 "$build/bench/bench_reflectance"
@@ -42,6 +42,7 @@ heading "Aliasing of the drape seen from afar"
 heading "Frame times of the player"
 if [ -e "$demo.weft" ] && [ -e "$demo.btf.h5" ]; then
     "$build/bench/bench_player" "$demo.weft" "$demo.btf.h5" "$weave" 4
+    "$build/bench/bench_raw_formats" "$demo.btf.h5"
 else
     "$build/bench/bench_player" "$weave" 4
 fi
