@@ -29,12 +29,26 @@ static weft_code find_tile(weft_dataset *dataset, const weft_weave *weave, const
     return WEFT_OK;
 }
 
-/* Whole tiles in the middle of the material. */
-static weft_texel_window whole_tiles(const weft_dataset_layout *layout, const weft_fit_weave_source *source)
+/* Of the material, at each edge: a registration takes texels beside the frame from further in, where the camera looks
+ * flat. */
+static const double edge = 1.0 / 16;
+
+/* What is left out at either end of an axis: the edge, as far as one tile remains. */
+static double margin_of(int size, double tile)
 {
-    double width = fmin(source->tiles_x * source->tile.tile.width, layout->width);
-    double height = fmin(source->tiles_y * source->tile.tile.height, layout->height);
-    return (weft_texel_window){(layout->width - width) / 2, (layout->height - height) / 2, width, height};
+    return fmax(0, fmin(edge * size, (size - tile) / 2));
+}
+
+/* The middle of the material, in which every place of the tile counts alike. */
+static weft_texel_window window_of(const weft_dataset_layout *layout, const weft_tile *tile)
+{
+    double x = margin_of(layout->width, tile->width), y = margin_of(layout->height, tile->height);
+    return (weft_texel_window){.left = x,
+                               .top = y,
+                               .width = layout->width - 2 * x,
+                               .height = layout->height - 2 * y,
+                               .period_x = tile->width,
+                               .period_y = tile->height};
 }
 
 weft_code weft_fit_weave_to_dataset(weft_dataset *dataset, weft_weave *weave, const weft_progress *progress,
@@ -42,7 +56,7 @@ weft_code weft_fit_weave_to_dataset(weft_dataset *dataset, weft_weave *weave, co
 {
     weft_mean_brdf mean;
     WEFT_TRY(find_tile(dataset, weave, progress, source, error));
-    weft_texel_window window = whole_tiles(weft_dataset_get_layout(dataset), source);
+    weft_texel_window window = window_of(weft_dataset_get_layout(dataset), &source->tile.tile);
     WEFT_TRY(weft_mean_brdf_of(dataset, source->tiled ? &window : NULL, progress, &mean, error));
     weft_code code = weft_fit_weave(&mean, weave, progress, report, error);
     weft_mean_brdf_free(&mean);

@@ -1,4 +1,4 @@
-/* A weave fitted to a dataset: to the mean of whole tiles where it holds several. */
+/* A weave fitted to a dataset: to the mean of its tile where it repeats. */
 #ifndef WEFT_STUDY_FIT_WEAVE_DATASET_H
 #define WEFT_STUDY_FIT_WEAVE_DATASET_H
 
@@ -6,15 +6,15 @@
 #include "study/tile.h"
 
 typedef struct weft_fit_weave_source {
-    bool tiled;                        /* the mean is that of whole tiles */
+    bool tiled;                        /* the mean is that of a tile */
     weft_tile_report tile;             /* their size, and where one begins */
-    int tiles_x, tiles_y;              /* so many were averaged */
+    int tiles_x, tiles_y;              /* so many whole ones lie in the material */
     char why_whole[WEFT_MESSAGE_SIZE]; /* why the mean is that of the whole material, or "" */
 } weft_fit_weave_source;
 
-/* Finds the tile of the weave in the dataset (weft_tile_find), averages as many whole tiles as it holds, from its
- * middle, and fits the weave to that mean BRDF (weft_fit_weave). Where no tile is found, or none is whole, the mean is
- * that of the whole material. Errors: those of reading and of weft_fit_weave. */
+/* Finds the tile of the weave in the dataset (weft_tile_find), averages it over the material but for a sixteenth at
+ * each edge, every place of the tile alike, and fits the weave to that mean BRDF (weft_fit_weave). Where no tile is
+ * found, or none is whole, the mean is that of the whole material. Errors: those of reading and of weft_fit_weave. */
 weft_code weft_fit_weave_to_dataset(weft_dataset *dataset, weft_weave *weave, const weft_progress *progress,
                                     weft_fit_weave_source *source, weft_fit_weave_report *report, weft_error *error);
 

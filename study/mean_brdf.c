@@ -11,10 +11,22 @@ typedef struct sums {
     double *count;
 } sums;
 
-/* The part of texel [at, at + 1) between low and high. */
-static double share_inside(int at, double low, double high)
+/* Integral of 1 / n from the beginning of a window to `at` within it, n how often the window of that size shows the
+ * place in the period. */
+static double weight_before(double at, double size, double period)
 {
-    return fmax(fmin(at + 1, high) - fmax(at, low), 0);
+    if (!(period > 0 && period < size))
+        return at;
+    double times = floor(size / period), rest = size - times * period, turns = floor(at / period);
+    double into = at - turns * period, often = fmin(into, rest) / (times + 1), seldom = fmax(into - rest, 0) / times;
+    return turns * (rest / (times + 1) + (period - rest) / times) + often + seldom;
+}
+
+/* What texel [at, at + 1) counts in a window along one axis. */
+static double weight_of(int at, double low, double size, double period)
+{
+    double from = fmin(fmax(at - low, 0), size), to = fmin(fmax(at + 1 - low, 0), size);
+    return from < to ? weight_before(to, size, period) - weight_before(from, size, period) : 0;
 }
 
 /* One texel, `weight` of which counts. */
@@ -39,8 +51,8 @@ static void add_block(const weft_half *samples, const uint8_t *mask, block at, c
 {
     for (int i = 0; i < at.width * at.height; i++) {
         size_t first = (size_t)i * images;
-        double weight = share_inside(at.x + i % at.width, window->left, window->left + window->width) *
-                        share_inside(at.y + i / at.width, window->top, window->top + window->height);
+        double weight = weight_of(at.x + i % at.width, window->left, window->width, window->period_x) *
+                        weight_of(at.y + i / at.width, window->top, window->height, window->period_y);
         if (weight > 0)
             add_texel(samples + 3 * first, mask + first, images, weight, of);
     }
@@ -96,7 +108,7 @@ weft_code weft_mean_brdf_of(weft_dataset *dataset, const weft_texel_window *wind
                             weft_mean_brdf *mean, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    const weft_texel_window all = {0, 0, layout->width, layout->height};
+    const weft_texel_window all = {.width = layout->width, .height = layout->height};
     size_t images = (size_t)layout->image_count;
     *mean = (weft_mean_brdf){.light = calloc(images, sizeof *mean->light),
                              .view = calloc(images, sizeof *mean->view),

@@ -13,9 +13,12 @@ typedef struct weft_mean_brdf {
     weft_rgb *value;         /* [count] 1/sr, mean over the valid texels */
 } weft_mean_brdf;
 
-/* A part of the material, texels, x to the right and y down from its upper left corner. */
+/* A part of the material, texels, x to the right and y down from its upper left corner. What repeats with a period, at
+ * most the size of the window, counts once, as the mean of how often the window shows it; period 0: every texel counts
+ * alike. */
 typedef struct weft_texel_window {
     double left, top, width, height;
+    double period_x, period_y;
 } weft_texel_window;
 
 /* Over `window`, texels that it cuts with the share inside; NULL: the whole material. Reads it block by block. Errors:

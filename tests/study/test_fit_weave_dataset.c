@@ -106,6 +106,34 @@ static void whole_tiles_are_averaged_wherever_they_begin(void **state)
     weft_weave_free(&cloth.weave);
 }
 
+static int further_in(int at)
+{
+    return at < 2 ? 2 : at > TEXELS - 3 ? TEXELS - 3 : at;
+}
+
+/* What a registration makes of texels that the frame's print would leak into. */
+static weft_rgb framed(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    return woven(further_in(x), further_in(y), light, view);
+}
+
+static void texels_beside_the_frame_do_not_count(void **state)
+{
+    (void)state;
+    weft_fit_weave_source source;
+    weft_fit_weave_report tiled, whole;
+    cloth.weave = read_weave("polyester_lining.wv");
+    cloth.width = cloth.height = TEXELS / 2.0, cloth.left = cloth.top = 0;
+    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, framed, 0);
+    fit("polyester_lining.wv", false, &source, &tiled);
+    fit("polyester_lining.wv", true, &source, &whole);
+    print_message("median relative error %.2f %% of the tile, %.2f %% with what is beside the frame\n",
+                  100 * tiled.after.median_relative, 100 * whole.after.median_relative);
+    assert_true(tiled.after.median_relative < 0.5 * whole.after.median_relative);
+    expect_truth(&tiled);
+    weft_weave_free(&cloth.weave);
+}
+
 static void material_without_two_tiles_is_averaged_whole_and_says_why(void **state)
 {
     (void)state;
@@ -144,6 +172,29 @@ static void a_window_counts_the_share_of_each_texel_inside(void **state)
     weft_dataset_close(dataset);
 }
 
+static weft_rgb by_square(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    (void)y, (void)light, (void)view;
+    return (weft_rgb){x * x, x * x, x * x};
+}
+
+static void what_a_window_shows_twice_counts_once(void **state)
+{
+    (void)state;
+    weft_dataset *dataset;
+    weft_mean_brdf mean;
+    weft_error error = {0};
+    fixture_far_dataset(input, 8, 8, 1, by_square, 0);
+    expect_ok(weft_dataset_open(input, &dataset, &error), &error);
+    const weft_texel_window window = {.left = 1, .top = 2, .width = 3.5, .height = 3, .period_x = 2};
+    expect_ok(weft_mean_brdf_of(dataset, &window, NULL, &mean, &error), &error);
+    /* Columns 1 and 3 are the same place, 2 and the first half of 4, too; the second half of 2 is seen once. */
+    double expected = (0.5 * (1 + 9) + 0.5 * (4 + 16) / 2 + 0.5 * 4) / 2;
+    assert_true(fabs(mean.value[0].r * WEFT_PI - expected) < 1e-3);
+    weft_mean_brdf_free(&mean);
+    weft_dataset_close(dataset);
+}
+
 static int remove_input(void **state)
 {
     (void)state;
@@ -154,8 +205,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(whole_tiles_are_averaged_wherever_they_begin, remove_input),
+        cmocka_unit_test_teardown(texels_beside_the_frame_do_not_count, remove_input),
         cmocka_unit_test_teardown(material_without_two_tiles_is_averaged_whole_and_says_why, remove_input),
         cmocka_unit_test_teardown(a_window_counts_the_share_of_each_texel_inside, remove_input),
+        cmocka_unit_test_teardown(what_a_window_shows_twice_counts_once, remove_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
