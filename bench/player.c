@@ -269,7 +269,8 @@ static void load_weave(weft_player *player, const char *path, double tiles)
     weft_weave weave;
     char warning[WEFT_MESSAGE_SIZE];
     stop_on(weft_weave_read(path, NULL, 0, &weave, warning, &error), &error);
-    stop_on(weft_player_set_weave(player, &weave, tiles, tiles, &error), &error);
+    stop_on(weft_player_set_weave(player, &weave, &(weft_weave_layout){.tiles_u = tiles, .tiles_v = tiles}, &error),
+            &error);
     weft_weave_free(&weave);
 }
 

@@ -43,7 +43,7 @@ static const struct argp parser = {option_table,
                                    "NAME.btf.h5 --weave START.wv -o FITTED.wv",
                                    "Example: weft fit-weave denim.btf.h5 --weave twill.wv -o denim.wv\n\n"
                                    "Finds twist, inclination, curvature and width of the yarns, scattering of the "
-                                   "fibres and colours so that the weave reflects like the mean of the whole tiles in "
+                                   "fibres and colours so that the weave reflects like the mean tile in "
                                    "the dataset. "
                                    "Pattern and lengths stay as they are in START.wv.",
                                    children,
@@ -108,7 +108,7 @@ static void say_source(const fit_weave_command *command, const weft_fit_weave_so
         return;
     }
     command_say(&command->files.common,
-                "mean of %d x %d tiles of %.2f x %.2f texels, corner at %.2f, %.2f (likeness to the start: %.2f)",
+                "mean tile of %d x %d, %.2f x %.2f texels each, corner at %.2f, %.2f (likeness to the start: %.2f)",
                 source->tiles_x, source->tiles_y, tile->width, tile->height, tile->left, tile->top,
                 source->tile.likeness);
     char event[256];

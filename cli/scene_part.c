@@ -100,8 +100,9 @@ static weft_code read_part(void *data, weft_load *load, weft_error *error)
 static weft_code show_weave(part *p, weft_error *error)
 {
     const double *tiles = p->stage->options->settings.tiles;
-    return weft_player_set_weave(p->stage->player, &p->cloth.weave, tiles[0] > 0 ? tiles[0] : p->cloth.tiles_x,
-                                 tiles[1] > 0 ? tiles[1] : p->cloth.tiles_y, error);
+    const weft_weave_layout layout = {.tiles_u = tiles[0] > 0 ? tiles[0] : p->cloth.tiles_x,
+                                      .tiles_v = tiles[1] > 0 ? tiles[1] : p->cloth.tiles_y};
+    return weft_player_set_weave(p->stage->player, &p->cloth.weave, &layout, error);
 }
 
 static weft_code show_environment(part *p, weft_error *error)

@@ -174,11 +174,11 @@ weft_code weft_player_set_dataset(weft_player *p, weft_dataset *dataset, const w
     return WEFT_OK;
 }
 
-weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, double tiles_u, double tiles_v,
+weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, const weft_weave_layout *layout,
                                 weft_error *error)
 {
     weft_weave_texture texture;
-    weft_code code = weft_weave_texture_upload(weave, tiles_u, tiles_v, &texture, error);
+    weft_code code = weft_weave_texture_upload(weave, layout, &texture, error);
     if (code != WEFT_OK) {
         weft_weave_texture_free(&texture);
         return code;
@@ -186,7 +186,7 @@ weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, double 
     weft_weave_texture_free(&p->weave);
     p->weave = texture;
     p->weave_revision++;
-    has_now(p, WEFT_MODE_ANALYTIC, tiles_u * weave->tile_width, tiles_v * weave->tile_height);
+    has_now(p, WEFT_MODE_ANALYTIC, layout->tiles_u * weave->tile_width, layout->tiles_v * weave->tile_height);
     return WEFT_OK;
 }
 
@@ -195,10 +195,9 @@ long weft_player_weave_revision(const weft_player *p)
     return p->weave_revision;
 }
 
-void weft_player_weave_tiles(const weft_player *p, double tiles[2])
+weft_weave_layout weft_player_weave_layout(const weft_player *p)
 {
-    tiles[0] = p->weave.tiles[0];
-    tiles[1] = p->weave.tiles[1];
+    return p->weave.layout;
 }
 
 void weft_player_clear(weft_player *p, weft_mode mode)

@@ -31,13 +31,13 @@ weft_code weft_player_set_material(weft_player *player, const weft_material *mat
 /* *skipped_levels receives the number of finest levels that did not fit (0 where all did). */
 weft_code weft_player_set_dataset(weft_player *player, weft_dataset *dataset, const weft_progress *progress,
                                   int *skipped_levels, weft_error *error);
-/* tiles_u, tiles_v: tiles of the weave for one material. */
-weft_code weft_player_set_weave(weft_player *player, const weft_weave *weave, double tiles_u, double tiles_v,
+/* Laid on one material, and repeated with it. */
+weft_code weft_player_set_weave(weft_player *player, const weft_weave *weave, const weft_weave_layout *layout,
                                 weft_error *error);
 /* Grows whenever a weave is set; 0: none yet. */
 long weft_player_weave_revision(const weft_player *player);
-/* Those it was set with last. */
-void weft_player_weave_tiles(const weft_player *player, double tiles[2]);
+/* How it was laid last. */
+weft_weave_layout weft_player_weave_layout(const weft_player *player);
 
 bool weft_player_has(const weft_player *player, weft_mode mode);
 /* Takes the data of a mode away. */

@@ -71,10 +71,9 @@ void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks
 
 weft_code weft_weave_edit_show(weft_weave_edit *edit, weft_player *player, weft_error *error)
 {
-    double tiles[2];
-    weft_player_weave_tiles(player, tiles);
+    weft_weave_layout layout = weft_player_weave_layout(player);
     weft_weave_update(&edit->weave);
-    WEFT_TRY(weft_player_set_weave(player, &edit->weave, tiles[0], tiles[1], error));
+    WEFT_TRY(weft_player_set_weave(player, &edit->weave, &layout, error));
     edit->revision = weft_player_weave_revision(player);
     return WEFT_OK;
 }

@@ -36,7 +36,7 @@ double weft_weave_edit_get(const weft_weave_edit *edit, const weft_weave_paramet
 void weft_weave_edit_set(weft_weave_edit *edit, const weft_weave_parameter_range *range, double value);
 void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks);
 
-/* Derives what follows from the segments and uploads all, with as many tiles for a material as before. Errors: those of
+/* Derives what follows from the segments and uploads all, laid on the material as before. Errors: those of
  * weft_player_set_weave. */
 weft_code weft_weave_edit_show(weft_weave_edit *edit, weft_player *player, weft_error *error);
 

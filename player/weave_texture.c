@@ -73,10 +73,11 @@ static weft_code upload_directions(weft_direction_texture *texture, weft_error *
     return code;
 }
 
-weft_code weft_weave_texture_upload(const weft_weave *weave, double tiles_u, double tiles_v, weft_weave_texture *t,
+weft_code weft_weave_texture_upload(const weft_weave *weave, const weft_weave_layout *layout, weft_weave_texture *t,
                                     weft_error *error)
 {
-    *t = (weft_weave_texture){.tiles = {tiles_u, tiles_v}};
+    double tiles_u = layout->tiles_u, tiles_v = layout->tiles_v;
+    *t = (weft_weave_texture){.layout = *layout};
     if (!(tiles_u > 0) || !(tiles_v > 0) || !isfinite(tiles_u) || !isfinite(tiles_v))
         return weft_fail(error, WEFT_BAD_USAGE, "a material of %g x %g tiles cannot be shown", tiles_u, tiles_v);
     WEFT_TRY(upload_table(weave, t, error));
@@ -103,5 +104,6 @@ void weft_weave_texture_bind(const weft_weave_texture *t, GLuint program)
     weft_gl_bind(program, "weave_mean", 1, GL_TEXTURE_2D, t->mean);
     weft_direction_texture_bind(&t->directions, program, 2);
     weft_gl_set_int(program, "opaque", 1);
-    weft_gl_set_vec2(program, "weave_tiles", t->tiles[0], t->tiles[1]);
+    weft_gl_set_vec2(program, "weave_tiles", t->layout.tiles_u, t->layout.tiles_v);
+    weft_gl_set_vec2(program, "weave_corner", t->layout.corner_u, t->layout.corner_v);
 }

@@ -14,12 +14,12 @@ typedef struct weft_weave_texture {
     GLuint table, mean;
     int table_texels;
     weft_direction_texture directions;
-    double tiles[2]; /* for one material */
+    weft_weave_layout layout;
 } weft_weave_texture;
 
-/* tiles_u, tiles_v: tiles of the weave for one material. Errors: WEFT_BAD_USAGE for a number of tiles that is not
+/* `layout` is that on one material, with which it repeats. Errors: WEFT_BAD_USAGE for a number of tiles that is not
  * positive, WEFT_SYSTEM. The caller frees with weft_weave_texture_free, also on failure. */
-weft_code weft_weave_texture_upload(const weft_weave *weave, double tiles_u, double tiles_v,
+weft_code weft_weave_texture_upload(const weft_weave *weave, const weft_weave_layout *layout,
                                     weft_weave_texture *texture, weft_error *error);
 void weft_weave_texture_free(weft_weave_texture *texture);
 

@@ -62,6 +62,13 @@ weft_code weft_weave_write(const char *path, const weft_weave *weave, const char
  * threads. Part of weft_weave_read. */
 weft_real weft_weave_specular_scale(const weft_weave *weave);
 
+/* How tiles lie on a material whose texture coordinates (u, v) go from 0 to 1: U = tiles_u u - corner_u, V = tiles_v v
+ * - corner_v. At (corner_u, corner_v), in tiles from the lower left corner of the material, one tile begins. */
+typedef struct weft_weave_layout {
+    double tiles_u, tiles_v;
+    double corner_u, corner_v;
+} weft_weave_layout;
+
 /* Where a point of the cloth lies: U along x, V along y, tile units, any sign. */
 typedef struct weft_weave_point {
     int yarn;                  /* index */

@@ -60,9 +60,8 @@ static weft_code measure_material(const compared_files *files, const weft_progre
 static weft_code measure_weave(const compared_files *files, const weft_progress *progress, weft_comparison *comparison,
                                weft_error *error)
 {
-    const weft_virtual_cloth *cloth = &files->weave.cloth;
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_weave(files->dataset, &cloth->weave, cloth->tiles_x, cloth->tiles_y, &predictor, error));
+    WEFT_TRY(weft_predictor_of_weave(files->dataset, &files->weave.weave, &files->weave.layout, &predictor, error));
     weft_code code = measure_texture(files->dataset, predictor, "analytic", progress, comparison, error);
     weft_predictor_free(predictor);
     return code;
@@ -103,9 +102,8 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
     const weft_dataset_layout *layout = weft_dataset_get_layout(files->dataset);
     weigh(options, layout, comparison);
     WEFT_TRY(weft_dataset_fingerprint_compare(files->dataset, files->material.metadata, comparison->warning, error));
-    snprintf(comparison->weave_name, sizeof comparison->weave_name, "%s", files->weave.cloth.weave.name);
-    comparison->tiles_u = files->weave.cloth.tiles_x;
-    comparison->tiles_v = files->weave.cloth.tiles_y;
+    snprintf(comparison->weave_name, sizeof comparison->weave_name, "%s", files->weave.weave.name);
+    comparison->weave_layout = files->weave.layout;
     WEFT_TRY(measure_material(files, progress, comparison, error));
     if (options->weave)
         WEFT_TRY(measure_weave(files, progress, comparison, error));
@@ -114,8 +112,8 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
     WEFT_TRY(measure_means(options, files, progress, comparison, error));
     if (layout->image_count > 1 && layout->image_count < WEFT_LEAVE_ONE_OUT_LIMIT)
         WEFT_TRY(weft_leave_one_out_measure(files->dataset, progress, &comparison->left_out, error));
-    const weft_scenes_request request = {files->dataset, &files->material, options->weave ? &files->weave.cloth : NULL,
-                                         options->bard};
+    const weft_scenes_request request = {files->dataset, &files->material, options->weave ? &files->weave.weave : NULL,
+                                         &files->weave.layout, options->bard};
     WEFT_TRY(weft_scenes_draw(&request, progress, &comparison->scenes, error));
     const weft_traced_request truth = {files->dataset, &files->material, options->truth, options->truth_paths, 1};
     return options->truth ? weft_traced_truth_measure(&truth, progress, &comparison->truth, error) : WEFT_OK;

@@ -45,7 +45,14 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
     weft_page_text(page, comparison->weave_name);
     fprintf(page->html, "\u201d, ");
     weft_page_text(page, comparison->weave_origin);
-    fprintf(page->html, "; %.4g \u00d7 %.4g tiles across the material.", comparison->tiles_u, comparison->tiles_v);
+    const weft_weave_layout *layout = &comparison->weave_layout;
+    fprintf(page->html, "; %.4g \u00d7 %.4g tiles across the material", layout->tiles_u, layout->tiles_v);
+    if (comparison->fit_source.tiled)
+        fprintf(page->html,
+                ", laid so that yarns lie on yarns (a tile begins %.2f tiles to the right of the lower left "
+                "corner and %.2f above it)",
+                layout->corner_u, layout->corner_v);
+    fputs(".", page->html);
     if (comparison->fit.image_count > 0)
         fprintf(
             page->html,

@@ -2,9 +2,9 @@
 #include "study/compare_weave.h"
 
 #include "btf/atomic_file.h"
+#include "capture/virtual_cloth.h"
 #include "study/fit_weave_origin.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -23,18 +23,27 @@ static weft_code fit_and_write(const weft_compare_options *options, weft_dataset
     return code;
 }
 
-/* Tiles across the material: those asked for, those that the fit found, or as the virtual rig lays them out. */
-static weft_rig_settings layout_of(const weft_compare_options *options, const weft_fit_weave_source *source)
+/* As the virtual rig lays a weave out. */
+static weft_code rig_layout(const char *path, weft_weave_layout *layout, weft_error *error)
 {
-    weft_rig_settings layout = weft_rig_settings_default();
-    layout.tiles_x = options->tiles_u;
-    layout.tiles_y = options->tiles_v;
-    layout.cloth_noise = 0;
-    if (source->tiled && !(options->tiles_u > 0)) {
-        layout.tiles_x = fmax(1, round(source->tile.tiles_x));
-        layout.tiles_y = fmax(1, round(source->tile.tiles_y));
-    }
-    return layout;
+    weft_rig_settings settings = weft_rig_settings_default();
+    weft_virtual_cloth cloth;
+    WEFT_TRY(weft_virtual_cloth_read(path, &settings, 0, &cloth, NULL, error));
+    *layout = (weft_weave_layout){.tiles_u = cloth.tiles_x, .tiles_v = cloth.tiles_y};
+    weft_virtual_cloth_free(&cloth);
+    return WEFT_OK;
+}
+
+static weft_code lay(const weft_compare_options *options, const weft_dataset_layout *material,
+                     const weft_fit_weave_source *source, weft_compared_weave *weave, weft_error *error)
+{
+    if (options->tiles_u > 0)
+        weave->layout = (weft_weave_layout){.tiles_u = options->tiles_u, .tiles_v = options->tiles_v};
+    else if (source->tiled)
+        weave->layout = weft_tile_layout(&source->tile.tile, material);
+    else
+        return rig_layout(weave->path, &weave->layout, error);
+    return WEFT_OK;
 }
 
 static weft_code name_file(const weft_compare_options *options, weft_compared_weave *weave, weft_error *error)
@@ -56,13 +65,13 @@ weft_code weft_compare_weave_open(const weft_compare_options *options, weft_data
     if (options->fit)
         WEFT_TRY(fit_and_write(options, dataset, weave->path, progress, comparison, error));
     WEFT_TRY(weft_fit_weave_origin(weave->path, dataset, comparison->weave_origin, error));
-    weft_rig_settings layout = layout_of(options, &comparison->fit_source);
-    return weft_virtual_cloth_read(weave->path, &layout, 0, &weave->cloth, warning, error);
+    WEFT_TRY(lay(options, weft_dataset_get_layout(dataset), &comparison->fit_source, weave, error));
+    return weft_weave_read(weave->path, NULL, 0, &weave->weave, warning, error);
 }
 
 void weft_compare_weave_close(weft_compared_weave *weave)
 {
-    weft_virtual_cloth_free(&weave->cloth);
+    weft_weave_free(&weave->weave);
     free(weave->path);
     *weave = (weft_compared_weave){0};
 }

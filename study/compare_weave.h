@@ -2,13 +2,13 @@
 #ifndef WEFT_STUDY_COMPARE_WEAVE_H
 #define WEFT_STUDY_COMPARE_WEAVE_H
 
-#include "capture/virtual_cloth.h"
 #include "study/compare.h"
 
 /* Empty without a weave. Freed with weft_compare_weave_close, also after failure. */
 typedef struct weft_compared_weave {
     char *path; /* of the file that is compared: the given or the fitted one */
-    weft_virtual_cloth cloth;
+    weft_weave weave;
+    weft_weave_layout layout; /* on the material: as the fit found it, as asked for, or as the virtual rig lays it */
 } weft_compared_weave;
 
 /* Reads options->weave, fitted to the dataset first where options->fit; then folder/fitted.wv is written. Fills fit,

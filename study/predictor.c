@@ -15,7 +15,7 @@ struct weft_predictor {
     weft_table_directions directions; /* of the material */
     const weft_weave *weave;
     weft_woven_table *table; /* of the weave */
-    double tiles_u, tiles_v;
+    weft_weave_layout tiles;
     weft_dataset *other;
     int first_row;
     weft_half *samples; /* of the other dataset: [rows][width][image_count][3] */
@@ -98,11 +98,13 @@ enum { SIDE = 4, POINTS = SIDE * SIDE };
 
 static void locate_points(const weft_predictor *predictor, int x, int y, weft_weave_point point[POINTS])
 {
-    double texel_u = predictor->tiles_u / predictor->layout->width;
-    double texel_v = predictor->tiles_v / predictor->layout->height;
+    const weft_weave_layout *tiles = &predictor->tiles;
+    double texel_u = tiles->tiles_u / predictor->layout->width;
+    double texel_v = tiles->tiles_v / predictor->layout->height;
     for (int i = 0; i < POINTS; i++) {
         double across = x + (i % SIDE + 0.5) / SIDE, down = y + (i / SIDE + 0.5) / SIDE;
-        point[i] = weft_weave_locate(predictor->weave, across * texel_u, predictor->tiles_v - down * texel_v, 0);
+        point[i] = weft_weave_locate(predictor->weave, across * texel_u - tiles->corner_u,
+                                     tiles->tiles_v - down * texel_v - tiles->corner_v, 0);
     }
 }
 
@@ -139,13 +141,12 @@ static void predict_by_weave(const weft_predictor *predictor, int x, int y, cons
     }
 }
 
-weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, double tiles_u, double tiles_v,
+weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,
                                   weft_predictor **result, weft_error *error)
 {
     WEFT_TRY(create(dataset, predict_by_weave, result, error));
     (*result)->weave = weave;
-    (*result)->tiles_u = tiles_u;
-    (*result)->tiles_v = tiles_v;
+    (*result)->tiles = *layout;
     weft_code code = weft_woven_table_create(weave, &(*result)->table, error);
     if (code != WEFT_OK)
         weft_predictor_free(*result);

@@ -15,9 +15,9 @@ typedef struct weft_predictor weft_predictor;
 weft_code weft_predictor_of_material(const weft_dataset *dataset, const weft_material *material,
                                      weft_predictor **result, weft_error *error);
 
-/* A weave without its noise, tiles_u x tiles_v of its tiles across the material; a texel is the mean of 4 x 4 points.
- * The weave stays the caller's. */
-weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, double tiles_u, double tiles_v,
+/* A weave without its noise, laid on the material; a texel is the mean of 4 x 4 points. The weave stays the caller's.
+ */
+weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,
                                   weft_predictor **result, weft_error *error);
 
 /* The samples of another dataset, such as `weft bard` writes. Errors: WEFT_BAD_INPUT where it cannot be read, or its

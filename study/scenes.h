@@ -6,7 +6,6 @@
 #include "btf/image.h"
 #include "btf/material.h"
 #include "btf/progress.h"
-#include "capture/virtual_cloth.h"
 #include "player/player.h"
 #include "study/prediction_error.h"
 
@@ -40,7 +39,8 @@ typedef struct weft_scenes {
 typedef struct weft_scenes_request {
     weft_dataset *dataset;
     const weft_material *material;
-    const weft_virtual_cloth *cloth; /* a weave and its tiles for one material */
+    const weft_weave *weave;         /* or NULL */
+    const weft_weave_layout *layout; /* of the weave on the material */
     const char *bard;                /* a dataset as `weft bard` writes it */
 } weft_scenes_request;
 

@@ -3,6 +3,8 @@
 #include "study/tile_period.h"
 #include "study/tile_phase.h"
 
+#include <math.h>
+
 /* Two tiles of four texels. */
 enum { LEAST_TEXELS = 8 };
 
@@ -47,4 +49,21 @@ weft_code weft_tile_find(weft_dataset *dataset, const weft_weave *weave, const w
     report->tiles_x = layout->width / report->tile.width;
     report->tiles_y = layout->height / report->tile.height;
     return WEFT_OK;
+}
+
+static double tiles_across(int size, double tile)
+{
+    const double whole_within = 0.01;
+    double tiles = size / tile;
+    return fabs(tiles - round(tiles)) < whole_within ? round(tiles) : tiles;
+}
+
+weft_weave_layout weft_tile_layout(const weft_tile *tile, const weft_dataset_layout *material)
+{
+    weft_weave_layout layout = {.tiles_u = tiles_across(material->width, tile->width),
+                                .tiles_v = tiles_across(material->height, tile->height)};
+    double lowest = layout.tiles_v - tile->top / tile->height; /* of the corners at the left, from below */
+    layout.corner_u = tile->left / tile->width;
+    layout.corner_v = lowest - floor(lowest);
+    return layout;
 }

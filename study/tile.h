@@ -35,6 +35,10 @@ typedef struct weft_tile_report {
 weft_code weft_tile_find(weft_dataset *dataset, const weft_weave *weave, const weft_progress *progress,
                          weft_tile_report *report, weft_error *error);
 
+/* How the tiles of a weave lie on the material if `tile` is one of them. A number of tiles within a hundredth of a
+ * whole one is that: such a material was cut to repeat. Pure. */
+weft_weave_layout weft_tile_layout(const weft_tile *tile, const weft_dataset_layout *material);
+
 /* Averages all tiles, of all images, into one of texels_x x texels_y texels, about the size of those of the dataset,
  * and writes it as a dataset of the same images. Every valid sample counts, shared between the four texels of the tile
  * nearest to it. Reads the dataset once, or once for every gigabyte of the tile. Fills the rest of the report. Errors:

@@ -3,6 +3,7 @@
 uniform sampler2D weave_table;
 uniform sampler2D weave_mean; // column: light, row: view; BRDF in 1/sr
 uniform vec2 weave_tiles;     // for one material
+uniform vec2 weave_corner;    // where a tile begins, tiles from that of the material
 
 // log2 of the footprint in cells where the texture begins to fade, and where the mean is all there is.
 const float FADE_BEGIN = -1.0;
@@ -26,7 +27,7 @@ vec4 radiance(SurfacePoint point)
     if (STOCHASTIC)
         fade = happens(point.chance, fade) ? 1.0 : 0.0;
     Corners views = find_corners(0, point.view);
-    WeavePoint place = weave_locate(weave_table, point.coordinate * weave_tiles, uvec2(0u));
+    WeavePoint place = weave_locate(weave_table, fract(point.coordinate) * weave_tiles - weave_corner, uvec2(0u));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i);

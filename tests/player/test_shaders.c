@@ -218,7 +218,7 @@ typedef struct cloth_model {
     weft_weave weave;
     weft_triangulation *directions;
     weft_rgb mean[WEFT_UBO81_COUNT][WEFT_UBO81_COUNT];
-    double tiles;
+    weft_weave_layout layout;
 } cloth_model;
 
 static weft_rgb mean_brdf(const cloth_model *model, weft_vec3 light, weft_vec3 view)
@@ -245,8 +245,10 @@ static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)
     if (!(light.z > 0))
         return (weft_rgba){0, 0, 0, 1};
     double fade = fmin(fmax(((double)at->level + 1) / 2, 0), 1);
-    weft_weave_point place =
-        weft_weave_locate(&model->weave, (weft_real)at->u * model->tiles, (weft_real)at->v * model->tiles, 0);
+    const weft_weave_layout *layout = &model->layout;
+    double u = (double)at->u, v = (double)at->v;
+    weft_weave_point place = weft_weave_locate(&model->weave, (u - floor(u)) * layout->tiles_u - layout->corner_u,
+                                               (v - floor(v)) * layout->tiles_v - layout->corner_v, 0);
     weft_rgb near = weft_weave_brdf(&model->weave, &place, light, view), far = mean_brdf(model, light, view);
     return lit((weft_rgb){WEFT_PI * (near.r + fade * (far.r - near.r)), WEFT_PI * (near.g + fade * (far.g - near.g)),
                           WEFT_PI * (near.b + fade * (far.b - near.b))},
@@ -266,8 +268,8 @@ static void compare_weave(void **state, const char *name, double repeat)
     expect_ok(weft_weave_read(path, NULL, 0, &model->weave, warning, &error), &error);
     expect_ok(weft_triangulation_build(direction, WEFT_UBO81_COUNT, &model->directions, &error), &error);
     weft_weave_mean_tabulate(&model->weave, model->mean);
-    model->tiles = 2;
-    expect_ok(weft_player_set_weave(s->player, &model->weave, 2, 2, &error), &error);
+    model->layout = (weft_weave_layout){2.25, 2, 0.3, -0.4};
+    expect_ok(weft_player_set_weave(s->player, &model->weave, &model->layout, &error), &error);
     weft_scene scene = weft_scene_default();
     scene.repeat = repeat;
     expect_small(name, stage_compare(s->player, scene, WEFT_MODE_ANALYTIC, WIDTH, HEIGHT, evaluate_cloth, model));

@@ -17,13 +17,15 @@ static const weft_weave_parameter_range *range_of(const char *name)
     return range;
 }
 
+static const weft_weave_layout layout = {3, 2, 0.25, 0.5};
+
 static weft_weave_edit edit_of(weft_player *player, const char *path)
 {
     weft_weave_edit edit = {0};
     weft_weave weave;
     weft_error error = {0};
     expect_ok(weft_weave_read(cloth, NULL, 0, &weave, NULL, &error), &error);
-    expect_ok(weft_player_set_weave(player, &weave, 3, 2, &error), &error);
+    expect_ok(weft_player_set_weave(player, &weave, &layout, &error), &error);
     weft_weave_free(&weave);
     expect_ok(weft_weave_edit_follow(&edit, player, path, &error), &error);
     return edit;
@@ -65,19 +67,19 @@ static double mean_of(weft_player *player)
     return sum / (3 * 80 * 60);
 }
 
-static void the_player_shows_a_changed_weave_with_as_many_tiles(void **state)
+static void the_player_shows_a_changed_weave_laid_as_before(void **state)
 {
     weft_player *player = ((stage *)*state)->player;
     weft_weave_edit edit = edit_of(player, cloth);
     weft_error error = {0};
-    double before = mean_of(player), tiles[2];
+    double before = mean_of(player);
     for (edit.yarn = 0; edit.yarn < edit.weave.yarn_count; edit.yarn++)
         weft_weave_edit_set_colours(&edit, (weft_rgb){0.6, 0.6, 0.6}, (weft_rgb){0});
     edit.yarn = 0;
     expect_ok(weft_weave_edit_show(&edit, player, &error), &error);
     assert_true(mean_of(player) > before + 0.02);
-    weft_player_weave_tiles(player, tiles);
-    assert_true(tiles[0] == 3 && tiles[1] == 2);
+    weft_weave_layout now = weft_player_weave_layout(player);
+    assert_memory_equal(&now, &layout, sizeof now);
     expect_ok(weft_weave_edit_follow(&edit, player, cloth, &error), &error);
     assert_true(edit.is_changed && edit.weave.yarn[0].kd.g == (weft_real)0.6);
     weft_weave_edit_free(&edit);
@@ -138,7 +140,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_value_reaches_the_yarns_that_were_alike_and_no_others),
-        cmocka_unit_test(the_player_shows_a_changed_weave_with_as_many_tiles),
+        cmocka_unit_test(the_player_shows_a_changed_weave_laid_as_before),
         cmocka_unit_test(another_weave_takes_the_place_of_a_changed_one),
         cmocka_unit_test(what_cannot_be_read_is_told_once_and_leaves_nothing),
         cmocka_unit_test(a_saved_weave_reads_back_to_what_was_changed),

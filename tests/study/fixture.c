@@ -103,3 +103,20 @@ void fixture_diffuse_material(const char *path, int width, int height, weft_rgb 
     expect_ok(weft_material_write(path, &material, &error), &error);
     weft_material_free(&material);
 }
+
+fixture_weave fixture_cloth;
+
+weft_rgb fixture_woven(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    enum { POINTS = 4 };
+    weft_rgb sum = {0};
+    for (int i = 0; i < POINTS * POINTS; i++) {
+        double U = (x + (i % POINTS + 0.5) / POINTS - fixture_cloth.left) / fixture_cloth.width;
+        double V = 1 - (y + (i / POINTS + 0.5) / POINTS - fixture_cloth.top) / fixture_cloth.height;
+        weft_weave_point point = weft_weave_locate(&fixture_cloth.weave, U, V, 0);
+        weft_rgb value = weft_weave_brdf(&fixture_cloth.weave, &point, light, view);
+        sum.r += value.r, sum.g += value.g, sum.b += value.b;
+    }
+    double scale = WEFT_PI / (POINTS * POINTS);
+    return (weft_rgb){scale * sum.r, scale * sum.g, scale * sum.b};
+}

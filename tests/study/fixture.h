@@ -4,6 +4,7 @@
 
 #include "btf/dataset.h"
 #include "btf/material.h"
+#include "reflectance/weave.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,6 +15,17 @@
 
 /* Reflectance (BRDF x pi) of a texel in a direction pair, whatever the test wants. */
 typedef weft_rgb (*fixture_reflectance)(int x, int y, weft_vec3 light, weft_vec3 view);
+
+/* What fixture_woven shows: a weave, a tile of width x height texels whose upper left corner is at (left, top). */
+typedef struct fixture_weave {
+    double width, height, left, top;
+    weft_weave weave;
+} fixture_weave;
+
+extern fixture_weave fixture_cloth;
+
+/* Each texel the mean of 4 x 4 points. */
+weft_rgb fixture_woven(int x, int y, weft_vec3 light, weft_vec3 view);
 
 /* The first `ring_count` rings of ubo81 for views and lights (1, 7, 19, ... directions), all pairs, reflectance times
  * cosine. Texel (0, 0) of image 0 is masked as saturated where `mask_one`. */

@@ -142,6 +142,43 @@ static void expect_model_row(const char *page, const char *name, const weft_pred
         fail_msg("the page has no row %s", row);
 }
 
+/* The error of the analytic cloth, sample by sample: laid as the fit found it, or as many tiles from the corner. */
+static weft_prediction_error compare_fitted(double tiles)
+{
+    const weft_compare_options options = {.dataset = "compare.btf.h5",
+                                          .material = "compare.weft",
+                                          .weave = WEFT_ASSETS "/weaves/polyester_lining.wv",
+                                          .fit = true,
+                                          .tiles_u = tiles,
+                                          .tiles_v = tiles,
+                                          .folder = "compare-report"};
+    weft_comparison comparison;
+    weft_error error = {0};
+    expect_ok(weft_compare(&options, NULL, &comparison, &error), &error);
+    weft_prediction_error result = comparison.model[1].texture.all;
+    const weft_weave_layout *layout = &comparison.weave_layout;
+    print_message("%.3f x %.3f tiles, corner at %.3f, %.3f: relative RMSE %.4f\n", layout->tiles_u, layout->tiles_v,
+                  layout->corner_u, layout->corner_v, result.relative_rmse);
+    weft_comparison_free(&comparison);
+    return result;
+}
+
+static void a_fitted_weave_lies_with_its_yarns_on_those_of_the_data(void **state)
+{
+    (void)state;
+    enum { TEXELS = 40 };
+    const double tile = 16.6;
+    weft_error error = {0};
+    fixture_cloth = (fixture_weave){.width = tile, .height = tile, .left = 5.2, .top = 9.7};
+    expect_ok(weft_weave_read(WEFT_ASSETS "/weaves/polyester_lining.wv", NULL, 0, &fixture_cloth.weave, NULL, &error),
+              &error);
+    fixture_far_dataset("compare.btf.h5", TEXELS, TEXELS, 3, fixture_woven, 0);
+    fixture_diffuse_material("compare.weft", TEXELS, TEXELS, flat);
+    weft_prediction_error laid = compare_fitted(0), beside = compare_fitted(TEXELS / tile);
+    assert_true(laid.relative_rmse < 0.25 * beside.relative_rmse);
+    weft_weave_free(&fixture_cloth.weave);
+}
+
 /* The dataset itself in place of a prediction has no error; a weave that is not its cloth has. */
 static void the_page_compares_every_model_that_is_given(void **state)
 {
@@ -245,6 +282,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_tells_the_errors_that_the_functions_have),
         cmocka_unit_test(the_page_compares_every_model_that_is_given),
+        cmocka_unit_test(a_fitted_weave_lies_with_its_yarns_on_those_of_the_data),
         cmocka_unit_test(a_prediction_of_another_dataset_is_refused),
         cmocka_unit_test(a_matt_plane_is_predicted_from_the_other_photographs),
         cmocka_unit_test(a_material_of_another_size_is_refused),

@@ -13,28 +13,6 @@ static const char *const input = "fit.btf.h5";
 
 enum { TEXELS = 40, RINGS = 3 };
 
-/* What the dataset shows: the weave, a tile of width x height texels whose corner is at (left, top). */
-static struct {
-    double width, height, left, top;
-    weft_weave weave;
-} cloth;
-
-/* Each texel the mean of 4 x 4 points. */
-static weft_rgb woven(int x, int y, weft_vec3 light, weft_vec3 view)
-{
-    enum { POINTS = 4 };
-    weft_rgb sum = {0};
-    for (int i = 0; i < POINTS * POINTS; i++) {
-        double U = (x + (i % POINTS + 0.5) / POINTS - cloth.left) / cloth.width;
-        double V = 1 - (y + (i / POINTS + 0.5) / POINTS - cloth.top) / cloth.height;
-        weft_weave_point point = weft_weave_locate(&cloth.weave, U, V, 0);
-        weft_rgb value = weft_weave_brdf(&cloth.weave, &point, light, view);
-        sum.r += value.r, sum.g += value.g, sum.b += value.b;
-    }
-    double scale = WEFT_PI / (POINTS * POINTS);
-    return (weft_rgb){scale * sum.r, scale * sum.g, scale * sum.b};
-}
-
 static weft_weave read_weave(const char *name)
 {
     char path[512];
@@ -77,7 +55,7 @@ static void expect_truth(const weft_fit_weave_report *report)
 {
     for (int i = 0; i < report->group_count; i++) {
         const weft_fit_weave_group *found = &report->group[i];
-        const weft_segment *truth = &cloth.weave.yarn[found->yarn].segment;
+        const weft_segment *truth = &fixture_cloth.weave.yarn[found->yarn].segment;
         print_message("  psi %.2f (%.2f), umax %.2f (%.2f)\n", found->psi_deg, weft_deg_of_rad(truth->psi),
                       found->umax_deg, weft_deg_of_rad(truth->umax));
         assert_true(fabs(found->umax_deg - weft_deg_of_rad(truth->umax)) < 2);
@@ -90,9 +68,9 @@ static void whole_tiles_are_averaged_wherever_they_begin(void **state)
     (void)state;
     weft_fit_weave_source source;
     weft_fit_weave_report tiled, whole;
-    cloth.weave = read_weave("polyester_lining.wv");
-    cloth.width = cloth.height = 16.6, cloth.left = 5.2, cloth.top = 9.7;
-    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, woven, 0);
+    fixture_cloth.weave = read_weave("polyester_lining.wv");
+    fixture_cloth.width = fixture_cloth.height = 16.6, fixture_cloth.left = 5.2, fixture_cloth.top = 9.7;
+    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, fixture_woven, 0);
     fit("polyester_lining.wv", false, &source, &tiled);
     fit("polyester_lining.wv", true, &source, &whole);
     print_message("median relative error %.2f %% of whole tiles, %.2f %% of the whole material\n",
@@ -100,10 +78,11 @@ static void whole_tiles_are_averaged_wherever_they_begin(void **state)
     assert_true(source.tiled);
     assert_int_equal(source.tiles_x, 2);
     assert_int_equal(source.tiles_y, 2);
-    assert_true(fabs(source.tile.tile.width - cloth.width) < 0.1 && fabs(source.tile.tile.height - cloth.height) < 0.1);
+    assert_true(fabs(source.tile.tile.width - fixture_cloth.width) < 0.1 &&
+                fabs(source.tile.tile.height - fixture_cloth.height) < 0.1);
     assert_true(tiled.after.median_relative < 0.5 * whole.after.median_relative);
     expect_truth(&tiled);
-    weft_weave_free(&cloth.weave);
+    weft_weave_free(&fixture_cloth.weave);
 }
 
 static int further_in(int at)
@@ -114,7 +93,7 @@ static int further_in(int at)
 /* What a registration makes of texels that the frame's print would leak into. */
 static weft_rgb framed(int x, int y, weft_vec3 light, weft_vec3 view)
 {
-    return woven(further_in(x), further_in(y), light, view);
+    return fixture_woven(further_in(x), further_in(y), light, view);
 }
 
 static void texels_beside_the_frame_do_not_count(void **state)
@@ -122,8 +101,8 @@ static void texels_beside_the_frame_do_not_count(void **state)
     (void)state;
     weft_fit_weave_source source;
     weft_fit_weave_report tiled, whole;
-    cloth.weave = read_weave("polyester_lining.wv");
-    cloth.width = cloth.height = TEXELS / 2.0, cloth.left = cloth.top = 0;
+    fixture_cloth.weave = read_weave("polyester_lining.wv");
+    fixture_cloth.width = fixture_cloth.height = TEXELS / 2.0, fixture_cloth.left = fixture_cloth.top = 0;
     fixture_far_dataset(input, TEXELS, TEXELS, RINGS, framed, 0);
     fit("polyester_lining.wv", false, &source, &tiled);
     fit("polyester_lining.wv", true, &source, &whole);
@@ -131,7 +110,7 @@ static void texels_beside_the_frame_do_not_count(void **state)
                   100 * tiled.after.median_relative, 100 * whole.after.median_relative);
     assert_true(tiled.after.median_relative < 0.5 * whole.after.median_relative);
     expect_truth(&tiled);
-    weft_weave_free(&cloth.weave);
+    weft_weave_free(&fixture_cloth.weave);
 }
 
 static void material_without_two_tiles_is_averaged_whole_and_says_why(void **state)
@@ -139,15 +118,15 @@ static void material_without_two_tiles_is_averaged_whole_and_says_why(void **sta
     (void)state;
     weft_fit_weave_source source;
     weft_fit_weave_report report;
-    cloth.weave = read_weave("polyester_lining.wv");
-    cloth.width = cloth.height = TEXELS, cloth.left = cloth.top = 0;
-    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, woven, 0);
+    fixture_cloth.weave = read_weave("polyester_lining.wv");
+    fixture_cloth.width = fixture_cloth.height = TEXELS, fixture_cloth.left = fixture_cloth.top = 0;
+    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, fixture_woven, 0);
     fit("polyester_lining.wv", false, &source, &report);
     print_message("%s\n", source.why_whole);
     assert_false(source.tiled);
     assert_true(source.why_whole[0]);
     expect_truth(&report);
-    weft_weave_free(&cloth.weave);
+    weft_weave_free(&fixture_cloth.weave);
 }
 
 static weft_rgb by_column(int x, int y, weft_vec3 light, weft_vec3 view)
