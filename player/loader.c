@@ -34,6 +34,7 @@ struct weft_loader {
     weft_load *first; /* those not released yet; the first that is not read is the one that runs */
     piece *first_piece, **end_of_pieces;
     size_t bytes_waiting;
+    long reported; /* percent of the load that the caller who waits was told of */
 };
 
 /* ---- The background ---- */
@@ -288,12 +289,13 @@ static bool wait_for_work(weft_loader *loader)
 
 weft_code weft_loader_wait(weft_loader *loader, const weft_progress *progress, bool *some, weft_error *error)
 {
-    const long steps = 1000;
+    const long steps = 100;
     bool shown = false;
     *some = wait_for_work(loader);
-    double share = weft_loader_progress(loader);
-    if (share > 0)
-        weft_progress_report(progress, "loading samples", lrint(share * steps), steps);
+    long done = lrint(weft_loader_progress(loader) * steps);
+    if (done > 0 && done != loader->reported)
+        weft_progress_report(progress, "loading samples", done, steps);
+    loader->reported = done;
     return *some ? weft_loader_poll(loader, 0, &shown, error) : WEFT_OK;
 }
 
