@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const weft_texture_format packed_format = {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT};
 static const weft_texture_format table_format = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
@@ -169,9 +168,6 @@ void weft_material_texture_bind(const weft_material_texture *t, GLuint program)
     weft_gl_set_float(program, "table_columns", t->table.columns);
     weft_gl_set_float(program, "light_table_columns", t->light_table.columns);
     float area[WEFT_MIP_LEVELS][4];
-    for (int level = 0; level < t->layout.level_count; level++) {
-        weft_mip_area a = t->layout.area[level];
-        memcpy(area[level], (float[4]){(float)a.x, (float)a.y, (float)a.width, (float)a.height}, sizeof area[level]);
-    }
+    weft_mip_layout_areas(&t->layout, area);
     glUniform4fv(glGetUniformLocation(program, "level_area"), t->layout.level_count, area[0]);
 }

@@ -46,3 +46,14 @@ int weft_mip_level_count(int width, int height)
     }
     return count;
 }
+
+void weft_mip_layout_areas(const weft_mip_layout *layout, float area[WEFT_MIP_LEVELS][4])
+{
+    for (int level = 0; level < layout->level_count; level++) {
+        weft_mip_area a = layout->area[level];
+        area[level][0] = (float)a.x;
+        area[level][1] = (float)a.y;
+        area[level][2] = (float)a.width;
+        area[level][3] = (float)a.height;
+    }
+}

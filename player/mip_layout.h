@@ -19,6 +19,9 @@ typedef struct weft_mip_layout {
  * more up to the next multiple of `block`: every level begins at one. */
 weft_mip_layout weft_mip_layout_of(int width, int height, int level_count, int border, int block);
 
+/* The areas as shaders take them: x, y, width, height. */
+void weft_mip_layout_areas(const weft_mip_layout *layout, float area[WEFT_MIP_LEVELS][4]);
+
 /* Number of levels down to 1 x 1, at most WEFT_MIP_LEVELS. */
 int weft_mip_level_count(int width, int height);
 

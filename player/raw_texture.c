@@ -1,7 +1,6 @@
 #include "player/raw_texture.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { BLOCK = WEFT_RAW_BLOCK };
 
@@ -120,10 +119,7 @@ static void set_tiles(const weft_raw_texture *t, int part, GLuint program, const
 void weft_raw_texture_bind(const weft_raw_texture *t, GLuint program)
 {
     float area[WEFT_MIP_LEVELS][4];
-    for (int level = 0; level < t->plan.layout.level_count; level++) {
-        weft_mip_area a = t->plan.layout.area[level];
-        memcpy(area[level], (float[4]){(float)a.x, (float)a.y, (float)a.width, (float)a.height}, sizeof area[level]);
-    }
+    weft_mip_layout_areas(&t->plan.layout, area);
     /* A sampler needs a texture even where it is never fetched. */
     int opacity = t->opaque ? WEFT_RAW_SAMPLES : WEFT_RAW_OPACITY;
     weft_gl_bind(program, "raw_sample", 0, GL_TEXTURE_2D_ARRAY, t->part[WEFT_RAW_SAMPLES]);
