@@ -9,14 +9,14 @@ enum { STEPS = 101 };
 static const weft_label_ink darker = {{0, 0, 0, 1}, {-FULL, -FULL, -FULL, 1}};
 static const weft_label_ink brighter = {{0, 0, 0, 1}, {FULL, FULL, FULL, 1}};
 
-/* y from the lower edge. */
-static void draw_bar(int left, int y, int width, int height)
+/* Brighter above; x, y: of its lower left corner, from that of the picture. */
+static void draw_bar(int x, int y, int width, int height)
 {
     glEnable(GL_SCISSOR_TEST);
     for (int i = 0; i < STEPS; i++) {
-        int from = left + width * i / STEPS, to = left + width * (i + 1) / STEPS;
+        int from = height * i / STEPS, to = height * (i + 1) / STEPS;
         float value = FULL * (2 * (float)i / (STEPS - 1) - 1);
-        glScissor(from, y, to - from, height);
+        glScissor(x, y + from, width, to - from);
         glClearColor(value, value, value, 1);
         glClear(GL_COLOR_BUFFER_BIT);
     }
@@ -25,14 +25,13 @@ static void draw_bar(int left, int y, int width, int height)
 
 weft_code weft_legend_draw(weft_labels *labels, int width, int height, weft_mode second, weft_error *error)
 {
-    int size = weft_label_size(height), bar = 8 * size, line = 3 * size / 2, top = height - line - size / 2;
-    char below[64], above[64];
-    if (width < 36 * size || height < 6 * size)
+    int size = weft_label_size(height), margin = size, line = 3 * size / 2, bar = 5 * size, right = margin + line;
+    char above[64], below[64];
+    if (width < 20 * size || height < 8 * size)
         return WEFT_OK;
-    snprintf(below, sizeof below, "%s darker by %.2f", weft_mode_name(second), (double)FULL);
-    snprintf(above, sizeof above, "brighter by %.2f", (double)FULL);
-    int left = (width - bar) / 2 + size;
-    draw_bar(left, height - top - line, bar, line);
-    WEFT_TRY(weft_label_draw(labels, width, height, left, top, true, below, &darker, error));
-    return weft_label_draw(labels, width, height, left + bar, top, false, above, &brighter, error);
+    snprintf(above, sizeof above, "%s brighter by %.2f", weft_mode_name(second), (double)FULL);
+    snprintf(below, sizeof below, "darker by %.2f", (double)FULL);
+    draw_bar(margin, margin, line, bar);
+    WEFT_TRY(weft_label_draw(labels, width, height, right, height - margin - bar, false, above, &brighter, error));
+    return weft_label_draw(labels, width, height, right, height - margin - line, false, below, &darker, error);
 }

@@ -5,9 +5,9 @@
 #include "player/label.h"
 #include "player/scene.h"
 
-/* At the lower edge of a picture of width x height pixels that holds differences (the framebuffer in use): colours from
- * -WEFT_SCENE_FULL_DIFFERENCE to it, and in words what they say of `second`. Nothing where the picture is too small.
- * Errors: WEFT_SYSTEM. */
+/* In the lower left corner of a picture of width x height pixels that holds differences (the framebuffer in use):
+ * colours from -WEFT_SCENE_FULL_DIFFERENCE to it, and in words what they say of `second`. Nothing where the picture is
+ * too small. Errors: WEFT_SYSTEM. */
 weft_code weft_legend_draw(weft_labels *labels, int width, int height, weft_mode second, weft_error *error);
 
 #endif

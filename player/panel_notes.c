@@ -1,7 +1,6 @@
 #include "player/application_parts.h"
 
 #include "player/keys.h"
-#include "player/label.h"
 #include "player/ui_bridge.h"
 
 #include <stdio.h>
@@ -66,14 +65,13 @@ static void show_colours(const weft_scene *scene, double left, double bottom, do
     weft_ui_panel_end();
 }
 
-/* How far what is compared is from raw; over the scale of a difference. */
+/* How far what is compared is from raw. */
 static void show_errors(const weft_application *a, double right, double bottom)
 {
     const weft_scene *scene = &a->interaction.scene;
     if (!a->errors[0] || weft_scene_panes(scene) < 2)
         return;
-    double scale_height = scene->layout == WEFT_LAYOUT_DIFFERENCE ? 2.2 * weft_label_size(a->canvas.height) : 0;
-    weft_ui_note_begin("errors", right - 12 * a->scale, bottom - 12 * a->scale - scale_height, 1, 1);
+    weft_ui_note_begin("errors", right - 12 * a->scale, bottom - 12 * a->scale, 1, 1);
     weft_ui_text(a->errors);
     weft_ui_panel_end();
 }
