@@ -8,6 +8,8 @@
 struct weft_window {
     GLFWwindow *handle;
     weft_window_events events;
+    double x, y; /* of the pointer at the last event: glfwGetCursorPos would tell where it has come to since, and after
+                    a slow frame that is far from where the button was pressed */
     int left, top, width, height; /* in the desktop, before it filled the screen */
 };
 
@@ -24,16 +26,15 @@ static void pixel_position(GLFWwindow *handle, double *x, double *y)
 static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
 {
     weft_window *window = glfwGetWindowUserPointer(handle);
-    double x, y;
-    glfwGetCursorPos(handle, &x, &y);
-    pixel_position(handle, &x, &y);
-    window->events.press(window->events.context, button, action == GLFW_PRESS, modifiers, x, y);
+    window->events.press(window->events.context, button, action == GLFW_PRESS, modifiers, window->x, window->y);
 }
 
 static void on_move(GLFWwindow *handle, double x, double y)
 {
     weft_window *window = glfwGetWindowUserPointer(handle);
     pixel_position(handle, &x, &y);
+    window->x = x;
+    window->y = y;
     window->events.move(window->events.context, x, y);
 }
 

@@ -72,6 +72,7 @@ static void show_errors(const weft_application *a, double right, double bottom)
     if (!a->errors[0] || weft_scene_panes(scene) < 2)
         return;
     weft_ui_note_begin("errors", right - 12 * a->scale, bottom - 12 * a->scale, 1, 1);
+    weft_ui_wrap_within(a->canvas.width - 24 * a->scale);
     weft_ui_text(a->errors);
     weft_ui_panel_end();
 }

@@ -203,6 +203,11 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
                      ImGuiWindowFlags_NoInputs);
 }
 
+void weft_ui_wrap_within(double width)
+{
+    wrap_at = std::min(wrap_at, std::max(scaled(narrowest_note), (float)width - ImGui::GetStyle().WindowPadding.x));
+}
+
 void weft_ui_list(const char *name, const weft_ui_entry *line, size_t count, size_t middle, const weft_ui_box *room)
 {
     const ImVec2 size((float)room->width, (float)room->height), padding = ImGui::GetStyle().WindowPadding;

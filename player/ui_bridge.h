@@ -33,6 +33,8 @@ bool weft_ui_wants_keyboard(void);
 void weft_ui_panel_begin(const char *name, double x, double y, double width, double height);
 /* A note as large as its text, at the given share of its own size from (x, y): 0.5, 0.5 centres it there. */
 void weft_ui_note_begin(const char *name, double x, double y, double share_x, double share_y);
+/* Text of the note that was begun wraps within a narrower width. */
+void weft_ui_wrap_within(double width);
 void weft_ui_panel_end(void);
 
 typedef struct weft_ui_box {
