@@ -19,6 +19,7 @@ typedef struct part {
     weft_material material;
     weft_mesh mesh;
     weft_virtual_cloth cloth;
+    weft_weave_texels texels;
     weft_image image;
     weft_dataset_load *dataset;
 } part;
@@ -53,7 +54,7 @@ static weft_code read_weave(part *p, weft_error *error)
     weft_rig_settings rig = weft_rig_settings_default();
     WEFT_TRY(weft_virtual_cloth_read(p->path, &rig, 0, &p->cloth, p->note, error));
     p->width_mm = p->cloth.opening_mm;
-    return WEFT_OK;
+    return weft_weave_texels_of(&p->cloth.weave, &p->texels, error);
 }
 
 static weft_code read_samples(part *p, weft_dataset *dataset, weft_load *load, weft_error *error)
@@ -102,7 +103,7 @@ static weft_code show_weave(part *p, weft_error *error)
     const double *tiles = p->stage->options->settings.tiles;
     const weft_weave_layout layout = {.tiles_u = tiles[0] > 0 ? tiles[0] : p->cloth.tiles_x,
                                       .tiles_v = tiles[1] > 0 ? tiles[1] : p->cloth.tiles_y};
-    return weft_player_set_weave(p->stage->player, &p->cloth.weave, &layout, error);
+    return weft_player_set_weave_texels(p->stage->player, &p->texels, &layout, error);
 }
 
 static weft_code show_environment(part *p, weft_error *error)
@@ -134,7 +135,7 @@ static weft_code show_dataset(part *p)
         return WEFT_OK;
     size_t used = strlen(p->note);
     int length =
-        snprintf(p->note + used, sizeof p->note - used, "%s'%.200s': %.1f MB of samples as %s (%.1f MB as half floats)",
+        snprintf(p->note + used, sizeof p->note - used, "%s'%.200s': %.3g MB of samples as %s (%.3g MB as half floats)",
                  used > 0 ? "; " : "", p->path, 1e-6 * (double)weft_raw_plan_bytes(&plan, format),
                  weft_raw_format_name(format), 1e-6 * (double)weft_raw_plan_bytes(&plan, WEFT_RAW_HALF));
     used += (size_t)length;
@@ -193,6 +194,7 @@ static void release_part(void *data)
     weft_material_free(&p->material);
     weft_mesh_free(&p->mesh);
     weft_virtual_cloth_free(&p->cloth);
+    weft_weave_texels_free(&p->texels);
     weft_image_free(&p->image);
     weft_dataset_load_free(p->dataset);
     free(p->path);

@@ -413,7 +413,7 @@ static bool has_something(const weft_application *a)
 static double wait_s(const weft_application *a)
 {
     bool is_drawing = (has_something(a) && !is_finished(a)) || a->interaction.changed;
-    return is_drawing ? 0 : a->progress >= 0 ? poll_of_loading_s : poll_s;
+    return is_drawing ? 0 : a->progress >= 0 || a->weave.is_pending ? poll_of_loading_s : poll_s;
 }
 
 static weft_code step(weft_application *a, weft_error *error)
@@ -422,6 +422,7 @@ static weft_code step(weft_application *a, weft_error *error)
     grant_wishes(a);
     turn_by_itself(a);
     poll_host(a);
+    weft_application_follow_weave(a);
     find_modes(a);
     /* A window that would stay empty closes, and says why. */
     if (!has_something(a) && a->progress < 0 && a->failure.code != WEFT_OK)

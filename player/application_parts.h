@@ -58,6 +58,9 @@ void weft_application_show_probe(const weft_application *application);
  * sqrt(2). x, y: the upper left corner of the disc. */
 void weft_application_place(weft_vec3 direction, double x, double y, double radius, double *at_x, double *at_y);
 
+/* Shows what has become of a changed weave. */
+void weft_application_follow_weave(weft_application *application);
+
 /* Its section on the weave that is shown. */
 void weft_application_show_weave(weft_application *application);
 

@@ -66,6 +66,14 @@ static void save(weft_application *a)
     weft_application_tell(a, false, note);
 }
 
+void weft_application_follow_weave(weft_application *a)
+{
+    bool shown;
+    weft_error error = {0};
+    tell(a, weft_weave_edit_poll(&a->weave, a->player, &shown, &error), &error);
+    a->interaction.changed |= shown;
+}
+
 void weft_application_show_weave(weft_application *a)
 {
     weft_weave_edit *edit = &a->weave;
@@ -78,10 +86,8 @@ void weft_application_show_weave(weft_application *a)
     for (int i = 0; i < WEFT_WEAVE_RANGES; i++)
         changed |= range_row(edit, &weft_weave_ranges[i]);
     changed |= colour_rows(edit);
-    if (changed) {
-        tell(a, weft_weave_edit_show(edit, a->player, &error), &error);
-        a->interaction.changed = true;
-    }
+    if (changed)
+        tell(a, weft_weave_edit_ask(edit, &error), &error);
     if (weft_ui_button("Save this weave"))
         save(a);
 }

@@ -174,20 +174,24 @@ weft_code weft_player_set_dataset(weft_player *p, weft_dataset *dataset, const w
     return WEFT_OK;
 }
 
+weft_code weft_player_set_weave_texels(weft_player *p, const weft_weave_texels *texels, const weft_weave_layout *layout,
+                                       weft_error *error)
+{
+    WEFT_TRY(weft_weave_texture_upload(texels, layout, &p->weave, error));
+    p->weave_revision++;
+    has_now(p, WEFT_MODE_ANALYTIC, layout->tiles_u * texels->tile_width, layout->tiles_v * texels->tile_height);
+    return WEFT_OK;
+}
+
 weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, const weft_weave_layout *layout,
                                 weft_error *error)
 {
-    weft_weave_texture texture;
-    weft_code code = weft_weave_texture_upload(weave, layout, &texture, error);
-    if (code != WEFT_OK) {
-        weft_weave_texture_free(&texture);
-        return code;
-    }
-    weft_weave_texture_free(&p->weave);
-    p->weave = texture;
-    p->weave_revision++;
-    has_now(p, WEFT_MODE_ANALYTIC, layout->tiles_u * weave->tile_width, layout->tiles_v * weave->tile_height);
-    return WEFT_OK;
+    weft_weave_texels texels;
+    weft_code code = weft_weave_texels_of(weave, &texels, error);
+    if (code == WEFT_OK)
+        code = weft_player_set_weave_texels(p, &texels, layout, error);
+    weft_weave_texels_free(&texels);
+    return code;
 }
 
 long weft_player_weave_revision(const weft_player *p)

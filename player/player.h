@@ -14,7 +14,7 @@
 #include "player/canvas.h"
 #include "player/mesh.h"
 #include "player/scene.h"
-#include "reflectance/weave.h"
+#include "player/weave_texels.h"
 
 #include <stdbool.h>
 
@@ -34,6 +34,9 @@ weft_code weft_player_set_dataset(weft_player *player, weft_dataset *dataset, co
 /* Laid on one material, and repeated with it. */
 weft_code weft_player_set_weave(weft_player *player, const weft_weave *weave, const weft_weave_layout *layout,
                                 weft_error *error);
+/* The same of what another thread has computed. */
+weft_code weft_player_set_weave_texels(weft_player *player, const weft_weave_texels *texels,
+                                       const weft_weave_layout *layout, weft_error *error);
 /* Grows whenever a weave is set; 0: none yet. */
 long weft_player_weave_revision(const weft_player *player);
 /* How it was laid last. */

@@ -18,6 +18,7 @@ const weft_weave_parameter_range weft_weave_ranges[WEFT_WEAVE_RANGES] = {
 
 void weft_weave_edit_free(weft_weave_edit *edit)
 {
+    weft_weave_worker_free(edit->worker);
     weft_weave_free(&edit->weave);
     *edit = (weft_weave_edit){0};
 }
@@ -30,7 +31,13 @@ weft_code weft_weave_edit_follow(weft_weave_edit *edit, const weft_player *playe
     weft_weave_edit_free(edit);
     edit->revision = revision;
     edit->alike = true;
-    return path ? weft_weave_read(path, NULL, 0, &edit->weave, NULL, error) : WEFT_OK;
+    if (!path)
+        return WEFT_OK;
+    WEFT_TRY(weft_weave_read(path, NULL, 0, &edit->weave, NULL, error));
+    weft_code code = weft_weave_worker_create(&edit->weave, &edit->worker, error);
+    if (code != WEFT_OK)
+        weft_weave_free(&edit->weave);
+    return code;
 }
 
 static weft_real *value_in(weft_yarn *yarn, const weft_weave_parameter_range *range)
@@ -69,13 +76,29 @@ void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks
     edit->is_changed = true;
 }
 
-weft_code weft_weave_edit_show(weft_weave_edit *edit, weft_player *player, weft_error *error)
+weft_code weft_weave_edit_ask(weft_weave_edit *edit, weft_error *error)
 {
-    weft_weave_layout layout = weft_player_weave_layout(player);
-    weft_weave_update(&edit->weave);
-    WEFT_TRY(weft_player_set_weave(player, &edit->weave, &layout, error));
-    edit->revision = weft_player_weave_revision(player);
+    WEFT_TRY(weft_weave_worker_ask(edit->worker, &edit->weave, error));
+    edit->is_pending = true;
     return WEFT_OK;
+}
+
+weft_code weft_weave_edit_poll(weft_weave_edit *edit, weft_player *player, bool *shown, weft_error *error)
+{
+    bool exact = false;
+    weft_weave_texels texels;
+    *shown = false;
+    if (!edit->is_pending || edit->revision != weft_player_weave_revision(player))
+        return WEFT_OK;
+    WEFT_TRY(weft_weave_worker_take(edit->worker, &texels, shown, &exact, error));
+    if (!*shown)
+        return WEFT_OK;
+    weft_weave_layout layout = weft_player_weave_layout(player);
+    weft_code code = weft_player_set_weave_texels(player, &texels, &layout, error);
+    weft_weave_texels_free(&texels);
+    edit->revision = weft_player_weave_revision(player);
+    edit->is_pending = !exact;
+    return code;
 }
 
 weft_code weft_weave_edit_save(weft_weave_edit *edit, char path[32], weft_error *error)

@@ -3,13 +3,16 @@
 #define WEFT_PLAYER_WEAVE_EDIT_H
 
 #include "player/player.h"
+#include "player/weave_worker.h"
 
 typedef struct weft_weave_edit {
-    weft_weave weave; /* no yarns: there is none to edit */
-    int yarn;         /* index of the one that is edited */
-    bool alike;       /* with it all that had the same segment */
-    bool is_changed;  /* not as its file has it */
-    long revision;    /* weft_player_weave_revision of the weave */
+    weft_weave weave;          /* no yarns: there is none to edit */
+    int yarn;                  /* index of the one that is edited */
+    bool alike;                /* with it all that had the same segment */
+    bool is_changed;           /* not as its file has it */
+    long revision;             /* weft_player_weave_revision of the weave */
+    bool is_pending;           /* what follows from the last change is not shown yet, or not to its last digits */
+    weft_weave_worker *worker; /* of the weave; NULL: none */
 } weft_weave_edit;
 
 /* A parameter of a segment: where it lies in a weft_yarn, and what the slider spans; angles are shown in degrees. */
@@ -32,13 +35,17 @@ weft_code weft_weave_edit_follow(weft_weave_edit *edit, const weft_player *playe
 /* The chosen yarn's value; radians for angles. Pure. */
 double weft_weave_edit_get(const weft_weave_edit *edit, const weft_weave_parameter_range *range);
 
-/* Change the chosen yarn and, with `alike`, those like it; weft_weave_edit_show makes the player show that. */
+/* Change the chosen yarn and, with `alike`, those like it; weft_weave_edit_ask and weft_weave_edit_poll make the player
+ * show that. */
 void weft_weave_edit_set(weft_weave_edit *edit, const weft_weave_parameter_range *range, double value);
 void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks);
 
-/* Derives what follows from the segments and uploads all, laid on the material as before. Errors: those of
- * weft_player_set_weave. */
-weft_code weft_weave_edit_show(weft_weave_edit *edit, weft_player *player, weft_error *error);
+/* Asks for what follows from the segments, which is derived in the background. Errors: WEFT_SYSTEM. */
+weft_code weft_weave_edit_ask(weft_weave_edit *edit, weft_error *error);
+
+/* Shows what has been derived, if anything has, laid on the material as before; *shown: the picture is out
+ * of date. Unless the player shows another weave by now. Errors: those of weft_player_set_weave_texels. */
+weft_code weft_weave_edit_poll(weft_weave_edit *edit, weft_player *player, bool *shown, weft_error *error);
 
 /* Writes weft-001.wv or the first number that is free into the current folder; `path` receives its name. Errors: those
  * of weft_weave_write. */

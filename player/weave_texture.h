@@ -2,14 +2,14 @@
 #ifndef WEFT_PLAYER_WEAVE_TEXTURE_H
 #define WEFT_PLAYER_WEAVE_TEXTURE_H
 
-#include "btf/direction.h"
 #include "player/direction_texture.h"
-#include "reflectance/weave.h"
+#include "player/weave_texels.h"
 
 #include <stddef.h>
 
 /* Where a pixel covers less than half a cell the woven texture is evaluated, where it covers more than two the mean of
- * the tile, in between a blend by the logarithm of the footprint. The mean is tabulated for ubo81 lights and views. */
+ * the tile, in between a blend by the logarithm of the footprint. The mean is tabulated for ubo81 lights and views.
+ * Begins zeroed. */
 typedef struct weft_weave_texture {
     GLuint table, mean;
     int table_texels;
@@ -17,9 +17,11 @@ typedef struct weft_weave_texture {
     weft_weave_layout layout;
 } weft_weave_texture;
 
-/* `layout` is that on one material, with which it repeats. Errors: WEFT_BAD_USAGE for a number of tiles that is not
- * positive, WEFT_SYSTEM. The caller frees with weft_weave_texture_free, also on failure. */
-weft_code weft_weave_texture_upload(const weft_weave *weave, const weft_weave_layout *layout,
+/* Takes the place of what `texture` had, which stays on failure. `layout` is that on one material, with which it
+ * repeats.
+ * Errors: WEFT_BAD_USAGE for a number of tiles that is not positive, WEFT_SYSTEM. The caller frees with
+ * weft_weave_texture_free. */
+weft_code weft_weave_texture_upload(const weft_weave_texels *texels, const weft_weave_layout *layout,
                                     weft_weave_texture *texture, weft_error *error);
 void weft_weave_texture_free(weft_weave_texture *texture);
 
@@ -28,8 +30,5 @@ size_t weft_weave_texture_bytes(const weft_weave_texture *texture);
 
 /* Sets the uniforms of analytic.glsl; `program` is in use. */
 void weft_weave_texture_bind(const weft_weave_texture *texture, GLuint program);
-
-/* The mean of the tile as the shader has it: BRDF in 1/sr for each view and light of ubo81. Pure. */
-void weft_weave_mean_tabulate(const weft_weave *weave, weft_rgb mean[WEFT_UBO81_COUNT][WEFT_UBO81_COUNT]);
 
 #endif

@@ -53,6 +53,11 @@ void weft_weave_free(weft_weave *weave);
 
 /* Derives again what follows from the segments, colours and areas of the yarns, after they have been changed. */
 void weft_weave_update(weft_weave *weave);
+/* The same but for the specular scale, which takes long and stays as it was. */
+void weft_weave_update_yarns(weft_weave *weave);
+
+/* A weave of its own, freed with weft_weave_free. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_weave_copy(const weft_weave *from, weft_weave *to, weft_error *error);
 
 /* Writes a weave as a file that weft_weave_read reads back to the same numbers; `comment` (may be NULL; without the end
  * of a comment in it) comes first. Atomic. Errors: WEFT_SYSTEM. */

@@ -14,10 +14,30 @@ weft_code weft_weave_parse(const char *text, const char *path, const weft_weave_
     return WEFT_OK;
 }
 
-void weft_weave_update(weft_weave *weave)
+void weft_weave_update_yarns(weft_weave *weave)
 {
     weave_derive(weave, NULL, NULL);
+}
+
+void weft_weave_update(weft_weave *weave)
+{
+    weft_weave_update_yarns(weave);
     weave->specular_scale = weft_weave_specular_scale(weave);
+}
+
+weft_code weft_weave_copy(const weft_weave *from, weft_weave *to, weft_error *error)
+{
+    size_t cells = (size_t)from->tile_width * (size_t)from->tile_height, yarns = (size_t)from->yarn_count;
+    *to = *from;
+    to->pattern = malloc(cells * sizeof *to->pattern);
+    to->yarn = malloc(yarns * sizeof *to->yarn);
+    if (!to->pattern || !to->yarn) {
+        weft_weave_free(to);
+        return weft_fail_memory(error, "weave", cells * sizeof *to->pattern + yarns * sizeof *to->yarn);
+    }
+    memcpy(to->pattern, from->pattern, cells * sizeof *to->pattern);
+    memcpy(to->yarn, from->yarn, yarns * sizeof *to->yarn);
+    return WEFT_OK;
 }
 
 /* Reads to the end rather than by a size asked beforehand, so that pipes work too. */

@@ -1,6 +1,7 @@
 /* The constant s of a weave: 1/s = (1/pi) times the integral of its specular part against both cosines, a
  * five-dimensional quadrature (two directions and the coordinate along or round the yarn) over an additive recurrence.
  */
+#include "reflectance/direction_sequence.h"
 #include "reflectance/weave.h"
 
 #include <stdlib.h>
@@ -13,32 +14,14 @@ typedef struct kind_of_yarn {
     double share; /* sum of F aw */
 } kind_of_yarn;
 
-/* Steps of the recurrence: inverse powers of the root of g^6 = g + 1 (Roberts 2018). */
-static void recurrence_steps(double step[DIMENSIONS])
-{
-    double g = 1, power = 1;
-    for (int i = 0; i < 64; i++)
-        g = pow(1 + g, 1 / (double)6);
-    for (int i = 0; i < DIMENSIONS; i++)
-        step[i] = power /= g;
-}
-
-static weft_vec3 cosine_weighted(double r1, double r2)
-{
-    double radius = sqrt(r1), phi = 2 * (double)WEFT_PI * r2;
-    return weft_vec3_of((weft_real)(radius * cos(phi)), (weft_real)(radius * sin(phi)), (weft_real)sqrt(1 - r1));
-}
-
 static double block_sum(const weft_prepared_segment *prepared, const double step[DIMENSIONS], int block)
 {
     weft_real limit = prepared->filament ? (weft_real)(WEFT_PI / 2) : prepared->spine.umax;
     double sum = 0;
     for (int k = block * BLOCK_POINTS + 1; k <= (block + 1) * BLOCK_POINTS; k++) {
         double r[DIMENSIONS];
-        for (int i = 0; i < DIMENSIONS; i++) {
-            double x = k * step[i] + 1 / (double)2;
-            r[i] = x - floor(x);
-        }
+        for (int i = 0; i < DIMENSIONS; i++)
+            r[i] = recurrence_at(step[i], k);
         weft_vec3 light = cosine_weighted(r[0], r[1]), view = cosine_weighted(r[2], r[3]);
         sum += weft_prepared_integrand(prepared, (weft_real)(2 * r[4] - 1) * limit, light, view);
     }
@@ -49,7 +32,7 @@ static double block_sum(const weft_prepared_segment *prepared, const double step
 static double mean_reflectance(const weft_prepared_segment *prepared, int blocks)
 {
     double step[DIMENSIONS], partial[MAX_BLOCKS], sum = 0;
-    recurrence_steps(step);
+    recurrence_steps(DIMENSIONS, step);
 #pragma omp parallel for schedule(dynamic)
     for (int block = 0; block < blocks; block++)
         partial[block] = block_sum(prepared, step, block);

@@ -53,6 +53,21 @@ static void a_value_reaches_the_yarns_that_were_alike_and_no_others(void **state
     weft_weave_edit_free(&edit);
 }
 
+/* Until what follows from the last change is shown to its last digits; the number of times something was. */
+static int wait_for(weft_weave_edit *edit, weft_player *player)
+{
+    weft_error error = {0};
+    int count = 0;
+    for (int ms = 0; edit->is_pending && ms < 60000; ms++) {
+        bool shown;
+        expect_ok(weft_weave_edit_poll(edit, player, &shown, &error), &error);
+        count += shown;
+        usleep(1000);
+    }
+    assert_false(edit->is_pending);
+    return count;
+}
+
 static double mean_of(weft_player *player)
 {
     weft_scene scene = weft_scene_default();
@@ -76,12 +91,46 @@ static void the_player_shows_a_changed_weave_laid_as_before(void **state)
     for (edit.yarn = 0; edit.yarn < edit.weave.yarn_count; edit.yarn++)
         weft_weave_edit_set_colours(&edit, (weft_rgb){0.6, 0.6, 0.6}, (weft_rgb){0});
     edit.yarn = 0;
-    expect_ok(weft_weave_edit_show(&edit, player, &error), &error);
+    expect_ok(weft_weave_edit_ask(&edit, &error), &error);
+    wait_for(&edit, player);
     assert_true(mean_of(player) > before + 0.02);
     weft_weave_layout now = weft_player_weave_layout(player);
     assert_memory_equal(&now, &layout, sizeof now);
     expect_ok(weft_weave_edit_follow(&edit, player, cloth, &error), &error);
     assert_true(edit.is_changed && edit.weave.yarn[0].kd.g == (weft_real)0.6);
+    weft_weave_edit_free(&edit);
+}
+
+static void only_the_latest_of_many_changes_is_followed_to_the_end(void **state)
+{
+    enum { STEPS = 60 };
+    weft_player *player = ((stage *)*state)->player;
+    weft_weave_edit edit = edit_of(player, cloth);
+    weft_error error = {0};
+    for (int step = 1; step <= STEPS; step++) {
+        weft_weave_edit_set(&edit, range_of("Incline"), 0.2 + 0.01 * step);
+        expect_ok(weft_weave_edit_ask(&edit, &error), &error);
+    }
+    assert_true(wait_for(&edit, player) < STEPS / 2);
+    double followed = mean_of(player);
+    weft_weave_update(&edit.weave);
+    expect_ok(weft_player_set_weave(player, &edit.weave, &layout, &error), &error);
+    assert_true(fabs(mean_of(player) / followed - 1) < 1e-6);
+    weft_weave_edit_free(&edit);
+}
+
+static void a_change_that_comes_too_late_does_not_replace_another_weave(void **state)
+{
+    weft_player *player = ((stage *)*state)->player;
+    weft_weave_edit edit = edit_of(player, cloth);
+    weft_error error = {0};
+    bool shown;
+    expect_ok(weft_weave_edit_ask(&edit, &error), &error);
+    weft_weave_edit again = edit_of(player, cloth);
+    usleep(400000);
+    expect_ok(weft_weave_edit_poll(&edit, player, &shown, &error), &error);
+    assert_false(shown);
+    weft_weave_edit_free(&again);
     weft_weave_edit_free(&edit);
 }
 
@@ -141,6 +190,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_value_reaches_the_yarns_that_were_alike_and_no_others),
         cmocka_unit_test(the_player_shows_a_changed_weave_laid_as_before),
+        cmocka_unit_test(only_the_latest_of_many_changes_is_followed_to_the_end),
+        cmocka_unit_test(a_change_that_comes_too_late_does_not_replace_another_weave),
         cmocka_unit_test(another_weave_takes_the_place_of_a_changed_one),
         cmocka_unit_test(what_cannot_be_read_is_told_once_and_leaves_nothing),
         cmocka_unit_test(a_saved_weave_reads_back_to_what_was_changed),

@@ -247,6 +247,27 @@ static void every_instruction_set_gives_the_same_within_rounding(void **state)
     unsetenv("WEFT_ISA");
 }
 
+static void a_scale_is_near_and_its_changes_are_nearer(void **state)
+{
+    (void)state;
+    weft_weave weave;
+    weft_error error = {0};
+    weft_real before, after;
+    assert_int_equal(weft_weave_read(WEFT_ASSETS "/weaves/cotton_denim.wv", NULL, 0, &weave, NULL, &error), WEFT_OK);
+    double exact = weave.specular_scale;
+    assert_int_equal(weft_weave_specular_scale_batch(&weave, &before, &error), WEFT_OK);
+    assert_true(fabs(before / exact - 1) < 0.02);
+    for (int k = 0; k < weave.yarn_count; k++)
+        weave.yarn[k].segment.umax *= 1.3;
+    weft_weave_update_yarns(&weave);
+    assert_true(weave.specular_scale == exact);
+    weft_weave_update(&weave);
+    assert_int_equal(weft_weave_specular_scale_batch(&weave, &after, &error), WEFT_OK);
+    assert_true(fabs(weave.specular_scale / exact - 1) > 0.02);
+    assert_true(fabs(after / before / (weave.specular_scale / exact) - 1) < 0.004);
+    weft_weave_free(&weave);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -255,6 +276,7 @@ int main(void)
         cmocka_unit_test(reflectances_of_ordinary_cloth_are_within_a_ten_thousandth),
         cmocka_unit_test(reflectances_at_the_extremes_are_within_a_thousandth),
         cmocka_unit_test(means_of_a_tile_are_within_a_thousandth),
+        cmocka_unit_test(a_scale_is_near_and_its_changes_are_nearer),
         cmocka_unit_test(every_instruction_set_gives_the_same_within_rounding),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
