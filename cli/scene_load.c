@@ -15,6 +15,7 @@ struct scene_loader {
     char *waiting_dataset; /* until there is a player */
     bool starting;         /* what the command line named is not all there yet */
     weft_scene wanted;     /* its panes */
+    weft_scene chosen;     /* the panes that were shown last for them */
 };
 
 /* ---- Life ---- */
@@ -38,7 +39,7 @@ static weft_code start_all(scene_loader *l, weft_error *error)
     l->waiting_dataset = *dataset;
     *dataset = NULL;
     l->starting = true;
-    l->wanted = l->stage.options->settings.scene;
+    l->wanted = l->chosen = l->stage.options->settings.scene;
     return WEFT_OK;
 }
 
@@ -130,6 +131,18 @@ static bool choose_panes(scene_loader *l)
     return false;
 }
 
+/* While files arrive one after the other, panes are added, until the user chooses others. */
+static void add_panes(scene_loader *l)
+{
+    const weft_scene *scene = &l->stage.options->settings.scene, *chosen = &l->chosen;
+    bool is_mine = scene->layout == chosen->layout && scene->pane_count == chosen->pane_count &&
+                   memcmp(scene->pane, chosen->pane, sizeof scene->pane) == 0;
+    if (!is_mine)
+        return;
+    choose_panes(l);
+    l->chosen = *scene;
+}
+
 /* What the user dropped is shown, unless several modes are. */
 static void show_dropped(scene_loader *l)
 {
@@ -152,7 +165,7 @@ weft_code scene_loader_poll(scene_loader *l, bool *shown, char note[WEFT_MESSAGE
     weft_code code = weft_loader_poll(l->loader, slice_s, shown, error);
     memcpy(note, l->stage.note, WEFT_MESSAGE_SIZE);
     if (*shown && l->starting)
-        choose_panes(l);
+        add_panes(l);
     else if (*shown && l->stage.by_user)
         show_dropped(l);
     l->starting &= weft_loader_progress(l->loader) >= 0;

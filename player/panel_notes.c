@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-enum { MAX_LINES = 64, MARGIN = 24 };
+enum { MAX_LINES = 64, MARGIN = 24, NARROWEST_WITH_ERRORS = 640 };
 
 /* ---- What goes on ---- */
 
@@ -69,7 +69,8 @@ static void show_colours(const weft_scene *scene, double left, double bottom, do
 static void show_errors(const weft_application *a, double right, double bottom)
 {
     const weft_scene *scene = &a->interaction.scene;
-    if (!a->errors[0] || weft_scene_panes(scene) < 2)
+    bool fits = a->canvas.width >= NARROWEST_WITH_ERRORS * a->scale;
+    if (!a->errors[0] || !fits || weft_scene_panes(scene) < 2)
         return;
     weft_ui_note_begin("errors", right - 12 * a->scale, bottom - 12 * a->scale, 1, 1);
     weft_ui_wrap_within(a->canvas.width - 24 * a->scale);

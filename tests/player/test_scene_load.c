@@ -139,6 +139,30 @@ static void samples_are_kept_in_the_format_that_the_settings_name(void **state)
     }
 }
 
+/* The loader chooses what is shown, until the user does. */
+static void panes_that_were_chosen_while_files_arrive_stay(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    for (int chooses = 0; chooses < 2; chooses++) {
+        fixture *f = open_scene("scene_load/a.weft", "scene_load/a.btf.h5");
+        weft_scene *scene = &f->options.settings.scene;
+        weft_player_clear(f->stage->player, WEFT_MODE_COMPRESSED);
+        weft_player_clear(f->stage->player, WEFT_MODE_RAW);
+        if (chooses)
+            scene->pane[0] = WEFT_MODE_ANALYTIC;
+        while (!weft_player_has(f->stage->player, WEFT_MODE_COMPRESSED) ||
+               !weft_player_has(f->stage->player, WEFT_MODE_RAW)) {
+            bool shown;
+            char note[WEFT_MESSAGE_SIZE];
+            expect_ok(scene_loader_poll(f->loader, &shown, note, &error), &error);
+            usleep(1000);
+        }
+        assert_int_equal(scene->pane[0], chooses ? WEFT_MODE_ANALYTIC : WEFT_MODE_COMPRESSED);
+        close_scene(f);
+    }
+}
+
 static void a_dropped_material_replaces_the_one_shown(void **state)
 {
     (void)state;
@@ -253,6 +277,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything_named_is_shown_and_named),
         cmocka_unit_test(samples_are_kept_in_the_format_that_the_settings_name),
+        cmocka_unit_test(panes_that_were_chosen_while_files_arrive_stay),
         cmocka_unit_test(a_dropped_material_replaces_the_one_shown),
         cmocka_unit_test(a_corrupt_file_leaves_what_was_shown),
         cmocka_unit_test(files_that_cannot_be_shown_are_refused),
