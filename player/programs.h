@@ -11,7 +11,7 @@ enum { WEFT_MAX_LIGHTS = 52 }; /* of one frame: those of the scene and 48 of the
 typedef struct weft_program_kind {
     weft_mode mode;
     bool stochastic, shadows, one_light;
-    int plot; /* 0: of the picture; 1, 2: of lights, of views (player/probe.h) */
+    int plot;     /* 0: of the picture; 1, 2: of lights, of views (player/probe.h) */
     bool opacity; /* raw: some is below 1 */
     /* Of the compressed material: */
     int lobe_count;
