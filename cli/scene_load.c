@@ -262,6 +262,7 @@ weft_code scene_loader_open(scene_loader *l, const char *path, weft_error *error
     case WEFT_FILE_DATASET:
         return start_by_user(l, SCENE_DATASET, path, error);
     case WEFT_FILE_WEAVE:
+    case WEFT_FILE_MICROCYLINDER:
         return start_by_user(l, SCENE_WEAVE, path, error);
     case WEFT_FILE_MESH:
         return start_by_user(l, SCENE_MESH, path, error);
@@ -271,7 +272,7 @@ weft_code scene_loader_open(scene_loader *l, const char *path, weft_error *error
         return open_picture(l, path, error);
     default:
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' cannot be shown: drop a .weft, .btf.h5, .wv, .obj, .exr, .hdr or a picture of weft",
+                         "'%s' cannot be shown: drop a .weft, .btf.h5, .wv, .mc, .obj, .exr, .hdr or a picture of weft",
                          path);
     }
 }

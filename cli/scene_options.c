@@ -16,7 +16,7 @@ static const struct argp_option option_table[] = {
      "best "
      "that fits",
      1},
-    {"weave", KEY_WEAVE, "CLOTH.wv", 0, "Show this weave in mode analytic", 1},
+    {"weave", KEY_WEAVE, "CLOTH.wv|CLOTH.mc", 0, "Show this weave or microcylinder cloth in mode analytic", 1},
     {"tiles", KEY_TILES, "X,Y", 0, "Tiles of the weave across the material (default: as the virtual rig lays it)", 1},
     {"mode", KEY_MODE, "MODE[,MODE...]", 0, "raw, compressed, analytic: one pane each; split: all that are given", 1},
     {"layout", KEY_LAYOUT, "LAYOUT", 0,

@@ -1,8 +1,10 @@
 #include "cli/scene_part.h"
 
 #include "btf/dataset_fingerprint.h"
+#include "btf/file_kind.h"
 #include "capture/virtual_cloth.h"
 #include "player/dataset_load.h"
+#include "reflectance/microcylinder_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +14,7 @@ typedef struct part {
     scene_stage *stage;
     scene_slot slot;
     bool by_user;
+    bool is_threads; /* a weave that is microcylinder cloth */
     char *path;
     double width_mm;
     char note[WEFT_MESSAGE_SIZE];
@@ -20,6 +23,7 @@ typedef struct part {
     weft_mesh mesh;
     weft_virtual_cloth cloth;
     weft_weave_texels texels;
+    weft_microcylinder_description threads;
     weft_image image;
     weft_dataset_load *dataset;
 } part;
@@ -51,6 +55,11 @@ static weft_code read_material(part *p, weft_error *error)
 
 static weft_code read_weave(part *p, weft_error *error)
 {
+    weft_file_kind kind;
+    WEFT_TRY(weft_file_kind_of(p->path, &kind, error));
+    p->is_threads = kind == WEFT_FILE_MICROCYLINDER;
+    if (p->is_threads)
+        return weft_microcylinder_read(p->path, NULL, 0, &p->threads, error);
     weft_rig_settings rig = weft_rig_settings_default();
     WEFT_TRY(weft_virtual_cloth_read(p->path, &rig, 0, &p->cloth, p->note, error));
     p->width_mm = p->cloth.opening_mm;
@@ -100,6 +109,8 @@ static weft_code read_part(void *data, weft_load *load, weft_error *error)
 
 static weft_code show_weave(part *p, weft_error *error)
 {
+    if (p->is_threads)
+        return weft_player_set_threads(p->stage->player, &p->threads.cloth, error);
     const double *tiles = p->stage->options->settings.tiles;
     const weft_weave_layout layout = {.tiles_u = tiles[0] > 0 ? tiles[0] : p->cloth.tiles_x,
                                       .tiles_v = tiles[1] > 0 ? tiles[1] : p->cloth.tiles_y};

@@ -55,7 +55,7 @@ static void set_shown(const weft_player *p, GLuint program, const weft_scene *sc
 
 weft_code weft_player_check_mode(const weft_player *p, weft_mode mode, weft_error *error)
 {
-    static const char *const needs[WEFT_MODE_COUNT] = {"a dataset", "a material", "a weave"};
+    static const char *const needs[WEFT_MODE_COUNT] = {"a dataset", "a material", "a weave or microcylinder cloth"};
     if (!p->triangle_count)
         return weft_fail(error, WEFT_BAD_USAGE, "there is no mesh to draw");
     if (!p->has[mode])
@@ -80,7 +80,10 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
         weft_gl_set_float(program, "table_steps", (1 << scene->table_bits) - 1);
         break;
     default:
-        weft_weave_texture_bind(&p->weave, program);
+        if (weft_player_has_threads(p))
+            weft_thread_texture_bind(&p->threads, program);
+        else
+            weft_weave_texture_bind(&p->weave, program);
         break;
     }
 }
@@ -101,6 +104,7 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         .shadows = weft_scene_has_shadows(scene),
         .one_light = weft_lighting_count(scene, p->environment) == 1,
     };
+    kind.threads = pane->mode == WEFT_MODE_ANALYTIC && weft_player_has_threads(p);
     if (pane->mode == WEFT_MODE_RAW)
         kind.opacity = !p->raw.opaque;
     if (pane->mode == WEFT_MODE_COMPRESSED) {

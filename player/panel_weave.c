@@ -78,6 +78,10 @@ void weft_application_show_weave(weft_application *a)
 {
     weft_weave_edit *edit = &a->weave;
     weft_error error = {0};
+    if (weft_player_has_threads(a->player)) {
+        weft_ui_dim_text("Microcylinder cloth: change its file.");
+        return;
+    }
     tell(a, weft_weave_edit_follow(edit, a->player, a->setup.file[WEFT_MODE_ANALYTIC], &error), &error);
     if (edit->weave.yarn_count == 0)
         return;

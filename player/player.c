@@ -55,6 +55,7 @@ void weft_player_free(weft_player *p)
     weft_material_texture_free(&p->material);
     weft_table_directions_free(&p->directions);
     weft_weave_texture_free(&p->weave);
+    weft_thread_texture_free(&p->threads);
     weft_programs_free(&p->programs);
     weft_shadow_map_free(&p->shadow);
     for (int i = 0; i < WEFT_LAYER_COUNT; i++)
@@ -178,6 +179,7 @@ weft_code weft_player_set_weave_texels(weft_player *p, const weft_weave_texels *
                                        weft_error *error)
 {
     WEFT_TRY(weft_weave_texture_upload(texels, layout, &p->weave, error));
+    weft_thread_texture_free(&p->threads);
     p->weave_revision++;
     has_now(p, WEFT_MODE_ANALYTIC, layout->tiles_u * texels->tile_width, layout->tiles_v * texels->tile_height);
     return WEFT_OK;
@@ -192,6 +194,20 @@ weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, const w
         code = weft_player_set_weave_texels(p, &texels, layout, error);
     weft_weave_texels_free(&texels);
     return code;
+}
+
+weft_code weft_player_set_threads(weft_player *p, const weft_microcylinder_cloth *cloth, weft_error *error)
+{
+    WEFT_TRY(weft_thread_texture_upload(cloth, &p->threads, error));
+    weft_weave_texture_free(&p->weave);
+    p->weave_revision++;
+    has_now(p, WEFT_MODE_ANALYTIC, 1, 1);
+    return WEFT_OK;
+}
+
+bool weft_player_has_threads(const weft_player *p)
+{
+    return p->threads.table != 0;
 }
 
 long weft_player_weave_revision(const weft_player *p)
@@ -209,10 +225,12 @@ void weft_player_clear(weft_player *p, weft_mode mode)
     p->has[mode] = false;
     if (mode == WEFT_MODE_RAW)
         weft_raw_texture_free(&p->raw);
-    else if (mode == WEFT_MODE_COMPRESSED)
+    if (mode == WEFT_MODE_COMPRESSED)
         weft_material_texture_free(&p->material);
-    else
+    if (mode == WEFT_MODE_ANALYTIC) {
         weft_weave_texture_free(&p->weave);
+        weft_thread_texture_free(&p->threads);
+    }
 }
 
 bool weft_player_has_mesh(const weft_player *p)
@@ -288,7 +306,7 @@ size_t weft_player_bytes(const weft_player *p, weft_mode mode)
     case WEFT_MODE_COMPRESSED:
         return weft_material_texture_bytes(&p->material);
     default:
-        return weft_weave_texture_bytes(&p->weave);
+        return weft_weave_texture_bytes(&p->weave) + weft_thread_texture_bytes(&p->threads);
     }
 }
 

@@ -15,6 +15,7 @@
 #include "player/mesh.h"
 #include "player/scene.h"
 #include "player/weave_texels.h"
+#include "reflectance/microcylinder.h"
 
 #include <stdbool.h>
 
@@ -37,7 +38,11 @@ weft_code weft_player_set_weave(weft_player *player, const weft_weave *weave, co
 /* The same of what another thread has computed. */
 weft_code weft_player_set_weave_texels(weft_player *player, const weft_weave_texels *texels,
                                        const weft_weave_layout *layout, weft_error *error);
-/* Grows whenever a weave is set; 0: none yet. */
+/* Microcylinder cloth in the place of a weave. */
+weft_code weft_player_set_threads(weft_player *player, const weft_microcylinder_cloth *cloth, weft_error *error);
+/* Whether mode analytic shows that. */
+bool weft_player_has_threads(const weft_player *player);
+/* Grows whenever a weave or threads are set; 0: none yet. */
 long weft_player_weave_revision(const weft_player *player);
 /* How it was laid last. */
 weft_weave_layout weft_player_weave_layout(const weft_player *player);

@@ -10,6 +10,7 @@
 #include "player/programs.h"
 #include "player/raw_texture.h"
 #include "player/shadow.h"
+#include "player/thread_texture.h"
 #include "player/weave_texture.h"
 #include "reflectance/lafortune.h"
 
@@ -26,7 +27,8 @@ struct weft_player {
     weft_raw_texture raw;
     weft_material_texture material;
     weft_table_directions directions; /* of its tables */
-    weft_weave_texture weave;
+    weft_weave_texture weave; /* or, where there is a table of them, threads */
+    weft_thread_texture threads;
     long weave_revision;
     double texel_count[WEFT_MODE_COUNT][2]; /* of level 0, for one material */
     double last_ring_z[WEFT_MODE_COUNT][2]; /* smallest z of the measured views and lights */

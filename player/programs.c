@@ -7,7 +7,7 @@
 static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
 {
     return a->mode == b->mode && a->stochastic == b->stochastic && a->shadows == b->shadows &&
-           a->one_light == b->one_light && a->plot == b->plot && a->opacity == b->opacity &&
+           a->one_light == b->one_light && a->plot == b->plot && a->opacity == b->opacity && a->threads == b->threads &&
            a->lobe_count == b->lobe_count && a->view_table == b->view_table && a->light_table == b->light_table &&
            a->fewer_bits == b->fewer_bits;
 }
@@ -48,7 +48,14 @@ static weft_code build(const weft_program_kind *kind, GLuint *program, weft_erro
                                     weft_glsl_analytic,
                                     weft_glsl_shade_frag,
                                     NULL};
-    const char *const *const fragment[WEFT_MODE_COUNT] = {raw, compressed, analytic};
+    const char *const threads[] = {constants,
+                                   weft_glsl_rotation,
+                                   weft_glsl_surface,
+                                   weft_glsl_microcylinder,
+                                   weft_glsl_threads,
+                                   weft_glsl_shade_frag,
+                                   NULL};
+    const char *const *const fragment[WEFT_MODE_COUNT] = {raw, compressed, kind->threads ? threads : analytic};
     return weft_gl_program(weft_mode_name(kind->mode), vertex, fragment[kind->mode], program, error);
 }
 

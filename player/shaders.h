@@ -17,7 +17,7 @@ extern const char weft_glsl_environment_frag[];
 extern const char weft_glsl_directions[];
 extern const char weft_glsl_compressed[];
 extern const char weft_glsl_raw[];
-extern const char weft_glsl_analytic[];
+extern const char weft_glsl_analytic[], weft_glsl_threads[];
 extern const char weft_glsl_shade_frag[], weft_glsl_depth_frag[];
 extern const char weft_glsl_geometry_frag[];
 
@@ -26,5 +26,6 @@ extern const char weft_glsl_lafortune[];
 extern const char weft_glsl_woven[];
 extern const char weft_glsl_weave[];
 extern const char weft_glsl_bard[];
+extern const char weft_glsl_microcylinder[];
 
 #endif

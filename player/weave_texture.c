@@ -52,7 +52,7 @@ void weft_weave_texture_free(weft_weave_texture *t)
 
 size_t weft_weave_texture_bytes(const weft_weave_texture *t)
 {
-    return 16 * ((size_t)t->table_texels + DIRECTIONS * DIRECTIONS);
+    return t->table ? 16 * ((size_t)t->table_texels + DIRECTIONS * DIRECTIONS) : 0;
 }
 
 void weft_weave_texture_bind(const weft_weave_texture *t, GLuint program)

@@ -119,6 +119,28 @@ static void everything_named_is_shown_and_named(void **state)
     close_scene(f);
 }
 
+static void weaves_and_microcylinders_replace_each_other(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    fixture *f = open_scene("scene_load/a.weft", NULL);
+    weft_player *player = f->stage->player;
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(drop(f, WEFT_ASSETS "/microcylinder/satin_face.mc", &error), &error);
+    assert_true(weft_player_has(player, WEFT_MODE_ANALYTIC) && weft_player_has_threads(player));
+    f->options.settings.scene.pane[0] = WEFT_MODE_ANALYTIC;
+    expect_picture(f);
+    write_text("scene_load/bad.mc", "microcylinder {\n  sigmb = 1\n}\n");
+    assert_int_equal(drop(f, "scene_load/bad.mc", &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "bad.mc:2:3: unknown key 'sigmb'"));
+    assert_true(weft_player_has_threads(player));
+    expect_ok(drop(f, WEFT_ASSETS "/weaves/cotton_twill.wv", &error), &error);
+    assert_true(weft_player_has(player, WEFT_MODE_ANALYTIC) && !weft_player_has_threads(player));
+    expect_picture(f);
+    weft_player_clear(player, WEFT_MODE_ANALYTIC);
+    close_scene(f);
+}
+
 static void samples_are_kept_in_the_format_that_the_settings_name(void **state)
 {
     (void)state;
@@ -276,6 +298,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything_named_is_shown_and_named),
+        cmocka_unit_test(weaves_and_microcylinders_replace_each_other),
         cmocka_unit_test(samples_are_kept_in_the_format_that_the_settings_name),
         cmocka_unit_test(panes_that_were_chosen_while_files_arrive_stay),
         cmocka_unit_test(a_dropped_material_replaces_the_one_shown),

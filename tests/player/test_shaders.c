@@ -4,6 +4,7 @@
 
 #include "player/player_parts.h"
 #include "reflectance/lafortune.h"
+#include "reflectance/microcylinder_file.h"
 #include "study/raw_btf.h"
 
 #include <math.h>
@@ -292,6 +293,32 @@ static void analytic_equals_c_where_the_texture_fades_to_the_mean(void **state)
     compare_weave(state, "polyester_lining", 60);
 }
 
+static weft_rgba evaluate_threads(void *context, const weft_surface_sample *at)
+{
+    weft_vec3 light = vector(at->light);
+    weft_rgb brdf = weft_microcylinder_brdf(context, WEFT_CLOTH_BY_AREA, light, vector(at->view));
+    return lit((weft_rgb){WEFT_PI * brdf.r, WEFT_PI * brdf.g, WEFT_PI * brdf.b}, light, 1);
+}
+
+static void microcylinders_equal_c(void **state)
+{
+    static const char *const name[] = {"plain_matte", "satin_face", "shot"};
+    stage *s = *state;
+    weft_error error = {0};
+    weft_scene scene = weft_scene_default();
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
+        char path[512];
+        weft_microcylinder_description cloth;
+        snprintf(path, sizeof path, "%s/microcylinder/%s.mc", WEFT_ASSETS, name[i]);
+        expect_ok(weft_microcylinder_read(path, NULL, 0, &cloth, &error), &error);
+        expect_ok(weft_player_set_threads(s->player, &cloth.cloth, &error), &error);
+        weft_prepared_cloth prepared = weft_microcylinder_prepare(&cloth.cloth);
+        expect_small(name[i],
+                     stage_compare(s->player, scene, WEFT_MODE_ANALYTIC, WIDTH, HEIGHT, evaluate_threads, &prepared));
+        scene.light[0].direction.theta_rad = weft_rad_of_deg(80);
+    }
+}
+
 /* The plane from above: u and v run over it as often as square texels fit. */
 static void texels_are_square_on_the_mesh(void **state)
 {
@@ -334,6 +361,7 @@ int main(void)
         cmocka_unit_test(a_dataset_that_does_not_fit_loses_its_finest_levels_first),
         cmocka_unit_test(analytic_equals_c_for_staple_and_filament_yarns),
         cmocka_unit_test(analytic_equals_c_where_the_texture_fades_to_the_mean),
+        cmocka_unit_test(microcylinders_equal_c),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);
 }
