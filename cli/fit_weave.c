@@ -119,6 +119,26 @@ static void say_source(const fit_weave_command *command, const weft_fit_weave_so
     command_event(&command->files.common, event);
 }
 
+static bool is_straight(const double askew_deg[3])
+{
+    return askew_deg[0] == 0 && askew_deg[1] == 0 && askew_deg[2] == 0;
+}
+
+static void say_askew(const fit_weave_command *command, const weft_fit_weave_report *report)
+{
+    const double *askew = report->askew_deg, *deviation = report->askew_deviation;
+    if (is_straight(askew))
+        command_say(&command->files.common, "sample: taken as lying straight, the data do not tell");
+    else
+        command_say(
+            &command->files.common,
+            "sample: lies askew by %.2f +- %.2g, %.2f +- %.2g, %.2f +- %.2g degrees about weft, warp and normal",
+            askew[0], deviation[0], askew[1], deviation[1], askew[2], deviation[2]);
+    char event[160];
+    snprintf(event, sizeof event, "{\"event\":\"askew\",\"degrees\":[%.6g,%.6g,%.6g]}", askew[0], askew[1], askew[2]);
+    command_event(&command->files.common, event);
+}
+
 static void say_report(const fit_weave_command *command, const weft_weave *weave, const weft_fit_weave_report *report)
 {
     char alpha[64], beta[64];
@@ -129,6 +149,7 @@ static void say_report(const fit_weave_command *command, const weft_weave *weave
     for (int group = 0; group < report->group_count; group++)
         say_group(command, &report->group[group], weave);
     command_say(&command->files.common, "fibres: alpha %s, beta %s", alpha, beta);
+    say_askew(command, report);
     say_errors(command, report);
 }
 

@@ -14,6 +14,8 @@ static double step_of(const weft_least_squares *problem, const double *parameter
 {
     double range = problem->high[i] - problem->low[i];
     double step = relative_step * fmax(fabs(parameters[i]), 0.01 * range);
+    if (problem->least_step)
+        step = fmax(step, problem->least_step[i]);
     return parameters[i] + step > problem->high[i] ? -step : step;
 }
 

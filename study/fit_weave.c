@@ -131,6 +131,22 @@ static void release_width(weft_fit_weave_model *model, int group, double *parame
         parameters[weft_fit_weave_index(group, WEFT_FIT_WEAVE_WIDTH)] = 0.75;
 }
 
+/* A sample that lies askew shows in twist and width if it is held straight. Where the data tell less of it than rigs
+ * are known to, or want more than a rig does, something else is amiss. */
+static weft_code try_straight(weft_fit_weave_model *model, double *parameters, double *deviation, double *cost,
+                              weft_error *error)
+{
+    const double vague_rad = weft_rad_of_deg(0.2), unlikely = 0.95;
+    bool straight = false;
+    for (int i = WEFT_FIT_WEAVE_ASKEW; i < WEFT_FIT_WEAVE_ASKEW + 3; i++)
+        straight = straight || !(deviation[i] < vague_rad) || fabs(parameters[i]) > unlikely * model->high[i];
+    if (!straight)
+        return WEFT_OK;
+    weft_fit_weave_hold_askew(model, parameters);
+    WEFT_TRY(solve(model, model->mean->count, parameters, cost, error));
+    return weft_fit_weave_deviation(model, parameters, deviation, error);
+}
+
 /* On all images, with the widths that the data tell. */
 static weft_code refine(weft_fit_weave_model *model, const weft_progress *progress, double *parameters,
                         double *deviation, weft_error *error)
@@ -138,9 +154,11 @@ static weft_code refine(weft_fit_weave_model *model, const weft_progress *progre
     double cost;
     for (int group = 0; group < model->group_count; group++)
         release_width(model, group, parameters);
+    weft_fit_weave_free_askew(model);
     WEFT_TRY(solve(model, SEARCH_IMAGES, parameters, &cost, error));
     WEFT_TRY(solve(model, model->mean->count, parameters, &cost, error));
     WEFT_TRY(weft_fit_weave_deviation(model, parameters, deviation, error));
+    WEFT_TRY(try_straight(model, parameters, deviation, &cost, error));
     WEFT_TRY(try_start_widths(model, parameters, deviation, &cost, error));
     weft_progress_report(progress, "fitting", STAGES, STAGES);
     return WEFT_OK;
@@ -169,8 +187,13 @@ static void describe_group(const weft_fit_weave_model *model, int index, const d
                                     .width_deviation = own[WEFT_FIT_WEAVE_WIDTH] * fibres->width};
 }
 
-static void describe(const weft_fit_weave_model *model, const double *deviation, weft_fit_weave_report *report)
+static void describe(const weft_fit_weave_model *model, const double *parameters, const double *deviation,
+                     weft_fit_weave_report *report)
 {
+    for (int axis = 0; axis < 3; axis++) {
+        report->askew_deg[axis] = weft_deg_of_rad(parameters[WEFT_FIT_WEAVE_ASKEW + axis]);
+        report->askew_deviation[axis] = weft_deg_of_rad(deviation[WEFT_FIT_WEAVE_ASKEW + axis]);
+    }
     const weft_segment *segment = &model->weave->yarn[model->group[0].yarn].segment;
     report->image_count = model->mean->count;
     report->group_count = model->group_count;
@@ -205,7 +228,7 @@ weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const we
     if (code == WEFT_OK)
         code = weft_fit_weave_model_apply(&model, parameters, error);
     if (code == WEFT_OK) {
-        describe(&model, deviation, report);
+        describe(&model, parameters, deviation, report);
         code = weft_fit_weave_measure(mean, weave, &report->after, error);
     }
     weft_fit_weave_model_free(&model);

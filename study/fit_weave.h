@@ -25,7 +25,8 @@ typedef struct weft_fit_weave_report {
     int image_count, group_count;
     weft_fit_weave_group group[WEFT_FIT_WEAVE_GROUPS];
     double alpha, beta, alpha_deviation, beta_deviation;
-    weft_fit_weave_error before, after; /* the weave as it was given, and fitted */
+    double askew_deg[3], askew_deviation[3]; /* turn of the sample about x, y, z; all 0 where it was held straight */
+    weft_fit_weave_error before, after;      /* the weave as it was given, and fitted */
     double seconds;
 } weft_fit_weave_report;
 
@@ -35,9 +36,10 @@ typedef struct weft_fit_weave_report {
  * then by non-linear least squares. A mean BRDF knows only the sum of the diffuse terms: kd of all yarns is scaled by
  * one factor a channel. psi keeps its sign, and a filament (psi = 0) stays one. The widths of a group change by one
  * factor, 0.4 to 2.5; they stay those of the start where its standard error is above 0.25 and the start does as well.
- * Standard errors take residuals of images with the same light or the same view as correlated. Errors: WEFT_BAD_INPUT
- * for a weave without admissible segment or with more than WEFT_FIT_WEAVE_GROUPS kinds, or for fewer images than
- * unknowns; WEFT_SYSTEM. */
+ * The sample may lie askew in the frame of lights and views by up to a degree; where the data do not tell that to 0.2
+ * degrees it is taken as straight. Standard errors take residuals of images with the same light or the same view as
+ * correlated. Errors: WEFT_BAD_INPUT for a weave without admissible segment or with more than WEFT_FIT_WEAVE_GROUPS
+ * kinds, or for fewer images than unknowns; WEFT_SYSTEM. */
 weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const weft_progress *progress,
                          weft_fit_weave_report *report, weft_error *error);
 

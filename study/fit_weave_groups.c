@@ -16,6 +16,8 @@
 #define LARGEST_BETA 60.0
 #define LEAST_WIDTH 0.4
 #define LARGEST_WIDTH 2.5
+#define LARGEST_ASKEW_DEG 1.0
+#define ASKEW_STEP_DEG 0.1
 
 /* ---- Groups ---- */
 
@@ -119,9 +121,27 @@ static void start_group(weft_fit_weave_model *model, int group, double *paramete
     set_parameter(model, curve, 1 + segment->kappa, parameters);
 }
 
+void weft_fit_weave_free_askew(weft_fit_weave_model *model)
+{
+    double largest = weft_rad_of_deg(LARGEST_ASKEW_DEG);
+    for (int axis = 0; axis < 3; axis++)
+        set_bounds(model, WEFT_FIT_WEAVE_ASKEW + axis, -largest, largest);
+}
+
+void weft_fit_weave_hold_askew(weft_fit_weave_model *model, double *parameters)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        int index = WEFT_FIT_WEAVE_ASKEW + axis;
+        set_bounds(model, index, 0, 0);
+        parameters[index] = 0;
+        model->least_step[index] = weft_rad_of_deg(ASKEW_STEP_DEG);
+    }
+}
+
 void weft_fit_weave_start(weft_fit_weave_model *model, double *parameters)
 {
     const weft_segment *fibre = &model->weave->yarn[model->group[0].yarn].segment;
+    weft_fit_weave_hold_askew(model, parameters);
     set_bounds(model, WEFT_FIT_WEAVE_ALPHA, 0, LARGEST_ALPHA);
     set_bounds(model, WEFT_FIT_WEAVE_BETA, 0, LARGEST_BETA);
     set_parameter(model, WEFT_FIT_WEAVE_ALPHA, fibre->alpha, parameters);

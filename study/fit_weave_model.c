@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define WEIGHT_FLOOR 0.05 /* of the mean value: darker data are not fitted more closely */
 
@@ -30,10 +31,19 @@ static void order_images(weft_fit_weave_model *model)
         model->order[i] = i;
 }
 
-static void turn_directions(weft_fit_weave_model *model)
+/* In the frame of a sample that has been turned by a small `askew`, to first order. */
+static weft_vec3 turned_back(weft_vec3 d, const double askew[3])
 {
+    return weft_unit(weft_vec3_of(d.x + askew[2] * d.y - askew[1] * d.z, d.y + askew[0] * d.z - askew[2] * d.x,
+                                  d.z + askew[1] * d.x - askew[0] * d.y));
+}
+
+static void turn_directions(weft_fit_weave_model *model, const double askew[3])
+{
+    memcpy(model->askew, askew, sizeof model->askew);
     for (int i = 0; i < model->mean->count; i++) {
-        weft_vec3 light = model->mean->light[model->order[i]], view = model->mean->view[model->order[i]];
+        weft_vec3 light = turned_back(model->mean->light[model->order[i]], askew);
+        weft_vec3 view = turned_back(model->mean->view[model->order[i]], askew);
         model->light[0][i] = light;
         model->view[0][i] = view;
         model->light[1][i] = weft_vec3_of(-light.y, light.x, light.z);
@@ -110,7 +120,7 @@ weft_code weft_fit_weave_model_create(const weft_mean_brdf *mean, weft_weave *we
         return weft_fail(error, WEFT_BAD_INPUT, "%d images are too few for the %d unknowns of this weave", mean->count,
                          unknowns);
     order_images(model);
-    turn_directions(model);
+    turn_directions(model, parameters + WEFT_FIT_WEAVE_ASKEW);
     weigh_images(model);
     model->looked_at = mean->count;
     return WEFT_OK;
@@ -170,6 +180,7 @@ static void compute_residuals(void *context, const double *parameters, double *r
 {
     weft_fit_weave_model *model = context;
     int columns = 1 + model->group_count;
+    turn_directions(model, parameters + WEFT_FIT_WEAVE_ASKEW);
     fill_rows(model, parameters);
     if (model->code == WEFT_OK)
         model->code = solve_colours(model, &model->error);
@@ -189,6 +200,7 @@ weft_least_squares weft_fit_weave_problem(weft_fit_weave_model *model)
                                 .residual_count = 3 * model->looked_at,
                                 .low = model->low,
                                 .high = model->high,
+                                .least_step = model->least_step,
                                 .residuals = compute_residuals,
                                 .context = model};
 }

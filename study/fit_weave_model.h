@@ -12,9 +12,10 @@
 enum {
     WEFT_FIT_WEAVE_ALPHA,
     WEFT_FIT_WEAVE_BETA,
-    WEFT_FIT_WEAVE_FIRST_GROUP,
+    WEFT_FIT_WEAVE_ASKEW, /* x, y, z: the turn of the sample in the frame of lights and views, rad */
+    WEFT_FIT_WEAVE_FIRST_GROUP = WEFT_FIT_WEAVE_ASKEW + 3,
     WEFT_FIT_WEAVE_COLUMNS = 1 + WEFT_FIT_WEAVE_GROUPS,
-    WEFT_FIT_WEAVE_REMEMBERED = 3 /* shapes of a group whose G is kept */
+    WEFT_FIT_WEAVE_REMEMBERED = 5 /* shapes of a group whose G is kept */
 };
 
 /* What a group has of its own, in this order. */
@@ -30,7 +31,7 @@ enum { WEFT_FIT_WEAVE_PARAMETERS = WEFT_FIT_WEAVE_FIRST_GROUP + WEFT_FIT_WEAVE_O
 
 /* G of a group at one shape. */
 typedef struct weft_fit_weave_shape {
-    double own[WEFT_FIT_WEAVE_OWN];
+    double own[WEFT_FIT_WEAVE_OWN], askew[3];
     int looked_at; /* for so many images; 0: empty */
     long used;     /* when last */
     double *value; /* [mean->count] */
@@ -51,9 +52,11 @@ typedef struct weft_fit_weave_model {
     int group_count, parameter_count;
     weft_fit_weave_fibres group[WEFT_FIT_WEAVE_GROUPS];
     double low[WEFT_FIT_WEAVE_PARAMETERS], high[WEFT_FIT_WEAVE_PARAMETERS]; /* equal: held */
-    int *order;                                    /* [mean->count] images, any first of them spread evenly */
-    int looked_at;                                 /* so many of them */
-    weft_vec3 *light[2], *view[2];                 /* [mean->count] in the order, in the frames of warp and weft */
+    int *order;                    /* [mean->count] images, any first of them spread evenly */
+    int looked_at;                 /* so many of them */
+    weft_vec3 *light[2], *view[2]; /* [mean->count] in the order, in the frames of warp and weft of the sample */
+    double askew[3];               /* as it lies now, rad */
+    double least_step[WEFT_FIT_WEAVE_PARAMETERS];
     double *weight;                                /* [mean->count] in the order */
     double *rows;                                  /* [mean->count][WEFT_FIT_WEAVE_COLUMNS] */
     double *target;                                /* [3][mean->count] */
@@ -81,6 +84,10 @@ int weft_fit_weave_index(int group, weft_fit_weave_own own);
  * holds them. umax follows: width sin umax < length. */
 void weft_fit_weave_free_width(weft_fit_weave_model *model, int group);
 void weft_fit_weave_hold_width(weft_fit_weave_model *model, int group, double *parameters);
+
+/* Lets the sample lie askew by up to a degree about each axis, or holds it straight. */
+void weft_fit_weave_free_askew(weft_fit_weave_model *model);
+void weft_fit_weave_hold_askew(weft_fit_weave_model *model, double *parameters);
 
 /* A segment of the start with the shape of its group at these parameters; a width that such an inclination does not
  * leave room for is the largest it does. Pure. */

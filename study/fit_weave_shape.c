@@ -62,12 +62,18 @@ static void compute_shape(const weft_fit_weave_model *model, int group, weft_fit
     shape->looked_at = model->looked_at;
 }
 
-static bool same_shape(const double *a, const double *b)
+static bool same_values(const double *a, const double *b, int count)
 {
-    for (int i = 0; i < WEFT_FIT_WEAVE_OWN; i++)
+    for (int i = 0; i < count; i++)
         if (a[i] != b[i])
             return false;
     return true;
+}
+
+static bool is_known(const weft_fit_weave_model *model, const weft_fit_weave_shape *shape, const double *own)
+{
+    return shape->looked_at == model->looked_at && same_values(shape->own, own, WEFT_FIT_WEAVE_OWN) &&
+           same_values(shape->askew, model->askew, 3);
 }
 
 const double *weft_fit_weave_reflectance(weft_fit_weave_model *model, int group, const double *parameters)
@@ -76,13 +82,14 @@ const double *weft_fit_weave_reflectance(weft_fit_weave_model *model, int group,
     const double *own = parameters + weft_fit_weave_index(group, WEFT_FIT_WEAVE_PSI);
     model->clock++;
     for (int i = 0; i < WEFT_FIT_WEAVE_REMEMBERED; i++) {
-        if (shapes[i].looked_at == model->looked_at && same_shape(shapes[i].own, own)) {
+        if (is_known(model, &shapes[i], own)) {
             shapes[i].used = model->clock;
             return shapes[i].value;
         }
         oldest = shapes[i].used < oldest->used ? &shapes[i] : oldest;
     }
     memcpy(oldest->own, own, sizeof oldest->own);
+    memcpy(oldest->askew, model->askew, sizeof oldest->askew);
     oldest->used = model->clock;
     compute_shape(model, group, oldest);
     return oldest->value;

@@ -15,12 +15,13 @@ typedef void weft_residual_function(void *context, const double *parameters, dou
 typedef struct weft_least_squares {
     int parameter_count, residual_count;
     const double *low, *high; /* [parameter_count]; equal: the parameter is held there */
+    const double *least_step; /* [parameter_count] of a difference; NULL: none */
     weft_residual_function *residuals;
     void *context;
 } weft_least_squares;
 
 /* Minimises the sum of squares between the bounds from `parameters`, both start and result, with derivatives by
- * differences over 0.3 % of a parameter. Errors: WEFT_SYSTEM where the solver fails. */
+ * differences over 0.3 % of a parameter, at least least_step. Errors: WEFT_SYSTEM where the solver fails. */
 weft_code weft_least_squares_solve(const weft_least_squares *problem, double *parameters, weft_error *error);
 
 /* The same differences: residuals [residual_count] at `parameters`, and their derivatives [residual_count]

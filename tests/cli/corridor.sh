@@ -58,6 +58,8 @@ slices_agree "$assets/weaves/wool_gabardine.wv" 13
 # A weave found from 32 photographs, started off the truth, is nearer to the data and reads back.
 sed 's/psi = 30/psi = 38/; s/umax = 30/umax = 24/' "$assets/weaves/wool_gabardine.wv" >start.wv
 expect_says "median" fit-weave cloth.btf.h5 --weave start.wv -o fitted.wv
+sed -n 's|.*percentile: \([0-9.]*\) % / .* before, \([0-9.]*\) % .*|\1 \2|p' out.log | awk '{ exit !($2 < 0.5 * $1) }' ||
+    fail "the fitted weave is no better than its start"
 grep -q "Fitted to the mean of 32 images" fitted.wv || fail "the fitted weave does not say what it was fitted to"
 error_of_analytic() {
     sed -n "s/^analytic, mean BRDF: relative RMSE \([0-9.]*\),.*/\1/p" out.log
@@ -66,7 +68,8 @@ expect_says "fitted to no dataset" compare cloth.btf.h5 cloth.weft --weave start
 before=$(error_of_analytic)
 # The comparison fits by itself, to the same weave, and says so.
 expect_says "fitted to this dataset, the mean of 32 images" compare cloth.btf.h5 cloth.weft --weave start.wv --fit -o report
-awk "BEGIN { exit !($(error_of_analytic) < 0.5 * $before) }" || fail "the fitted weave is no better than its start"
+# That of the whole material counts the texels beside the frame, too: the true weave has 0.87 of the error of the start.
+awk "BEGIN { exit !($(error_of_analytic) < 0.9 * $before) }" || fail "the fitted weave compares no better than its start"
 cmp fitted.wv report/fitted.wv || fail "compare --fit and fit-weave find different weaves"
 grep -q "Before the fit" report/index.html || fail "the page does not say what the fit changed"
 expect_error 2 "--weave" compare cloth.btf.h5 cloth.weft --fit -o report

@@ -205,6 +205,37 @@ static void standard_errors_are_those_of_repeated_captures(void **state)
     weft_weave_free(&truth);
 }
 
+/* Lights and views are those of the rig; the sample lies in it turned by a third of a degree. */
+static void a_sample_that_lies_askew_is_not_taken_for_twisted(void **state)
+{
+    (void)state;
+    const weft_vec3 turn = {weft_rad_of_deg(0.1), weft_rad_of_deg(-0.2), weft_rad_of_deg(0.25)};
+    weft_weave truth = read_fabric("wool_gabardine"), start = read_fabric("wool_gabardine");
+    weft_mean_brdf mean = photograph(&truth, 4);
+    weft_fit_weave_report report;
+    weft_error error;
+    add_noise(&mean, (noise_levels){.image = 0.01}, 7, &mean);
+    for (int i = 0; i < mean.count; i++) {
+        mean.light[i] = weft_unit(weft_add(mean.light[i], weft_cross(turn, mean.light[i])));
+        mean.view[i] = weft_unit(weft_add(mean.view[i], weft_cross(turn, mean.view[i])));
+    }
+    if (weft_fit_weave(&mean, &start, NULL, &report, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    const double wanted[3] = {0.1, -0.2, 0.25};
+    for (int axis = 0; axis < 3; axis++) {
+        print_message("  askew by %.3f +- %.3f (%.2f) degrees\n", report.askew_deg[axis], report.askew_deviation[axis],
+                      wanted[axis]);
+        assert_true(fabs(report.askew_deg[axis] - wanted[axis]) < 0.1);
+    }
+    for (int i = 0; i < report.group_count; i++) {
+        print_group(&report.group[i], &truth.yarn[report.group[i].yarn].segment);
+        assert_true(fabs(report.group[i].psi_deg - 30) < 0.1);
+    }
+    weft_mean_brdf_free(&mean);
+    weft_weave_free(&truth);
+    weft_weave_free(&start);
+}
+
 static void non_negative_solutions_are_exact_and_stop_at_zero(void **state)
 {
     (void)state;
@@ -279,6 +310,7 @@ int main(void)
         cmocka_unit_test(staple_fabrics_are_found_again_from_30_percent_off),
         cmocka_unit_test(filament_fabrics_are_found_again_from_30_percent_off),
         cmocka_unit_test(standard_errors_are_those_of_repeated_captures),
+        cmocka_unit_test(a_sample_that_lies_askew_is_not_taken_for_twisted),
         cmocka_unit_test(non_negative_solutions_are_exact_and_stop_at_zero),
         cmocka_unit_test(a_written_weave_reads_back_to_the_same_numbers),
         cmocka_unit_test(a_weave_without_highlights_or_too_few_images_are_refused),
