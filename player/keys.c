@@ -14,7 +14,7 @@ static void say_missing(weft_interaction *i, weft_mode mode)
     static const char *const missing[WEFT_MODE_COUNT] = {
         "no samples: drop a .btf.h5, or give --raw",
         "no material: drop a .weft",
-        "no cloth: drop a .wv, or give --weave",
+        "no cloth: drop a .wv or .mc, or give --weave",
     };
     if (i->is_reading)
         snprintf(i->said, sizeof i->said, "%s: not read yet", weft_mode_name(mode));
