@@ -111,8 +111,10 @@ static void map_legend(const weft_application *a)
     double view_rad, light_rad;
     char text[160];
     weft_player_last_ring(a->player, a->interaction.scene.pane[0], &view_rad, &light_rad);
-    snprintf(text, sizeof text, "Drag the light.\nDot: light\nCircle: eye\nRing: last measured,\n%.0f\xc2\xb0",
-             weft_deg_of_rad(light_rad));
+    int used = snprintf(text, sizeof text, "Drag the light.\nDot: light\nCircle: eye");
+    if (light_rad < weft_rad_of_deg(89.9)) /* else nothing was measured, or all */
+        snprintf(text + used, sizeof text - (size_t)used, "\nRing: last measured,\n%.0f\xc2\xb0",
+                 weft_deg_of_rad(light_rad));
     weft_ui_dim_text(text);
 }
 
