@@ -21,6 +21,7 @@ enum {
     KEY_LOBES = 0x2000,
     KEY_TABLE,
     KEY_LIGHT_TABLE,
+    KEY_WEIGHTS,
     KEY_LEVELS,
     KEY_FRAMES,
     KEY_MAX_EXPONENT,
@@ -40,6 +41,10 @@ static const struct argp_option option_table[] = {
     {"tables", KEY_TABLES, "8bit|pca:K", 0,
      "Store T and S in 8 bits for each direction, or by K principal components across texels: a fraction of the size; "
      "lobes are fitted to what is stored, in a second pass (default: 8bit)",
+     0},
+    {"weights", KEY_WEIGHTS, "even|screen", 0,
+     "What an error of a sample counts for. even: all alike, least squares. screen: less the brighter the sample, as a "
+     "screen shows it; where lobes cannot follow a highlight, its surroundings keep their colour (default: even)",
      0},
     {"levels", KEY_LEVELS, "on|off", 0, "Mip levels (default: on)", 0},
     {"frames", KEY_FRAMES, "on|off|given", 0,
@@ -70,6 +75,13 @@ static weft_frame_choice parse_frames(const char *argument, struct argp_state *s
     return parse_switch("frames", argument, state) ? WEFT_FRAMES_FITTED : WEFT_FRAMES_SURFACE;
 }
 
+static weft_sample_weights parse_weights(const char *argument, struct argp_state *state)
+{
+    if (strcmp(argument, "even") != 0 && strcmp(argument, "screen") != 0)
+        argp_error(state, "--weights is even or screen, not '%s'", argument);
+    return strcmp(argument, "screen") == 0 ? WEFT_WEIGHTS_SCREEN : WEFT_WEIGHTS_EVEN;
+}
+
 static int parse_tables(char *argument, struct argp_state *state)
 {
     if (strcmp(argument, "8bit") == 0)
@@ -95,6 +107,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_TABLES:
         options->table_components = parse_tables(argument, state);
+        return 0;
+    case KEY_WEIGHTS:
+        options->weights = parse_weights(argument, state);
         return 0;
     case KEY_LEVELS:
         options->levels = parse_switch("levels", argument, state);
@@ -156,6 +171,8 @@ static void say_model(const compress_command *command, const weft_dataset_layout
                 report->lobe_count, table, report->light_count > 0 ? " and a light table" : "");
     if (command->options.table_components > 0 && report->table_components == 0)
         command_say(common, "these images carry no tables: --tables changes nothing");
+    if (command->options.weights != WEFT_WEIGHTS_EVEN && report->model == WEFT_COMPRESS_SPARSE)
+        command_say(common, "with so few images --weights changes nothing");
     if (report->model == WEFT_COMPRESS_SPARSE)
         command_say(common,
                     "%d images cannot carry lobes in every texel: exponents and normals are shared with the "

@@ -344,3 +344,8 @@ void weft_samples_gather(const weft_bundle *bundle, weft_values values, const fl
 {
     weft_fit_kernels_of(weft_processor_instruction_set())->gather(bundle, values, sum, count, group_size, samples);
 }
+
+void weft_samples_weigh_for_screen(const weft_bundle *bundle, weft_samples *samples)
+{
+    weft_fit_kernels_of(weft_processor_instruction_set())->weigh(bundle, samples);
+}

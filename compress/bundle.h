@@ -52,6 +52,12 @@ void weft_bundle_place(const weft_dataset_layout *layout, int x0, int y0, int x1
 
 enum { WEFT_CHANNELS = 3, WEFT_GREY = 3 };
 
+/* What an error of a sample counts for. */
+typedef enum weft_sample_weights {
+    WEFT_WEIGHTS_EVEN,  /* alike, as in least squares */
+    WEFT_WEIGHTS_SCREEN /* less the brighter the sample, about as little as a screen shows of it */
+} weft_sample_weights;
+
 /* The samples of one texel in the order of a bundle, scaled by the root of their weights and by one factor for the
  * whole texel that brings their mean square to 1. Arrays are [sample_count]; samples of zero weight are 0. */
 typedef struct weft_samples {
@@ -72,5 +78,11 @@ void weft_samples_free(weft_samples *samples);
  * Samples without the cosine (WEFT_REFLECTANCE) are multiplied by it. Returns nothing; not-finite sums get weight 0. */
 void weft_samples_gather(const weft_bundle *bundle, weft_values values, const float *sum, const float *count,
                          int group_size, weft_samples *samples);
+
+/* Multiplies the weight of every sample r, its cosine included, by 1 / (1 + grey(r) / (WEFT_SCREEN_TOE rms)), where rms
+ * is that of the texel: on a screen, which shows r^(1 / 2.2) above a toe, the square of an error of r counts about as 1
+ * / r. Where two lobes cannot follow a highlight, what lies beside it is then no longer given up for it. */
+#define WEFT_SCREEN_TOE 0.2
+void weft_samples_weigh_for_screen(const weft_bundle *bundle, weft_samples *samples);
 
 #endif

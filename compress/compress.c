@@ -130,6 +130,8 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
         "masked_samples", (json_int_t)report->masked_count, "texels", (json_int_t)report->texel_count, "empty_texels",
         (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,
         "retro_reflective_starts", (double)report->second_start_count / texels);
+    if (fit && options->weights == WEFT_WEIGHTS_SCREEN && report->model != WEFT_COMPRESS_SPARSE)
+        json_object_set_new(fit, "weights", json_string("screen"));
     if (fit && options->target_error > 0) {
         json_object_set_new(fit, "target_error", json_real(options->target_error));
         json_object_set_new(fit, "texels_above_target", json_integer((json_int_t)report->missed_texel_count));
@@ -190,9 +192,9 @@ static weft_code identify(const weft_dataset *dataset, const weft_compress_optio
              fingerprint->samples, (long long)status.st_size, (long long)status.st_mtim.tv_sec,
              (long)status.st_mtim.tv_nsec);
     snprintf(text->options, sizeof text->options,
-             "%s, %d lobes, lights %d, frames %d, N <= %.17g, error <= %.17g, levels %d, held out %08lx",
-             model_name[report->model], report->lobe_count, options->light_table, (int)options->frames,
-             options->max_exponent, options->target_error, options->levels, held_out);
+             "%s, %d lobes, lights %d, weights %d, frames %d, N <= %.17g, error <= %.17g, levels %d, held out %08lx",
+             model_name[report->model], report->lobe_count, options->light_table, (int)options->weights,
+             (int)options->frames, options->max_exponent, options->target_error, options->levels, held_out);
     return WEFT_OK;
 }
 
@@ -264,6 +266,7 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
                                 .held_out = options->held_out,
                                 .options = weft_fit_default_options(),
                                 .light_table = material->light_count > 0,
+                                .weights = options->weights,
                                 .frames = options->frames,
                                 .target_error = options->target_error};
     if (options->frames == WEFT_FRAMES_GIVEN ||

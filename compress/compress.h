@@ -5,16 +5,18 @@
 #include "btf/dataset.h"
 #include "btf/material.h"
 #include "btf/progress.h"
+#include "compress/bundle.h"
 #include "compress/frame_choice.h"
 #include "compress/note.h"
 
 #include <stdbool.h>
 
 typedef struct weft_compress_options {
-    int lobe_count;   /* at most; 0..3 */
-    bool table;       /* T(v), where the samples can carry it */
-    bool light_table; /* S(l) beside T, where lights repeat and the samples can carry it */
-    bool levels;      /* mip levels, each fitted to the mean samples of its groups of texels */
+    int lobe_count;              /* at most; 0..3 */
+    bool table;                  /* T(v), where the samples can carry it */
+    bool light_table;            /* S(l) beside T, where lights repeat and the samples can carry it */
+    weft_sample_weights weights; /* of a dense model */
+    bool levels;                 /* mip levels, each fitted to the mean samples of its groups of texels */
     weft_frame_choice frames;
     double max_exponent;   /* N <= this */
     double target_error;   /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */

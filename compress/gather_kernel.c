@@ -54,10 +54,11 @@ WEFT_INLINE void normalise(const gather_sums *sums, weft_samples *samples)
         total += sums->energy[k];
     samples->weight = sums->weight;
     samples->valid_count = (int)sums->valid;
-    samples->scale = total > 0 ? sqrt(total / (WEFT_CHANNELS * samples->weight)) : 1;
-    float inverse = (float)(1 / samples->scale);
+    double rms = total > 0 ? sqrt(total / (WEFT_CHANNELS * samples->weight)) : 1;
+    float inverse = (float)(1 / rms);
+    samples->scale *= rms;
     for (int k = 0; k <= WEFT_GREY; k++) {
-        samples->energy[k] = sums->energy[k] / (samples->scale * samples->scale);
+        samples->energy[k] = sums->energy[k] / (rms * rms);
         for (int at = 0; at < samples->sample_count; at += LANES)
             lanes_store(samples->value[k] + at, lanes_load(samples->value[k] + at) * inverse);
     }
@@ -67,8 +68,30 @@ void WEFT_KERNEL(weft_gather_samples)(const weft_bundle *bundle, weft_values val
                                       const float *count, int group_size, weft_samples *samples)
 {
     gather_sums sums = {0};
+    samples->scale = 1;
     for (int at = 0; at < bundle->sample_count; at += LANES)
         gather_vector(bundle, values, sum, count, 1.0f / (float)group_size, at, samples, &sums);
+    normalise(&sums, samples);
+}
+
+void WEFT_KERNEL(weft_gather_weigh)(const weft_bundle *bundle, weft_samples *samples)
+{
+    gather_sums sums = {.valid = samples->valid_count};
+    for (int at = 0; at < bundle->sample_count; at += LANES) {
+        lanes cosine = lanes_load(samples->cosine + at);
+        lane_bits valid = cosine > 0.0f;
+        lanes root = lanes_where(valid, cosine / lanes_select(valid, lanes_load(bundle->light[2] + at), lanes_of(1)));
+        lanes grey = lanes_load(samples->value[WEFT_GREY] + at) / lanes_select(valid, root, lanes_of(1));
+        grey = lanes_select(grey > 0.0f, grey, lanes_of(0));
+        lanes factor = lanes_sqrt((float)WEFT_SCREEN_TOE / ((float)WEFT_SCREEN_TOE + grey));
+        lanes_store(samples->cosine + at, cosine * factor);
+        for (int k = 0; k <= WEFT_GREY; k++) {
+            lanes value = lanes_load(samples->value[k] + at) * factor;
+            lanes_store(samples->value[k] + at, value);
+            sums.energy[k] += (double)lanes_sum(value * value);
+        }
+        sums.weight += (double)lanes_sum(root * root * factor * factor);
+    }
     normalise(&sums, samples);
 }
 

@@ -15,6 +15,8 @@ struct weft_fit_kernels {
     /* The samples of a texel: see weft_samples_gather. */
     void (*gather)(const weft_bundle *bundle, weft_values values, const float *sum, const float *count, int group_size,
                    weft_samples *samples);
+    /* See weft_samples_weigh_for_screen. */
+    void (*weigh)(const weft_bundle *bundle, weft_samples *samples);
     /* Adds the squares of the samples, each counted once whatever its weight, and of what `model` [sample_count] times
      * table [view_stride] leaves of them. */
     void (*compare)(const weft_bundle *bundle, const weft_samples *samples, int channel, const float *model,
@@ -40,6 +42,7 @@ struct weft_fit_kernels {
                                     const weft_gram_point *point, const float *table, bool coarse, float *sums);       \
     void weft_gather_samples_##set(const weft_bundle *bundle, weft_values values, const float *sum,                    \
                                    const float *count, int group_size, weft_samples *samples);                         \
+    void weft_gather_weigh_##set(const weft_bundle *bundle, weft_samples *samples);                                    \
     void weft_gather_compare_##set(const weft_bundle *bundle, const weft_samples *samples, int channel,                \
                                    const float *model, const float *table, weft_error_sums *sums);                     \
     void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \

@@ -258,6 +258,8 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         weft_bundle_aim(&fitter->bundle, layout, x_mm, y_mm);
     }
     weft_samples_gather(&fitter->bundle, layout->values, sum, count, group, &fitter->samples);
+    if (fitter->source->weights == WEFT_WEIGHTS_SCREEN)
+        weft_samples_weigh_for_screen(&fitter->bundle, &fitter->samples);
     counts->texels++;
     counts->empty += fitter->samples.valid_count == 0;
     if (fitter->source->judgement) {

@@ -17,6 +17,7 @@ typedef struct weft_texel_source {
     const uint8_t *held_out;
     weft_fit_options options;
     bool light_table; /* fit S(l), where lights have labels */
+    weft_sample_weights weights;
     weft_frame_choice frames;
     const weft_material
         *given; /* WEFT_FRAMES_GIVEN: has the frames; WEFT_FRAMES_FITTED: begin there too, may be NULL */

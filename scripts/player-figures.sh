@@ -69,6 +69,19 @@ gabardine="$demo/gabardine.weft --raw $demo/gabardine.btf.h5"
         --exposure 1.3 --tone soft --camera -75,24,3.5 $small
 }
 
+# What errors count for: raw, even weights, weights of a screen.
+"$weft" compress "$demo/gabardine.btf.h5" -o even.weft --quiet
+for pane in raw even screen; do
+    case $pane in
+    raw) files="$gabardine --mode raw" ;;
+    even) files="even.weft" ;;
+    screen) files="$demo/gabardine.weft" ;;
+    esac
+    # shellcheck disable=SC2086 # a list of options
+    "$weft" render $files --size 480x420 -o weights-$pane.png --quiet
+done
+convert weights-raw.png weights-even.png weights-screen.png +append -strip -define png:compression-level=9 "$images/weights.png"
+
 export weft demo weave images
 xvfb-run -a -s '-screen 0 1280x800x24' sh -eu -c '
     "$weft" play "$demo/gabardine.weft" --raw "$demo/gabardine.btf.h5" --weave "$weave" --light 42,-115,1.6,1.5,1.4 \

@@ -73,6 +73,22 @@ static void a_dataset_becomes_a_material_with_a_table_of_errors(void **state)
     weft_material_free(&material);
 }
 
+static void weights_are_kept_with_the_material(void **state)
+{
+    (void)state;
+    weft_material even, screen;
+    expect("command.btf.h5 -o even.weft --weights even", 0, "fitted in");
+    expect("command.btf.h5 -o screen.weft --weights screen", 0, "fitted in");
+    assert_int_equal(weft_material_read("even.weft", &even, NULL), WEFT_OK);
+    assert_int_equal(weft_material_read("screen.weft", &screen, NULL), WEFT_OK);
+    assert_null(strstr(even.metadata, "\"weights\""));
+    assert_non_null(strstr(screen.metadata, "\"weights\":\"screen\""));
+    assert_true(screen.level[0].error.relative_rmse > even.level[0].error.relative_rmse);
+    weft_material_free(&even);
+    weft_material_free(&screen);
+    expect("command.btf.h5 -o a.weft --weights bright", 2, "'bright'");
+}
+
 static void a_target_error_says_how_many_texels_miss_it(void **state)
 {
     (void)state;
@@ -139,6 +155,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dataset_becomes_a_material_with_a_table_of_errors),
+        cmocka_unit_test(weights_are_kept_with_the_material),
         cmocka_unit_test(a_target_error_says_how_many_texels_miss_it),
         cmocka_unit_test(a_budget_is_kept_and_reported_in_a_picture),
         cmocka_unit_test(wrong_usage_is_2),
