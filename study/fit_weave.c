@@ -66,6 +66,9 @@ static weft_code search_grid(weft_fit_weave_model *model, double *parameters, we
  * from there unless that makes the sum of squares larger by more than this factor. */
 static const double vague_width = 0.25, least_rise = 1.01;
 
+/* A width, relative to that of the start, narrow enough to leave room for any inclination the start admits. */
+static const double beside_edge = 0.75;
+
 static weft_code solve(weft_fit_weave_model *model, int images, double *parameters, double *cost, weft_error *error)
 {
     weft_fit_weave_look_at(model, images);
@@ -120,6 +123,25 @@ static weft_code try_start_widths(weft_fit_weave_model *model, double *parameter
     return WEFT_OK;
 }
 
+/* A width that is larger than its inclination leaves room for has no effect, and the search no way back: it begins once
+ * more beside that edge, and the better end counts. */
+static weft_code leave_edge(weft_fit_weave_model *model, int group, double *parameters, double *deviation, double *cost,
+                            weft_error *error)
+{
+    int width = weft_fit_weave_index(group, WEFT_FIT_WEAVE_WIDTH);
+    double other[WEFT_FIT_WEAVE_PARAMETERS], other_cost;
+    if (isfinite(deviation[width]))
+        return WEFT_OK;
+    memcpy(other, parameters, sizeof other);
+    other[width] = beside_edge;
+    WEFT_TRY(solve(model, model->mean->count, other, &other_cost, error));
+    if (!(other_cost < *cost))
+        return WEFT_OK;
+    memcpy(parameters, other, sizeof other);
+    *cost = other_cost;
+    return weft_fit_weave_deviation(model, parameters, deviation, error);
+}
+
 /* Where the inclination is as large as the width of the start allows, a narrower one may be true, and the way there is
  * along the edge: begin beside it. */
 static void release_width(weft_fit_weave_model *model, int group, double *parameters)
@@ -128,7 +150,7 @@ static void release_width(weft_fit_weave_model *model, int group, double *parame
     bool at_edge = parameters[umax] > 0.95 * model->high[umax];
     weft_fit_weave_free_width(model, group);
     if (at_edge)
-        parameters[weft_fit_weave_index(group, WEFT_FIT_WEAVE_WIDTH)] = 0.75;
+        parameters[weft_fit_weave_index(group, WEFT_FIT_WEAVE_WIDTH)] = beside_edge;
 }
 
 /* A sample that lies askew shows in twist and width if it is held straight. Where the data tell less of it than rigs
@@ -158,6 +180,8 @@ static weft_code refine(weft_fit_weave_model *model, const weft_progress *progre
     WEFT_TRY(solve(model, SEARCH_IMAGES, parameters, &cost, error));
     WEFT_TRY(solve(model, model->mean->count, parameters, &cost, error));
     WEFT_TRY(weft_fit_weave_deviation(model, parameters, deviation, error));
+    for (int group = 0; group < model->group_count; group++)
+        WEFT_TRY(leave_edge(model, group, parameters, deviation, &cost, error));
     WEFT_TRY(try_straight(model, parameters, deviation, &cost, error));
     WEFT_TRY(try_start_widths(model, parameters, deviation, &cost, error));
     weft_progress_report(progress, "fitting", STAGES, STAGES);
