@@ -60,6 +60,8 @@ static const struct argp_option option_table[] = {
     {"lobes-on", KEY_LOBES, "N[,N...]|none", 0, "Only these lobes of the material, counted from 1", 4},
     {"tables", KEY_TABLES, "both|view|light|none", 0, "Only these tables of the material", 4},
     {"table-bits", KEY_TABLE_BITS, "N", 0, "Tables as if coded with N bits, 1 to 8", 4},
+    {"noise", KEY_NOISE, "SEED|off", 0,
+     "Irregularities of the weave, as its file gives them, from this number on (default: off)", 4},
     {"show", KEY_SHOW, "level|extrapolation|none", 0,
      "The mip level in false colour; a tint where view or light lies beyond what was measured", 4},
     {"no-labels", KEY_NO_LABELS, 0, 0, "Leave out the names of the modes and the scale of a difference", 4},

@@ -2,6 +2,7 @@
 
 #include "cli/arguments.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -303,6 +304,9 @@ static void apply_evaluation(scene_options *o, int key, const char *argument, st
         break;
     case KEY_TABLE_BITS:
         scene->table_bits = (int)parse_whole("table-bits", argument, 1, 8, state);
+        break;
+    case KEY_NOISE:
+        scene->noise_seed = strcmp(argument, "off") == 0 ? 0 : (int)parse_whole("noise", argument, 1, INT_MAX, state);
         break;
     case KEY_SHOW:
         apply_show(o, argument, state);

@@ -33,6 +33,7 @@ enum {
     KEY_LOBES,
     KEY_TABLES,
     KEY_TABLE_BITS,
+    KEY_NOISE,
     KEY_SHOW,
     KEY_NO_LABELS
 };

@@ -83,7 +83,7 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
         if (weft_player_has_threads(p))
             weft_thread_texture_bind(&p->threads, program);
         else
-            weft_weave_texture_bind(&p->weave, program);
+            weft_weave_texture_bind(&p->weave, program, (unsigned)scene->noise_seed);
         break;
     }
 }
@@ -105,6 +105,7 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         .one_light = weft_lighting_count(scene, p->environment) == 1,
     };
     kind.threads = pane->mode == WEFT_MODE_ANALYTIC && weft_player_has_threads(p);
+    kind.noise = pane->mode == WEFT_MODE_ANALYTIC && scene->noise_seed != 0 && p->weave.has_noise;
     if (pane->mode == WEFT_MODE_RAW)
         kind.opacity = !p->raw.opaque;
     if (pane->mode == WEFT_MODE_COMPRESSED) {

@@ -52,6 +52,32 @@ static void choose_yarn(weft_weave_edit *edit)
     weft_ui_toggle("Change all yarns like it", &edit->alike);
 }
 
+/* Whether there is noise belongs to the picture, how strong it is to the weave. */
+static bool noise_rows(weft_application *a)
+{
+    static const char *const label[] = {"Warp by warp", "Warp by weft", "Weft by warp", "Weft by weft"};
+    weft_interaction *i = &a->interaction;
+    weft_weave_edit *edit = &a->weave;
+    bool noisy = i->scene.noise_seed != 0;
+    if (weft_ui_toggle("Noise", &noisy)) {
+        i->scene.noise_seed = noisy;
+        i->changed = true;
+    }
+    if (!noisy)
+        return false;
+    double fineness = (double)edit->weave.fineness, period = (double)edit->weave.period, amplitude[4];
+    i->changed |= weft_ui_whole("Seed", &i->scene.noise_seed, 1, 99);
+    bool changed = weft_ui_slider("Fineness", &fineness, 0, 10, "%.1f", false);
+    changed |= weft_ui_slider("Period", &period, 0, 500, "%.0f", false);
+    for (int k = 0; k < 4; k++) {
+        amplitude[k] = (double)edit->weave.inclination_noise_deg[k];
+        changed |= weft_ui_slider(label[k], &amplitude[k], 0, 40, "%.1f\xc2\xb0", false);
+    }
+    if (changed)
+        weft_weave_edit_set_noise(edit, fineness, period, amplitude);
+    return changed;
+}
+
 /* From then on the saved file is shown, so that pictures name it. */
 static void save(weft_application *a)
 {
@@ -90,6 +116,7 @@ void weft_application_show_weave(weft_application *a)
     for (int i = 0; i < WEFT_WEAVE_RANGES; i++)
         changed |= range_row(edit, &weft_weave_ranges[i]);
     changed |= colour_rows(edit);
+    changed |= noise_rows(a);
     if (changed)
         tell(a, weft_weave_edit_ask(edit, &error), &error);
     if (weft_ui_button("Save this weave"))

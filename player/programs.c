@@ -8,8 +8,8 @@ static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
 {
     return a->mode == b->mode && a->stochastic == b->stochastic && a->shadows == b->shadows &&
            a->one_light == b->one_light && a->plot == b->plot && a->opacity == b->opacity && a->threads == b->threads &&
-           a->lobe_count == b->lobe_count && a->view_table == b->view_table && a->light_table == b->light_table &&
-           a->fewer_bits == b->fewer_bits;
+           a->noise == b->noise && a->lobe_count == b->lobe_count && a->view_table == b->view_table &&
+           a->light_table == b->light_table && a->fewer_bits == b->fewer_bits;
 }
 
 static const char *name_of(bool value)
@@ -19,13 +19,14 @@ static const char *name_of(bool value)
 
 static void define(const weft_program_kind *kind, char *text, size_t size)
 {
-    snprintf(text, size,
-             "#define MAX_LIGHTS %d\n#define LIGHT_COUNT %s\n#define ONE_LIGHT %s\n#define STOCHASTIC %s\n"
-             "#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
-             "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n",
-             WEFT_MAX_LIGHTS, kind->one_light ? "1" : "light_count", name_of(kind->one_light),
-             name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity), kind->lobe_count,
-             name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits));
+    snprintf(
+        text, size,
+        "#define MAX_LIGHTS %d\n#define LIGHT_COUNT %s\n#define ONE_LIGHT %s\n#define STOCHASTIC %s\n"
+        "#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
+        "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n",
+        WEFT_MAX_LIGHTS, kind->one_light ? "1" : "light_count", name_of(kind->one_light), name_of(kind->stochastic),
+        name_of(kind->shadows), kind->plot, name_of(kind->opacity), kind->lobe_count, name_of(kind->view_table),
+        name_of(kind->light_table), name_of(kind->fewer_bits), name_of(kind->noise));
 }
 
 static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)

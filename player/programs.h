@@ -14,6 +14,7 @@ typedef struct weft_program_kind {
     int plot;     /* 0: of the picture; 1, 2: of lights, of views (player/probe.h) */
     bool opacity; /* raw: some is below 1 */
     bool threads; /* analytic: microcylinders, else a weave */
+    bool noise;   /* analytic: that of the weave */
     /* Of the compressed material: */
     int lobe_count;
     bool view_table, light_table;

@@ -3,6 +3,7 @@
 #include "btf/json_fields.h"
 #include "player/relative_path.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -187,6 +188,11 @@ static const field model_fields[] = {
      .offset = offsetof(weft_settings, scene.table_bits),
      .low = 1,
      .high = 8},
+    {.name = "noise_seed",
+     .kind = WEFT_JSON_WHOLE,
+     .offset = offsetof(weft_settings, scene.noise_seed),
+     .low = 0,
+     .high = INT_MAX},
     {0},
 };
 

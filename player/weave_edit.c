@@ -76,6 +76,15 @@ void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks
     edit->is_changed = true;
 }
 
+void weft_weave_edit_set_noise(weft_weave_edit *edit, double fineness, double period, const double amplitude_deg[4])
+{
+    edit->weave.fineness = (weft_real)fineness;
+    edit->weave.period = (weft_real)period;
+    for (int i = 0; i < 4; i++)
+        edit->weave.inclination_noise_deg[i] = (weft_real)amplitude_deg[i];
+    edit->is_changed = true;
+}
+
 weft_code weft_weave_edit_ask(weft_weave_edit *edit, weft_error *error)
 {
     WEFT_TRY(weft_weave_worker_ask(edit->worker, &edit->weave, error));

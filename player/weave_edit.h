@@ -40,6 +40,9 @@ double weft_weave_edit_get(const weft_weave_edit *edit, const weft_weave_paramet
 void weft_weave_edit_set(weft_weave_edit *edit, const weft_weave_parameter_range *range, double value);
 void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks);
 
+/* Changes the noise of the weave: `fineness`, `period` and the amplitudes as in weft_weave. */
+void weft_weave_edit_set_noise(weft_weave_edit *edit, double fineness, double period, const double amplitude_deg[4]);
+
 /* Asks for what follows from the segments, which is derived in the background. Errors: WEFT_SYSTEM. */
 weft_code weft_weave_edit_ask(weft_weave_edit *edit, weft_error *error);
 

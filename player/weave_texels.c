@@ -11,7 +11,7 @@ enum { DIRECTIONS = WEFT_UBO81_COUNT, PAIRS = DIRECTIONS * (DIRECTIONS + 1) / 2 
 typedef struct pair_list {
     int first[PAIRS], second[PAIRS];           /* texels of the pair and of its opposite */
     weft_vec3 light[2][PAIRS], view[2][PAIRS]; /* in the frame of a warp, of a weft */
-    weft_real value[PAIRS];
+    weft_real value[PAIRS], mean[PAIRS];
 } pair_list;
 
 static void list_pairs(pair_list *list)
@@ -60,51 +60,86 @@ static weft_rgb colour_of_kind(const weft_weave *weave, int kind)
     return (weft_rgb){(weft_real)sum[0], (weft_real)sum[1], (weft_real)sum[2]};
 }
 
-static void add_kind(const weft_weave *weave, int kind, pair_list *list, float (*mean)[4])
+/* f_s for all pairs, in the mean over the inclinations of its segments. */
+static void evaluate_noisy(const weft_weave *weave, int kind, pair_list *list, weft_real sum[PAIRS])
+{
+    const weft_yarn *yarn = &weave->yarn[kind];
+    weft_real offset_rad[WEFT_WEAVE_OFFSETS];
+    int frame = yarn->warp ? 0 : 1;
+    weft_weave_umax_offsets(weave, kind, offset_rad);
+    for (int i = 0; i < PAIRS; i++)
+        sum[i] = 0;
+    for (int k = 0; k < WEFT_WEAVE_OFFSETS; k++) {
+        weft_segment segment = yarn->segment;
+        segment.umax += offset_rad[k];
+        const weft_prepared_segment prepared = weft_segment_prepare(&segment);
+        weft_prepared_reflectance_batch(&prepared, PAIRS, list->light[frame], list->view[frame], list->value);
+        for (int i = 0; i < PAIRS; i++)
+            sum[i] += list->value[i] / WEFT_WEAVE_OFFSETS;
+    }
+}
+
+static void add_kind(const weft_weave *weave, int kind, bool noisy, pair_list *list, float (*mean)[4])
 {
     const weft_yarn *yarn = &weave->yarn[kind];
     weft_rgb colour = colour_of_kind(weave, kind);
     int frame = yarn->warp ? 0 : 1;
     if (!(colour.r + colour.g + colour.b > 0))
         return;
-    weft_prepared_reflectance_batch(&yarn->prepared, PAIRS, list->light[frame], list->view[frame], list->value);
+    if (noisy)
+        evaluate_noisy(weave, kind, list, list->mean);
+    else
+        weft_prepared_reflectance_batch(&yarn->prepared, PAIRS, list->light[frame], list->view[frame], list->mean);
     for (int i = 0; i < PAIRS; i++) {
-        add(mean[list->first[i]], colour, list->value[i]);
+        add(mean[list->first[i]], colour, list->mean[i]);
         if (list->second[i] != list->first[i])
-            add(mean[list->second[i]], colour, list->value[i]);
+            add(mean[list->second[i]], colour, list->mean[i]);
     }
 }
 
-static weft_code tabulate_mean(const weft_weave *weave, float (*mean)[4], weft_error *error)
+/* *mean: [DIRECTIONS * DIRECTIONS], of the caller's even on failure. */
+static weft_code tabulate_mean(const weft_weave *weave, bool noisy, float (**mean)[4], weft_error *error)
 {
     pair_list *list = malloc(sizeof *list);
-    if (!list)
-        return weft_fail_memory(error, "mean of a weave", sizeof *list);
+    *mean = calloc(DIRECTIONS * DIRECTIONS, sizeof **mean);
+    if (!list || !*mean) {
+        free(list);
+        return weft_fail_memory(error, "mean of a weave", sizeof *list + DIRECTIONS * DIRECTIONS * sizeof **mean);
+    }
     list_pairs(list);
-    add_diffuse(weave, mean);
+    add_diffuse(weave, *mean);
     for (int k = 0; k < weave->yarn_count; k++)
         if (weave->yarn[k].alike == k)
-            add_kind(weave, k, list, mean);
+            add_kind(weave, k, noisy, list, *mean);
     free(list);
     return WEFT_OK;
 }
 
+static bool inclines(const weft_weave *weave)
+{
+    const weft_real *amplitude = weave->inclination_noise_deg;
+    return weave->period > 0 && (amplitude[0] != 0 || amplitude[1] != 0 || amplitude[2] != 0 || amplitude[3] != 0);
+}
+
 weft_code weft_weave_texels_of(const weft_weave *weave, weft_weave_texels *t, weft_error *error)
 {
-    *t = (weft_weave_texels){.tile_width = weave->tile_width, .tile_height = weave->tile_height};
+    *t = (weft_weave_texels){.tile_width = weave->tile_width,
+                             .tile_height = weave->tile_height,
+                             .has_noise = weave->fineness > 0 || inclines(weave)};
     weft_weave_table(weave, NULL, &t->width, &t->height);
     size_t texels = (size_t)t->width * (size_t)t->height;
     t->table = calloc(texels, sizeof *t->table);
-    t->mean = calloc(DIRECTIONS * DIRECTIONS, sizeof *t->mean);
-    if (!t->table || !t->mean)
-        return weft_fail_memory(error, "weave", (texels + DIRECTIONS * DIRECTIONS) * sizeof *t->mean);
+    if (!t->table)
+        return weft_fail_memory(error, "weave", texels * sizeof *t->table);
     weft_weave_table(weave, t->table[0], &t->width, &t->height);
-    return tabulate_mean(weave, t->mean, error);
+    WEFT_TRY(tabulate_mean(weave, false, &t->mean, error));
+    return inclines(weave) ? tabulate_mean(weave, true, &t->noisy_mean, error) : WEFT_OK;
 }
 
 void weft_weave_texels_free(weft_weave_texels *t)
 {
     free(t->table);
     free(t->mean);
+    free(t->noisy_mean);
     *t = (weft_weave_texels){0};
 }

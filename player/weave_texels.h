@@ -9,6 +9,8 @@ typedef struct weft_weave_texels {
     int width, height;
     float (*table)[4]; /* [height * width], as weft_weave_table has it */
     float (*mean)[4];  /* [view][light] of ubo81: the mean of the tile, BRDF in 1/sr, within 1e-3 of its highlights */
+    float (*noisy_mean)[4];      /* the same with inclination noise, NULL where there is none */
+    bool has_noise;              /* of either kind */
     int tile_width, tile_height; /* cells */
 } weft_weave_texels;
 

@@ -9,9 +9,10 @@
 
 /* Where a pixel covers less than half a cell the woven texture is evaluated, where it covers more than two the mean of
  * the tile, in between a blend by the logarithm of the footprint. The mean is tabulated for ubo81 lights and views.
- * Begins zeroed. */
+ * Intensity noise fades likewise, by the size of its own cells. Begins zeroed. */
 typedef struct weft_weave_texture {
-    GLuint table, mean;
+    GLuint table, mean, noisy_mean; /* noisy_mean: 0 where it is the same */
+    bool has_noise;
     int table_texels;
     weft_direction_texture directions;
     weft_weave_layout layout;
@@ -28,7 +29,7 @@ void weft_weave_texture_free(weft_weave_texture *texture);
 /* Of graphics memory, without the directions. */
 size_t weft_weave_texture_bytes(const weft_weave_texture *texture);
 
-/* Sets the uniforms of analytic.glsl; `program` is in use. */
-void weft_weave_texture_bind(const weft_weave_texture *texture, GLuint program);
+/* Sets the uniforms of analytic.glsl; `program` is in use. noise_seed 0: without noise. */
+void weft_weave_texture_bind(const weft_weave_texture *texture, GLuint program, unsigned noise_seed);
 
 #endif

@@ -86,6 +86,11 @@ typedef struct weft_weave_point {
  * cloth, so it does not repeat with the tile. */
 weft_weave_point weft_weave_locate(const weft_weave *weave, weft_real U, weft_real V, uint64_t seed);
 
+/* Equally likely values that stand for the umax_offset_rad of all segments of a yarn, ascending: the means of as many
+ * classes of 512 segments far apart. All 0 without inclination noise, or where there is no such segment. Pure. */
+enum { WEFT_WEAVE_OFFSETS = 8 };
+void weft_weave_umax_offsets(const weft_weave *weave, int yarn, weft_real offset_rad[WEFT_WEAVE_OFFSETS]);
+
 /* intensity aw T(x, y) at a located point: the specular texture without s and ks. `light`, `view` in the frame of the
  * cloth. */
 weft_real weft_weave_specular(const weft_weave *weave, const weft_weave_point *point, weft_vec3 light, weft_vec3 view);

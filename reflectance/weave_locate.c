@@ -3,6 +3,8 @@
 
 #include "btf/direction.h"
 
+#include <stdlib.h>
+
 /* Beyond this many tiles a coordinate says nothing about the place within one. */
 #define MAX_COORDINATE 1e9
 
@@ -66,4 +68,26 @@ weft_weave_point weft_weave_locate(const weft_weave *weave, weft_real U, weft_re
     if (seed && yarn->admissible)
         add_noise(weave, place_of(weave, yarn, across.tile, down.tile), seed, &point);
     return point;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    weft_real x = *(const weft_real *)a, y = *(const weft_real *)b;
+    return (x > y) - (x < y);
+}
+
+void weft_weave_umax_offsets(const weft_weave *weave, int yarn, weft_real offset_rad[WEFT_WEAVE_OFFSETS])
+{
+    /* Steps of a few hundred tiles that have no factor in common with usual tiles and periods. */
+    enum { CLASS = 64, COUNT = CLASS * WEFT_WEAVE_OFFSETS, STEP_X = 211, STEP_Y = 307, SEED = 1 };
+    const weft_yarn *y = &weave->yarn[yarn];
+    weft_real offset[COUNT] = {0};
+    for (int i = 0; i < COUNT && weave->period > 0 && y->admissible; i++)
+        offset[i] = umax_offset(weave, y, place_of(weave, y, (weft_real)(STEP_X * i), (weft_real)(STEP_Y * i)), SEED);
+    qsort(offset, COUNT, sizeof *offset, ascending);
+    for (int k = 0; k < WEFT_WEAVE_OFFSETS; k++) {
+        offset_rad[k] = 0;
+        for (int i = k * CLASS; i < (k + 1) * CLASS; i++)
+            offset_rad[k] += offset[i] / CLASS;
+    }
 }

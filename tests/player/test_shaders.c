@@ -220,6 +220,7 @@ typedef struct cloth_model {
     weft_triangulation *directions;
     weft_rgb mean[WEFT_UBO81_COUNT][WEFT_UBO81_COUNT];
     weft_weave_layout layout;
+    int noise_seed;
 } cloth_model;
 
 static weft_rgb mean_brdf(const cloth_model *model, weft_vec3 light, weft_vec3 view)
@@ -239,6 +240,14 @@ static weft_rgb mean_brdf(const cloth_model *model, weft_vec3 light, weft_vec3 v
     return sum;
 }
 
+/* How much of the intensity noise is left to its mean. */
+static double resolved_noise(const cloth_model *model, const weft_weave_point *place, double level)
+{
+    const weft_segment *segment = &model->weave.yarn[place->yarn].segment;
+    double side = fmin(segment->width, segment->length) / model->weave.fineness;
+    return model->weave.fineness > 0 ? fmin(fmax((level - log2(side) + 1) / 2, 0), 1) : 0;
+}
+
 static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)
 {
     cloth_model *model = context;
@@ -248,15 +257,34 @@ static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)
     double fade = fmin(fmax(((double)at->level + 1) / 2, 0), 1);
     const weft_weave_layout *layout = &model->layout;
     double u = (double)at->u, v = (double)at->v;
-    weft_weave_point place = weft_weave_locate(&model->weave, (u - floor(u)) * layout->tiles_u - layout->corner_u,
-                                               (v - floor(v)) * layout->tiles_v - layout->corner_v, 0);
+    bool noisy = model->noise_seed != 0;
+    double U = (u - floor(u)) * layout->tiles_u - layout->corner_u + noisy * floor(u) * ceil(layout->tiles_u);
+    double V = (v - floor(v)) * layout->tiles_v - layout->corner_v + noisy * floor(v) * ceil(layout->tiles_v);
+    weft_weave_point place = weft_weave_locate(&model->weave, U, V, (uint64_t)model->noise_seed);
+    place.intensity += (1 - place.intensity) * resolved_noise(model, &place, (double)at->level);
     weft_rgb near = weft_weave_brdf(&model->weave, &place, light, view), far = mean_brdf(model, light, view);
     return lit((weft_rgb){WEFT_PI * (near.r + fade * (far.r - near.r)), WEFT_PI * (near.g + fade * (far.g - near.g)),
                           WEFT_PI * (near.b + fade * (far.b - near.b))},
                light, 1);
 }
 
-static void compare_weave(void **state, const char *name, double repeat)
+/* Means of the tile: exact ones, but under noise those that test_weave_texels.c holds against the noisy texture. */
+static void tabulate_means(cloth_model *model, const weft_vec3 direction[WEFT_UBO81_COUNT])
+{
+    weft_weave_texels texels;
+    weft_error error = {0};
+    expect_ok(weft_weave_texels_of(&model->weave, &texels, &error), &error);
+    for (int i = 0; i < WEFT_UBO81_COUNT * WEFT_UBO81_COUNT; i++) {
+        int view = i / WEFT_UBO81_COUNT, light = i % WEFT_UBO81_COUNT;
+        const float *noisy = texels.noisy_mean ? texels.noisy_mean[i] : NULL;
+        model->mean[view][light] = model->noise_seed && noisy
+                                       ? (weft_rgb){(weft_real)noisy[0], (weft_real)noisy[1], (weft_real)noisy[2]}
+                                       : weft_weave_mean_brdf(&model->weave, direction[light], direction[view]);
+    }
+    weft_weave_texels_free(&texels);
+}
+
+static void compare_weave(void **state, const char *name, double repeat, int noise_seed)
 {
     stage *s = *state;
     weft_error error = {0};
@@ -268,13 +296,13 @@ static void compare_weave(void **state, const char *name, double repeat)
     snprintf(path, sizeof path, "%s/weaves/%s.wv", WEFT_ASSETS, name);
     expect_ok(weft_weave_read(path, NULL, 0, &model->weave, warning, &error), &error);
     expect_ok(weft_triangulation_build(direction, WEFT_UBO81_COUNT, &model->directions, &error), &error);
-    for (int i = 0; i < WEFT_UBO81_COUNT * WEFT_UBO81_COUNT; i++)
-        model->mean[i / WEFT_UBO81_COUNT][i % WEFT_UBO81_COUNT] =
-            weft_weave_mean_brdf(&model->weave, direction[i % WEFT_UBO81_COUNT], direction[i / WEFT_UBO81_COUNT]);
+    model->noise_seed = noise_seed;
+    tabulate_means(model, direction);
     model->layout = (weft_weave_layout){2.25, 2, 0.3, -0.4};
     expect_ok(weft_player_set_weave(s->player, &model->weave, &model->layout, &error), &error);
     weft_scene scene = weft_scene_default();
     scene.repeat = repeat;
+    scene.noise_seed = noise_seed;
     expect_small(name, stage_compare(s->player, scene, WEFT_MODE_ANALYTIC, WIDTH, HEIGHT, evaluate_cloth, model));
     weft_triangulation_free(model->directions);
     weft_weave_free(&model->weave);
@@ -283,14 +311,22 @@ static void compare_weave(void **state, const char *name, double repeat)
 
 static void analytic_equals_c_for_staple_and_filament_yarns(void **state)
 {
-    compare_weave(state, "cotton_denim", 4);
-    compare_weave(state, "silk_charmeuse", 2);
+    compare_weave(state, "cotton_denim", 4, 0);
+    compare_weave(state, "silk_charmeuse", 2, 0);
 }
 
 static void analytic_equals_c_where_the_texture_fades_to_the_mean(void **state)
 {
-    compare_weave(state, "wool_gabardine", 15);
-    compare_weave(state, "polyester_lining", 60);
+    compare_weave(state, "wool_gabardine", 15, 0);
+    compare_weave(state, "polyester_lining", 60, 0);
+}
+
+static void noise_of_both_kinds_equals_c_near_and_far(void **state)
+{
+    compare_weave(state, "cotton_denim", 4, 7);
+    compare_weave(state, "silk_shantung", 3, 7);
+    compare_weave(state, "cotton_twill", 12, 1000000007);
+    compare_weave(state, "polyester_lining", 40, 3);
 }
 
 static weft_rgba evaluate_threads(void *context, const weft_surface_sample *at)
@@ -361,6 +397,7 @@ int main(void)
         cmocka_unit_test(a_dataset_that_does_not_fit_loses_its_finest_levels_first),
         cmocka_unit_test(analytic_equals_c_for_staple_and_filament_yarns),
         cmocka_unit_test(analytic_equals_c_where_the_texture_fades_to_the_mean),
+        cmocka_unit_test(noise_of_both_kinds_equals_c_near_and_far),
         cmocka_unit_test(microcylinders_equal_c),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);
