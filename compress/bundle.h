@@ -82,7 +82,7 @@ void weft_samples_gather(const weft_bundle *bundle, weft_values values, const fl
 /* Multiplies the weight of every sample r, its cosine included, by 1 / (1 + grey(r) / (WEFT_SCREEN_TOE rms)), where rms
  * is that of the texel: on a screen, which shows r^(1 / 2.2) above a toe, the square of an error of r counts about as 1
  * / r. Where two lobes cannot follow a highlight, what lies beside it is then no longer given up for it. */
-#define WEFT_SCREEN_TOE 0.2
+#define WEFT_SCREEN_TOE 0.5
 void weft_samples_weigh_for_screen(const weft_bundle *bundle, weft_samples *samples);
 
 #endif
