@@ -115,7 +115,13 @@ click 50 230
 drag 1 200 340 60 0
 shoot && differ "$analytic" "$next" "a slider of the weave"
 import -window root edited.png
-click 60 650
+sleep 1 # the exact scale follows
+shoot && edited=$next
+click 25 650
+shoot && differ "$edited" "$next" "noise"
+click 25 650
+shoot && same "$edited" "$next" "without noise again"
+click 60 678
 for _ in $(seq 100); do
     [ -s weft-001.wv ] && break
     sleep 0.1
