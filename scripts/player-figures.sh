@@ -69,6 +69,19 @@ gabardine="$demo/gabardine.weft --raw $demo/gabardine.btf.h5"
         --exposure 1.3 --tone soft --camera -75,24,3.5 $small
 }
 
+# Analytic cloths: a weave without and with its noise, microcylinders.
+light="--light 42,-115,1.2,1.15,1.05 --light 70,20,0.3,0.35,0.45 --shadows --tone soft --size 320x280 --quiet"
+charmeuse="--weave $source_dir/assets/weaves/silk_charmeuse.wv --repeat 22 --exposure 0.8 --camera -75,35,1.8"
+drape="--exposure 1.1 --camera -75,24,3.5"
+# shellcheck disable=SC2086 # lists of options
+{
+    "$weft" render $charmeuse $light -o plain.png
+    "$weft" render $charmeuse $light --noise 1 -o noisy.png
+    "$weft" render --weave "$source_dir/assets/microcylinder/shot.mc" $drape $light -o shot.png
+    "$weft" render --weave "$source_dir/assets/microcylinder/satin_face.mc" $drape $light -o satin.png
+}
+convert plain.png noisy.png shot.png satin.png +append -strip -define png:compression-level=9 "$images/player-cloths.png"
+
 # What errors count for: raw, even weights, weights of a screen.
 "$weft" compress "$demo/gabardine.btf.h5" -o even.weft --quiet
 for pane in raw even screen; do
