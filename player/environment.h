@@ -26,9 +26,8 @@ typedef struct weft_environment {
 } weft_environment;
 
 /* `image` holds radiance on the sphere by longitude and latitude: the top row is the world's +z, the middle column +y,
- * and x = +1 lies a quarter to the right of it. Negative and non-finite values count as 0,
- * those above 1e30 as that. Errors: WEFT_BAD_INPUT for a
- * map that is black or not twice as wide as high; WEFT_SYSTEM. */
+ * and x = +1 lies a quarter to the right of it. Negative and non-finite values count as 0, those above 1e30 as that.
+ * Errors: WEFT_BAD_INPUT for a map that is black or not twice as wide as high; WEFT_SYSTEM. */
 weft_code weft_environment_of_image(const weft_image *image, weft_environment *environment, weft_error *error);
 
 #endif

@@ -129,6 +129,13 @@ static void black_and_square_maps_are_refused_and_spoilt_pixels_are_black(void *
     weft_image_free(&image);
 }
 
+static void expect_finite(const weft_distant_light *light)
+{
+    assert_float_equal(weft_length(light->direction), 1, 1e-6);
+    for (int c = 0; c < 3; c++)
+        assert_true(isfinite(light->irradiance[c]) && light->irradiance[c] >= 0);
+}
+
 static void maps_of_two_pixels_and_of_enormous_values_give_finite_lights(void **state)
 {
     (void)state;
@@ -137,13 +144,10 @@ static void maps_of_two_pixels_and_of_enormous_values_give_finite_lights(void **
         image.width = width;
         image.height = width / 2;
         weft_environment *environment = environment_of(&image);
-        for (int i = 0; i < WEFT_ENVIRONMENT_REGIONS * (1 + WEFT_ENVIRONMENT_PARTS); i++) {
-            const weft_distant_light *light = i < WEFT_ENVIRONMENT_REGIONS
-                                                  ? &environment->region[i]
-                                                  : &environment->part[0][i - WEFT_ENVIRONMENT_REGIONS];
-            assert_float_equal(weft_length(light->direction), 1, 1e-6);
-            for (int c = 0; c < 3; c++)
-                assert_true(isfinite(light->irradiance[c]) && light->irradiance[c] >= 0);
+        for (int region = 0; region < WEFT_ENVIRONMENT_REGIONS; region++) {
+            expect_finite(&environment->region[region]);
+            for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++)
+                expect_finite(&environment->part[part][region]);
         }
         free(environment);
     }
