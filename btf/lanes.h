@@ -73,6 +73,21 @@ WEFT_INLINE lanes lanes_select(lane_bits mask, lanes yes, lanes no)
     return (lanes)(((lane_bits)yes & mask) | ((lane_bits)no & ~mask));
 }
 
+WEFT_INLINE lane_bits lane_bits_select(lane_bits mask, lane_bits yes, lane_bits no)
+{
+    return (yes & mask) | (no & ~mask);
+}
+
+WEFT_INLINE lanes lanes_max(lanes a, lanes b)
+{
+    return lanes_select(a > b, a, b);
+}
+
+WEFT_INLINE lanes lanes_min(lanes a, lanes b)
+{
+    return lanes_select(a < b, a, b);
+}
+
 WEFT_INLINE lanes lanes_where(lane_bits mask, lanes x)
 {
     return (lanes)((lane_bits)x & mask);

@@ -58,11 +58,6 @@ typedef struct view_state {
     lanes shrink;     /* 1 / <f|f> where T follows f, else 0 */
 } view_state;
 
-WEFT_INLINE lanes larger(lanes a, float b)
-{
-    return lanes_select(a > b, a, lanes_of(b));
-}
-
 WEFT_INLINE view_state state_of(const linear_lanes *own, const linear_point *at, int lobes, bool with_table)
 {
     int count = lobes + 1;
@@ -80,7 +75,7 @@ WEFT_INLINE view_state state_of(const linear_lanes *own, const linear_point *at,
     if (with_table) {
         lane_bits seen = state.ff > at->negligible;
         state.shrink = lanes_where(seen, 1 / lanes_select(seen, state.ff, lanes_of(1)));
-        state.t = lanes_select(seen, larger(fr, 0) * state.shrink, lanes_of(1));
+        state.t = lanes_select(seen, lanes_max(fr, lanes_of(0)) * state.shrink, lanes_of(1));
         state.eliminated = lanes_where(seen, lanes_of(1));
     }
     state.residual = own->square;
@@ -92,7 +87,7 @@ WEFT_INLINE view_state state_of(const linear_lanes *own, const linear_point *at,
             slope += state.delta[k] * own->gram[j][k];
         state.residual += state.delta[j] * slope;
     }
-    state.residual = larger(state.residual, 0);
+    state.residual = lanes_max(state.residual, lanes_of(0));
     return state;
 }
 

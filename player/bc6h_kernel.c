@@ -14,24 +14,9 @@ typedef struct block {
     lanes end[2][3];
 } block;
 
-WEFT_INLINE lanes smaller(lanes a, lanes b)
-{
-    return lanes_select(a < b, a, b);
-}
-
-WEFT_INLINE lanes larger(lanes a, lanes b)
-{
-    return lanes_select(a > b, a, b);
-}
-
 WEFT_INLINE lanes clamped(lanes x, float low, float high)
 {
-    return smaller(larger(x, lanes_of(low)), lanes_of(high));
-}
-
-WEFT_INLINE lane_bits select_bits(lane_bits mask, lane_bits yes, lane_bits no)
-{
-    return (yes & mask) | (no & ~mask);
+    return lanes_min(lanes_max(x, lanes_of(low)), lanes_of(high));
 }
 
 /* ---- Codes ---- */
@@ -51,9 +36,9 @@ WEFT_INLINE void load(const weft_bc6h_batch *batch, int first, block *b)
         b->weight[t] = lanes_of(0x1p-24f);
         for (int c = 0; c < 3; c++) {
             lanes value = lanes_load(&batch->value[t][c][first]);
-            value = smaller(lanes_where(value > 0, value), lanes_of(largest_half));
+            value = lanes_min(lanes_where(value > 0, value), lanes_of(largest_half));
             b->code[t][c] = code_of(value);
-            b->weight[t] = larger(b->weight[t], value);
+            b->weight[t] = lanes_max(b->weight[t], value);
         }
     }
 }
@@ -90,7 +75,7 @@ WEFT_INLINE void find_covariance(const block *b, const lanes mean[3], lanes cova
 WEFT_INLINE void find_axis(lanes covariance[3][3], lanes axis[3])
 {
     lane_bits green = covariance[1][1] > covariance[0][0];
-    lane_bits blue = covariance[2][2] > larger(covariance[0][0], covariance[1][1]);
+    lane_bits blue = covariance[2][2] > lanes_max(covariance[0][0], covariance[1][1]);
     for (int c = 0; c < 3; c++)
         axis[c] = lanes_select(blue, covariance[2][c], lanes_select(green, covariance[1][c], covariance[0][c]));
     for (int step = 0; step <= AXIS_STEPS; step++) {
@@ -98,7 +83,7 @@ WEFT_INLINE void find_axis(lanes covariance[3][3], lanes axis[3])
         for (int c = 0; c < 3; c++) {
             power[c] = step == 0 ? axis[c]
                                  : covariance[c][0] * axis[0] + covariance[c][1] * axis[1] + covariance[c][2] * axis[2];
-            largest = larger(largest, larger(power[c], -power[c]));
+            largest = lanes_max(largest, lanes_max(power[c], -power[c]));
         }
         for (int c = 0; c < 3; c++)
             axis[c] = power[c] / largest;
@@ -116,8 +101,8 @@ WEFT_INLINE void span_texels(block *b)
         lanes along = {0};
         for (int c = 0; c < 3; c++)
             along += (b->code[t][c] - mean[c]) * axis[c];
-        low = smaller(low, along);
-        high = larger(high, along);
+        low = lanes_min(low, along);
+        high = lanes_max(high, along);
     }
     lanes scale = lanes_where(square > 0, 1 / square);
     for (int c = 0; c < 3; c++) {
@@ -181,14 +166,14 @@ WEFT_INLINE lane_bits quantise(block *b, lane_bits end[2][3])
                                    (__builtin_convertvector(b->end[0][c] + 0.5f, lane_bits) >> bits);
             fits &= (difference <= weft_bc6h_reach[mode]) & (difference >= -weft_bc6h_reach[mode]);
         }
-        shift = select_bits(fits, bits, shift);
+        shift = lane_bits_select(fits, bits, shift);
     }
     for (int i = 0; i < 2; i++) {
         for (int c = 0; c < 3; c++) {
             lane_bits bits = __builtin_convertvector(b->end[i][c] + 0.5f, lane_bits) >> shift;
             lane_bits decoded = (bits << shift) + ((1 << shift) >> 1);
-            decoded = select_bits(bits == 0, bits, decoded);
-            decoded = select_bits(bits == 0xffff >> shift, shift * 0 + 0xffff, decoded);
+            decoded = lane_bits_select(bits == 0, bits, decoded);
+            decoded = lane_bits_select(bits == 0xffff >> shift, shift * 0 + 0xffff, decoded);
             b->end[i][c] = __builtin_convertvector(decoded, lanes);
             end[i][c] = bits;
         }
@@ -207,11 +192,11 @@ WEFT_INLINE void put(weft_bc6h_batch *batch, int first, lane_bits shift, lane_bi
     lane_bits turned = place[0] > LAST_PLACE / 2;
     store(&batch->shift[first], shift);
     for (int c = 0; c < 3; c++) {
-        store(&batch->end[0][c][first], select_bits(turned, end[1][c], end[0][c]));
-        store(&batch->end[1][c][first], select_bits(turned, end[0][c], end[1][c]));
+        store(&batch->end[0][c][first], lane_bits_select(turned, end[1][c], end[0][c]));
+        store(&batch->end[1][c][first], lane_bits_select(turned, end[0][c], end[1][c]));
     }
     for (int t = 0; t < TEXELS; t++)
-        store(&batch->place[t][first], select_bits(turned, LAST_PLACE - place[t], place[t]));
+        store(&batch->place[t][first], lane_bits_select(turned, LAST_PLACE - place[t], place[t]));
 }
 
 void WEFT_KERNEL(weft_bc6h_fit)(weft_bc6h_batch *batch)

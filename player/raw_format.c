@@ -28,11 +28,6 @@ static const float *texels_of(const weft_raw_rows *rows, int x, int y)
 
 /* ---- Texel by texel ---- */
 
-static float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 static float limited(float value)
 {
     return !(value > 0) ? 0 : value < 65408 ? value : 65408;
@@ -44,7 +39,7 @@ static uint32_t pack_shared_exponent(float red, float green, float blue)
     red = limited(red);
     green = limited(green);
     blue = limited(blue);
-    float largest = larger(red, larger(green, blue)), scale;
+    float largest = fmaxf(red, fmaxf(green, blue)), scale;
     uint32_t bits, smallest_biased = 127 - 16;
     memcpy(&bits, &largest, sizeof bits);
     uint32_t biased = (bits + (1u << 14)) >> 23;

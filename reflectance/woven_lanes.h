@@ -25,16 +25,6 @@ WEFT_INLINE lanes lanes_sign_of(lanes sign, lanes x)
     return (lanes)(((lane_bits)x & 0x7fffffff) | ((lane_bits)sign & INT32_MIN));
 }
 
-WEFT_INLINE lanes lanes_max(lanes a, lanes b)
-{
-    return lanes_select(a > b, a, b);
-}
-
-WEFT_INLINE lanes lanes_min(lanes a, lanes b)
-{
-    return lanes_select(a < b, a, b);
-}
-
 /* sin x, |x| <= pi/2: x P(x^2) with P truncated from its Chebyshev series; relative error 7e-9 before rounding. */
 WEFT_INLINE lanes lanes_sin(lanes x)
 {

@@ -7,33 +7,37 @@ uniform ivec2 raw_tiles, opacity_tiles;           // layers, and width of a tile
 uniform vec2 raw_atlas_size, opacity_atlas_size;  // texels
 uniform vec4 level_area[16];                      // x, y, width, height
 
-// Texture coordinates and layer. After the last texel of a row or column comes the first one.
-vec3 place_in_tiles(ivec2 tiles, vec2 atlas_size, int tile, int level, vec2 coordinate)
+// Where a pixel lies in any tile at a level, in texels. After the last texel of a row or column comes the first one.
+vec2 place_in_tile(int level, vec2 coordinate)
 {
     vec4 area = level_area[level];
-    vec2 position = area.xy + 0.5 + fract(vec2(coordinate.x, -coordinate.y) - 0.5 / area.zw) * area.zw;
-    int column = int((float(tile) + 0.5) / float(tiles.x));
-    position.x += float(column * tiles.y);
-    return vec3(position / atlas_size, float(tile - column * tiles.x));
+    return area.xy + 0.5 + fract(vec2(coordinate.x, -coordinate.y) - 0.5 / area.zw) * area.zw;
 }
 
-vec3 image_value(int image, int level, vec2 coordinate)
+// Texture coordinates and layer.
+vec3 place_in_tiles(ivec2 tiles, vec2 atlas_size, int tile, vec2 place)
 {
-    return textureLod(raw_sample, place_in_tiles(raw_tiles, raw_atlas_size, image, level, coordinate), 0.0).rgb;
+    int column = int((float(tile) + 0.5) / float(tiles.x));
+    return vec3((place + vec2(float(column * tiles.y), 0.0)) / atlas_size, float(tile - column * tiles.x));
+}
+
+vec3 image_value(int image, vec2 place)
+{
+    return textureLod(raw_sample, place_in_tiles(raw_tiles, raw_atlas_size, image, place), 0.0).rgb;
 }
 
 // `view` is the label of one, counted from 1.
-float opacity_value(int view, int level, vec2 coordinate)
+float opacity_value(int view, vec2 place)
 {
-    return textureLod(raw_opacity, place_in_tiles(opacity_tiles, opacity_atlas_size, view - 1, level, coordinate), 0.0).r;
+    return textureLod(raw_opacity, place_in_tiles(opacity_tiles, opacity_atlas_size, view - 1, place), 0.0).r;
 }
 
-vec3 corners_value(int level, vec2 coordinate, Corners lights)
+vec3 corners_value(vec2 place, Corners lights)
 {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 3; i++) {
         if (lights.weight[i] > 0.0)
-            sum += lights.weight[i] * image_value(lights.label[i], level, coordinate);
+            sum += lights.weight[i] * image_value(lights.label[i], place);
     }
     return sum;
 }
@@ -41,13 +45,14 @@ vec3 corners_value(int level, vec2 coordinate, Corners lights)
 vec3 trilinear_value(vec3 light, SurfacePoint point, Corners views, int fine, float share)
 {
     vec3 sum = vec3(0.0);
+    vec2 place = place_in_tile(fine, point.coordinate), above = place_in_tile(fine + 1, point.coordinate);
     for (int i = 0; i < 3; i++) {
         if (views.weight[i] == 0.0)
             continue;
         Corners lights = find_corners(views.label[i], light);
-        vec3 value = corners_value(fine, point.coordinate, lights);
+        vec3 value = corners_value(place, lights);
         if (share > 0.0)
-            value = mix(value, corners_value(fine + 1, point.coordinate, lights), share);
+            value = mix(value, corners_value(above, lights), share);
         sum += views.weight[i] * value;
     }
     return sum;
@@ -66,18 +71,19 @@ vec3 chosen_value(vec3 light, SurfacePoint point, Corners views, int fine, float
     int level = happens(point.chance, share) ? fine + 1 : fine;
     int view = chosen_corner(views, point.chance);
     int image = chosen_corner(find_corners(view, light), point.chance);
-    return image_value(image, level, point.coordinate);
+    return image_value(image, place_in_tile(level, point.coordinate));
 }
 
 float trilinear_opacity(SurfacePoint point, Corners views, int fine, float share)
 {
     float sum = 0.0;
+    vec2 place = place_in_tile(fine, point.coordinate), above = place_in_tile(fine + 1, point.coordinate);
     for (int i = 0; i < 3; i++) {
         if (views.weight[i] == 0.0)
             continue;
-        float value = opacity_value(views.label[i], fine, point.coordinate);
+        float value = opacity_value(views.label[i], place);
         if (share > 0.0)
-            value = mix(value, opacity_value(views.label[i], fine + 1, point.coordinate), share);
+            value = mix(value, opacity_value(views.label[i], above), share);
         sum += views.weight[i] * value;
     }
     return sum;
@@ -86,7 +92,7 @@ float trilinear_opacity(SurfacePoint point, Corners views, int fine, float share
 float chosen_opacity(SurfacePoint point, Corners views, int fine, float share)
 {
     int level = happens(point.chance, share) ? fine + 1 : fine;
-    return opacity_value(chosen_corner(views, point.chance), level, point.coordinate);
+    return opacity_value(chosen_corner(views, point.chance), place_in_tile(level, point.coordinate));
 }
 
 vec4 radiance(SurfacePoint point)
