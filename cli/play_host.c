@@ -113,7 +113,10 @@ static weft_code show_arrived(play_host *host, weft_scene *scene, bool *changed,
     snprintf(note, WEFT_NOTE_SIZE, "%s", said);
     if (said[0])
         command_say(&host->scene->common, "%s", said);
-    return code == WEFT_OK ? follow_files(host, error) : code;
+    /* Even where another file failed in the same slice: the names shown before are gone. */
+    weft_error ignored;
+    weft_code followed = follow_files(host, code == WEFT_OK ? error : &ignored);
+    return code == WEFT_OK ? followed : code;
 }
 
 /* ---- The SpaceMouse ---- */

@@ -15,8 +15,8 @@ void scene_loader_free(scene_loader *loader);
 weft_code scene_loader_attach(scene_loader *loader, weft_player *player, weft_error *error);
 
 /* Shows what has arrived, for some milliseconds. *shown: something is, and the settings' scene may have other panes and
- * another `repeat`; `note` (WEFT_MESSAGE_SIZE) is what the user should know, or "". Errors: of one file; what was shown
- * in its place stays. */
+ * another `repeat`; names of the settings that were there before are then freed, with an error too. `note`
+ * (WEFT_MESSAGE_SIZE) is what the user should know, or "". Errors: of one file; what was shown in its place stays. */
 weft_code scene_loader_poll(scene_loader *loader, bool *shown, char note[WEFT_MESSAGE_SIZE], weft_error *error);
 
 /* All of it; notes are told to the user. Errors: those of reading; WEFT_BAD_USAGE where a comparison lacks a model. */

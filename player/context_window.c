@@ -126,34 +126,42 @@ void weft_window_close(weft_window *window)
     glfwSetWindowShouldClose(window->handle, GLFW_TRUE);
 }
 
-/* The screen with the window's middle; the first where that lies beside all. */
-static GLFWmonitor *screen_of(GLFWwindow *handle)
+/* The screen with the window's middle, and its mode; the first where that lies beside all. One that was just unplugged
+ * has no mode; NULL where none has. */
+static GLFWmonitor *screen_of(GLFWwindow *handle, const GLFWvidmode **mode)
 {
     int count, left, top, width, height;
-    GLFWmonitor **screen = glfwGetMonitors(&count);
+    GLFWmonitor **screen = glfwGetMonitors(&count), *chosen = NULL;
     glfwGetWindowPos(handle, &left, &top);
     glfwGetWindowSize(handle, &width, &height);
     for (int i = 0; i < count; i++) {
         int x, y;
-        const GLFWvidmode *mode = glfwGetVideoMode(screen[i]);
+        const GLFWvidmode *found = glfwGetVideoMode(screen[i]);
+        if (!found)
+            continue;
         glfwGetMonitorPos(screen[i], &x, &y);
         int right = left + width / 2 - x, down = top + height / 2 - y;
-        if (right >= 0 && down >= 0 && right < mode->width && down < mode->height)
-            return screen[i];
+        bool is_here = right >= 0 && down >= 0 && right < found->width && down < found->height;
+        if (is_here || !chosen) {
+            chosen = screen[i];
+            *mode = found;
+        }
+        if (is_here)
+            break;
     }
-    return count > 0 ? screen[0] : NULL;
+    return chosen;
 }
 
 void weft_window_set_full_screen(weft_window *w, bool full)
 {
-    GLFWmonitor *screen = full ? screen_of(w->handle) : NULL;
+    const GLFWvidmode *mode = NULL;
+    GLFWmonitor *screen = full ? screen_of(w->handle, &mode) : NULL;
     if (full == (glfwGetWindowMonitor(w->handle) != NULL) || (full && !screen))
         return;
     if (!full) {
         glfwSetWindowMonitor(w->handle, NULL, w->left, w->top, w->width, w->height, GLFW_DONT_CARE);
         return;
     }
-    const GLFWvidmode *mode = glfwGetVideoMode(screen);
     glfwGetWindowPos(w->handle, &w->left, &w->top);
     glfwGetWindowSize(w->handle, &w->width, &w->height);
     glfwSetWindowMonitor(w->handle, screen, 0, 0, mode->width, mode->height, mode->refreshRate);

@@ -217,6 +217,31 @@ static void a_corrupt_file_leaves_what_was_shown(void **state)
     close_scene(f);
 }
 
+/* Whoever keeps the names of files has to take the new ones, error or not. */
+static void a_file_may_arrive_while_another_fails(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    fixture *f = open_scene("scene_load/a.weft", NULL);
+    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    bool both = false;
+    for (int attempt = 0; attempt < 50 && !both; attempt++) {
+        char note[WEFT_MESSAGE_SIZE];
+        expect_ok(scene_loader_open(f->loader, "scene_load/quad.obj", &error), &error);
+        expect_ok(scene_loader_open(f->loader, "scene_load/corrupt.weft", &error), &error);
+        while (scene_loader_progress(f->loader) >= 0) {
+            bool shown;
+            usleep(20000);
+            weft_code code = scene_loader_poll(f->loader, &shown, note, &error);
+            both |= shown && code == WEFT_BAD_INPUT;
+        }
+    }
+    assert_true(both);
+    assert_string_equal(f->options.settings.mesh, "scene_load/quad.obj");
+    assert_string_equal(f->options.settings.material, "scene_load/a.weft");
+    close_scene(f);
+}
+
 static void files_that_cannot_be_shown_are_refused(void **state)
 {
     (void)state;
@@ -303,6 +328,7 @@ int main(void)
         cmocka_unit_test(panes_that_were_chosen_while_files_arrive_stay),
         cmocka_unit_test(a_dropped_material_replaces_the_one_shown),
         cmocka_unit_test(a_corrupt_file_leaves_what_was_shown),
+        cmocka_unit_test(a_file_may_arrive_while_another_fails),
         cmocka_unit_test(files_that_cannot_be_shown_are_refused),
         cmocka_unit_test(a_dropped_mesh_and_weave_are_shown),
         cmocka_unit_test(a_picture_brings_its_settings_and_files_back),
