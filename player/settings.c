@@ -88,9 +88,13 @@ static weft_code draw(const char *path, weft_player *player, const weft_settings
                       const weft_progress *progress, weft_error *error)
 {
     weft_image image = {0};
-    WEFT_TRY(weft_player_picture(player, &settings->scene, settings->width, settings->height, settings->samples,
-                                 progress, &image, error));
-    if (!has_extension(path, ".exr") && !has_extension(path, ".tif") && !has_extension(path, ".tiff"))
+    weft_scene scene = settings->scene;
+    bool is_linear = has_extension(path, ".exr") || has_extension(path, ".tif") || has_extension(path, ".tiff");
+    /* Linear differences are numbers, and the scale would cover some. */
+    scene.labels &= !(is_linear && scene.layout == WEFT_LAYOUT_DIFFERENCE);
+    WEFT_TRY(weft_player_picture(player, &scene, settings->width, settings->height, settings->samples, progress, &image,
+                                 error));
+    if (!is_linear)
         weft_scene_show(&settings->scene, &image);
     weft_code code = weft_image_write_settings(path, &image, description, text, error);
     weft_image_free(&image);

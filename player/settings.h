@@ -51,9 +51,9 @@ weft_code weft_settings_check_files(const weft_settings *settings, const char *s
 double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm);
 
 /* Draws the picture and writes it with its settings: .png as the screen shows it, .exr linear (.tif too, but without
- * settings). It is drawn from what the written text says, so that the text gives the same picture bit for bit. What
- * `player` shows must be what the settings name. Atomic. Errors: those of weft_settings_format, weft_player_picture and
- * weft_image_write. */
+ * settings) and without the scale of a difference. It is drawn from what the written text says, so that the text gives
+ * the same picture bit for bit. What `player` shows must be what the settings name. Atomic. Errors: those of
+ * weft_settings_format, weft_player_picture and weft_image_write. */
 weft_code weft_settings_draw(const char *path, weft_player *player, const weft_settings *settings,
                              const weft_progress *progress, weft_error *error);
 

@@ -118,6 +118,29 @@ static void exr_holds_the_linear_values_of_the_png(void **state)
     weft_image_free(&coded);
 }
 
+static void a_difference_has_its_scale_in_png_but_not_among_the_numbers_of_exr(void **state)
+{
+    (void)state;
+    const char *const type[] = {"exr", "png"};
+    for (int is_png = 0; is_png < 2; is_png++) {
+        char command[512], with[16], without[16];
+        snprintf(with, sizeof with, "with.%s", type[is_png]);
+        snprintf(without, sizeof without, "without.%s", type[is_png]);
+        snprintf(command, sizeof command,
+                 "for f in '-o %s' '--no-labels -o %s'; do $WEFT render cloth.weft --raw cloth.btf.h5 "
+                 "--layout difference --size 400x200 --samples 1 --quiet $f || exit 9; done",
+                 with, without);
+        assert_int_equal(run(command), 0);
+        weft_image a = read_picture(with, 400, 200), b = read_picture(without, 400, 200);
+        int differing = 0;
+        for (int i = 0; i < 3 * 400 * 200; i++)
+            differing += a.pixels[i] != b.pixels[i];
+        assert_true(is_png ? differing > 1000 : differing == 0);
+        weft_image_free(&a);
+        weft_image_free(&b);
+    }
+}
+
 /* A scene with most of its options away from their defaults. */
 #define MANY_OPTIONS                                                                                                   \
     "--raw cloth.btf.h5 --weave $WEAVES/cotton_denim.wv --mode compressed,analytic --layout wipe --divider 0.4 "       \
@@ -311,6 +334,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(three_panes_show_three_different_pictures),
         cmocka_unit_test(exr_holds_the_linear_values_of_the_png),
+        cmocka_unit_test(a_difference_has_its_scale_in_png_but_not_among_the_numbers_of_exr),
         cmocka_unit_test(a_picture_can_be_drawn_again_bit_for_bit),
         cmocka_unit_test(a_folder_moved_as_a_whole_still_draws_its_pictures),
         cmocka_unit_test(a_picture_without_good_settings_is_refused),
