@@ -97,6 +97,7 @@ void weft_canvas_present(const weft_canvas *c, const weft_scene *scene, int left
     weft_gl_set_float(c->present_program, "frame_share", 1.0 / (c->frame_count > 0 ? c->frame_count : 1));
     weft_gl_set_int(c->present_program, "tone", scene->tone);
     weft_gl_set_int(c->present_program, "difference", scene->layout == WEFT_LAYOUT_DIFFERENCE);
+    weft_gl_set_float(c->present_program, "full_difference", (double)WEFT_SCENE_FULL_DIFFERENCE);
     weft_gl_set_float(c->present_program, "divider", scene->layout == WEFT_LAYOUT_WIPE ? scene->divider : -1);
     weft_gl_set_int(c->present_program, "left", left);
     draw_over_everything(c, left, c->present_program, "sum", c->sum);

@@ -1,5 +1,6 @@
 #include "player/player.h"
 
+#include "player/false_colour.h"
 #include "player/legend.h"
 #include "player/lighting.h"
 #include "player/player_parts.h"
@@ -49,6 +50,8 @@ static void set_shown(const weft_player *p, GLuint program, const weft_scene *sc
     weft_gl_set_float(program, "exposure", scene->exposure);
     weft_gl_set_int(program, "show_level", scene->show_level);
     weft_gl_set_int(program, "show_extrapolation", scene->show_extrapolation);
+    glUniform3fv(glGetUniformLocation(program, "level_palette"), WEFT_LEVEL_COLOURS, weft_level_palette[0]);
+    glUniform3fv(glGetUniformLocation(program, "extrapolation_tint"), 2, weft_extrapolation_tint[0]);
     /* A ring was measured to within rounding. */
     weft_gl_set_vec2(program, "last_ring", p->last_ring_z[mode][0] - 1e-3, p->last_ring_z[mode][1] - 1e-3);
 }

@@ -1,5 +1,6 @@
 #include "player/application_parts.h"
 
+#include "player/false_colour.h"
 #include "player/keys.h"
 #include "player/ui_bridge.h"
 
@@ -30,15 +31,13 @@ static void show_note(const weft_application *a, double middle, double bottom)
 
 /* ---- What colours mean ---- */
 
-/* As shade.frag.glsl has them, on cloth of a middle brightness. */
 static void show_levels(void)
 {
-    static const uint32_t colour[] = {0xc8c8c8ff, 0x6492ccff, 0x5db892ff, 0xcbbb67ff, 0xcb9255ff, 0xb74d6fff};
-    static const char *const name[] = {"0", "1", "2", "3", "4", "5 and more"};
+    static const char *const name[WEFT_LEVEL_COLOURS] = {"0", "1", "2", "3", "4", "5 and more"};
     weft_ui_text("Mip level");
-    for (int level = 0; level < 6; level++) {
+    for (int level = 0; level < WEFT_LEVEL_COLOURS; level++) {
         weft_ui_same_line();
-        weft_ui_swatch(colour[level], name[level]);
+        weft_ui_swatch(weft_level_swatch(level), name[level]);
     }
 }
 
@@ -46,11 +45,11 @@ static void show_tints(void)
 {
     weft_ui_text("Not measured:");
     weft_ui_same_line();
-    weft_ui_swatch(0xb3248fff, "view");
+    weft_ui_swatch(weft_extrapolation_swatch(true, false), "view");
     weft_ui_same_line();
-    weft_ui_swatch(0x1895a8ff, "light");
+    weft_ui_swatch(weft_extrapolation_swatch(false, true), "light");
     weft_ui_same_line();
-    weft_ui_swatch(0xa595c8ff, "both");
+    weft_ui_swatch(weft_extrapolation_swatch(true, true), "both");
 }
 
 static void show_colours(const weft_scene *scene, double left, double bottom, double scale)

@@ -1,5 +1,6 @@
 #include "player/programs.h"
 
+#include "player/false_colour.h"
 #include "player/shaders.h"
 
 #include <stdio.h>
@@ -21,12 +22,12 @@ static void define(const weft_program_kind *kind, char *text, size_t size)
 {
     snprintf(
         text, size,
-        "#define MAX_LIGHTS %d\n#define LIGHT_COUNT %s\n#define ONE_LIGHT %s\n#define STOCHASTIC %s\n"
-        "#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
+        "#define MAX_LIGHTS %d\n#define LEVEL_COLOURS %d\n#define LIGHT_COUNT %s\n#define ONE_LIGHT %s\n"
+        "#define STOCHASTIC %s\n#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
         "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n",
-        WEFT_MAX_LIGHTS, kind->one_light ? "1" : "light_count", name_of(kind->one_light), name_of(kind->stochastic),
-        name_of(kind->shadows), kind->plot, name_of(kind->opacity), kind->lobe_count, name_of(kind->view_table),
-        name_of(kind->light_table), name_of(kind->fewer_bits), name_of(kind->noise));
+        WEFT_MAX_LIGHTS, WEFT_LEVEL_COLOURS, kind->one_light ? "1" : "light_count", name_of(kind->one_light),
+        name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity), kind->lobe_count,
+        name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits), name_of(kind->noise));
 }
 
 static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)

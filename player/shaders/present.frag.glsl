@@ -7,7 +7,7 @@ uniform int tone;        // 0 clips, 1 is soft
 uniform bool difference; // signed
 uniform bool keeps_opacity; // else 1
 uniform float divider;   // a line there, as a share of the width; none below 0
-const float FULL_DIFFERENCE = 0.1; // WEFT_SCENE_FULL_DIFFERENCE
+uniform float full_difference; // where its colours end
 out vec4 colour;
 
 // The identity up to 1/2, then bent with a continuous slope toward 1.
@@ -44,7 +44,8 @@ void main()
 {
     vec4 total = texelFetch(sum, ivec2(gl_FragCoord.xy) - ivec2(left, 0), 0);
     vec3 linear = frame_share * total.rgb;
-    vec3 shown = difference ? difference_colour(dot(linear, vec3(1.0 / 3.0)) / FULL_DIFFERENCE) : srgb_of_linear(tone_of_linear(linear));
+    vec3 shown = difference ? difference_colour(dot(linear, vec3(1.0 / 3.0)) / full_difference)
+                            : srgb_of_linear(tone_of_linear(linear));
     if (divider >= 0.0 && abs(gl_FragCoord.x - float(left) - divider * float(textureSize(sum, 0).x)) < 1.0)
         shown = vec3(0.95);
     colour = vec4(shown, keeps_opacity ? min(total.a, 1.0) : 1.0);

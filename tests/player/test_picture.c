@@ -1,5 +1,6 @@
 /* Layouts, filters and lights of whole pictures. */
 #include "btf/colour.h"
+#include "player/false_colour.h"
 #include "stage.h"
 
 #include <math.h>
@@ -275,6 +276,88 @@ static void differences_are_told_by_hue_and_darkness(void **state)
     weft_image_free(&image);
 }
 
+/* What the shaders show in false colour is what the C twins, and with them the swatches of the panel, say of it. */
+static void false_colours_are_those_of_their_legends(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_surface_sample *at;
+    double last_view, last_light;
+    weft_scene scene = scene_of(WEFT_MODE_RAW);
+    scene.light[0].direction.theta_rad = weft_rad_of_deg(75);
+    weft_image plain = draw(state, scene, 1);
+    scene.show_extrapolation = true;
+    weft_image tinted = draw(state, scene, 1);
+    scene.show_extrapolation = false;
+    scene.show_level = true;
+    weft_image levels = draw(state, scene, 1);
+    weft_player_last_ring(s->player, WEFT_MODE_RAW, &last_view, &last_light);
+    expect_ok(weft_player_read_surface(s->player, &scene, WEFT_MODE_RAW, WIDTH, HEIGHT, &at, &error), &error);
+    long covered = 0, beyond[2] = {0};
+    for (int i = 0; i < PIXELS; i++) {
+        if (at[i].covered == 0)
+            continue;
+        bool view = (double)at[i].view[2] < cos(last_view) - 1e-3;
+        bool light = at[i].light[2] > 0 && (double)at[i].light[2] < cos(last_light) - 1e-3;
+        float level[3], tint[3];
+        weft_level_shown(plain.pixels + 3 * i, at[i].level, level);
+        weft_extrapolation_shown(plain.pixels + 3 * i, view, light, tint);
+        for (int c = 0; c < 3; c++) {
+            assert_float_equal(levels.pixels[3 * i + c], level[c], 1e-5);
+            assert_float_equal(tinted.pixels[3 * i + c], tint[c], 1e-5);
+        }
+        covered++;
+        beyond[0] += view;
+        beyond[1] += light;
+    }
+    assert_true(covered > PIXELS / 5 && beyond[0] > 100 && beyond[1] > 100);
+    free(at);
+    weft_image_free(&plain);
+    weft_image_free(&tinted);
+    weft_image_free(&levels);
+}
+
+static void read_screen(const weft_canvas *canvas, const weft_scene *scene, uint8_t *rgba)
+{
+    GLuint buffer, texture;
+    weft_error error = {0};
+    const weft_texture_format bytes = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    expect_ok(weft_gl_texture(bytes, WIDTH, HEIGHT, 0, NULL, &texture, &error), &error);
+    glGenFramebuffers(1, &buffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, buffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    weft_canvas_present(canvas, scene, 0);
+    glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    glDeleteFramebuffers(1, &buffer);
+    glDeleteTextures(1, &texture);
+}
+
+static void the_window_shows_differences_as_saved_pictures_do(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_scene scene = scene_of(WEFT_MODE_RAW);
+    scene.layout = WEFT_LAYOUT_DIFFERENCE;
+    scene.pane[1] = WEFT_MODE_COMPRESSED;
+    weft_canvas canvas;
+    weft_image image;
+    static uint8_t rgba[4 * PIXELS];
+    expect_ok(weft_canvas_create(WIDTH, HEIGHT, &canvas, &error), &error);
+    weft_canvas_begin_frame(&canvas);
+    expect_ok(weft_player_draw(s->player, &scene, WIDTH, HEIGHT, (weft_sampling){0}, &error), &error);
+    weft_canvas_end_frame(&canvas);
+    expect_ok(weft_canvas_read(&canvas, &image, &error), &error);
+    read_screen(&canvas, &scene, rgba);
+    weft_scene_show(&scene, &image);
+    for (int i = 0; i < PIXELS; i++) {
+        const uint8_t *shown = rgba + 4 * ((HEIGHT - 1 - i / WIDTH) * WIDTH + i % WIDTH);
+        for (int c = 0; c < 3; c++)
+            assert_float_equal((float)shown[c], 255 * image.pixels[3 * i + c], 0.6);
+    }
+    weft_image_free(&image);
+    weft_canvas_free(&canvas);
+}
+
 static void set_drape(void **state, bool coarse)
 {
     stage *s = *state;
@@ -318,6 +401,8 @@ int main(void)
         cmocka_unit_test(coarse_triangles_of_a_small_picture_hardly_change_it),
         cmocka_unit_test(what_is_shown_rises_with_radiance_and_keeps_highlights_apart),
         cmocka_unit_test(differences_are_told_by_hue_and_darkness),
+        cmocka_unit_test(false_colours_are_those_of_their_legends),
+        cmocka_unit_test(the_window_shows_differences_as_saved_pictures_do),
     };
     return cmocka_run_group_tests(tests, open_with_models, stage_close);
 }
