@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,6 +68,11 @@ void parse_tiles(const char *option, const char *text, double *tiles_u, double *
     }
     *tiles_u = tiles[0];
     *tiles_v = tiles[1];
+}
+
+int parse_noise_seed(const char *option, const char *text, struct argp_state *state)
+{
+    return strcmp(text, "off") == 0 ? 0 : (int)parse_whole(option, text, 1, INT_MAX, state);
 }
 
 bool parse_switch(const char *option, const char *text, struct argp_state *state)

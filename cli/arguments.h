@@ -22,6 +22,9 @@ void parse_size(const char *option, const char *text, int limit, int *width, int
 /* "X,Y": tiles of a weave across a material, each above 0 and up to 1e6. */
 void parse_tiles(const char *option, const char *text, double *tiles_u, double *tiles_v, struct argp_state *state);
 
+/* The seed of the irregularities of a weave, as the shaders hold it: a whole number from 1 to 2^31 - 1; "off": 0. */
+int parse_noise_seed(const char *option, const char *text, struct argp_state *state);
+
 /* "on" or "off". */
 bool parse_switch(const char *option, const char *text, struct argp_state *state);
 

@@ -22,7 +22,7 @@ static const struct argp_option option_table[] = {
     {"at", 'a', "DIRECTIONS.csv", 0,
      "Where to evaluate: columns lx,ly,lz,vx,vy,vz and maybe u,v (else the mean of the material), level", 0},
     {"output", 'o', "FILE.csv", 0, "Write here instead of to standard output", 0},
-    {"noise", KEY_NOISE, "SEED", 0, "Evaluate a weave with its noise (default: without)", 0},
+    {"noise", KEY_NOISE, "SEED|off", 0, "Evaluate a weave with its noise (default: off)", 0},
     {"as-printed", KEY_AS_PRINTED, NULL, 0, "Weigh the threads of a .mc as its article prints it, not by area", 0},
     {"set", 's', "NAME=R[,G,B]", 0, "Value of a $NAME in a weave or .mc; may be repeated", 0},
     {0},
@@ -60,7 +60,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         command->directions = argument;
         return 0;
     case KEY_NOISE:
-        command->options.noise_seed = parse_whole("noise", argument, 1, UINT64_MAX, state);
+        command->options.noise_seed = (uint64_t)parse_noise_seed("noise", argument, state);
         return 0;
     case KEY_AS_PRINTED:
         command->options.as_printed = true;

@@ -30,6 +30,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (!command->weave)
             argp_error(state, "needs %s", command->files.needed);
+        refuse_same_file(command->files.output, command->weave, state);
         return parse_conversion(key, argument, state, &command->files);
     default:
         return parse_conversion(key, argument, state, &command->files);
@@ -119,24 +120,27 @@ static void say_source(const fit_weave_command *command, const weft_fit_weave_so
     command_event(&command->files.common, event);
 }
 
-static bool is_straight(const double askew_deg[3])
-{
-    return askew_deg[0] == 0 && askew_deg[1] == 0 && askew_deg[2] == 0;
-}
-
 static void say_askew(const fit_weave_command *command, const weft_fit_weave_report *report)
 {
+    static const char *const turn[] = {"fitted", "vague", "at bound"};
+    const common_options *common = &command->files.common;
     const double *askew = report->askew_deg, *deviation = report->askew_deviation;
-    if (is_straight(askew))
-        command_say(&command->files.common, "sample: taken as lying straight, the data do not tell");
-    else
+    char deviations[96] = "null", event[256];
+    if (report->turn == WEFT_TURN_VAGUE)
+        command_say(common, "sample: taken as lying straight, the data do not tell");
+    if (report->turn == WEFT_TURN_AT_BOUND)
+        command_say(common, "sample: taken as lying straight, its turn runs to the bound of a degree: something else "
+                            "is amiss");
+    if (report->turn == WEFT_TURN_FITTED) {
         command_say(
-            &command->files.common,
+            common,
             "sample: lies askew by %.2f +- %.2g, %.2f +- %.2g, %.2f +- %.2g degrees about weft, warp and normal",
             askew[0], deviation[0], askew[1], deviation[1], askew[2], deviation[2]);
-    char event[160];
-    snprintf(event, sizeof event, "{\"event\":\"askew\",\"degrees\":[%.6g,%.6g,%.6g]}", askew[0], askew[1], askew[2]);
-    command_event(&command->files.common, event);
+        snprintf(deviations, sizeof deviations, "[%.6g,%.6g,%.6g]", deviation[0], deviation[1], deviation[2]);
+    }
+    snprintf(event, sizeof event, "{\"event\":\"askew\",\"turn\":\"%s\",\"degrees\":[%.6g,%.6g,%.6g],\"deviation\":%s}",
+             turn[report->turn], askew[0], askew[1], askew[2], deviations);
+    command_event(common, event);
 }
 
 static void say_report(const fit_weave_command *command, const weft_weave *weave, const weft_fit_weave_report *report)

@@ -42,6 +42,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (!command->output)
             argp_error(state, "needs -o OUT.png");
+        refuse_same_file(command->output, command->scene.settings.environment, state);
         if (command->path_file && !sequence_is_pattern(command->output))
             argp_error(state, "--path needs one place for a number in -o, as in frame-%%04d.png, not '%s'",
                        command->output);

@@ -2,7 +2,6 @@
 
 #include "cli/arguments.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -306,7 +305,7 @@ static void apply_evaluation(scene_options *o, int key, const char *argument, st
         scene->table_bits = (int)parse_whole("table-bits", argument, 1, 8, state);
         break;
     case KEY_NOISE:
-        scene->noise_seed = strcmp(argument, "off") == 0 ? 0 : (int)parse_whole("noise", argument, 1, INT_MAX, state);
+        scene->noise_seed = parse_noise_seed("noise", argument, state);
         break;
     case KEY_SHOW:
         apply_show(o, argument, state);

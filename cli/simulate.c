@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_DIRECTIONS = 0x2000, KEY_BOUNCES, KEY_NOISE, KEY_SEED, KEY_OBJ, KEY_TILES, KEY_RESOLUTION };
+enum { KEY_DIRECTIONS = 0x2000, KEY_BOUNCES, KEY_NOISE, KEY_SEED, KEY_OBJ, KEY_OBJ_TILES, KEY_RESOLUTION };
 enum { MAX_DIRECTIONS = 1024, MAX_TEXELS_ACROSS = 4096, MAX_BOUNCES = 256, MAX_TILES_ACROSS = 64 };
 
 typedef struct simulate_command {
@@ -31,7 +31,7 @@ static const struct argp_option option_table[] = {
     {"seed", KEY_SEED, "N", 0, "Start of the random numbers (default: 1)", 0},
     {"resolution", KEY_RESOLUTION, "N", 0, "Cells of the mesh across the tile (default: what the stitch says)", 0},
     {"obj", KEY_OBJ, "FILE.obj", 0, "Write the surface of the yarns too; without -o, only that", 0},
-    {"tiles", KEY_TILES, "WxH", 0, "Tiles in the OBJ file (default: 1x1)", 0},
+    {"obj-tiles", KEY_OBJ_TILES, "WxH", 0, "Tiles in the OBJ file (default: 1x1)", 0},
     {0},
 };
 
@@ -40,6 +40,8 @@ static void check_complete(const simulate_command *command, struct argp_state *s
     if (!command->files.input || (!command->files.output && !command->obj))
         argp_error(state, "needs a stitch, and -o NAME.btf.h5 or --obj FILE.obj");
     refuse_same_file(command->obj, command->files.input, state);
+    refuse_same_file(command->obj, command->directions, state);
+    refuse_same_file(command->files.output, command->directions, state);
 }
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
@@ -68,8 +70,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_OBJ:
         command->obj = argument;
         return 0;
-    case KEY_TILES:
-        parse_size("tiles", argument, MAX_TILES_ACROSS, &command->tiles_x, &command->tiles_y, state);
+    case KEY_OBJ_TILES:
+        parse_size("obj-tiles", argument, MAX_TILES_ACROSS, &command->tiles_x, &command->tiles_y, state);
         return 0;
     case ARGP_KEY_END:
         check_complete(command, state);

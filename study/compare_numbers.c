@@ -47,7 +47,7 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
     weft_page_text(page, comparison->weave_origin);
     const weft_weave_layout *layout = &comparison->weave_layout;
     fprintf(page->html, "; %.4g \u00d7 %.4g tiles across the material", layout->tiles_u, layout->tiles_v);
-    if (comparison->fit_source.tiled)
+    if (comparison->weave_on_yarns)
         fprintf(page->html,
                 ", laid so that yarns lie on yarns (a tile begins %.2f tiles to the right of the lower left "
                 "corner and %.2f above it)",

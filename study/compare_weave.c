@@ -9,16 +9,16 @@
 #include <stdlib.h>
 
 static weft_code fit_and_write(const weft_compare_options *options, weft_dataset *dataset, const char *path,
-                               const weft_progress *progress, weft_comparison *comparison, weft_error *error)
+                               const weft_progress *progress, weft_fit_weave_source *source,
+                               weft_fit_weave_report *report, weft_error *error)
 {
     weft_weave weave;
     char warning[WEFT_MESSAGE_SIZE];
     WEFT_TRY(weft_make_folder(options->folder, error));
     WEFT_TRY(weft_weave_read(options->weave, NULL, 0, &weave, warning, error));
-    weft_code code =
-        weft_fit_weave_to_dataset(dataset, &weave, progress, &comparison->fit_source, &comparison->fit, error);
+    weft_code code = weft_fit_weave_to_dataset(dataset, &weave, progress, source, report, error);
     if (code == WEFT_OK)
-        code = weft_fit_weave_write(path, &weave, dataset, &comparison->fit, error);
+        code = weft_fit_weave_write(path, &weave, dataset, report, error);
     weft_weave_free(&weave);
     return code;
 }
@@ -35,14 +35,17 @@ static weft_code rig_layout(const char *path, weft_weave_layout *layout, weft_er
 }
 
 static weft_code lay(const weft_compare_options *options, const weft_dataset_layout *material,
-                     const weft_fit_weave_source *source, weft_compared_weave *weave, weft_error *error)
+                     const weft_fit_weave_source *source, const char *path, weft_comparison *comparison,
+                     weft_error *error)
 {
+    weft_weave_layout *layout = &comparison->weave_layout;
+    comparison->weave_on_yarns = source->tiled && !(options->tiles_u > 0);
     if (options->tiles_u > 0)
-        weave->layout = (weft_weave_layout){.tiles_u = options->tiles_u, .tiles_v = options->tiles_v};
+        *layout = (weft_weave_layout){.tiles_u = options->tiles_u, .tiles_v = options->tiles_v};
     else if (source->tiled)
-        weave->layout = weft_tile_layout(&source->tile.tile, material);
+        *layout = weft_tile_layout(&source->tile.tile, material);
     else
-        return rig_layout(weave->path, &weave->layout, error);
+        return rig_layout(path, layout, error);
     return WEFT_OK;
 }
 
@@ -61,11 +64,12 @@ weft_code weft_compare_weave_open(const weft_compare_options *options, weft_data
                                   weft_comparison *comparison, weft_error *error)
 {
     char warning[WEFT_MESSAGE_SIZE];
+    weft_fit_weave_source source = {0};
     WEFT_TRY(name_file(options, weave, error));
     if (options->fit)
-        WEFT_TRY(fit_and_write(options, dataset, weave->path, progress, comparison, error));
+        WEFT_TRY(fit_and_write(options, dataset, weave->path, progress, &source, &comparison->fit, error));
     WEFT_TRY(weft_fit_weave_origin(weave->path, dataset, comparison->weave_origin, error));
-    WEFT_TRY(lay(options, weft_dataset_get_layout(dataset), &comparison->fit_source, weave, error));
+    WEFT_TRY(lay(options, weft_dataset_get_layout(dataset), &source, weave->path, comparison, error));
     return weft_weave_read(weave->path, NULL, 0, &weave->weave, warning, error);
 }
 

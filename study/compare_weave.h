@@ -8,11 +8,10 @@
 typedef struct weft_compared_weave {
     char *path; /* of the file that is compared: the given or the fitted one */
     weft_weave weave;
-    weft_weave_layout layout; /* on the material: as the fit found it, as asked for, or as the virtual rig lays it */
 } weft_compared_weave;
 
 /* Reads options->weave, fitted to the dataset first where options->fit; then folder/fitted.wv is written. Fills fit,
- * fit_source and weave_origin of the comparison. Errors: those of reading, fitting and writing. */
+ * weave_origin, weave_layout and weave_on_yarns of the comparison. Errors: those of reading, fitting and writing. */
 weft_code weft_compare_weave_open(const weft_compare_options *options, weft_dataset *dataset,
                                   const weft_progress *progress, weft_compared_weave *weave,
                                   weft_comparison *comparison, weft_error *error);

@@ -153,16 +153,28 @@ static void release_width(weft_fit_weave_model *model, int group, double *parame
         parameters[weft_fit_weave_index(group, WEFT_FIT_WEAVE_WIDTH)] = beside_edge;
 }
 
-/* A sample that lies askew shows in twist and width if it is held straight. Where the data tell less of it than rigs
- * are known to, or want more than a rig does, something else is amiss. */
-static weft_code try_straight(weft_fit_weave_model *model, double *parameters, double *deviation, double *cost,
-                              weft_error *error)
+/* What the data tell less of than rigs are known to is vague. Rigs do not err by the bound: something else is amiss
+ * there, which makes the standard errors large, too. */
+static weft_fit_weave_turn judge_turn(const weft_fit_weave_model *model, const double *parameters,
+                                      const double *deviation)
 {
     const double vague_rad = weft_rad_of_deg(0.2), unlikely = 0.95;
-    bool straight = false;
-    for (int i = WEFT_FIT_WEAVE_ASKEW; i < WEFT_FIT_WEAVE_ASKEW + 3; i++)
-        straight = straight || !(deviation[i] < vague_rad) || fabs(parameters[i]) > unlikely * model->high[i];
-    if (!straight)
+    weft_fit_weave_turn turn = WEFT_TURN_FITTED;
+    for (int i = WEFT_FIT_WEAVE_ASKEW; i < WEFT_FIT_WEAVE_ASKEW + 3; i++) {
+        if (fabs(parameters[i]) > unlikely * model->high[i])
+            return WEFT_TURN_AT_BOUND;
+        if (!(deviation[i] < vague_rad))
+            turn = WEFT_TURN_VAGUE;
+    }
+    return turn;
+}
+
+/* A sample that lies askew shows in twist and width if it is held straight. */
+static weft_code try_straight(weft_fit_weave_model *model, double *parameters, double *deviation, double *cost,
+                              weft_fit_weave_turn *turn, weft_error *error)
+{
+    *turn = judge_turn(model, parameters, deviation);
+    if (*turn == WEFT_TURN_FITTED)
         return WEFT_OK;
     weft_fit_weave_hold_askew(model, parameters);
     WEFT_TRY(solve(model, model->mean->count, parameters, cost, error));
@@ -171,7 +183,7 @@ static weft_code try_straight(weft_fit_weave_model *model, double *parameters, d
 
 /* On all images, with the widths that the data tell. */
 static weft_code refine(weft_fit_weave_model *model, const weft_progress *progress, double *parameters,
-                        double *deviation, weft_error *error)
+                        double *deviation, weft_fit_weave_turn *turn, weft_error *error)
 {
     double cost;
     for (int group = 0; group < model->group_count; group++)
@@ -182,7 +194,7 @@ static weft_code refine(weft_fit_weave_model *model, const weft_progress *progre
     WEFT_TRY(weft_fit_weave_deviation(model, parameters, deviation, error));
     for (int group = 0; group < model->group_count; group++)
         WEFT_TRY(leave_edge(model, group, parameters, deviation, &cost, error));
-    WEFT_TRY(try_straight(model, parameters, deviation, &cost, error));
+    WEFT_TRY(try_straight(model, parameters, deviation, &cost, turn, error));
     WEFT_TRY(try_start_widths(model, parameters, deviation, &cost, error));
     weft_progress_report(progress, "fitting", STAGES, STAGES);
     return WEFT_OK;
@@ -248,7 +260,7 @@ weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const we
     if (code == WEFT_OK)
         code = search(&model, progress, parameters, error);
     if (code == WEFT_OK)
-        code = refine(&model, progress, parameters, deviation, error);
+        code = refine(&model, progress, parameters, deviation, &report->turn, error);
     if (code == WEFT_OK)
         code = weft_fit_weave_model_apply(&model, parameters, error);
     if (code == WEFT_OK) {

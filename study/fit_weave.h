@@ -21,10 +21,18 @@ typedef struct weft_fit_weave_group {
     double psi_deviation, umax_deviation, kappa_deviation, width_deviation; /* standard errors; INFINITY: unknown */
 } weft_fit_weave_group;
 
+/* Whether the sample's turn was fitted, or why the sample was held straight. */
+typedef enum weft_fit_weave_turn {
+    WEFT_TURN_FITTED,
+    WEFT_TURN_VAGUE,   /* a standard error is above 0.2 degrees */
+    WEFT_TURN_AT_BOUND /* about an axis it runs to 95 % of its bound of a degree: something else is amiss */
+} weft_fit_weave_turn;
+
 typedef struct weft_fit_weave_report {
     int image_count, group_count;
     weft_fit_weave_group group[WEFT_FIT_WEAVE_GROUPS];
     double alpha, beta, alpha_deviation, beta_deviation;
+    weft_fit_weave_turn turn;
     double askew_deg[3], askew_deviation[3]; /* turn of the sample about x, y, z; all 0 where it was held straight */
     weft_fit_weave_error before, after;      /* the weave as it was given, and fitted */
     double seconds;
@@ -37,9 +45,9 @@ typedef struct weft_fit_weave_report {
  * one factor a channel. psi keeps its sign, and a filament (psi = 0) stays one. The widths of a group change by one
  * factor, 0.4 to 2.5; they stay those of the start where its standard error is above 0.25 and the start does as well.
  * The sample may lie askew in the frame of lights and views by up to a degree; where the data do not tell that to 0.2
- * degrees it is taken as straight. Standard errors take residuals of images with the same light or the same view as
- * correlated. Errors: WEFT_BAD_INPUT for a weave without admissible segment or with more than WEFT_FIT_WEAVE_GROUPS
- * kinds, or for fewer images than unknowns; WEFT_SYSTEM. */
+ * degrees, or want more, it is taken as straight. Standard errors take residuals of images with the same light or the
+ * same view as correlated. Errors: WEFT_BAD_INPUT for a weave without admissible segment or with more than
+ * WEFT_FIT_WEAVE_GROUPS kinds, or for fewer images than unknowns; WEFT_SYSTEM. */
 weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const weft_progress *progress,
                          weft_fit_weave_report *report, weft_error *error);
 

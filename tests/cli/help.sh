@@ -31,7 +31,22 @@ touch same.btf.h5
 for name in compress tile bard; do
     expect_error 2 "would overwrite" "$name" same.btf.h5 -o ./same.btf.h5
 done
+touch same.wv same.exr same.csv
+expect_error 2 "would overwrite" fit-weave cloth.btf.h5 --weave same.wv -o ./same.wv
+expect_error 2 "would overwrite" tile cloth.btf.h5 --weave same.wv -o ./same.wv
+expect_error 2 "would overwrite" eval cloth.wv --at same.csv -o ./same.csv
+expect_error 2 "would overwrite" simulate cloth.stitch --directions same.csv -o ./same.csv
+expect_error 2 "would overwrite" simulate cloth.stitch --directions same.csv --obj ./same.csv
+expect_error 2 "would overwrite" render cloth.weft --environment same.exr -o ./same.exr
 expect_error 2 "--size needs WxH" register session -o no.btf.h5 --size 64
 expect_error 2 "--tiles needs two numbers above 0" render --weave cloth.wv --tiles 0,3 -o no.png
 expect_error 2 "--tiles needs two numbers above 0" compare a.btf.h5 a.weft --tiles 2,-1 -o report
+expect_error 2 "--obj-tiles needs WxH" simulate cloth.stitch --obj cloth.obj --obj-tiles 2,1
+for seed in 0 -1 2147483648; do
+    for command in "eval cloth.wv --at directions.csv" "render --weave cloth.wv -o no.png" "play --weave cloth.wv"; do
+        expect_error 2 "--noise needs a whole number from 1 to 2147483647, not '$seed'" $command "--noise=$seed"
+    done
+done
+expect_error 1 "cloth.wv" eval cloth.wv --at directions.csv --noise 2147483647
+expect_error 1 "cloth.wv" eval cloth.wv --at directions.csv --noise off
 echo "$passed commands as expected"

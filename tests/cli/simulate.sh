@@ -36,7 +36,7 @@ expect_no_file no.weft
 expect_ok info "$stitch"
 grep -q "triangles" out.log || fail "the triangles are not counted"
 
-expect_ok simulate "$stitch" --obj open.obj --tiles 2x1 --resolution 30
+expect_ok simulate "$stitch" --obj open.obj --obj-tiles 2x1 --resolution 30
 grep -q "^vn " open.obj || fail "the surface has no normals"
 
 # The truth beside them; without OpenGL it is left out, and said so.

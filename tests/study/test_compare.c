@@ -143,7 +143,7 @@ static void expect_model_row(const char *page, const char *name, const weft_pred
 }
 
 /* The error of the analytic cloth, sample by sample: laid as the fit found it, or as many tiles from the corner. */
-static weft_prediction_error compare_fitted(double tiles)
+static weft_prediction_error compare_fitted(double tiles, bool on_yarns)
 {
     const weft_compare_options options = {.dataset = "compare.btf.h5",
                                           .material = "compare.weft",
@@ -156,6 +156,10 @@ static weft_prediction_error compare_fitted(double tiles)
     weft_error error = {0};
     expect_ok(weft_compare(&options, NULL, &comparison, &error), &error);
     weft_prediction_error result = comparison.model[1].texture.all;
+    char *page = read_page("compare-report/index.html");
+    assert_int_equal(comparison.weave_on_yarns, on_yarns);
+    assert_int_equal(strstr(page, "laid so that yarns lie on yarns") != NULL, on_yarns);
+    free(page);
     const weft_weave_layout *layout = &comparison.weave_layout;
     print_message("%.3f x %.3f tiles, corner at %.3f, %.3f: relative RMSE %.4f\n", layout->tiles_u, layout->tiles_v,
                   layout->corner_u, layout->corner_v, result.relative_rmse);
@@ -174,7 +178,7 @@ static void a_fitted_weave_lies_with_its_yarns_on_those_of_the_data(void **state
               &error);
     fixture_far_dataset("compare.btf.h5", TEXELS, TEXELS, 3, fixture_woven, 0);
     fixture_diffuse_material("compare.weft", TEXELS, TEXELS, flat);
-    weft_prediction_error laid = compare_fitted(0), beside = compare_fitted(TEXELS / tile);
+    weft_prediction_error laid = compare_fitted(0, true), beside = compare_fitted(TEXELS / tile, false);
     assert_true(laid.relative_rmse < 0.25 * beside.relative_rmse);
     weft_weave_free(&fixture_cloth.weave);
 }

@@ -205,7 +205,16 @@ static void standard_errors_are_those_of_repeated_captures(void **state)
     weft_weave_free(&truth);
 }
 
-/* Lights and views are those of the rig; the sample lies in it turned by a third of a degree. */
+/* Lights and views are those of the rig, in which the sample lies turned. */
+static void turn_sample(weft_vec3 turn_rad, weft_mean_brdf *mean)
+{
+    for (int i = 0; i < mean->count; i++) {
+        mean->light[i] = weft_unit(weft_add(mean->light[i], weft_cross(turn_rad, mean->light[i])));
+        mean->view[i] = weft_unit(weft_add(mean->view[i], weft_cross(turn_rad, mean->view[i])));
+    }
+}
+
+/* By a third of a degree. */
 static void a_sample_that_lies_askew_is_not_taken_for_twisted(void **state)
 {
     (void)state;
@@ -215,13 +224,11 @@ static void a_sample_that_lies_askew_is_not_taken_for_twisted(void **state)
     weft_fit_weave_report report;
     weft_error error;
     add_noise(&mean, (noise_levels){.image = 0.01}, 7, &mean);
-    for (int i = 0; i < mean.count; i++) {
-        mean.light[i] = weft_unit(weft_add(mean.light[i], weft_cross(turn, mean.light[i])));
-        mean.view[i] = weft_unit(weft_add(mean.view[i], weft_cross(turn, mean.view[i])));
-    }
+    turn_sample(turn, &mean);
     if (weft_fit_weave(&mean, &start, NULL, &report, &error) != WEFT_OK)
         fail_msg("%s", error.message);
     const double wanted[3] = {0.1, -0.2, 0.25};
+    assert_int_equal(report.turn, WEFT_TURN_FITTED);
     for (int axis = 0; axis < 3; axis++) {
         print_message("  askew by %.3f +- %.3f (%.2f) degrees\n", report.askew_deg[axis], report.askew_deviation[axis],
                       wanted[axis]);
@@ -234,6 +241,38 @@ static void a_sample_that_lies_askew_is_not_taken_for_twisted(void **state)
     weft_mean_brdf_free(&mean);
     weft_weave_free(&truth);
     weft_weave_free(&start);
+}
+
+/* Gabardine turned about its normal, seen in every `step`th view. */
+static weft_fit_weave_report fit_turned(double turn_deg, int step, noise_levels levels)
+{
+    weft_weave truth = read_fabric("wool_gabardine"), start = read_fabric("wool_gabardine");
+    weft_mean_brdf mean = photograph(&truth, step);
+    weft_fit_weave_report report;
+    weft_error error;
+    add_noise(&mean, levels, 7, &mean);
+    turn_sample((weft_vec3){0, 0, weft_rad_of_deg(turn_deg)}, &mean);
+    if (weft_fit_weave(&mean, &start, NULL, &report, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    for (int axis = 0; axis < 3; axis++)
+        print_message("  askew by %.3f +- %.3f degrees\n", report.askew_deg[axis], report.askew_deviation[axis]);
+    weft_mean_brdf_free(&mean);
+    weft_weave_free(&truth);
+    weft_weave_free(&start);
+    return report;
+}
+
+static void a_sample_held_straight_is_reported_with_the_reason(void **state)
+{
+    (void)state;
+    weft_fit_weave_report far = fit_turned(1.6, 8, (noise_levels){.image = 0.01});
+    weft_fit_weave_report noisy = fit_turned(0.25, 16, (noise_levels){.image = 0.015, .shared = 0.03});
+    assert_int_equal(far.turn, WEFT_TURN_AT_BOUND);
+    assert_int_equal(noisy.turn, WEFT_TURN_VAGUE);
+    for (int axis = 0; axis < 3; axis++) {
+        assert_true(far.askew_deg[axis] == 0);
+        assert_true(noisy.askew_deg[axis] == 0);
+    }
 }
 
 static void non_negative_solutions_are_exact_and_stop_at_zero(void **state)
@@ -311,6 +350,7 @@ int main(void)
         cmocka_unit_test(filament_fabrics_are_found_again_from_30_percent_off),
         cmocka_unit_test(standard_errors_are_those_of_repeated_captures),
         cmocka_unit_test(a_sample_that_lies_askew_is_not_taken_for_twisted),
+        cmocka_unit_test(a_sample_held_straight_is_reported_with_the_reason),
         cmocka_unit_test(non_negative_solutions_are_exact_and_stop_at_zero),
         cmocka_unit_test(a_written_weave_reads_back_to_the_same_numbers),
         cmocka_unit_test(a_weave_without_highlights_or_too_few_images_are_refused),
