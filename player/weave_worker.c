@@ -16,6 +16,8 @@ struct weft_weave_worker {
     pthread_cond_t asked;
     /* Guarded: */
     bool stops, has_wish, has_news, exact;
+    long wish_number; /* of the last wish, taken up or not; they count from 1 */
+    long news_number; /* of the wish that `news` and `exact` answer */
     weft_weave wish;
     weft_weave_texels news;
     weft_code code; /* of what failed last */
@@ -24,7 +26,8 @@ struct weft_weave_worker {
 
 /* ---- The thread ---- */
 
-static void publish(weft_weave_worker *w, const weft_weave *weave, bool exact, weft_code code, weft_error *error)
+static void publish(weft_weave_worker *w, const weft_weave *weave, long number, bool exact, weft_code code,
+                    weft_error *error)
 {
     weft_weave_texels texels = {0};
     if (code == WEFT_OK)
@@ -33,6 +36,7 @@ static void publish(weft_weave_worker *w, const weft_weave *weave, bool exact, w
     weft_weave_texels_free(&w->news);
     w->news = texels;
     w->has_news = true;
+    w->news_number = number;
     w->exact = exact;
     w->code = code;
     w->error = *error;
@@ -61,14 +65,14 @@ static bool is_left_alone(weft_weave_worker *w)
     return !w->stops && !w->has_wish;
 }
 
-static void derive(weft_weave_worker *w, weft_weave *weave)
+static void derive(weft_weave_worker *w, weft_weave *weave, long number)
 {
     weft_error error = {0};
     weft_code code;
     weft_real estimate;
     weft_weave_update_yarns(weave);
     weave->specular_scale = estimated_scale(w, weave, &estimate, &code, &error);
-    publish(w, weave, false, code, &error);
+    publish(w, weave, number, false, code, &error);
     pthread_mutex_lock(&w->mutex);
     bool goes_on = is_left_alone(w);
     pthread_mutex_unlock(&w->mutex);
@@ -77,7 +81,7 @@ static void derive(weft_weave_worker *w, weft_weave *weave)
     weave->specular_scale = weft_weave_specular_scale(weave);
     if (estimate > 0)
         w->correction = (double)(weave->specular_scale / estimate);
-    publish(w, weave, true, WEFT_OK, &error);
+    publish(w, weave, number, true, WEFT_OK, &error);
 }
 
 static void *run(void *context)
@@ -90,10 +94,11 @@ static void *run(void *context)
             continue;
         }
         weft_weave weave = w->wish;
+        long number = w->wish_number;
         w->wish = (weft_weave){0};
         w->has_wish = false;
         pthread_mutex_unlock(&w->mutex);
-        derive(w, &weave);
+        derive(w, &weave, number);
         weft_weave_free(&weave);
         pthread_mutex_lock(&w->mutex);
     }
@@ -115,6 +120,8 @@ weft_code weft_weave_worker_create(const weft_weave *start, weft_weave_worker **
     pthread_mutex_init(&w->mutex, NULL);
     pthread_cond_init(&w->asked, NULL);
     if (pthread_create(&w->thread, NULL, run, w) != 0) {
+        pthread_cond_destroy(&w->asked);
+        pthread_mutex_destroy(&w->mutex);
         free(w);
         return weft_fail(error, WEFT_SYSTEM, "cannot start a thread for the weave");
     }
@@ -145,6 +152,7 @@ weft_code weft_weave_worker_ask(weft_weave_worker *w, const weft_weave *weave, w
     pthread_mutex_lock(&w->mutex);
     weft_weave_free(&w->wish);
     w->wish = copy;
+    w->wish_number++;
     w->has_wish = true;
     pthread_cond_signal(&w->asked);
     pthread_mutex_unlock(&w->mutex);
@@ -159,7 +167,7 @@ weft_code weft_weave_worker_take(weft_weave_worker *w, weft_weave_texels *texels
     if (code != WEFT_OK)
         weft_error_set(error, code, "%s", w->error.message);
     *ready = w->has_news && code == WEFT_OK;
-    *exact = w->exact && !w->has_wish;
+    *exact = w->exact && w->news_number == w->wish_number;
     *texels = (weft_weave_texels){0};
     if (*ready) {
         *texels = w->news;

@@ -19,7 +19,7 @@ weft_code weft_weave_worker_ask(weft_weave_worker *worker, const weft_weave *wea
 
 /* *ready: there is news of the weave asked for last, or of one before it; the caller then owns *texels. First the
  * specular scale is estimated (weft_weave_specular_scale_batch, as its ratio to the one before); *exact: it is
- * weft_weave_specular_scale, and no more will come. Errors: of the worker. */
+ * weft_weave_specular_scale of the weave asked for last, and no more will come. Errors: of the worker. */
 weft_code weft_weave_worker_take(weft_weave_worker *worker, weft_weave_texels *texels, bool *ready, bool *exact,
                                  weft_error *error);
 

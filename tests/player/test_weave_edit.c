@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 static const char *const cloth = WEFT_TEST_WEAVE;
@@ -119,6 +120,39 @@ static void only_the_latest_of_many_changes_is_followed_to_the_end(void **state)
     weft_weave_edit_free(&edit);
 }
 
+/* By wall clock, as the worker waits. */
+static double exact_scale_takes_us(const weft_weave *weave)
+{
+    struct timespec start, end;
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    assert_true(weft_weave_specular_scale(weave) > 0);
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    return 1e6 * (double)(end.tv_sec - start.tv_sec) + 1e-3 * (double)(end.tv_nsec - start.tv_nsec);
+}
+
+static void a_change_during_the_exact_step_of_the_one_before_is_followed_to_the_end(void **state)
+{
+    enum { REST_US = 150000 }; /* of the worker, before that step */
+    weft_player *player = ((stage *)*state)->player;
+    weft_weave_edit edit = edit_of(player, cloth);
+    weft_error error = {0};
+    bool shown = false;
+    double half_us = 0.5 * exact_scale_takes_us(&edit.weave);
+    weft_weave_edit_set(&edit, range_of("Incline"), 0.3);
+    expect_ok(weft_weave_edit_ask(&edit, &error), &error);
+    while (!shown)
+        expect_ok(weft_weave_edit_poll(&edit, player, &shown, &error), &error);
+    usleep((useconds_t)(REST_US + half_us));
+    weft_weave_edit_set(&edit, range_of("Incline"), 0.8);
+    expect_ok(weft_weave_edit_ask(&edit, &error), &error);
+    wait_for(&edit, player);
+    double followed = mean_of(player);
+    weft_weave_update(&edit.weave);
+    expect_ok(weft_player_set_weave(player, &edit.weave, &layout, &error), &error);
+    assert_true(fabs(mean_of(player) / followed - 1) < 1e-6);
+    weft_weave_edit_free(&edit);
+}
+
 static void a_change_that_comes_too_late_does_not_replace_another_weave(void **state)
 {
     weft_player *player = ((stage *)*state)->player;
@@ -191,6 +225,7 @@ int main(void)
         cmocka_unit_test(a_value_reaches_the_yarns_that_were_alike_and_no_others),
         cmocka_unit_test(the_player_shows_a_changed_weave_laid_as_before),
         cmocka_unit_test(only_the_latest_of_many_changes_is_followed_to_the_end),
+        cmocka_unit_test(a_change_during_the_exact_step_of_the_one_before_is_followed_to_the_end),
         cmocka_unit_test(a_change_that_comes_too_late_does_not_replace_another_weave),
         cmocka_unit_test(another_weave_takes_the_place_of_a_changed_one),
         cmocka_unit_test(what_cannot_be_read_is_told_once_and_leaves_nothing),
