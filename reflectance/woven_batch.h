@@ -62,9 +62,9 @@ void weft_prepared_reflectance_batch(const weft_prepared_segment *prepared, int 
 weft_code weft_weave_mean_specular_batch(const weft_weave *weave, int count, const weft_vec3 *light,
                                          const weft_vec3 *view, weft_real *value, weft_error *error);
 
-/* weft_weave_specular_scale from 4096 pairs of directions: some milliseconds, within 2 % of it. The same pairs serve every
- * weave, so the ratio of two that differ little is much closer. 0 where no segment is admissible. Errors: WEFT_SYSTEM
- * for memory. */
+/* weft_weave_specular_scale from 4096 pairs of directions: some milliseconds, within 2 % of it. The same pairs serve
+ * every weave, so the ratio of two that differ little is much closer. 0 where no segment is admissible. Errors:
+ * WEFT_SYSTEM for memory. */
 weft_code weft_weave_specular_scale_batch(const weft_weave *weave, weft_real *scale, weft_error *error);
 
 #endif

@@ -1,7 +1,8 @@
 // The compressed material: lobes with a view and a light table, evaluated per texel, then interpolated between texels
 // and levels. C twin: weft_material_sample. All levels lie side by side in each texture (player/mip_layout.h).
 // Constants defined by player/programs.c: LOBES, VIEW_TABLE, LIGHT_TABLE, FEWER_BITS (see table_steps).
-// Fetched by textureLod at the middle of texels: software rasterisers take longer over texelFetch, which may name a level.
+// Fetched by textureLod at the middle of texels: software rasterisers take longer over texelFetch, which may name a
+// level.
 uniform usampler2DArray material_texel;      // packed, see player/material_texture.h
 uniform sampler2DArray material_table;       // views in columns, then layers
 uniform sampler2DArray material_light_table; // lights alike
@@ -74,7 +75,8 @@ vec4 texel_value(vec2 texel, SurfacePoint point, Entries views)
         lobe[i] = vec4(vec3(halves_of(pair.x), halves_of(pair.y).x) * view, halves_of(pair.y).y);
         lobe[i + 1] = vec4(vec3(halves_of(pair.z), halves_of(pair.w).x) * view, halves_of(pair.w).y);
     }
-    // One light is turned into the axes of the surface, once for all texels; for many, the axes of the texel into the world.
+    // One light is turned into the axes of the surface, once for all texels; for many, the axes of the texel into the
+    // world.
     axes = ONE_LIGHT ? axes : point.axes * axes;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < LIGHT_COUNT; i++) {
