@@ -50,8 +50,13 @@ static void show_analytic(weft_interaction *i)
 static void flip(weft_interaction *i)
 {
     weft_interaction_flip(i);
-    if (i->scene.layout == WEFT_LAYOUT_PANES && i->scene.pane_count == 1)
-        snprintf(i->said, sizeof i->said, "%s", weft_mode_name(i->scene.pane[0]));
+    const char *first = weft_mode_name(i->scene.pane[0]), *second = weft_mode_name(i->scene.pane[1]);
+    if (i->scene.layout == WEFT_LAYOUT_WIPE)
+        snprintf(i->said, sizeof i->said, "wipe: %s left, %s right", first, second);
+    else if (i->scene.layout == WEFT_LAYOUT_DIFFERENCE)
+        snprintf(i->said, sizeof i->said, "difference: %s minus %s", second, first);
+    else if (i->scene.pane_count == 1)
+        snprintf(i->said, sizeof i->said, "%s", first);
 }
 
 static void peek(weft_interaction *i)
@@ -197,11 +202,13 @@ static void hold_light(weft_interaction *i)
 static void turn_by_itself(weft_interaction *i)
 {
     i->turns = !i->turns;
+    snprintf(i->said, sizeof i->said, "turn by itself: %s", i->turns ? "on" : "off");
 }
 
 static void look_from_start(weft_interaction *i)
 {
     i->scene.orbit = i->start.orbit;
+    snprintf(i->said, sizeof i->said, "camera as at the start");
     i->changed = true;
 }
 
@@ -215,22 +222,29 @@ static void light_from_start(weft_interaction *i)
     scene->environment_strength = i->start.environment_strength;
     scene->exposure = i->start.exposure;
     weft_scene_keep_lit(scene);
+    snprintf(i->said, sizeof i->said, "lights and exposure as at the start");
     i->changed = true;
+}
+
+static void want_mesh(weft_interaction *i, const char *mesh, const char *said)
+{
+    i->wants_mesh = mesh;
+    snprintf(i->said, sizeof i->said, "%s", said);
 }
 
 static void want_drape(weft_interaction *i)
 {
-    i->wants_mesh = "drape";
+    want_mesh(i, "drape", "drape");
 }
 
 static void want_sphere(weft_interaction *i)
 {
-    i->wants_mesh = "sphere";
+    want_mesh(i, "sphere", "ball");
 }
 
 static void want_plane(weft_interaction *i)
 {
-    i->wants_mesh = "plane";
+    want_mesh(i, "plane", "plane");
 }
 
 /* ---- Files and window ---- */

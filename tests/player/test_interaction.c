@@ -242,6 +242,33 @@ static void a_key_that_can_do_nothing_says_what_is_missing(void **state)
     assert_false(i.changed);
 }
 
+static void a_key_that_changes_what_is_seen_says_so(void **state)
+{
+    static const struct {
+        int code;
+        const char *said;
+    } press[] = {
+        {GLFW_KEY_A, "turn by itself: on"},
+        {GLFW_KEY_A, "turn by itself: off"},
+        {GLFW_KEY_HOME, "camera as at the start"},
+        {GLFW_KEY_0, "lights and exposure as at the start"},
+        {GLFW_KEY_D, "drape"},
+        {GLFW_KEY_O, "ball"},
+        {GLFW_KEY_P, "plane"},
+        {GLFW_KEY_W, "wipe"},
+        {GLFW_KEY_SPACE, "wipe: compressed left, raw right"},
+        {GLFW_KEY_X, "difference: second minus first"},
+        {GLFW_KEY_SPACE, "difference: raw minus compressed"},
+    };
+    (void)state;
+    weft_interaction i = fresh();
+    for (size_t k = 0; k < sizeof press / sizeof *press; k++) {
+        i.said[0] = 0;
+        weft_keys_press(&i, press[k].code, 0, false);
+        assert_string_equal(i.said, press[k].said);
+    }
+}
+
 static void a_scene_whose_only_light_was_its_environment_gets_another(void **state)
 {
     (void)state;
@@ -316,6 +343,7 @@ int main(void)
         cmocka_unit_test(only_some_keys_repeat_while_they_are_held),
         cmocka_unit_test(a_key_with_control_is_another_key),
         cmocka_unit_test(a_key_that_can_do_nothing_says_what_is_missing),
+        cmocka_unit_test(a_key_that_changes_what_is_seen_says_so),
         cmocka_unit_test(a_scene_whose_only_light_was_its_environment_gets_another),
         cmocka_unit_test(arrows_turn_what_a_plain_drag_turns),
         cmocka_unit_test(the_docs_list_every_key_in_order),
