@@ -25,6 +25,7 @@ struct weft_application {
     weft_texel texel; /* of it, where that is compressed */
     weft_probe_plots plots;
     weft_weave_edit weave; /* what the sliders change */
+    int noise_seed;        /* of the noise that was on last; 0: none yet */
     double progress;
     weft_error failure;          /* of reading, last */
     char errors[WEFT_NOTE_SIZE]; /* of what is shown, "" until it rests */

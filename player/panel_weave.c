@@ -2,6 +2,7 @@
 
 #include "player/ui_bridge.h"
 
+#include <limits.h>
 #include <stdio.h>
 
 static void tell(weft_application *a, weft_code code, const weft_error *error)
@@ -52,21 +53,31 @@ static void choose_yarn(weft_weave_edit *edit)
     weft_ui_toggle("Change all yarns like it", &edit->alike);
 }
 
+/* Whether there is noise; switched off and on again it is the same. */
+static bool noise_toggle(weft_application *a)
+{
+    weft_interaction *i = &a->interaction;
+    int *seed = &i->scene.noise_seed;
+    bool noisy = *seed != 0;
+    if (noisy)
+        a->noise_seed = *seed;
+    if (weft_ui_toggle("Noise", &noisy)) {
+        *seed = !noisy ? 0 : a->noise_seed ? a->noise_seed : 1;
+        i->changed = true;
+    }
+    return noisy;
+}
+
 /* Whether there is noise belongs to the picture, how strong it is to the weave. */
 static bool noise_rows(weft_application *a)
 {
     static const char *const label[] = {"Warp by warp", "Warp by weft", "Weft by warp", "Weft by weft"};
     weft_interaction *i = &a->interaction;
     weft_weave_edit *edit = &a->weave;
-    bool noisy = i->scene.noise_seed != 0;
-    if (weft_ui_toggle("Noise", &noisy)) {
-        i->scene.noise_seed = noisy;
-        i->changed = true;
-    }
-    if (!noisy)
+    if (!noise_toggle(a))
         return false;
     double fineness = (double)edit->weave.fineness, period = (double)edit->weave.period, amplitude[4];
-    i->changed |= weft_ui_whole("Seed", &i->scene.noise_seed, 1, 99);
+    i->changed |= weft_ui_whole_input("Seed", &i->scene.noise_seed, 1, INT_MAX);
     bool changed = weft_ui_slider("Fineness", &fineness, 0, 10, "%.1f", false);
     changed |= weft_ui_slider("Period", &period, 0, 500, "%.0f", false);
     for (int k = 0; k < 4; k++) {

@@ -317,7 +317,8 @@ bool weft_ui_slider(const char *label, double *value, double low, double high, c
     bool changed = ImGui::SliderScalar("##slider", ImGuiDataType_Double, value, &low, &high, format,
                                        logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
     ImGui::PopID();
-    *value = std::min(std::max(*value, low), high);
+    if (changed)
+        *value = std::min(std::max(*value, low), high);
     return changed;
 }
 
@@ -336,8 +337,22 @@ bool weft_ui_whole(const char *label, int *value, int low, int high)
     put_label(label);
     bool changed = ImGui::SliderInt("##whole", value, low, high);
     ImGui::PopID();
-    *value = std::min(std::max(*value, low), high);
+    if (changed)
+        *value = std::min(std::max(*value, low), high);
     return changed;
+}
+
+bool weft_ui_whole_input(const char *label, int *value, int low, int high)
+{
+    int typed = *value;
+    put_label(label);
+    bool edited = ImGui::InputInt("##whole", &typed);
+    ImGui::PopID();
+    typed = std::min(std::max(typed, low), high);
+    if (!edited || typed == *value)
+        return false;
+    *value = typed;
+    return true;
 }
 
 bool weft_ui_choice(const char *label, int *value, const char *const *name, const bool *allowed, int count)

@@ -68,10 +68,13 @@ void weft_ui_swatch(uint32_t colour, const char *meaning);
 void weft_ui_value(const char *label, const char *value);
 bool weft_ui_button(const char *label);
 bool weft_ui_toggle(const char *label, bool *value);
-/* `format` as printf takes it for one double; `logarithmic` needs 0 < low. */
+/* `low`, `high`: of what the user may choose; a value beyond them stays until then. `format` as printf takes it for one
+ * double; `logarithmic` needs 0 < low. */
 bool weft_ui_slider(const char *label, double *value, double low, double high, const char *format, bool logarithmic);
 bool weft_ui_angle(const char *label, double *value_rad, double low_deg, double high_deg);
 bool weft_ui_whole(const char *label, int *value, int low, int high);
+/* Typed, or stepped by one: for ranges too wide for a slider. */
+bool weft_ui_whole_input(const char *label, int *value, int low, int high);
 /* One of `count` names, side by side; those with allowed[i] false cannot be chosen (NULL: all can). */
 bool weft_ui_choice(const char *label, int *value, const char *const *name, const bool *allowed, int count);
 bool weft_ui_colour(const char *label, double rgb[3]);
