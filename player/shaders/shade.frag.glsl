@@ -1,5 +1,5 @@
-// What a pixel shows: the radiance of the mode, and on request what lies behind it. C twins: player/false_colour.h, which
-// has the colours.
+// What a pixel shows: the radiance of the mode, and on request what lies behind it. C twins: player/false_colour.h,
+// which has the colours.
 uniform float exposure;
 uniform bool opaque; // no holes: what is unlit is black whatever it is
 uniform bool show_level, show_extrapolation;

@@ -1,7 +1,7 @@
 // What every mode needs to know of the surface behind a pixel (written by surface.frag.glsl), and of the light on it.
 // Constants defined by player/programs.c: MAX_LIGHTS, LEVEL_COLOURS, LIGHT_COUNT (light_count, or 1), ONE_LIGHT,
-// STOCHASTIC, SHADOWS, and PLOT: 0 for the picture; else a disc of directions at one place of the material, 1 of lights,
-// 2 of views (player/probe.h).
+// STOCHASTIC, SHADOWS, and PLOT: 0 for the picture; else a disc of directions at one place of the material, 1 of
+// lights, 2 of views (player/probe.h).
 uniform sampler2D surface_rotation;
 uniform sampler2D surface_place;
 uniform vec3 ray_right, ray_up, ray_forward; // the ray through a pixel: x right + y up + forward
