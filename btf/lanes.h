@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 
 #if defined(__AVX2__)
 #include <immintrin.h>
@@ -98,16 +99,18 @@ WEFT_INLINE lane_bits lane_bits_load(const int32_t *from)
     return *(const lane_bits *)__builtin_assume_aligned(from, 4 * LANES);
 }
 
+/* Half and half, which vectors do in few steps. */
 WEFT_INLINE float lanes_sum(lanes x)
 {
-    lane_bits other = {0};
+    float part[LANES];
+    memcpy(part, &x, sizeof part);
 #pragma GCC unroll 4
-    for (int step = LANES / 2; step > 0; step /= 2) {
-        for (int i = 0; i < LANES; i++)
-            other[i] = i ^ step;
-        x += __builtin_shuffle(x, other);
+    for (int half = LANES / 2; half > 0; half /= 2) {
+#pragma GCC unroll 8
+        for (int i = 0; i < half; i++)
+            part[i] += part[i + half];
     }
-    return x[0];
+    return part[0];
 }
 
 /* Several vectors in step, so that the long chain of one hides behind the others: the processor looks ahead too little

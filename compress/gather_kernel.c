@@ -15,7 +15,7 @@ typedef struct gather_sums {
 
 WEFT_INLINE lane_bits is_finite(lanes x)
 {
-    return x - x == 0;
+    return ((lane_bits)x & 0x7f800000) != 0x7f800000;
 }
 
 WEFT_INLINE void gather_vector(const weft_bundle *bundle, weft_values values, const float *sum, const float *count,

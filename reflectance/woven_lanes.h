@@ -7,7 +7,7 @@
 
 #define LANE_PI 3.14159265f
 #define LANE_HALF_PI 1.57079637f
-#define LANE_HALF_PI_REST -4.37113883e-8f /* pi/2 minus that */
+#define LANE_HALF_PI_REST (-4.37113883e-8f) /* pi/2 minus that */
 
 /* As in woven_mirror.h. */
 #define LANE_MIN_HALF_SQUARED 1e-12f
