@@ -311,7 +311,7 @@ static void the_command_predicts_and_names_what_is_wrong(void **state)
     expect_command("bard.btf.h5 -o bard.bard.h5 --diffuse 2", 2, "--diffuse");
     expect_command("bard.btf.h5 -o bard.bard.h5 --map round", 2, "--map");
     expect_command("bard.btf.h5 -o no-folder/bard.bard.h5", 3, "no-folder");
-    expect_command("bard.btf.h5 -o bard.btf.h5", 2, "dataset itself");
+    expect_command("bard.btf.h5 -o bard.btf.h5", 2, "would overwrite");
     expect_command("--help", 0, "Example: weft bard");
     assert_int_equal(truncate(input, 5000), 0);
     expect_command("bard.btf.h5 -o bard.bard.h5", 1, "bard.btf.h5");
