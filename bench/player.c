@@ -2,6 +2,7 @@
  * frames by the wall and by the GPU's own timestamps, and the mean processor time. Usage: bench_player [NAME.weft]
  * [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
 #include "player/player.h"
+#include "bench/measure.h"
 #include "player/context.h"
 #include "player/environment.h"
 #include "reflectance/lafortune.h"
@@ -10,30 +11,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { WIDTH = 730, HEIGHT = 400, FRAMES = 41, WARM_UP = 5 };
 
 static void stop_on(weft_code code, const weft_error *error)
 {
-    if (code == WEFT_OK)
-        return;
-    fprintf(stderr, "bench_player: %s\n", error->message);
-    exit((int)code);
-}
-
-static double now_ms(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
-}
-
-static double cpu_now_ms(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+    bench_stop_on("bench_player", code, error);
 }
 
 static int compare_times(const void *a, const void *b)
@@ -81,7 +64,7 @@ static void time_scene(weft_player *player, weft_scene scene, const char *what, 
     for (int frame = -WARM_UP; frame < FRAMES; frame++) {
         GLuint64 begin, end;
         scene.orbit.azimuth_rad += 0.01;
-        double start = now_ms(), cpu_start = cpu_now_ms();
+        double start = bench_now_ms(CLOCK_MONOTONIC), cpu_start = bench_now_ms(CLOCK_PROCESS_CPUTIME_ID);
         glQueryCounter(query[0], GL_TIMESTAMP);
         draw(player, &scene, canvas, screen);
         glQueryCounter(query[1], GL_TIMESTAMP);
@@ -89,8 +72,8 @@ static void time_scene(weft_player *player, weft_scene scene, const char *what, 
         glGetQueryObjectui64v(query[0], GL_QUERY_RESULT, &begin);
         glGetQueryObjectui64v(query[1], GL_QUERY_RESULT, &end);
         if (frame >= 0) {
-            wall[frame] = now_ms() - start;
-            cpu_ms += (cpu_now_ms() - cpu_start) / FRAMES;
+            wall[frame] = bench_now_ms(CLOCK_MONOTONIC) - start;
+            cpu_ms += (bench_now_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu_start) / FRAMES;
             gpu[frame] = 1e-6 * (double)(end - begin);
         }
     }
@@ -130,19 +113,6 @@ static weft_image picture(weft_player *player, const weft_scene *scene, long fra
     return image;
 }
 
-/* Of the pixels that the map does not show through: root mean square over the reference's. */
-static double relative_rmse(const weft_image *image, const weft_image *reference, const weft_image *background)
-{
-    double square = 0, norm = 0;
-    for (size_t i = 0; i < 3 * (size_t)WIDTH * HEIGHT; i++) {
-        if (reference->pixels[i] == background->pixels[i])
-            continue;
-        square += pow((double)(image->pixels[i] - reference->pixels[i]), 2);
-        norm += pow((double)reference->pixels[i], 2);
-    }
-    return sqrt(square / norm);
-}
-
 /* What a moving and a resting picture lack against all lights of the map, every neighbour evaluated. */
 static void judge_environment(weft_player *player, weft_scene scene, weft_canvas *canvas)
 {
@@ -156,10 +126,11 @@ static void judge_environment(weft_player *player, weft_scene scene, weft_canvas
     scene.filter = WEFT_FILTER_STOCHASTIC;
     weft_image moving = picture(player, &scene, -1, 1, canvas);
     printf("    against all lights: moving, exact %.2f %%, stochastic %.2f %%; resting",
-           100 * relative_rmse(&exact, &reference, &background), 100 * relative_rmse(&moving, &reference, &background));
+           100 * bench_relative_rmse(&exact, &reference, &background),
+           100 * bench_relative_rmse(&moving, &reference, &background));
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         weft_image image = picture(player, &scene, 0, frames[i], canvas);
-        printf(", %d frames %.2f %%", frames[i], 100 * relative_rmse(&image, &reference, &background));
+        printf(", %d frames %.2f %%", frames[i], 100 * bench_relative_rmse(&image, &reference, &background));
         weft_image_free(&image);
     }
     printf("\n");
@@ -207,9 +178,9 @@ static double memory_speed(void)
     double best_ms = 1e9;
     for (int i = 0; i < 5 && from && to; i++) {
         memset(from, i, COPIED);
-        double start = now_ms();
+        double start = bench_now_ms(CLOCK_MONOTONIC);
         memcpy(to, from, COPIED);
-        best_ms = fmin(best_ms, now_ms() - start);
+        best_ms = fmin(best_ms, bench_now_ms(CLOCK_MONOTONIC) - start);
     }
     free(from);
     free(to);
@@ -253,7 +224,8 @@ static void judge_material(weft_player *player, const char *path)
     const weft_scene scene = weft_scene_default();
     stop_on(weft_material_read(path, &material, &error), &error);
     stop_on(weft_player_read_surface(player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &surface, &error), &error);
-    double start = now_ms(), sum = sum_of_c(&material, surface, &pixels), c_ms = now_ms() - start;
+    double start = bench_now_ms(CLOCK_MONOTONIC), sum = sum_of_c(&material, surface, &pixels),
+           c_ms = bench_now_ms(CLOCK_MONOTONIC) - start;
     double frame_gb = 1e-9 * fetched_bytes(&material) * (double)pixels, speed = memory_speed();
     printf("compressed: %ld pixels, %d bytes fetched for each; memory would do for %.0f frames/s (%.1f GB/s copied)\n",
            pixels, fetched_bytes(&material), speed / frame_gb, speed);
@@ -279,11 +251,12 @@ static void load_dataset(weft_player *player, const char *path)
     weft_error error = {0};
     weft_dataset *dataset;
     int skipped;
-    double start = now_ms();
+    double start = bench_now_ms(CLOCK_MONOTONIC);
     stop_on(weft_dataset_open(path, &dataset, &error), &error);
     stop_on(weft_player_set_dataset(player, dataset, NULL, &skipped, &error), &error);
     weft_dataset_close(dataset);
-    printf("%-28s %8.0f ms, %d levels skipped\n", "loading the dataset", now_ms() - start, skipped);
+    printf("%-28s %8.0f ms, %d levels skipped\n", "loading the dataset", bench_now_ms(CLOCK_MONOTONIC) - start,
+           skipped);
 }
 
 static void load_material(weft_player *player, const char *path)
@@ -314,9 +287,9 @@ static void load(weft_player *player, int argc, char **argv)
 {
     weft_error error = {0};
     weft_mesh mesh;
-    double start = now_ms();
+    double start = bench_now_ms(CLOCK_MONOTONIC);
     stop_on(weft_mesh_drape(&mesh, &error), &error);
-    printf("%-28s %8.0f ms\n", "simulating the drape", now_ms() - start);
+    printf("%-28s %8.0f ms\n", "simulating the drape", bench_now_ms(CLOCK_MONOTONIC) - start);
     stop_on(weft_player_set_mesh(player, &mesh, &error), &error);
     weft_mesh_free(&mesh);
     for (int i = 1; i < argc; i++) {

@@ -1,6 +1,7 @@
 /* What each format of the samples of a dataset costs and loses: graphics memory, processor time of streaming and of a
  * frame, and the errors of samples and of a picture against half floats. Usage: bench_raw_formats NAME.btf.h5 */
 #include "../tests/player/bc6h_decode.h"
+#include "bench/measure.h"
 #include "player/canvas.h"
 #include "player/context.h"
 #include "player/player_parts.h"
@@ -9,23 +10,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { WIDTH = 730, HEIGHT = 400, FRAMES = 8, BLOCK = WEFT_RAW_BLOCK, TEXELS = BLOCK * BLOCK, SCENES = 2 };
 
 static void stop_on(weft_code code, const weft_error *error)
 {
-    if (code == WEFT_OK)
-        return;
-    fprintf(stderr, "bench_raw_formats: %s\n", error->message);
-    exit((int)code);
-}
-
-static double now_ms(clockid_t clock)
-{
-    struct timespec time;
-    clock_gettime(clock, &time);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+    bench_stop_on("bench_raw_formats", code, error);
 }
 
 /* ---- Samples ---- */
@@ -75,9 +65,9 @@ static collection collect(weft_dataset *dataset, weft_raw_format format)
     collection c = {0};
     const weft_raw_sink sink = {&c, begin, take, end};
     const weft_raw_limits limits = weft_raw_texture_limits(format);
-    double start = now_ms(CLOCK_THREAD_CPUTIME_ID);
+    double start = bench_now_ms(CLOCK_THREAD_CPUTIME_ID);
     stop_on(weft_raw_stream(dataset, &limits, NULL, &sink, &error), &error);
-    c.streaming_ms = now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
+    c.streaming_ms = bench_now_ms(CLOCK_THREAD_CPUTIME_ID) - start;
     return c;
 }
 
@@ -155,29 +145,16 @@ static weft_image draw(weft_player *player, weft_scene scene, weft_filter filter
     for (int frame = -1; frame < FRAMES; frame++) {
         const weft_sampling moving = {.frame = -1};
         if (frame == 0)
-            start = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+            start = bench_now_ms(CLOCK_PROCESS_CPUTIME_ID);
         weft_canvas_clear(canvas);
         weft_canvas_begin_frame(canvas);
         stop_on(weft_player_draw(player, &scene, WIDTH, HEIGHT, moving, &error), &error);
         weft_canvas_end_frame(canvas);
         glFinish();
     }
-    *frame_ms = (now_ms(CLOCK_PROCESS_CPUTIME_ID) - start) / FRAMES;
+    *frame_ms = (bench_now_ms(CLOCK_PROCESS_CPUTIME_ID) - start) / FRAMES;
     stop_on(weft_canvas_read(canvas, &image, &error), &error);
     return image;
-}
-
-/* Where the picture shows cloth. */
-static double relative_rmse(const weft_image *image, const weft_image *reference, const weft_image *background)
-{
-    double square = 0, norm = 0;
-    for (size_t i = 0; i < 3 * (size_t)WIDTH * HEIGHT; i++) {
-        if (reference->pixels[i] == background->pixels[i])
-            continue;
-        square += pow((double)(image->pixels[i] - reference->pixels[i]), 2);
-        norm += pow((double)reference->pixels[i], 2);
-    }
-    return sqrt(square / norm);
 }
 
 typedef struct bench {
@@ -203,7 +180,7 @@ static double judge_picture(bench *b, int i, double *frame_ms)
     weft_image image = draw(b->player, make_scene(i), WEFT_FILTER_EXACT, &b->canvas, frame_ms);
     if (!b->reference[i].pixels)
         b->reference[i] = image;
-    double error = relative_rmse(&image, &b->reference[i], &b->background);
+    double error = bench_relative_rmse(&image, &b->reference[i], &b->background);
     if (image.pixels != b->reference[i].pixels)
         weft_image_free(&image);
     return error;

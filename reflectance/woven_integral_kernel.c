@@ -110,15 +110,6 @@ WEFT_INLINE int first_change(const int32_t lit[NODES], int count)
     return change < count ? change : 0;
 }
 
-/* Element by element: beside the long chains of an integrand that costs less than shuffles. */
-WEFT_INLINE float sum_of(lanes x)
-{
-    float sum = 0;
-    for (int i = 0; i < LANES; i++)
-        sum += x[i];
-    return sum;
-}
-
 WEFT_INLINE estimate estimate_panel(const integral *q, const piece *p, panel of)
 {
     _Alignas(64) int32_t lit[NODES];
@@ -130,7 +121,8 @@ WEFT_INLINE estimate estimate_panel(const integral *q, const piece *p, panel of)
         gauss += lanes_load(gauss_weight + i) * value;
     }
     float scale = 2 * (p->high - p->low) * radius;
-    return (estimate){scale * sum_of(kronrod), scale * fabsf(sum_of(kronrod - gauss)), first_change(lit, NODES - 1)};
+    return (estimate){scale * lanes_sum(kronrod), scale * fabsf(lanes_sum(kronrod - gauss)),
+                      first_change(lit, NODES - 1)};
 }
 
 /* Where between two values of theta / 2 the yarn turns away: the integrand has a kink there, which no rule sees. */

@@ -350,7 +350,7 @@ static void other_ways_to_store_keep_to_the_memory_too(void **state)
 {
     (void)state;
 #if defined(__SANITIZE_ADDRESS__)
-    skip();
+    skip(); /* its allocator keeps what is freed */
 #endif
     expect_little_memory_suffices("--budget", "0.3");
     expect_little_memory_suffices("--tables", "pca:8");

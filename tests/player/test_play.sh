@@ -4,12 +4,8 @@
 set -eu
 
 weft=$1 make=$2 weaves=$3
-for tool in xvfb-run xdotool cmp; do
-    if ! command -v "$tool" >/dev/null; then
-        echo "skipped: $tool is not installed"
-        exit 77
-    fi
-done
+. "$(dirname "$0")/window.sh"
+need xvfb-run xdotool cmp
 
 if [ "${4-}" != inside ]; then
     rm -rf play && "$make" --make play
@@ -20,24 +16,13 @@ if [ "${4-}" != inside ]; then
 fi
 
 cd play
-"$weft" play cloth.weft --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 320x240 &
-player=$!
-trap 'kill $player 2>/dev/null || true' EXIT
-window=$(xdotool search --sync --onlyvisible --name '^Weft' | head -n 1)
-xdotool windowfocus --sync "$window"
+open_window cloth.weft --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 320x240
 
-shots=0
+next=none
 shoot() { # WHAT: takes a screenshot that must differ from the one before
     sleep 0.4
-    xdotool key F12
-    last=$(printf 'weft-%03d.png' "$shots")
-    shots=$((shots + 1))
-    next=$(printf 'weft-%03d.png' "$shots")
-    for _ in $(seq 300); do
-        [ -s "$next" ] && break
-        sleep 0.1
-    done
-    [ -s "$next" ] || { echo "no screenshot after: $1"; exit 1; }
+    last=$next
+    save_picture || { echo "no screenshot after: $1"; exit 1; }
     if [ "$shots" -gt 1 ] && cmp -s "$last" "$next"; then
         echo "nothing changed: $1"
         exit 1

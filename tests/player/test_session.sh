@@ -6,12 +6,8 @@
 set -eu
 
 weft=$1 make=$2 drop=$3 weaves=$4
-for tool in xvfb-run xdotool cmp convert import; do
-    if ! command -v "$tool" >/dev/null; then
-        echo "skipped: $tool is not installed"
-        exit 77
-    fi
-done
+. "$(dirname "$0")/window.sh"
+need xvfb-run xdotool cmp convert import
 
 if [ "${5-}" != inside ]; then
     rm -rf session && "$make" --make session
@@ -23,11 +19,7 @@ panel=330
 table=160x40+145+200 # of a picture of 450 x 720: the top of the drape
 "$weft" compress cloth.btf.h5 -o other.weft --lobes 1 --table off --quiet
 head -c 100 cloth.weft >broken.weft
-"$weft" play cloth.weft --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 780x720 --no-labels &
-player=$!
-trap 'kill $player 2>/dev/null || true' EXIT
-window=$(xdotool search --sync --onlyvisible --name '^Weft' | head -n 1)
-xdotool windowmove --sync "$window" 0 0 windowfocus --sync "$window"
+open_window cloth.weft --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 780x720 --no-labels
 
 fail() {
     import -window root failed.png
@@ -35,17 +27,9 @@ fail() {
     exit 1
 }
 
-shots=0
 shoot() { # draws what the window shows into $next
     sleep 0.5
-    xdotool key F12
-    shots=$((shots + 1))
-    next=$(printf 'weft-%03d.png' "$shots")
-    for _ in $(seq 300); do
-        [ -s "$next" ] && return
-        sleep 0.1
-    done
-    fail "no picture $next"
+    save_picture || fail "no picture $next"
 }
 
 mean() { # PICTURE WIDTHxHEIGHT+X+Y: of the grey values, in thousandths
