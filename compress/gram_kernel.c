@@ -142,7 +142,8 @@ WEFT_INLINE void add_products(lanes columns[LAST][PIECE], int slots, int count, 
     }
 }
 
-WEFT_INLINE void store_sums(const weft_strip *strip, int lane, const lanes *own, int count, int stride, float *sums)
+WEFT_INLINE void store_sums(const weft_strip *strip, int lane, const lanes *own, int count, int stride, bool add,
+                            float *sums)
 {
 #pragma GCC unroll 16
     for (int a = 0; a < count; a++) {
@@ -154,53 +155,55 @@ WEFT_INLINE void store_sums(const weft_strip *strip, int lane, const lanes *own,
             const lanes *from = own + weft_gram_product(p, q, count);
             float *to = sums + (size_t)weft_gram_product(a, b, count) * (size_t)stride + strip->view;
             if (strip->split)
-                *to = (lane ? *to : 0) + lanes_sum(*from);
+                *to = (add || lane ? *to : 0) + lanes_sum(*from);
             else
-                lanes_store(to + lane, *from);
+                lanes_store(to + lane, add ? *from + lanes_load(to + lane) : *from);
         }
     }
 }
 
 /* One lobe count at a time, so that the compiler unrolls everything inside. */
 WEFT_INLINE void accumulate(const weft_bundle *bundle, const float *cosine, const float *value,
-                            const weft_gram_point *point, int lobe_count, const float *table, bool coarse, float *sums)
+                            const weft_gram_point *point, int lobe_count, const float *table, weft_part part,
+                            float *sums)
 {
     lanes columns[LAST][PIECE], own_sums[WEFT_GRAM_PRODUCTS];
     int count = weft_gram_columns(lobe_count), products = count * (count + 1) / 2;
     memset(columns[count], 0, TILE * sizeof columns[0]);
     for (int s = 0; s < bundle->strip_count; s++) {
         const weft_strip *strip = &bundle->strip[s];
-        int slots = coarse ? strip->coarse_slots : strip->slots;
+        int begin = part == WEFT_PART_REST ? strip->coarse_slots : 0;
+        int end = part == WEFT_PART_COARSE ? strip->coarse_slots : strip->slots;
         for (int lane = 0; lane < WEFT_STRIP_LANES; lane += LANES) {
             strip_lanes own = lanes_of_strip(bundle, strip, point, lobe_count, table, lane);
             memset(own_sums, 0, (size_t)products * sizeof *own_sums);
-            for (int first = 0; first < slots; first += PIECE) {
-                int piece = slots - first < PIECE ? slots - first : PIECE;
+            for (int first = begin; first < end; first += PIECE) {
+                int piece = end - first < PIECE ? end - first : PIECE;
                 for (int slot = 0; slot < piece; slot++)
                     write_columns(bundle, cosine, value, point, lobe_count, &own,
                                   strip->first + (first + slot) * WEFT_STRIP_LANES + lane, slot, columns);
                 add_products(columns, piece, count, own_sums);
             }
-            store_sums(strip, lane, own_sums, count, bundle->view_stride, sums);
+            store_sums(strip, lane, own_sums, count, bundle->view_stride, part == WEFT_PART_REST, sums);
         }
     }
 }
 
 void WEFT_KERNEL(weft_gram_accumulate)(const weft_bundle *bundle, const float *cosine, const float *value,
-                                       const weft_gram_point *point, const float *table, bool coarse, float *sums)
+                                       const weft_gram_point *point, const float *table, weft_part part, float *sums)
 {
     switch (point->lobe_count) {
     case 0:
-        accumulate(bundle, cosine, value, point, 0, table, coarse, sums);
+        accumulate(bundle, cosine, value, point, 0, table, part, sums);
         break;
     case 1:
-        accumulate(bundle, cosine, value, point, 1, table, coarse, sums);
+        accumulate(bundle, cosine, value, point, 1, table, part, sums);
         break;
     case 2:
-        accumulate(bundle, cosine, value, point, 2, table, coarse, sums);
+        accumulate(bundle, cosine, value, point, 2, table, part, sums);
         break;
     default:
-        accumulate(bundle, cosine, value, point, 3, table, coarse, sums);
+        accumulate(bundle, cosine, value, point, 3, table, part, sums);
         break;
     }
 }

@@ -8,10 +8,10 @@
 
 struct weft_fit_kernels {
     /* sums [WEFT_GRAM_PRODUCTS][view_stride]: products of columns (see compress/gram.h) summed over the samples of each
-     * view, only its coarse slots with `coarse`. table [view_stride] is T(v) in e. Views without samples keep what
-     * their sums were. */
+     * view in a part of its slots; WEFT_PART_REST adds to what `sums` holds. table [view_stride] is T(v) in e. Views
+     * without samples keep what their sums were. */
     void (*accumulate)(const weft_bundle *bundle, const float *cosine, const float *value, const weft_gram_point *point,
-                       const float *table, bool coarse, float *sums);
+                       const float *table, weft_part part, float *sums);
     /* The samples of a texel: see weft_samples_gather. */
     void (*gather)(const weft_bundle *bundle, weft_values values, const float *sum, const float *count, int group_size,
                    weft_samples *samples);
@@ -24,7 +24,7 @@ struct weft_fit_kernels {
     /* k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [sample_count]. */
     void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
     /* The linear rows of a trial from its sums at `point`, and their totals. Returns the sum of <f|f> without T. */
-    double (*digest)(const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial);
+    double (*digest)(const weft_bundle *bundle, weft_trial *trial);
     /* Residual at other linear parameters than those of the pass; their T into table [view_stride]. */
     double (*residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, const weft_linear *linear,
                        float *table);
@@ -39,7 +39,7 @@ struct weft_fit_kernels {
 /* The functions of one set, by their names in it. */
 #define WEFT_DECLARE_FIT_KERNELS_OF(set)                                                                               \
     void weft_gram_accumulate_##set(const weft_bundle *bundle, const float *cosine, const float *value,                \
-                                    const weft_gram_point *point, const float *table, bool coarse, float *sums);       \
+                                    const weft_gram_point *point, const float *table, weft_part part, float *sums);    \
     void weft_gather_samples_##set(const weft_bundle *bundle, weft_values values, const float *sum,                    \
                                    const float *count, int group_size, weft_samples *samples);                         \
     void weft_gather_weigh_##set(const weft_bundle *bundle, weft_samples *samples);                                    \
@@ -47,7 +47,7 @@ struct weft_fit_kernels {
                                    const float *model, const float *table, weft_error_sums *sums);                     \
     void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \
                                   float *result);                                                                      \
-    double weft_linear_digest_##set(const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial);       \
+    double weft_linear_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                     \
     double weft_linear_residual_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,             \
                                       const weft_linear *linear, float *table);                                        \
     double weft_linear_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,               \

@@ -30,7 +30,7 @@ WEFT_INLINE lanes product(const weft_trial *trial, int columns, int stride, int 
     return lanes_load(trial->sums + (size_t)at * (size_t)stride + view);
 }
 
-WEFT_INLINE double digest_of(int lobes, const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial)
+WEFT_INLINE double digest_of(int lobes, const weft_bundle *bundle, weft_trial *trial)
 {
     const int n = lobes + 1, columns = weft_gram_columns(lobes), e = columns - 1;
     int stride = bundle->view_stride;
@@ -38,7 +38,7 @@ WEFT_INLINE double digest_of(int lobes, const weft_bundle *bundle, const weft_gr
     const linear_point at = linear_point_of(trial, trial->at.x);
     for (int view = 0; view < stride; view += LANES) {
         combination column[WEFT_LINEAR_MAX];
-        UNROLL for (int j = 0; j < n; j++) column[j] = linear_column(bundle, point, j, view);
+        UNROLL for (int j = 0; j < n; j++) column[j] = linear_column(bundle, &trial->point, j, view);
         UNROLL for (int j = 0; j < n; j++)
         {
             const combination a = column[j];
@@ -71,9 +71,9 @@ WEFT_INLINE double digest_of(int lobes, const weft_bundle *bundle, const weft_gr
     return (double)lanes_sum(model_energy);
 }
 
-double WEFT_KERNEL(weft_linear_digest)(const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial)
+double WEFT_KERNEL(weft_linear_digest)(const weft_bundle *bundle, weft_trial *trial)
 {
-    return FOR_LOBES(point->lobe_count, digest_of, bundle, point, trial);
+    return FOR_LOBES(trial->point.lobe_count, digest_of, bundle, trial);
 }
 
 WEFT_INLINE double residual_of(int lobes, const weft_bundle *bundle, const weft_trial *trial, bool with_table,

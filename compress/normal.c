@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#define LINEAR_TOLERANCE 1e-5 /* part of the residual that a further step of rho and the amplitudes must promise */
+#define LINEAR_TOLERANCE 1e-4 /* part of the residual that a further step of rho and the amplitudes must promise */
 enum { LINEAR_ROUNDS = 4 };
 
 void weft_frame_rows(const weft_frame *frame, double rows[3][3])
@@ -48,7 +48,7 @@ weft_gram_point weft_gram_point_of_fit(const weft_fit *fit)
     return point;
 }
 
-static weft_linear linear_of_fit(const weft_fit *fit)
+weft_linear weft_linear_of_fit(const weft_fit *fit)
 {
     weft_linear linear = {.x = {fit->diffuse}};
     for (int i = 0; i < fit->lobe_count; i++)
@@ -65,10 +65,9 @@ static void linear_to_fit(const weft_linear *linear, weft_fit *fit)
 
 /* ---- Linear parameters ---- */
 
-void weft_trial_digest(const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial)
+void weft_trial_digest(const weft_bundle *bundle, weft_trial *trial)
 {
-    trial->at = linear_of_fit(&trial->fit);
-    trial->negligible = 1e-9 * trial->kernels->digest(bundle, point, trial) / bundle->view_count;
+    trial->negligible = 1e-9 * trial->kernels->digest(bundle, trial) / bundle->view_count;
 }
 
 /* The residual and its normal equations at some linear parameters. */
@@ -104,7 +103,7 @@ static bool linear_step(const linear_state *now, int n, const double *least, dou
 void weft_trial_solve_linear(const weft_bundle *bundle, bool with_table, const double *least, weft_trial *trial)
 {
     const weft_fit_kernels *kernels = trial->kernels;
-    linear_state now = {.linear = linear_of_fit(&trial->fit)}, next;
+    linear_state now = {.linear = weft_linear_of_fit(&trial->fit)}, next;
     now.residual = kernels->linear_normal(bundle, trial, with_table, &now.linear, now.h, now.g);
     for (int round = 0; round < LINEAR_ROUNDS; round++) {
         double least_gain = round == 0 ? 0 : LINEAR_TOLERANCE * now.residual;
@@ -121,7 +120,7 @@ void weft_trial_solve_linear(const weft_bundle *bundle, bool with_table, const d
 
 void weft_trial_model_energy(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *energy)
 {
-    const weft_linear linear = linear_of_fit(fit);
+    const weft_linear linear = weft_linear_of_fit(fit);
     for (int view = 0; view < bundle->view_count; view++) {
         energy[view] = 0;
         for (int j = 0; j <= fit->lobe_count; j++) {
@@ -134,7 +133,7 @@ void weft_trial_model_energy(const weft_bundle *bundle, const weft_trial *trial,
 
 void weft_trial_table(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *table)
 {
-    const weft_linear linear = linear_of_fit(fit);
+    const weft_linear linear = weft_linear_of_fit(fit);
     trial->kernels->residual(bundle, trial, true, &linear, trial->table);
     weft_trial_take_table(bundle, trial, table);
 }
@@ -179,7 +178,7 @@ void weft_trial_solve_given_table(const weft_bundle *bundle, const weft_trial *t
         trace += h[j * n + j];
     for (int j = 0; j < n; j++)
         h[j * n + j] += 1e-9 * h[j * n + j] + 1e-14 * trace + 1e-300;
-    weft_linear solution = linear_of_fit(fit);
+    weft_linear solution = weft_linear_of_fit(fit);
     if (weft_solve_box(n, h, g, low, high, solution.x))
         linear_to_fit(&solution, fit);
 }

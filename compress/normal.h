@@ -41,6 +41,7 @@ typedef struct weft_trial {
     const weft_fit_kernels *kernels;
     weft_fit fit;                     /* shapes and frame of the pass; rho and A are moved by weft_trial_solve_linear */
     weft_linear at;                   /* rho and A of the pass */
+    weft_gram_point point;            /* the same, and the shapes */
     float *pass_table;                /* T of the pass */
     float *table;                     /* T that belongs to `fit` */
     float *sums;                      /* [WEFT_GRAM_PRODUCTS][view_stride], see compress/kernels.h */
@@ -60,14 +61,17 @@ typedef struct weft_normal {
 /* The matrix M_i = R^T diag(c) R of every lobe in floats, as the pass wants it. */
 weft_gram_point weft_gram_point_of_fit(const weft_fit *fit);
 
+/* rho and the amplitudes of a fit. */
+weft_linear weft_linear_of_fit(const weft_fit *fit);
+
 /* Rows t, b, n of a frame: local = R direction. */
 void weft_frame_rows(const weft_frame *frame, double rows[3][3]);
 
 /* Index of the component of c held at +-1. */
 int weft_lobe_fixed(const weft_fit_lobe *lobe);
 
-/* After a pass at `point`: the linear rows. */
-void weft_trial_digest(const weft_bundle *bundle, const weft_gram_point *point, weft_trial *trial);
+/* After a pass: the linear rows. */
+void weft_trial_digest(const weft_bundle *bundle, weft_trial *trial);
 
 /* Moves rho and the amplitudes to where the residual is smallest with T eliminated; the amplitudes stay at or above
  * `least` [lobe_count]. Needs no samples. */

@@ -142,56 +142,82 @@ typedef struct normal_lanes {
     lanes h[NORMAL_MAX][NORMAL_MAX], g[NORMAL_MAX], scale;
 } normal_lanes;
 
-/* Weight of a column: v'_k where it is the k-th of a lobe. */
-WEFT_INLINE lanes column_weight(const expansion *own, int column)
+/* A column of the normal equations is T times one of the pass, times v'_k where that is the k-th of a lobe: the weight
+ * of number k, 3 for T alone. */
+typedef struct column_weights {
+    lanes of[4], product[4][4];
+} column_weights;
+
+WEFT_INLINE int weight_of(int column)
 {
-    int k = (column - 1) % 4;
-    return column == 0 || k == 3 ? lanes_of(1) : own->local[k];
+    return column == 0 ? 3 : (column - 1) % 4;
+}
+
+WEFT_INLINE column_weights weights_at(const expansion *own, const view_state *state)
+{
+    column_weights weights;
+    WEFT_EACH(3) weights.of[i] = state->t * own->local[i];
+    weights.of[3] = state->t;
+    UNROLL for (int i = 0; i < 4; i++)
+    {
+        UNROLL for (int k = 0; k < 4; k++) weights.product[i][k] = weights.of[i] * weights.of[k];
+    }
+    return weights;
+}
+
+/* <c|f> and <c|r - T f> of a column c from its products with those of the pass. f has no share of q and e. */
+WEFT_INLINE void expand_product(int lobes, const lanes *row, const expansion *own, lanes *along, lanes *against)
+{
+    *along = row[0] * own->f[0];
+    *against = row[1 + 4 * lobes] + row[0] * own->error[0];
+    UNROLL for (int i = 0; i < 3 * lobes; i++)
+    {
+        int c = 1 + i / 3 * 4 + i % 3;
+        *along += row[c] * own->f[c];
+        *against += row[c] * own->error[c];
+    }
 }
 
 WEFT_INLINE void add_columns(int lobes, const local_gram *gram, const expansion *own, const view_state *state,
-                             lanes s[NORMAL_MAX], normal_lanes *sums)
+                             const column_weights *weights, lanes s[NORMAL_MAX], normal_lanes *sums)
 {
-    const int n = 1 + 4 * lobes, columns = n + 1;
-    lanes t2 = state->t * state->t;
+    const int n = 1 + 4 * lobes;
     UNROLL for (int p = 0; p < n; p++)
     {
-        lanes along = {0}, against = {0}, weight = column_weight(own, p);
-        UNROLL for (int c = 0; c < columns; c++)
-        {
-            along += product(gram, p, c) * own->f[c];
-            against += product(gram, p, c) * own->error[c];
-        }
-        s[p] = weight * along;
-        sums->g[p] += state->t * weight * against;
+        lanes row[WEFT_GRAM_COLUMNS], along, against;
+        UNROLL for (int c = 0; c <= n; c++) row[c] = product(gram, p, c);
+        expand_product(lobes, row, own, &along, &against);
+        s[p] = weights->of[weight_of(p)] * along;
+        lanes shrunk = s[p] * state->shrink;
+        sums->g[p] += weights->of[weight_of(p)] * against;
         UNROLL for (int q = 0; q <= p; q++) sums->h[p][q] +=
-            t2 * (weight * column_weight(own, q) * product(gram, p, q) - s[p] * s[q] * state->shrink);
+            weights->product[weight_of(p)][weight_of(q)] * row[q] - shrunk * s[q];
     }
 }
 
 WEFT_INLINE void add_rotations(int lobes, const shapes *at, const local_gram *gram, const expansion *own,
-                               const view_state *state, lanes s[NORMAL_MAX], normal_lanes *sums)
+                               const view_state *state, const column_weights *weights, lanes s[NORMAL_MAX],
+                               normal_lanes *sums)
 {
-    const int n = 1 + 4 * lobes, columns = n + 1;
-    lanes t2 = state->t * state->t, weight[3][3 * WEFT_GRAM_LOBES];
+    const int n = 1 + 4 * lobes;
+    lanes weight[3][3 * WEFT_GRAM_LOBES];
     for (int k = 0; k < 3; k++) {
-        lanes row[WEFT_GRAM_COLUMNS], along = {0}, against = {0};
+        lanes row[WEFT_GRAM_COLUMNS], against;
         rotation_weights(at, own, lobes, k, weight[k]);
-        UNROLL for (int c = 0; c < columns; c++)
+        UNROLL for (int i = 0; i < 3 * lobes; i++) weight[k][i] *= state->t;
+        UNROLL for (int c = 0; c <= n; c++)
         {
             row[c] = lanes_of(0);
             UNROLL for (int i = 0; i < 3 * lobes; i++) row[c] += weight[k][i] * product(gram, 1 + i / 3 * 4 + i % 3, c);
-            along += row[c] * own->f[c];
-            against += row[c] * own->error[c];
         }
-        s[n + k] = along;
-        sums->g[n + k] += state->t * against;
-        UNROLL for (int q = 0; q < n; q++) sums->h[n + k][q] +=
-            t2 * (column_weight(own, q) * row[q] - along * s[q] * state->shrink);
+        expand_product(lobes, row, own, &s[n + k], &against);
+        lanes shrunk = s[n + k] * state->shrink;
+        sums->g[n + k] += against;
+        UNROLL for (int q = 0; q < n; q++) sums->h[n + k][q] += weights->of[weight_of(q)] * row[q] - shrunk * s[q];
         for (int q = 0; q <= k; q++) {
-            lanes sum = -along * s[n + q] * state->shrink;
+            lanes sum = -shrunk * s[n + q];
             UNROLL for (int i = 0; i < 3 * lobes; i++) sum += weight[q][i] * row[1 + i / 3 * 4 + i % 3];
-            sums->h[n + k][n + q] += t2 * sum;
+            sums->h[n + k][n + q] += sum;
         }
     }
 }
@@ -213,9 +239,10 @@ WEFT_INLINE void sum_views(int lobes, bool rotate, const weft_bundle *bundle, co
         expansion own = expand(bundle, &at, &linear, &state, lobes, view);
         load_gram(trial->sums, columns, bundle->view_stride, view, &gram);
         UNROLL for (int i = 0; i < lobes; i++) turn_lobe(at.rows, 1 + 4 * i, columns, &gram);
-        add_columns(lobes, &gram, &own, &state, s, sums);
+        const column_weights weights = weights_at(&own, &state);
+        add_columns(lobes, &gram, &own, &state, &weights, s, sums);
         if (rotate)
-            add_rotations(lobes, &at, &gram, &own, &state, s, sums);
+            add_rotations(lobes, &at, &gram, &own, &state, &weights, s, sums);
         sums->scale += state.eliminated * state.t * state.t * state.ff;
     }
 }

@@ -10,7 +10,7 @@ static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent =
 static const weft_fit_lobe along_x_start = {.c = {1, 0.1, 0.2}, .log_exponent = 0.4055};
 static const weft_fit_lobe along_y_start = {.c = {0.1, 1, 0.2}, .log_exponent = 0.4055};
 
-enum { START_COUNT = 3, START_PASSES = 4 };
+enum { START_COUNT = 3, START_PASSES = 6 };
 
 #define VANISHED 1e-3       /* part of the energy */
 #define GOOD_ENOUGH 0.1     /* of the energy: no further start is tried below */
@@ -43,18 +43,17 @@ static bool has_vanished_lobe(const weft_trial *trial)
     return false;
 }
 
-/* The best start after a few coarse passes; its T goes into workspace->table. */
-static weft_fit try_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                           const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame)
+/* The best start after a few coarse passes, into workspace->trial[0]. */
+static void try_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                       const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame)
 {
-    weft_trial *now = &workspace->trial[0];
-    weft_fit best = {.residual = INFINITY};
+    weft_trial *now = &workspace->trial[0], *best = &workspace->trial[2];
     double first_residual = INFINITY;
     int passes = 0;
     bool vanished = false;
     for (int start = 0; start < (options->lobe_count ? START_COUNT : 1); start++) {
         /* A quarter of the lights hold a quarter of the energy. */
-        if (best.residual < GOOD_ENOUGH * samples->energy[channel] / 4 && !vanished)
+        if (start > 0 && best->residual < GOOD_ENOUGH * samples->energy[channel] / 4 && !vanished)
             break;
         now->fit = (weft_fit){.frame = *frame};
         place_start(start, options->lobe_count, &now->fit);
@@ -63,15 +62,13 @@ static weft_fit try_starts(const weft_bundle *bundle, const weft_samples *sample
         if (now->residual <= HOPELESS * first_residual)
             weft_workspace_refine(bundle, samples, channel, options, workspace, 0.1);
         passes += (now->fit.passes + 3) / 4;
-        if (now->residual < CLEARLY_BETTER * best.residual) {
-            best = now->fit;
-            best.residual = now->residual;
+        if (start == 0 || now->residual < CLEARLY_BETTER * best->residual) {
             vanished = has_vanished_lobe(now);
-            memcpy(workspace->table, now->table, (size_t)bundle->view_count * sizeof *now->table);
+            weft_trial_swap(now, best);
         }
     }
-    best.passes = passes;
-    return best;
+    weft_trial_swap(now, best);
+    now->fit.passes = passes;
 }
 
 static void fit_from_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
@@ -86,9 +83,9 @@ static void fit_from_starts(const weft_bundle *bundle, const weft_samples *sampl
     coarse.max_passes = START_PASSES;
     coarse.tolerance = START_TOLERANCE;
     weft_trial *now = &workspace->trial[0];
-    now->fit = try_starts(bundle, samples, channel, &coarse, workspace, frame);
+    try_starts(bundle, samples, channel, &coarse, workspace, frame);
     full.max_passes += now->fit.passes;
-    weft_workspace_begin_warm(bundle, samples, channel, options, workspace->table, now);
+    weft_workspace_complete(bundle, samples, channel, options, now);
     weft_workspace_refine(bundle, samples, channel, &full, workspace, 0.01);
     weft_workspace_finish(bundle, options, now, fit, table);
 }

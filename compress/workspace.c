@@ -44,9 +44,9 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
     workspace->scratch[0] = allocate_rows(3, views, sizeof *workspace->scratch[0]);
     workspace->light = allocate_rows(5, (size_t)bundle->light_count + 1, sizeof *workspace->light);
     workspace->model = allocate_rows((size_t)bundle->sample_count + WEFT_STRIP_LANES, 1, sizeof *workspace->model);
-    bool complete = create_trial(bundle->view_stride, &workspace->trial[0]);
-    complete = create_trial(bundle->view_stride, &workspace->trial[1]) && complete && workspace->table &&
-               workspace->scratch[0] && workspace->light && workspace->model;
+    bool complete = workspace->table && workspace->scratch[0] && workspace->light && workspace->model;
+    for (int i = 0; i < WEFT_TRIALS; i++)
+        complete = create_trial(bundle->view_stride, &workspace->trial[i]) && complete;
     if (!complete) {
         weft_fit_workspace_free(workspace);
         return weft_fail_memory(error, "workspace of a fit", views * 2048);
@@ -65,13 +65,28 @@ void weft_fit_workspace_free(weft_fit_workspace *workspace)
 {
     if (!workspace)
         return;
-    free_trial(&workspace->trial[0]);
-    free_trial(&workspace->trial[1]);
+    for (int i = 0; i < WEFT_TRIALS; i++)
+        free_trial(&workspace->trial[i]);
     free(workspace->table);
     free(workspace->scratch[0]);
     free(workspace->light);
     free(workspace->model);
     free(workspace);
+}
+
+void weft_trial_swap(weft_trial *a, weft_trial *b)
+{
+    weft_trial swap = *a;
+    *a = *b;
+    *b = swap;
+}
+
+static void look(const weft_bundle *bundle, const weft_samples *samples, int channel, weft_part part, weft_trial *trial)
+{
+    trial->kernels->accumulate(bundle, samples->cosine, samples->value[channel], &trial->point, trial->pass_table, part,
+                               trial->sums);
+    weft_trial_digest(bundle, trial);
+    trial->fit.passes += 1;
 }
 
 void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples, int channel,
@@ -83,15 +98,13 @@ void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples,
         for (int view = 0; view < bundle->view_count; view++)
             trial->pass_table[view] = 1;
     }
-    weft_gram_point point = weft_gram_point_of_fit(&trial->fit);
+    trial->point = weft_gram_point_of_fit(&trial->fit);
     /* The digest must use the very numbers of the pass. */
-    trial->fit.diffuse = (double)point.diffuse;
-    for (int i = 0; i < point.lobe_count; i++)
-        trial->fit.lobe[i].amplitude = (double)point.amplitude[i];
-    trial->kernels->accumulate(bundle, samples->cosine, samples->value[channel], &point, trial->pass_table,
-                               options->coarse, trial->sums);
-    weft_trial_digest(bundle, &point, trial);
-    trial->fit.passes += 1;
+    trial->fit.diffuse = (double)trial->point.diffuse;
+    for (int i = 0; i < trial->point.lobe_count; i++)
+        trial->fit.lobe[i].amplitude = (double)trial->point.amplitude[i];
+    trial->at = weft_linear_of_fit(&trial->fit);
+    look(bundle, samples, channel, options->coarse ? WEFT_PART_COARSE : WEFT_PART_ALL, trial);
 }
 
 const float *weft_workspace_keep_table(const weft_bundle *bundle, weft_fit_workspace *workspace, const double *table)
@@ -151,6 +164,15 @@ void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *sa
     double least[WEFT_GRAM_LOBES] = {0};
     least_amplitudes(&trial->fit, least);
     weft_workspace_pass(bundle, samples, channel, options, table, trial);
+    weft_trial_solve_linear(bundle, options->table, least, trial);
+}
+
+void weft_workspace_complete(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                             const weft_fit_options *options, weft_trial *trial)
+{
+    double least[WEFT_GRAM_LOBES] = {0};
+    least_amplitudes(&trial->fit, least);
+    look(bundle, samples, channel, WEFT_PART_REST, trial);
     weft_trial_solve_linear(bundle, options->table, least, trial);
 }
 

@@ -4,14 +4,19 @@
 
 #include "compress/kernels.h"
 
+enum { WEFT_TRIALS = 3 };
+
 struct weft_fit_workspace {
-    weft_trial trial[2]; /* the point reached, and the one being tried */
-    float *table;        /* [view_stride] T to begin with */
-    double *scratch[2];  /* [view_stride] */
+    weft_trial trial[WEFT_TRIALS]; /* the point reached, the one being tried, the best of several starts */
+    float *table;                  /* [view_stride] T to begin with */
+    double *scratch[2];            /* [view_stride] */
     double *light, *light_energy, *light_before, *light_step, *light_best; /* [light_count] of compress/light.c */
     double *table_best;                                                    /* [view_stride] of the same */
     float *model;                                                          /* [sample_count] */
 };
+
+/* Exchanges two trials, what they own included. */
+void weft_trial_swap(weft_trial *a, weft_trial *b);
 
 /* One pass at trial->fit with T = `table` in e (NULL: 0; without options->table: 1). Fills sums, linear parts, T,
  * residual. */
@@ -28,6 +33,10 @@ void weft_workspace_begin_cold(const weft_bundle *bundle, const weft_samples *sa
 /* Starts from a fit that is nearly right: its T keeps the sums free of cancellation. */
 void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *samples, int channel,
                                const weft_fit_options *options, const float *table, weft_trial *trial);
+
+/* After coarse passes: looks at the other samples, too, where the last of them was made. */
+void weft_workspace_complete(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                             const weft_fit_options *options, weft_trial *trial);
 
 /* Damped Gauss-Newton steps from workspace->trial[0], which holds the result. */
 void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,

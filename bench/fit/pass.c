@@ -32,7 +32,7 @@ static double pass_microseconds(weft_instruction_set set, const texel_source *so
     for (int i = 0; i < REPEATS; i++) {
         double began = thread_microseconds();
         kernels->accumulate(&source->bundle, source->samples.cosine, source->samples.value[0], &point, memory->table,
-                            false, memory->sums);
+                            WEFT_PART_ALL, memory->sums);
         microseconds[i] = thread_microseconds() - began;
     }
     return quantile_of(microseconds, REPEATS, 0.5);
