@@ -89,7 +89,7 @@ static double now_s(void)
 
 /* What the reporter remembers between calls; one command runs per process. */
 static struct {
-    const char *stage;
+    char stage[64];
     double started_s, shown_s;
     bool line_open; /* the terminal's cursor stands behind an unfinished line */
 } shown;
@@ -135,10 +135,10 @@ static void report_progress(void *context, const char *stage, long done, long to
         return;
     bool terminal = !common->json && isatty(STDERR_FILENO);
     double now = now_s(), interval_s = terminal ? 0.1 : 5;
-    bool new_stage = !shown.stage || strcmp(stage, shown.stage) != 0;
+    bool new_stage = strncmp(stage, shown.stage, sizeof shown.stage - 1) != 0;
     if (new_stage) {
         close_line();
-        shown.stage = stage;
+        snprintf(shown.stage, sizeof shown.stage, "%s", stage);
         shown.started_s = now;
     }
     if (!new_stage && done < total && now - shown.shown_s < interval_s)

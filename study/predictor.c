@@ -38,6 +38,7 @@ void weft_predictor_free(weft_predictor *predictor)
     if (!predictor)
         return;
     weft_table_directions_free(&predictor->directions);
+    weft_woven_table_free(predictor->table);
     weft_dataset_close(predictor->other);
     free(predictor->samples);
     free(predictor->mask);
