@@ -85,21 +85,34 @@ static void print_warps(const bench *b, int first_ring, int last_ring)
 
 /* ---- Reflectance ---- */
 
-static void print_reflectance(const bench *b, int first_ring, int last_ring)
+/* Errors of the images in the rings, of all texels or of the outermost, into the pool; returns their number. */
+static int pool_errors(const bench *b, int first_ring, int last_ring, const int *of_image, const double *error,
+                       int *images)
 {
-    int images = 0, count = 0;
+    int count = 0;
+    *images = 0;
     for (int image = 0; image < b->real.image_count; image++) {
         int view = weft_dataset_get_layout(b->dataset)->view_of_image[b->real.image_shot[image]];
         int ring = ring_of_view(b, view);
         if (ring < first_ring || ring > last_ring)
             continue;
-        const double *error = b->errors.error + (size_t)image * (size_t)b->errors.capacity;
-        for (int i = 0; i < b->errors.count[image]; i++)
-            b->pool[count++] = error[i];
-        images++;
+        for (int i = 0; i < of_image[image]; i++)
+            b->pool[count++] = error[(size_t)image * (size_t)b->errors.capacity + (size_t)i];
+        ++*images;
     }
+    return count;
+}
+
+static void print_reflectance(const bench *b, int first_ring, int last_ring)
+{
+    int images, size = b->real.size;
+    int count = pool_errors(b, first_ring, last_ring, b->errors.count, b->errors.error, &images);
     double all = (double)images * b->errors.capacity;
     printf("%14d %8.1f %% %8.2f %%", images, images ? 100 * count / all : 0, 100 * weft_quantile(b->pool, count, 0.5));
+    count = pool_errors(b, first_ring, last_ring, b->errors.border_count, b->errors.border_error, &images);
+    all = 3.0 * images * (size > 1 ? 4 * (size - 1) : 1);
+    printf(" %8.1f %% %8.2f %% %8.1f %%", images ? 100 * count / all : 0, 100 * weft_quantile(b->pool, count, 0.5),
+           100 * weft_quantile(b->pool, count, 0.9));
 }
 
 /* ---- Table ---- */
@@ -117,9 +130,10 @@ static void print_table(const bench *b)
     const weft_dataset_layout *layout = weft_dataset_get_layout(b->dataset);
     printf("%s: %d x %d texels of %.3f mm, %d photographs\n\n", weft_dataset_path(b->dataset), layout->width,
            layout->height, layout->texel_pitch_mm, layout->image_count);
-    printf("%-16s%-29s     %s\n", "", "warps: RMS error, texels", "reflectance: relative error");
-    printf("%-16s%11s %8s %8s%14s %10s %10s\n", "view", "found", "median", "worst", "photographs", "compared",
-           "median");
+    printf("%-16s%-29s     %-31s %s\n", "", "warps: RMS error, texels", "reflectance: relative error",
+           "of the outermost texels");
+    printf("%-16s%11s %8s %8s%14s %10s %10s %10s %10s %10s\n", "view", "found", "median", "worst", "photographs",
+           "compared", "median", "compared", "median", "90 %");
     for (int ring = 0; ring < RINGS; ring++) {
         char name[32];
         snprintf(name, sizeof name, "%d degrees", ring * RING_DEG);

@@ -44,16 +44,18 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 
 static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
 
-static const struct argp parser = {option_table,
-                                   parse_option,
-                                   "SESSION -o NAME.btf.h5",
-                                   "Example: weft register session/ -o cloth.btf.h5 --size 64x64 --report report/\n\n"
-                                   "Turns the photographs of a session into a dataset: finds where the camera stood "
-                                   "for every view, rectifies the photographs and calibrates them against the white "
-                                   "reference. What cannot be used is named and masked.",
-                                   children,
-                                   NULL,
-                                   NULL};
+static const struct argp parser = {
+    option_table,
+    parse_option,
+    "SESSION -o NAME.btf.h5",
+    "Example: weft register session/ -o cloth.btf.h5 --size 64x64 --report report/\n\n"
+    "Turns the photographs of a session into a dataset: finds where the camera stood "
+    "for every view, rectifies the photographs and calibrates them against the white "
+    "reference. What cannot be used is named and masked; so is, without a word, what a view does "
+    "not see of texels beside the frame.",
+    children,
+    NULL,
+    NULL};
 
 static void say_faults(const register_command *command, const weft_session *session, const weft_registration *r)
 {

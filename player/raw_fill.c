@@ -156,7 +156,7 @@ static float reflectance_scale(const weft_dataset_layout *layout, int image, int
     return 1 / (cosine > smallest_cosine ? cosine : smallest_cosine);
 }
 
-/* The valid image of a view whose light is nearest to that of `image`; -1: none. */
+/* The valid image of a view, which has one, whose light is nearest to that of `image`. */
 static int nearest_valid(const weft_raw_images *images, int view, int image, const uint8_t *mask)
 {
     int nearest = -1;
@@ -172,17 +172,45 @@ static int nearest_valid(const weft_raw_images *images, int view, int image, con
     return nearest;
 }
 
-static void mean_of_valid(int count, const uint8_t *mask, const float *value, float mean[3])
+static bool has_valid(const weft_raw_images *images, int view, const uint8_t *mask)
 {
-    double sum[3] = {0, 0, 0};
-    long valid = 0;
-    for (int i = 0; i < count; i++) {
-        for (int c = 0; mask[i] == 0 && c < 3; c++)
-            sum[c] += (double)value[3 * i + c];
-        valid += mask[i] == 0;
+    for (int k = images->first_of_view[view]; k < images->first_of_view[view + 1]; k++) {
+        if (mask[images->order[k]] == 0)
+            return true;
     }
-    for (int c = 0; c < 3; c++)
-        mean[c] = valid > 0 ? (float)(sum[c] / (double)valid) : 0;
+    return false;
+}
+
+/* The view nearest to `view` in which texel (x, y) has a valid sample: itself if it may be; -1: none. */
+static int nearest_seen(const weft_raw_images *images, const weft_dataset_layout *layout, int view, int x, int y,
+                        const uint8_t *mask)
+{
+    if (has_valid(images, view, mask))
+        return view;
+    weft_vec3 direction = weft_dataset_view_direction(layout, view, x, y);
+    int nearest = -1;
+    weft_real best = -2;
+    for (int v = 0; v < images->view_count; v++) {
+        weft_real cosine = weft_dot(weft_dataset_view_direction(layout, v, x, y), direction);
+        if (cosine > best && has_valid(images, v, mask)) {
+            best = cosine;
+            nearest = v;
+        }
+    }
+    return nearest;
+}
+
+/* Fills the masked images of a view from the view `source`, which has a valid one. */
+static void fill_view(const weft_raw_images *images, int view, int source, const uint8_t *mask, float *value)
+{
+    for (int k = images->first_of_view[view]; k < images->first_of_view[view + 1]; k++) {
+        int image = images->order[k];
+        if (mask[image] == 0)
+            continue;
+        int from = nearest_valid(images, source, image, mask);
+        for (int c = 0; c < 3; c++)
+            value[3 * image + c] = value[3 * from + c];
+    }
 }
 
 void weft_raw_texel_fill(const weft_raw_images *images, const weft_dataset_layout *layout, int x, int y,
@@ -195,15 +223,9 @@ void weft_raw_texel_fill(const weft_raw_images *images, const weft_dataset_layou
             value[3 * i + c] = mask[i] == 0 ? scale * weft_float_of_half(sample[3 * i + c]) : 0;
         invalid += mask[i] != 0;
     }
-    if (invalid == 0)
-        return;
-    float mean[3];
-    mean_of_valid(count, mask, value, mean);
-    for (int i = 0; i < count; i++) {
-        if (mask[i] == 0)
-            continue;
-        int source = nearest_valid(images, layout->view_of_image[i], i, mask);
-        for (int c = 0; c < 3; c++)
-            value[3 * i + c] = source < 0 ? mean[c] : value[3 * source + c];
+    for (int view = 0; invalid > 0 && view < images->view_count; view++) {
+        int source = nearest_seen(images, layout, view, x, y, mask);
+        if (source >= 0)
+            fill_view(images, view, source, mask, value);
     }
 }

@@ -27,7 +27,8 @@ weft_code weft_raw_images_map(const weft_raw_images *images, const weft_dataset_
                               weft_error *error);
 
 /* Turns the samples of texel (x, y) into BRDF x pi: value [image_count][3] from sample [image_count][3] and
- * mask [image_count], invalid ones from the nearest valid light of the same view, or the mean of the texel. Pure. */
+ * mask [image_count], invalid ones from the nearest valid light of the same view, or of the nearest view that has one;
+ * 0 where there is none. Pure. */
 void weft_raw_texel_fill(const weft_raw_images *images, const weft_dataset_layout *layout, int x, int y,
                          const weft_half *sample, const uint8_t *mask, float *value);
 

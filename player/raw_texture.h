@@ -10,8 +10,8 @@
 
 /* The textures hold BRDF x pi of each image, and opacity of each view: tiles with their mip levels (box means), each of
  * whose rows and columns ends with its first texel again, so that the hardware's bilinear filter wraps round. Samples
- * that the mask rules out are filled from the nearest valid light of the same view; images and views without a valid
- * sample are left out of the triangulations. */
+ * that the mask rules out are filled as in raw_fill.h; images and views without a valid sample are left out of the
+ * triangulations. */
 typedef struct weft_raw_texture {
     weft_raw_plan plan;
     GLuint part[WEFT_RAW_PARTS];

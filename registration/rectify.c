@@ -162,6 +162,17 @@ static double smear_reach(const weft_view_pose *pose, double opening_mm)
     return 2 * sqrt(widest);
 }
 
+/* Its texels beside the frame are filled, so that each has a sample in one view at least: there it needs least. */
+static bool is_most_frontal(const weft_survey *survey, int stay)
+{
+    double theta_rad = fabs(survey->view[survey->stay[stay].view].theta_rad);
+    for (int view = 0; view < survey->view_count; view++) {
+        if (fabs(survey->view[view].theta_rad) < theta_rad)
+            return false;
+    }
+    return true;
+}
+
 weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const weft_photographs *photographs,
                             const weft_white *estimated, float *shown, weft_error *error)
 {
@@ -170,8 +181,9 @@ weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const wef
     const weft_target *target = &rectifier->session->target;
     job j = {
         .rectifier = rectifier, .photographs = photographs, .estimated = estimated, .shown = shown, .shown_shot = -1};
-    weft_resampling resampling = {&rectifier->sight->camera, rectifier->sight->inverse_vignetting, pose->homography,
-                                  target->opening_mm, smear_reach(pose, target->opening_mm)};
+    weft_resampling resampling = {
+        &rectifier->sight->camera, rectifier->sight->inverse_vignetting,  pose->homography,
+        target->opening_mm,        smear_reach(pose, target->opening_mm), is_most_frontal(&registration->survey, stay)};
     WEFT_TRY(weft_resampler_create(&resampling, registration->settings.width, registration->settings.height,
                                    &j.resampler, error));
     weft_code code =

@@ -17,6 +17,9 @@ typedef struct box {
     int x0, y0, x1, y1;
 } box;
 
+/* A texel of which a view sees less than this share is not seen in it. Measured in docs/registration.md. */
+static const double least_share_seen = 0.25;
+
 /* How far along x and y, mm, the plate is seen within `reach_px` of a pixel at the plate point (x, y). */
 static weft_pixel reach_on_plate(const weft_homography *homography, const weft_homography *inverse, double x, double y,
                                  double reach_px)
@@ -30,7 +33,7 @@ static weft_pixel reach_on_plate(const weft_homography *homography, const weft_h
                         reach_px * (fabs(right.y - left.y) + fabs(below.y - above.y))};
 }
 
-/* Moves a texel inward until it keeps `reach` from the frame, or to the middle where that cannot be. */
+/* The texel moved inward until it keeps `reach` from the frame, or to the middle where that cannot be. */
 static square kept_from_frame(square s, double opening_mm, weft_pixel reach)
 {
     double limit_x = fmax(opening_mm / 2 - reach.x, s.width / 2);
@@ -38,6 +41,20 @@ static square kept_from_frame(square s, double opening_mm, weft_pixel reach)
     s.left = fmin(fmax(s.left, -limit_x), limit_x - s.width);
     s.top = fmax(fmin(s.top, limit_y), s.height - limit_y);
     return s;
+}
+
+/* Whether a pixel sees nothing but the sample: its square, and the smear around that, lie in the opening. */
+static bool is_clear(const weft_resampling *r, const weft_homography *inverse, int x, int y)
+{
+    weft_pixel at = weft_camera_undistort(r->camera, (weft_pixel){x, y});
+    double reach = 0.5 + r->smear_px, half = r->opening_mm / 2;
+    for (int corner = 0; corner < 4; corner++) {
+        double dx = corner % 2 ? reach : -reach, dy = corner / 2 ? reach : -reach;
+        weft_pixel plate = weft_homography_apply(inverse, at.x + dx, at.y + dy);
+        if (!(fabs(plate.x) <= half && fabs(plate.y) <= half))
+            return false;
+    }
+    return true;
 }
 
 static void corners_in_photograph(const weft_resampling *r, square s, weft_pixel corner[4])
@@ -64,12 +81,16 @@ static bool box_of(const weft_camera *camera, const weft_pixel corner[4], box *b
     return true;
 }
 
-/* Grows the arrays of taps to hold `count` more beyond `used`. */
-static weft_code reserve_taps(weft_resampler *resampler, long used, long count, long *capacity, weft_error *error)
+/* How many taps there are, and room for how many. */
+typedef struct taps {
+    long used, capacity;
+} taps;
+
+static weft_code reserve_taps(weft_resampler *resampler, taps *t, long count, weft_error *error)
 {
-    if (used + count <= *capacity)
+    if (t->used + count <= t->capacity)
         return WEFT_OK;
-    long wanted = (used + count) * 2;
+    long wanted = (t->used + count) * 2;
     int32_t *pixel = realloc(resampler->pixel, (size_t)wanted * sizeof *pixel);
     if (pixel)
         resampler->pixel = pixel;
@@ -78,15 +99,16 @@ static weft_code reserve_taps(weft_resampler *resampler, long used, long count, 
         resampler->weight = weight;
     if (!pixel || !weight)
         return weft_fail_memory(error, "resampling weights", (size_t)wanted * 8);
-    *capacity = wanted;
+    t->capacity = wanted;
     return WEFT_OK;
 }
 
-/* Appends the pixels of a quadrangle behind `first`; returns the end of its taps. */
-static long append_taps(const weft_resampling *r, const weft_pixel corner[4], box b, long first,
-                        weft_resampler *resampler, float *sum)
+/* Appends the clear pixels of a quadrangle behind `first`, weighted by area; returns the end of its taps. `inverse` is
+ * NULL where all are clear. *share receives how much of the quadrangle they cover. */
+static long append_taps(const weft_resampling *r, const weft_homography *inverse, const weft_pixel corner[4], box b,
+                        long first, weft_resampler *resampler, double *share)
 {
-    double whole = 0, total = 0;
+    double whole = 0, clear = 0;
     long end = first;
     for (int y = b.y0; y <= b.y1; y++) {
         for (int x = b.x0; x <= b.x1; x++) {
@@ -94,40 +116,79 @@ static long append_taps(const weft_resampling *r, const weft_pixel corner[4], bo
             if (area <= 0)
                 continue;
             whole += area;
+            if (inverse && !is_clear(r, inverse, x, y))
+                continue;
+            clear += area;
             resampler->pixel[end] = y * r->camera->width + x;
             resampler->weight[end++] = (float)area;
         }
     }
+    *share = whole > 0 ? clear / whole : 0;
+    return end;
+}
+
+/* Makes areas [first, end) weights, and returns their sum. */
+static float finish_weights(const weft_resampling *r, long first, long end, weft_resampler *resampler)
+{
+    double area = 0, total = 0;
+    for (long tap = first; tap < end; tap++)
+        area += (double)resampler->weight[tap];
     for (long tap = first; tap < end; tap++) {
         double vignetting = r->inverse_vignetting ? (double)r->inverse_vignetting[resampler->pixel[tap]] : 1;
-        resampler->weight[tap] = (float)((double)resampler->weight[tap] / whole * vignetting);
+        resampler->weight[tap] = (float)((double)resampler->weight[tap] / area * vignetting);
         total += (double)resampler->weight[tap];
     }
-    *sum = (float)total;
-    return end;
+    return (float)total;
+}
+
+/* Appends the taps of a square; `inverse` as above. *used stays where it is not in the photograph, or less of it seen
+ * than `least_share`. */
+static weft_code append_square(const weft_resampling *r, const weft_homography *inverse, square s, double least_share,
+                               weft_resampler *resampler, taps *t, weft_error *error)
+{
+    weft_pixel corner[4];
+    box b;
+    double share;
+    corners_in_photograph(r, s, corner);
+    if (!box_of(r->camera, corner, &b))
+        return WEFT_OK;
+    WEFT_TRY(reserve_taps(resampler, t, (long)(b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1), error));
+    long end = append_taps(r, inverse, corner, b, t->used, resampler, &share);
+    if (share >= least_share)
+        t->used = end;
+    return WEFT_OK;
+}
+
+/* Appends the taps of a texel, none where it is not seen. */
+static weft_code append_texel(const weft_resampling *r, const weft_homography *inverse, square s,
+                              weft_resampler *resampler, taps *t, weft_error *error)
+{
+    long first = t->used;
+    weft_pixel reach =
+        reach_on_plate(&r->homography, inverse, s.left + s.width / 2, s.top - s.height / 2, 1 + r->smear_px);
+    square inside = kept_from_frame(s, r->opening_mm, reach);
+    bool is_inside = inside.left == s.left && inside.top == s.top;
+    WEFT_TRY(append_square(r, is_inside ? NULL : inverse, s, least_share_seen, resampler, t, error));
+    if (t->used == first && !is_inside && r->fill)
+        WEFT_TRY(append_square(r, NULL, inside, 0, resampler, t, error));
+    return WEFT_OK;
 }
 
 static weft_code fill(const weft_resampling *r, weft_resampler *resampler, weft_error *error)
 {
     const weft_homography inverse = weft_homography_inverse(&r->homography);
     double width = r->opening_mm / resampler->width, height = r->opening_mm / resampler->height;
-    long used = 0, capacity = 0, texel = 0;
+    taps t = {0};
+    long texel = 0;
     for (int y = 0; y < resampler->height; y++) {
         for (int x = 0; x < resampler->width; x++, texel++) {
             square s = {x * width - r->opening_mm / 2, r->opening_mm / 2 - y * height, width, height};
-            weft_pixel corner[4], reach = reach_on_plate(&r->homography, &inverse, s.left + width / 2,
-                                                         s.top - height / 2, 1 + r->smear_px);
-            box b;
-            resampler->first[texel] = used;
-            corners_in_photograph(r, kept_from_frame(s, r->opening_mm, reach), corner);
-            if (!box_of(r->camera, corner, &b))
-                continue;
-            long count = (long)(b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1);
-            WEFT_TRY(reserve_taps(resampler, used, count, &capacity, error));
-            used = append_taps(r, corner, b, used, resampler, &resampler->sum[texel]);
+            resampler->first[texel] = t.used;
+            WEFT_TRY(append_texel(r, &inverse, s, resampler, &t, error));
+            resampler->sum[texel] = finish_weights(r, resampler->first[texel], t.used, resampler);
         }
     }
-    resampler->first[texel] = used;
+    resampler->first[texel] = t.used;
     return WEFT_OK;
 }
 

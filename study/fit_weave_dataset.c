@@ -29,8 +29,7 @@ static weft_code find_tile(weft_dataset *dataset, const weft_weave *weave, const
     return WEFT_OK;
 }
 
-/* Of the material, at each edge: a registration takes texels beside the frame from further in, where the camera looks
- * flat. */
+/* Of the material, at each edge: of texels beside the frame a registration sees the inner part, or nothing. */
 static const double edge = 1.0 / 16;
 
 /* What is left out at either end of an axis: the edge, as far as one tile remains. */

@@ -19,11 +19,11 @@ static size_t spectrum_size(const spectra *of)
     return (size_t)of->width * (size_t)of->height;
 }
 
-/* The value of picture k, or whether it is valid. */
+/* The value of picture k where it is valid, or whether it is. */
 static double texel(const weft_tile_pictures *pictures, int k, int x, int y, bool is_mask)
 {
     size_t i = ((size_t)k * (size_t)pictures->height + (size_t)y) * (size_t)pictures->width + (size_t)x;
-    return is_mask ? (pictures->mask[i] ? 0 : 1) : (double)pictures->value[i];
+    return pictures->mask[i] ? 0 : is_mask ? 1 : (double)pictures->value[i];
 }
 
 static weft_code add_power(const weft_tile_pictures *pictures, int k, bool is_mask, spectra *of, weft_error *error)

@@ -149,6 +149,27 @@ static void level(float *value, const uint8_t *mask, size_t texels)
         value[i] = mask[i] ? 0 : (float)((double)value[i] * count / sum - 1);
 }
 
+/* Masked texels take the mean of their valid neighbours, so that a missing row does not look like a step. */
+static void fill_masked(weft_tile_pictures *pictures, int k)
+{
+    int width = pictures->width, height = pictures->height;
+    float *value = pictures->value + (size_t)k * (size_t)width * (size_t)height;
+    const uint8_t *mask = pictures->mask + (size_t)k * (size_t)width * (size_t)height;
+    for (int i = 0; i < width * height; i++) {
+        int x = i % width, y = i / width, count = 0;
+        float sum = 0;
+        for (int side = 0; mask[i] && side < 4; side++) {
+            int nx = x + (side == 0) - (side == 1), ny = y + (side == 2) - (side == 3), n = ny * width + nx;
+            if (nx < 0 || ny < 0 || nx >= width || ny >= height || mask[n])
+                continue;
+            sum += value[n];
+            count++;
+        }
+        if (count > 0)
+            value[i] = sum / (float)count;
+    }
+}
+
 weft_code weft_tile_pictures_read(weft_dataset *dataset, const weft_progress *progress, weft_tile_pictures *pictures,
                                   weft_error *error)
 {
@@ -164,8 +185,10 @@ weft_code weft_tile_pictures_read(weft_dataset *dataset, const weft_progress *pr
         code = weft_fail_memory(error, "images", 5 * all);
     if (code == WEFT_OK)
         code = weft_walk_blocks(dataset, copy_texels, &copy, "reading images", progress, error);
-    for (int k = 0; code == WEFT_OK && k < pictures->count; k++)
+    for (int k = 0; code == WEFT_OK && k < pictures->count; k++) {
         level(pictures->value + (size_t)k * texels, pictures->mask + (size_t)k * texels, texels);
+        fill_masked(pictures, k);
+    }
     if (code != WEFT_OK)
         weft_tile_pictures_free(pictures);
     return code;

@@ -11,7 +11,8 @@ enum { WEFT_TILE_PICTURES = 24 };
 typedef struct weft_tile_pictures {
     int width, height, count;
     int image[WEFT_TILE_PICTURES];
-    float *value;  /* [count][height][width] mean of the channels relative to that of the image, less 1; masked: 0 */
+    float *value; /* [count][height][width] mean of the channels relative to that of the image, less 1; masked: the mean
+                     of its valid neighbours, or 0 */
     uint8_t *mask; /* [count][height][width] 0: valid */
 } weft_tile_pictures;
 

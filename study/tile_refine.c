@@ -1,7 +1,7 @@
 /* The period whose harmonics explain most of the pictures, for any width and height, not only those of a discrete
  * transform. The waves along each axis are made orthonormal over the texels there are, so that what the pictures owe to
  * one is not counted for another where the material holds no whole number of tiles: a least-squares fit of the Fourier
- * series of the tile, exact where nothing is masked. */
+ * series of the tile, exact where nothing is masked: masked texels count as what stands for them. */
 #include "study/golden_section.h"
 #include "study/tile_period.h"
 

@@ -26,13 +26,17 @@ static weft_homography frontal(double scale, double x, double y)
     return (weft_homography){{{scale, 0, x}, {0, -scale, y}, {0, 0, 1}}};
 }
 
-static void resample(const weft_camera *camera, const float *inverse_vignetting, const weft_homography *homography)
+static void resample_as(weft_resampling resampling)
 {
-    weft_resampling resampling = {camera, inverse_vignetting, *homography, opening_mm, 0};
     weft_resampler resampler;
     assert_int_equal(weft_resampler_create(&resampling, TEXELS, TEXELS, &resampler, NULL), WEFT_OK);
     weft_resampler_apply(&resampler, samples, BLACK, FULL, texel, mask);
     weft_resampler_free(&resampler);
+}
+
+static void resample(const weft_camera *camera, const float *inverse_vignetting, const weft_homography *homography)
+{
+    resample_as((weft_resampling){camera, inverse_vignetting, *homography, opening_mm, 0, false});
 }
 
 static void fill_with(double (*value)(double x, double y))
@@ -69,7 +73,7 @@ static void a_constant_stays_constant_under_tilt_and_distortion(void **state)
     weft_pose pose = plate_jittered_pose((weft_angles){weft_rad_of_deg(70), 1}, 600, 3);
     weft_homography homography = weft_homography_of_pose(&camera, &pose);
     fill_with(constant);
-    resample(&camera, NULL, &homography);
+    resample_as((weft_resampling){&camera, NULL, homography, opening_mm, 0, true});
     for (int i = 0; i < TEXELS * TEXELS; i++) {
         assert_near((double)texel[3 * i + 1] / 12345, 1, 1e-6);
         assert_int_equal(mask[i], 0);
@@ -170,15 +174,53 @@ static void the_bright_frame_does_not_leak_into_the_border(void **state)
     weft_homography homography = frontal(2.5, 99.7, 99.7);
     fill_with(bright_frame);
     resample(&camera, NULL, &homography);
-    for (int i = 0; i < TEXELS * TEXELS; i++)
+    for (int i = 0; i < TEXELS * TEXELS; i++) {
+        assert_int_equal(mask[i], 0);
         assert_near((double)texel[3 * i], 100, 0.01);
+    }
+}
+
+/* Texels of 0.8 pixels in an opening of 93.4 to 106.2. Whole pixels lie in it from 93.5 to 105.5, so that seven eighths
+ * of the texels at the left and top are seen, one eighth at the right and bottom. */
+static void texels_of_which_less_than_a_quarter_is_seen_are_missing(void **state)
+{
+    (void)state;
+    weft_camera camera = flat_camera();
+    weft_homography homography = frontal(0.4, 99.8, 99.8);
+    fill_with(ramp);
+    resample(&camera, NULL, &homography);
+    for (int i = 0; i < TEXELS * TEXELS; i++) {
+        bool is_seen = i % TEXELS < TEXELS - 1 && i / TEXELS < TEXELS - 1;
+        assert_int_equal(mask[i], is_seen ? 0 : WEFT_MASK_MISSING);
+    }
+    assert_near((double)texel[3 * 5 * TEXELS] - (double)texel[3 * (5 * TEXELS + 1)], 100 * (94 - 94.625), 0.01);
+}
+
+static double small_bright_frame(double x, double y)
+{
+    return x > 93.4 && x < 106.2 && y > 93.4 && y < 106.2 ? 100 * x : 60000;
+}
+
+/* What is seen ends at 105.5 at the right: the last texel is taken from the pixels 104 and 105. */
+static void texels_that_are_filled_take_the_nearest_place_that_is_seen(void **state)
+{
+    (void)state;
+    weft_camera camera = flat_camera();
+    fill_with(small_bright_frame);
+    resample_as((weft_resampling){&camera, NULL, frontal(0.4, 99.8, 99.8), opening_mm, 0, true});
+    for (int i = 0; i < TEXELS * TEXELS; i++) {
+        assert_int_equal(mask[i], 0);
+        assert_true(texel[3 * i] < 100 * 105.5f);
+    }
+    float last = texel[3 * (5 * TEXELS + TEXELS - 1)];
+    assert_true(last > 100 * 104 && last <= 100 * 105.01f);
 }
 
 static void a_size_without_texels_is_refused(void **state)
 {
     (void)state;
     weft_camera camera = flat_camera();
-    weft_resampling resampling = {&camera, NULL, frontal(1, 0, 0), opening_mm, 0};
+    weft_resampling resampling = {&camera, NULL, frontal(1, 0, 0), opening_mm, 0, false};
     weft_resampler resampler;
     assert_int_equal(weft_resampler_create(&resampling, 0, 4, &resampler, NULL), WEFT_BAD_INPUT);
 }
@@ -194,6 +236,8 @@ int main(void)
         cmocka_unit_test(a_saturated_pixel_masks_the_texels_it_touches_and_no_others),
         cmocka_unit_test(texels_outside_the_photograph_are_missing),
         cmocka_unit_test(the_bright_frame_does_not_leak_into_the_border),
+        cmocka_unit_test(texels_of_which_less_than_a_quarter_is_seen_are_missing),
+        cmocka_unit_test(texels_that_are_filled_take_the_nearest_place_that_is_seen),
         cmocka_unit_test(a_size_without_texels_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

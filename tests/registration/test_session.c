@@ -66,12 +66,25 @@ static bool all_masked(int shot, int bits)
     return true;
 }
 
+/* All texels of the frontal view are there; of the others those beside the frame may be missing. */
+static bool is_registered(int shot)
+{
+    for (int i = 0; i < TEXELS * TEXELS; i++) {
+        int x = i % TEXELS, y = i / TEXELS, bits = mask[y][x][shot];
+        bool is_beside = x == 0 || y == 0 || x == TEXELS - 1 || y == TEXELS - 1;
+        bool may_lack = is_beside && shot >= PLATE_SESSION_LIGHTS;
+        if (bits != 0 && !(may_lack && bits == WEFT_MASK_MISSING))
+            return false;
+    }
+    return true;
+}
+
 /* Largest relative error of a shot against the diffuser's reflectance times the cosine. */
 static double worst_error(int shot)
 {
     double truth = PLATE_SESSION_SAMPLE * cos((double)session.shot[shot].light.theta_rad), worst = 0;
     for (int i = 0; i < TEXELS * TEXELS; i++) {
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3 && mask[i / TEXELS][i % TEXELS][shot] == 0; c++)
             worst = fmax(worst, fabs((double)weft_float_of_half(samples[i / TEXELS][i % TEXELS][shot][c]) / truth - 1));
     }
     return worst;
@@ -86,7 +99,7 @@ static void a_diffuser_comes_out_as_its_reflectance_times_the_cosine(void **stat
     assert_int_equal(registration.image_count, PLATE_SESSION_SHOTS);
     assert_int_equal(registration.fault_count, 0);
     for (int shot = 0; shot < PLATE_SESSION_SHOTS; shot++) {
-        assert_true(all_masked(shot, 0));
+        assert_true(is_registered(shot));
         assert_true(worst_error(shot) < 0.03);
     }
     finish();
@@ -115,8 +128,8 @@ static void bad_photographs_are_named_and_masked_and_the_rest_goes_on(void **sta
         assert_non_null(strstr(registration.fault[bad[i]].reason, strrchr(path[i], '/') + 1));
         assert_true(all_masked(bad[i], WEFT_MASK_MISSING));
     }
-    assert_true(all_masked(1, 0) && worst_error(1) < 0.03);
-    assert_true(all_masked(8, 0) && worst_error(8) < 0.03);
+    assert_true(is_registered(1) && worst_error(1) < 0.03);
+    assert_true(is_registered(8) && worst_error(8) < 0.03);
     finish();
 }
 
@@ -130,7 +143,7 @@ static void a_view_with_a_covered_target_fails_alone(void **state)
     assert_int_equal(registration.failed_stays, 1);
     assert_int_equal(registration.pose[1].source, WEFT_POSE_FAILED);
     for (int shot = 0; shot < PLATE_SESSION_SHOTS; shot++)
-        assert_true(all_masked(shot, shot / PLATE_SESSION_LIGHTS == 1 ? WEFT_MASK_MISSING : 0));
+        assert_true(shot / PLATE_SESSION_LIGHTS == 1 ? all_masked(shot, WEFT_MASK_MISSING) : is_registered(shot));
     finish();
 }
 
@@ -143,7 +156,7 @@ static void saturated_white_patches_are_replaced_by_the_light_of_other_photograp
     read_dataset();
     assert_int_equal(registration.estimated_whites, 1);
     assert_int_equal(registration.white[3].patches, 0);
-    assert_true(all_masked(3, 0) && worst_error(3) < 0.04);
+    assert_true(is_registered(3) && worst_error(3) < 0.04);
     finish();
 }
 
@@ -172,7 +185,7 @@ static void a_photograph_without_light_in_a_channel_does_not_sink_the_rest(void 
     assert_int_equal(registration.estimated_whites, 1);
     assert_int_equal(registration.white[4].patches, 0);
     assert_int_equal(registration.image_count, PLATE_SESSION_SHOTS);
-    assert_true(all_masked(3, 0) && worst_error(3) < 0.03);
+    assert_true(is_registered(3) && worst_error(3) < 0.03);
     finish();
 }
 
@@ -186,7 +199,7 @@ static void an_unfinished_session_is_registered_only_when_allowed(void **state)
     assert_int_equal(run("unfinished", true, NULL), WEFT_OK);
     read_dataset();
     assert_true(all_masked(6, WEFT_MASK_MISSING));
-    assert_true(all_masked(7, 0));
+    assert_true(is_registered(7));
     finish();
 }
 

@@ -101,11 +101,36 @@ static void reflectance_agrees_with_the_truth_within_the_floor(void **state)
     free(up_to_45);
 }
 
+/* Moved inward instead, their 90th percentile is 117 %. */
+static void texels_beside_the_frame_are_right_or_missing(void **state)
+{
+    (void)state;
+    double *pool = malloc(sizeof *pool * TRUTH_IMAGES * VALUES);
+    int count = 0;
+    weft_dataset *dataset;
+    truth_errors errors;
+    assert_non_null(pool);
+    assert_int_equal(weft_dataset_open("made.btf.h5", &dataset, NULL), WEFT_OK);
+    assert_int_equal(truth_compare_reflectance(&real, dataset, &errors, NULL), WEFT_OK);
+    for (int image = 0; image < TRUTH_IMAGES; image++) {
+        for (int i = 0; i < errors.border_count[image]; i++)
+            pool[count++] = errors.border_error[(size_t)image * VALUES + (size_t)i];
+    }
+    double tenth = weft_quantile(pool, count, 0.9);
+    print_message("outermost texels: %d values, 90th percentile of the relative error %.1f %%\n", count, 100 * tenth);
+    assert_true(count > TRUTH_IMAGES * 3 * 4 * (TEXELS - 1) / 2);
+    assert_true(tenth < 0.5);
+    truth_errors_free(&errors);
+    weft_dataset_close(dataset);
+    free(pool);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(poses_agree_with_the_truth_within_half_the_floors),
         cmocka_unit_test(reflectance_agrees_with_the_truth_within_the_floor),
+        cmocka_unit_test(texels_beside_the_frame_are_right_or_missing),
     };
     return cmocka_run_group_tests(tests, take_and_register, leave);
 }

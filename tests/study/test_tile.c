@@ -2,6 +2,7 @@
 #include "btf/direction.h"
 #include "fixture.h"
 #include "study/tile.h"
+#include "study/tile_pictures.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -207,6 +208,30 @@ static void a_sample_masked_in_one_tile_comes_from_the_others(void **state)
     mean_of_image(output, 0); /* checks the mask */
 }
 
+static weft_rgb striped(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    (void)x, (void)light, (void)view;
+    double value = y / 3 % 2 ? 0.1 : 0.4;
+    return (weft_rgb){value, value, value};
+}
+
+/* A row that a registration misses beside the frame would else be a step that no tile has. */
+static void a_masked_texel_looks_like_its_neighbours(void **state)
+{
+    (void)state;
+    weft_dataset *dataset;
+    weft_tile_pictures pictures;
+    weft_error error = {0};
+    fixture_far_dataset(input, 12, 12, 1, striped, 1);
+    expect_ok(weft_dataset_open(input, &dataset, &error), &error);
+    expect_ok(weft_tile_pictures_read(dataset, NULL, &pictures, &error), &error);
+    assert_int_equal(pictures.count, 1);
+    assert_true(pictures.mask[0] != 0 && pictures.value[1] > 0.3f);
+    assert_float_equal(pictures.value[0], pictures.value[1], 1e-6);
+    weft_tile_pictures_free(&pictures);
+    weft_dataset_close(dataset);
+}
+
 static void expect_refusal(const char *with)
 {
     weft_tile_report report;
@@ -265,6 +290,7 @@ int main(void)
         cmocka_unit_test(the_weave_gives_the_phase_to_a_twentieth_of_a_texel_under_noise),
         cmocka_unit_test(the_mean_tile_is_free_of_noise_and_keeps_the_mean),
         cmocka_unit_test(a_sample_masked_in_one_tile_comes_from_the_others),
+        cmocka_unit_test(a_masked_texel_looks_like_its_neighbours),
         cmocka_unit_test(what_has_no_tile_is_refused),
         cmocka_unit_test(another_weave_is_refused),
         cmocka_unit_test(the_command_says_what_it_did),

@@ -168,18 +168,22 @@ static double cosine_ratio(const truth *t, const strip *s, int shot, int x, int 
 static void compare_image(const truth *t, const strip *s, int image, truth_errors *errors)
 {
     int shot = t->image_shot[image];
-    double *error = errors->error + (size_t)image * (size_t)errors->capacity;
+    size_t first = (size_t)image * (size_t)errors->capacity;
     for (int i = 0; i < s->rows * t->size; i++) {
         int x = i % t->size, y = s->first + i / t->size;
         size_t sample = (size_t)i * (size_t)s->layout->image_count + (size_t)shot;
         const float *reflectance =
             t->reflectance[((size_t)image * (size_t)t->size + (size_t)y) * (size_t)t->size + (size_t)x];
         double ratio = cosine_ratio(t, s, shot, x, y);
+        bool is_border = x == 0 || y == 0 || x == t->size - 1 || y == t->size - 1;
         for (int c = 0; c < 3 && !s->mask[sample]; c++) {
             double expected = (double)reflectance[c] * ratio;
             double found = (double)weft_float_of_half(s->samples[3 * sample + (size_t)c]);
-            if (expected > 0)
-                error[errors->count[image]++] = fabs(found / expected - 1);
+            if (!(expected > 0))
+                continue;
+            errors->error[first + (size_t)errors->count[image]++] = fabs(found / expected - 1);
+            if (is_border)
+                errors->border_error[first + (size_t)errors->border_count[image]++] = fabs(found / expected - 1);
         }
     }
 }
@@ -220,9 +224,11 @@ weft_code truth_compare_reflectance(const truth *t, weft_dataset *dataset, truth
     s.samples = malloc(3 * samples * sizeof *s.samples);
     s.mask = malloc(samples);
     result->count = calloc((size_t)t->image_count, sizeof *result->count);
+    result->border_count = calloc((size_t)t->image_count, sizeof *result->border_count);
     result->error = malloc((size_t)t->image_count * (size_t)result->capacity * sizeof *result->error);
+    result->border_error = malloc((size_t)t->image_count * (size_t)result->capacity * sizeof *result->border_error);
     weft_code code = WEFT_OK;
-    if (s.samples && s.mask && result->count && result->error)
+    if (s.samples && s.mask && result->count && result->error && result->border_count && result->border_error)
         code = compare_strips(t, dataset, &s, rows, result, error);
     else
         code = weft_fail_memory(error, "rows of the dataset", 7 * samples);
@@ -237,5 +243,7 @@ void truth_errors_free(truth_errors *errors)
 {
     free(errors->count);
     free(errors->error);
+    free(errors->border_count);
+    free(errors->border_error);
     *errors = (truth_errors){0};
 }

@@ -30,6 +30,9 @@ typedef struct truth_errors {
     int capacity;  /* of an image: texels times channels */
     int *count;    /* [image_count] */
     double *error; /* [image_count][capacity], of which the first `count` are set */
+    /* The same of the outermost texels alone, which lie beside the frame */
+    int *border_count;
+    double *border_error;
 } truth_errors;
 
 /* Compares the images of `t` in a dataset that was registered from the same session. The truth holds the cosine of the
