@@ -54,6 +54,15 @@ void weft_virtual_cloth_free(weft_virtual_cloth *cloth)
     *cloth = (weft_virtual_cloth){0};
 }
 
+weft_weave_layout weft_virtual_cloth_layout(const weft_virtual_cloth *cloth, double tiles_u, double tiles_v)
+{
+    if (tiles_u > 0 && tiles_v > 0)
+        return (weft_weave_layout){.tiles_u = tiles_u, .tiles_v = tiles_v};
+    if (cloth->weave.layout.tiles_u > 0)
+        return cloth->weave.layout;
+    return (weft_weave_layout){.tiles_u = cloth->tiles_x, .tiles_v = cloth->tiles_y};
+}
+
 weft_weave_point weft_virtual_cloth_locate(const weft_virtual_cloth *cloth, double x_mm, double y_mm)
 {
     double u = (x_mm / cloth->opening_mm + 0.5) * cloth->tiles_x;

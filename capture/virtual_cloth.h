@@ -21,6 +21,10 @@ weft_code weft_virtual_cloth_read(const char *path, const weft_rig_settings *set
                                   weft_virtual_cloth *cloth, char warning[WEFT_MESSAGE_SIZE], weft_error *error);
 void weft_virtual_cloth_free(weft_virtual_cloth *cloth);
 
+/* How the cloth lies on a material: tiles_u x tiles_v from the lower left corner where these are above 0, else as the
+ * file of the weave says, else as the virtual rig lays it. Pure. */
+weft_weave_layout weft_virtual_cloth_layout(const weft_virtual_cloth *cloth, double tiles_u, double tiles_v);
+
 /* The point of the weave at a point of the plate inside the opening, mm. Pure. */
 weft_weave_point weft_virtual_cloth_locate(const weft_virtual_cloth *cloth, double x_mm, double y_mm);
 

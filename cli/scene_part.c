@@ -112,8 +112,7 @@ static weft_code show_weave(part *p, weft_error *error)
     if (p->is_threads)
         return weft_player_set_threads(p->stage->player, &p->threads.cloth, error);
     const double *tiles = p->stage->options->settings.tiles;
-    const weft_weave_layout layout = {.tiles_u = tiles[0] > 0 ? tiles[0] : p->cloth.tiles_x,
-                                      .tiles_v = tiles[1] > 0 ? tiles[1] : p->cloth.tiles_y};
+    const weft_weave_layout layout = weft_virtual_cloth_layout(&p->cloth, tiles[0], tiles[1]);
     return weft_player_set_weave_texels(p->stage->player, &p->texels, &layout, error);
 }
 

@@ -21,15 +21,23 @@ typedef struct weft_yarn {
     weft_real area_weight;        /* aw: (warp_area + weft_area) / area of this kind of yarn; 0 where that area is 0 */
 } weft_yarn;
 
+/* How tiles lie on a material whose texture coordinates (u, v) go from 0 to 1: U = tiles_u u - corner_u, V = tiles_v v
+ * - corner_v. At (corner_u, corner_v), in tiles from the lower left corner of the material, one tile begins. */
+typedef struct weft_weave_layout {
+    double tiles_u, tiles_v;
+    double corner_u, corner_v;
+} weft_weave_layout;
+
 typedef struct weft_weave {
     char name[128];
     int tile_width, tile_height; /* cells */
     weft_real warp_area, weft_area;
     /* dWarpUmaxOverDWarp, dWarpUmaxOverDWeft, dWeftUmaxOverDWarp, dWeftUmaxOverDWeft */
     weft_real inclination_noise_deg[4];
-    weft_real fineness; /* intensity noise: fineness x fineness rectangles per segment; 0 = off */
-    weft_real period;   /* of the inclination noise, cells; 0 = off */
-    int *pattern;       /* [tile_height][tile_width] 0-based index into yarn; first row = top of the tile */
+    weft_real fineness;       /* intensity noise: fineness x fineness rectangles per segment; 0 = off */
+    weft_real period;         /* of the inclination noise, cells; 0 = off */
+    int *pattern;             /* [tile_height][tile_width] 0-based index into yarn; first row = top of the tile */
+    weft_weave_layout layout; /* on the material that it was fitted to; 0 tiles: its file does not say */
     int yarn_count;
     weft_yarn *yarn;
     weft_real specular_scale; /* s: makes the bihemispherical reflectance of the specular part 1 for ks = 1 */
@@ -66,13 +74,6 @@ weft_code weft_weave_write(const char *path, const weft_weave *weave, const char
 /* The constant s (0 where no segment is admissible) by a deterministic quadrature: the same value for any number of
  * threads. Part of weft_weave_read. */
 weft_real weft_weave_specular_scale(const weft_weave *weave);
-
-/* How tiles lie on a material whose texture coordinates (u, v) go from 0 to 1: U = tiles_u u - corner_u, V = tiles_v v
- * - corner_v. At (corner_u, corner_v), in tiles from the lower left corner of the material, one tile begins. */
-typedef struct weft_weave_layout {
-    double tiles_u, tiles_v;
-    double corner_u, corner_v;
-} weft_weave_layout;
 
 /* Where a point of the cloth lies: U along x, V along y, tile units, any sign. */
 typedef struct weft_weave_point {

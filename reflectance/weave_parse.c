@@ -11,6 +11,7 @@
 typedef struct weave_values {
     double tile_width, tile_height, alpha, beta, delta, highlight_width, warp_area, weft_area;
     double inclination_noise[4], fineness, period, frozen_radius;
+    weft_weave_layout layout;
 } weave_values;
 
 /* Numbers of a yarn block, as in the file: degrees, tile units. */
@@ -34,6 +35,10 @@ static const block_field weave_fields[] = {
     {"fineness", offsetof(weave_values, fineness), 1, true, 0, LARGE},
     {"period", offsetof(weave_values, period), 1, true, 0, LARGE},
     {"frozenRadius", offsetof(weave_values, frozen_radius), 1, true, 0, 1},
+    {"tilesU", offsetof(weave_values, layout.tiles_u), 1, true, 0, LARGE},
+    {"tilesV", offsetof(weave_values, layout.tiles_v), 1, true, 0, LARGE},
+    {"cornerU", offsetof(weave_values, layout.corner_u), 1, true, -LARGE, LARGE},
+    {"cornerV", offsetof(weave_values, layout.corner_v), 1, true, -LARGE, LARGE},
 };
 
 static const block_field yarn_fields[] = {
@@ -185,6 +190,17 @@ static weft_code check_pattern(weave_parser *parser)
     return WEFT_OK;
 }
 
+static weft_code check_layout(weave_parser *parser)
+{
+    const weft_weave_layout *layout = &parser->values.layout;
+    if ((layout->tiles_u > 0) != (layout->tiles_v > 0))
+        return block_fail(&parser->block, "tilesU = %g and tilesV = %g: both or neither are above 0", layout->tiles_u,
+                          layout->tiles_v);
+    if (!(layout->tiles_u > 0) && (layout->corner_u != 0 || layout->corner_v != 0))
+        return block_fail(&parser->block, "cornerU and cornerV mean nothing without tilesU and tilesV");
+    return WEFT_OK;
+}
+
 static void store_values(weft_weave *weave, const weave_values *values)
 {
     weave->tile_width = (int)values->tile_width;
@@ -193,6 +209,7 @@ static void store_values(weft_weave *weave, const weave_values *values)
     weave->weft_area = (weft_real)values->weft_area;
     weave->fineness = (weft_real)values->fineness;
     weave->period = (weft_real)values->period;
+    weave->layout = values->layout;
     for (int i = 0; i < 4; i++)
         weave->inclination_noise_deg[i] = (weft_real)values->inclination_noise[i];
     for (int i = 0; i < weave->yarn_count; i++) {
@@ -219,6 +236,7 @@ static weft_code parse_weave(weave_parser *parser)
     WEFT_TRY(block_check_complete(&parser->block, weave_fields, WEAVE_FIELD_COUNT, seen));
     if (!(seen & SEEN_PATTERN))
         return block_fail(&parser->block, "'pattern' is missing in the block that ends here");
+    WEFT_TRY(check_layout(parser));
     WEFT_TRY(check_pattern(parser));
     WEFT_TRY(block_advance(&parser->block));
     if (parser->block.lexer.token.kind != WEAVE_END)

@@ -23,6 +23,13 @@ static double degrees(weft_real angle_rad)
     return (double)weft_deg_of_rad(angle_rad);
 }
 
+/* A double, not the single precision of the model: two corners of a large material lie far apart. */
+static void write_layout(FILE *out, const weft_weave_layout *layout)
+{
+    fprintf(out, "  tilesU = %.17g,\n  tilesV = %.17g,\n  cornerU = %.17g,\n  cornerV = %.17g,\n", layout->tiles_u,
+            layout->tiles_v, layout->corner_u, layout->corner_v);
+}
+
 static void write_head(FILE *out, const weft_weave *weave)
 {
     const weft_segment *fibre = &weave->yarn[0].segment;
@@ -42,6 +49,8 @@ static void write_head(FILE *out, const weft_weave *weave)
     write_number(out, "  ", "period", weave->period);
     for (int i = 0; i < 4; i++)
         write_number(out, "  ", noise[i], weave->inclination_noise_deg[i]);
+    if (weave->layout.tiles_u > 0)
+        write_layout(out, &weave->layout);
 }
 
 static void write_pattern(FILE *out, const weft_weave *weave)

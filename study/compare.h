@@ -40,7 +40,7 @@ typedef struct weft_comparison {
     char weave_origin[WEFT_MESSAGE_SIZE];                /* what it was fitted to, if anything */
     weft_fit_weave_report fit;                           /* where it was fitted here: image_count > 0 */
     weft_weave_layout weave_layout;                      /* of it on the material */
-    bool weave_on_yarns;                                 /* laid by the tiles that the fit found */
+    bool weave_on_yarns;                                 /* laid by the tiles that a fit found */
     weft_slices slices;
     weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
     double dataset_bytes, half_float_bytes, material_bytes;

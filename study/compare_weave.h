@@ -2,12 +2,13 @@
 #ifndef WEFT_STUDY_COMPARE_WEAVE_H
 #define WEFT_STUDY_COMPARE_WEAVE_H
 
+#include "capture/virtual_cloth.h"
 #include "study/compare.h"
 
 /* Empty without a weave. Freed with weft_compare_weave_close, also after failure. */
 typedef struct weft_compared_weave {
     char *path; /* of the file that is compared: the given or the fitted one */
-    weft_weave weave;
+    weft_virtual_cloth cloth;
 } weft_compared_weave;
 
 /* Reads options->weave, fitted to the dataset first where options->fit; then folder/fitted.wv is written. Fills fit,

@@ -55,7 +55,9 @@ weft_code weft_fit_weave_to_dataset(weft_dataset *dataset, weft_weave *weave, co
 {
     weft_mean_brdf mean;
     WEFT_TRY(find_tile(dataset, weave, progress, source, error));
-    weft_texel_window window = window_of(weft_dataset_get_layout(dataset), &source->tile.tile);
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    weft_texel_window window = window_of(layout, &source->tile.tile);
+    weave->layout = source->tiled ? weft_tile_layout(&source->tile.tile, layout) : (weft_weave_layout){0};
     WEFT_TRY(weft_mean_brdf_of(dataset, source->tiled ? &window : NULL, progress, &mean, error));
     weft_code code = weft_fit_weave(&mean, weave, progress, report, error);
     weft_mean_brdf_free(&mean);

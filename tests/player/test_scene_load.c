@@ -3,6 +3,7 @@
 #include "player/gl.h"
 #include "stage.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -138,6 +139,33 @@ static void weaves_and_microcylinders_replace_each_other(void **state)
     assert_true(weft_player_has(player, WEFT_MODE_ANALYTIC) && !weft_player_has_threads(player));
     expect_picture(f);
     weft_player_clear(player, WEFT_MODE_ANALYTIC);
+    close_scene(f);
+}
+
+/* A weave that was fitted to the material lies on it as the fit found it, else as the virtual rig lays it. */
+static void a_fitted_weave_is_laid_as_its_file_says(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_weave weave;
+    const weft_weave_layout fitted = {2.25, 3.5, 0.3, 0.6};
+    fixture *f = open_scene("scene_load/a.weft", NULL);
+    expect_ok(weft_weave_read(WEFT_ASSETS "/weaves/cotton_twill.wv", NULL, 0, &weave, NULL, &error), &error);
+    weave.layout = fitted;
+    expect_ok(weft_weave_write("scene_load/fitted.wv", &weave, NULL, &error), &error);
+    weft_weave_free(&weave);
+    expect_ok(drop(f, "scene_load/fitted.wv", &error), &error);
+    weft_weave_layout layout = weft_player_weave_layout(f->stage->player);
+    assert_memory_equal(&layout, &fitted, sizeof fitted);
+    f->options.settings.tiles[0] = f->options.settings.tiles[1] = 4;
+    expect_ok(drop(f, "scene_load/fitted.wv", &error), &error);
+    layout = weft_player_weave_layout(f->stage->player);
+    assert_true(layout.tiles_u == 4 && layout.tiles_v == 4 && layout.corner_u == 0 && layout.corner_v == 0);
+    f->options.settings.tiles[0] = f->options.settings.tiles[1] = 0;
+    expect_ok(drop(f, WEFT_ASSETS "/weaves/cotton_twill.wv", &error), &error);
+    layout = weft_player_weave_layout(f->stage->player);
+    assert_true(layout.tiles_u == floor(layout.tiles_u) && layout.corner_u == 0 && layout.corner_v == 0);
+    weft_player_clear(f->stage->player, WEFT_MODE_ANALYTIC);
     close_scene(f);
 }
 
@@ -324,6 +352,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything_named_is_shown_and_named),
         cmocka_unit_test(weaves_and_microcylinders_replace_each_other),
+        cmocka_unit_test(a_fitted_weave_is_laid_as_its_file_says),
         cmocka_unit_test(samples_are_kept_in_the_format_that_the_settings_name),
         cmocka_unit_test(panes_that_were_chosen_while_files_arrive_stay),
         cmocka_unit_test(a_dropped_material_replaces_the_one_shown),

@@ -145,6 +145,38 @@ static void mistakes_are_named_with_line_and_column(void **state)
     expect_error("ks = {1, 1, 1} }\n}\n", "ks = {1, 1, 1} },\n}\n", "plain.wv:18:1: expected a key, found '}'");
 }
 
+static void a_layout_survives_being_written(void **state)
+{
+    (void)state;
+    char *text =
+        edited("tileWidth = 2,", "tilesU = 3.0123456789, tilesV = 2, cornerU = 0.1, cornerV = 0.7, tileWidth = 2,");
+    weft_weave weave, again;
+    weft_error error = {0};
+    assert_int_equal(weft_weave_parse(WEAVE_TEXT, "plain.wv", NULL, 0, &weave, NULL, &error), WEFT_OK);
+    assert_true(weave.layout.tiles_u == 0 && weave.layout.tiles_v == 0);
+    weft_weave_free(&weave);
+    assert_int_equal(weft_weave_parse(text, "plain.wv", NULL, 0, &weave, NULL, &error), WEFT_OK);
+    assert_int_equal(weft_weave_write("layout.wv", &weave, NULL, &error), WEFT_OK);
+    assert_int_equal(weft_weave_read("layout.wv", NULL, 0, &again, NULL, &error), WEFT_OK);
+    const weft_weave_layout layout = {3.0123456789, 2, 0.1, 0.7};
+    assert_memory_equal(&weave.layout, &layout, sizeof layout);
+    assert_memory_equal(&again.layout, &layout, sizeof layout);
+    weft_weave_free(&weave);
+    weft_weave_free(&again);
+    remove("layout.wv");
+    free(text);
+}
+
+static void half_a_layout_is_refused(void **state)
+{
+    (void)state;
+    expect_error("tileWidth = 2,", "tilesU = 3, tileWidth = 2,",
+                 "plain.wv:18:1: tilesU = 3 and tilesV = 0: both or neither are above 0");
+    expect_error("tileWidth = 2,", "cornerV = 0.5, tileWidth = 2,",
+                 "plain.wv:18:1: cornerU and cornerV mean nothing without tilesU and tilesV");
+    expect_error("tileWidth = 2,", "tilesV = -1, tileWidth = 2,", "plain.wv:4:12: tilesV = -1 is outside [0, 1e+06]");
+}
+
 static void numbers_that_are_none_are_refused(void **state)
 {
     (void)state;
@@ -205,6 +237,8 @@ int main(void)
         cmocka_unit_test(keys_reach_their_places),
         cmocka_unit_test(parameters_fill_in_numbers_and_colours),
         cmocka_unit_test(mistakes_are_named_with_line_and_column),
+        cmocka_unit_test(a_layout_survives_being_written),
+        cmocka_unit_test(half_a_layout_is_refused),
         cmocka_unit_test(numbers_that_are_none_are_refused),
         cmocka_unit_test(a_text_cut_anywhere_is_refused),
         cmocka_unit_test(files_that_are_no_weaves_are_refused),

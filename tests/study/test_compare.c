@@ -142,13 +142,14 @@ static void expect_model_row(const char *page, const char *name, const weft_pred
         fail_msg("the page has no row %s", row);
 }
 
-/* The error of the analytic cloth, sample by sample: laid as the fit found it, or as many tiles from the corner. */
-static weft_prediction_error compare_fitted(double tiles, bool on_yarns)
+/* The error of the analytic cloth, sample by sample: laid as the fit found it, or as many tiles from the corner.
+ * `weave` is the start of the fit, or what an earlier one found. */
+static weft_prediction_error compare_weave(const char *weave, bool fit, double tiles, bool on_yarns)
 {
     const weft_compare_options options = {.dataset = "compare.btf.h5",
                                           .material = "compare.weft",
-                                          .weave = WEFT_ASSETS "/weaves/polyester_lining.wv",
-                                          .fit = true,
+                                          .weave = weave,
+                                          .fit = fit,
                                           .tiles_u = tiles,
                                           .tiles_v = tiles,
                                           .folder = "compare-report"};
@@ -178,8 +179,13 @@ static void a_fitted_weave_lies_with_its_yarns_on_those_of_the_data(void **state
               &error);
     fixture_far_dataset("compare.btf.h5", TEXELS, TEXELS, 3, fixture_woven, 0);
     fixture_diffuse_material("compare.weft", TEXELS, TEXELS, flat);
-    weft_prediction_error laid = compare_fitted(0, true), beside = compare_fitted(TEXELS / tile, false);
+    const char *start = WEFT_ASSETS "/weaves/polyester_lining.wv";
+    weft_prediction_error laid = compare_weave(start, true, 0, true);
+    assert_int_equal(rename("compare-report/fitted.wv", "fitted.wv"), 0);
+    weft_prediction_error kept = compare_weave("fitted.wv", false, 0, true);
+    weft_prediction_error beside = compare_weave("fitted.wv", false, TEXELS / tile, false);
     assert_true(laid.relative_rmse < 0.25 * beside.relative_rmse);
+    assert_float_equal(kept.relative_rmse, laid.relative_rmse, 1e-9);
     weft_weave_free(&fixture_cloth.weave);
 }
 
