@@ -3,8 +3,8 @@
 #define WEFT_BTF_PROGRESS_H
 
 /* `report` may be NULL. It is called from one thread at a time, with 0 <= done <= total; `stage` is a present
- * participle in lower case ("registering views") that stays the same for the whole of a stage; it is the caller's, to be
- * read during the call alone. */
+ * participle in lower case ("registering views") that stays the same for the whole of a stage; it is the caller's, to
+ * be read during the call alone. */
 typedef struct weft_progress {
     void (*report)(void *context, const char *stage, long done, long total);
     void *context;
