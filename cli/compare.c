@@ -14,8 +14,8 @@ enum { MAX_PATHS = 65536 };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "REPORT/", 0, "The folder for the page and its pictures", 0},
-    {"weave", KEY_WEAVE, "CLOTH.wv", 0, "Compare this analytic cloth, too", 0},
-    {"fit", KEY_FIT, NULL, 0, "Fit that cloth to the dataset first (see fit-weave); writes REPORT/fitted.wv", 0},
+    {"weave", KEY_WEAVE, "CLOTH.wv|CLOTH.mc", 0, "Compare this weave or microcylinder cloth, too", 0},
+    {"fit", KEY_FIT, NULL, 0, "Fit that weave to the dataset first (see fit-weave); writes REPORT/fitted.wv", 0},
     {"tiles", KEY_TILES, "X,Y", 0,
      "Tiles of the weave across the material (default: as --fit finds, its file says, or the virtual rig lays it)", 0},
     {"bard", KEY_BARD, "NAME.bard.h5", 0, "Compare what `weft bard` predicted, too", 0},
@@ -126,7 +126,8 @@ static void say_weave(const common_options *common, const weft_comparison *compa
 {
     if (!comparison->weave_origin[0])
         return;
-    command_say(common, "analytic: the weave '%s', %s", comparison->weave_name, comparison->weave_origin);
+    command_say(common, "analytic: the %s '%s', %s", comparison->weave_is_threads ? "microcylinder cloth" : "weave",
+                comparison->weave_name, comparison->weave_origin);
     if (comparison->fit.image_count > 0)
         command_say(common,
                     "analytic before the fit, mean BRDF: median relative error %.2f %%, 80th percentile %.2f %%",

@@ -60,9 +60,13 @@ static weft_code measure_material(const compared_files *files, const weft_progre
 static weft_code measure_weave(const compared_files *files, const weft_progress *progress, weft_comparison *comparison,
                                weft_error *error)
 {
+    const weft_compared_weave *weave = &files->weave;
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_weave(files->dataset, &files->weave.cloth.weave, &comparison->weave_layout, &predictor,
-                                     error));
+    if (weave->is_threads)
+        WEFT_TRY(weft_predictor_of_threads(files->dataset, &weave->threads.cloth, &predictor, error));
+    else
+        WEFT_TRY(
+            weft_predictor_of_weave(files->dataset, &weave->cloth.weave, &comparison->weave_layout, &predictor, error));
     weft_code code = measure_texture(files->dataset, predictor, "analytic", progress, comparison, error);
     weft_predictor_free(predictor);
     return code;
@@ -97,13 +101,25 @@ static weft_code measure_means(const weft_compare_options *options, const compar
     return code;
 }
 
+static weft_code draw_scenes(const weft_compare_options *options, const compared_files *files,
+                             const weft_progress *progress, weft_comparison *comparison, weft_error *error)
+{
+    const weft_compared_weave *weave = &files->weave;
+    weft_scenes_request request = {.dataset = files->dataset, .material = &files->material, .bard = options->bard};
+    if (options->weave && weave->is_threads)
+        request.threads = &weave->threads.cloth;
+    else if (options->weave)
+        request.weave = &weave->cloth.weave;
+    request.layout = &comparison->weave_layout;
+    return weft_scenes_draw(&request, progress, &comparison->scenes, error);
+}
+
 static weft_code measure(const weft_compare_options *options, const compared_files *files,
                          const weft_progress *progress, weft_comparison *comparison, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(files->dataset);
     weigh(options, layout, comparison);
     WEFT_TRY(weft_dataset_fingerprint_compare(files->dataset, files->material.metadata, comparison->warning, error));
-    snprintf(comparison->weave_name, sizeof comparison->weave_name, "%s", files->weave.cloth.weave.name);
     WEFT_TRY(measure_material(files, progress, comparison, error));
     if (options->weave)
         WEFT_TRY(measure_weave(files, progress, comparison, error));
@@ -112,10 +128,7 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
     WEFT_TRY(measure_means(options, files, progress, comparison, error));
     if (layout->image_count > 1 && layout->image_count < WEFT_LEAVE_ONE_OUT_LIMIT)
         WEFT_TRY(weft_leave_one_out_measure(files->dataset, progress, &comparison->left_out, error));
-    const weft_scenes_request request = {files->dataset, &files->material,
-                                         options->weave ? &files->weave.cloth.weave : NULL, &comparison->weave_layout,
-                                         options->bard};
-    WEFT_TRY(weft_scenes_draw(&request, progress, &comparison->scenes, error));
+    WEFT_TRY(draw_scenes(options, files, progress, comparison, error));
     const weft_traced_request truth = {files->dataset, &files->material, options->truth, options->truth_paths, 1};
     return options->truth ? weft_traced_truth_measure(&truth, progress, &comparison->truth, error) : WEFT_OK;
 }

@@ -13,7 +13,7 @@
 typedef struct weft_compare_options {
     const char *dataset;     /* NAME.btf.h5 */
     const char *material;    /* NAME.weft, fitted to it */
-    const char *weave;       /* CLOTH.wv, or NULL */
+    const char *weave;       /* CLOTH.wv or CLOTH.mc, or NULL */
     bool fit;                /* the weave to the dataset first, with CLOTH.wv as the start */
     const char *bard;        /* NAME.bard.h5 as `weft bard` writes it, or NULL */
     const char *truth;       /* FILE.stitch from which the dataset was simulated, or NULL */
@@ -38,6 +38,7 @@ typedef struct weft_comparison {
     weft_compared_model model[WEFT_CONTENDER_COUNT - 1]; /* the first is the material */
     char weave_name[128];                                /* of the analytic cloth, empty without one */
     char weave_origin[WEFT_MESSAGE_SIZE];                /* what it was fitted to, if anything */
+    bool weave_is_threads;                               /* microcylinder cloth, which has neither fit nor layout */
     weft_fit_weave_report fit;                           /* where it was fitted here: image_count > 0 */
     weft_weave_layout weave_layout;                      /* of it on the material */
     bool weave_on_yarns;                                 /* laid by the tiles that a fit found */

@@ -41,10 +41,15 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
 {
     if (comparison->weave_name[0] == 0)
         return;
-    fprintf(page->html, " The analytic cloth is the weave \u201c");
+    fprintf(page->html, " The analytic cloth is the %s \u201c",
+            comparison->weave_is_threads ? "microcylinder cloth" : "weave");
     weft_page_text(page, comparison->weave_name);
     fprintf(page->html, "\u201d, ");
     weft_page_text(page, comparison->weave_origin);
+    if (comparison->weave_is_threads) {
+        fputs(".", page->html);
+        return;
+    }
     const weft_weave_layout *layout = &comparison->weave_layout;
     fprintf(page->html, "; %.4g \u00d7 %.4g tiles across the material", layout->tiles_u, layout->tiles_v);
     if (comparison->weave_on_yarns)

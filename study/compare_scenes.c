@@ -67,7 +67,7 @@ weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_erro
     }
     fputs("<p class=\"note\">Raw: the dataset, interpolated. Compressed: the material. ", page->html);
     if (scenes->has[WEFT_MODE_ANALYTIC])
-        fputs("Analytic: the weave without its noise. ", page->html);
+        fputs("Analytic: the cloth as its model has it, without noise. ", page->html);
     if (scenes->has[WEFT_SCENE_BARD])
         fputs("BARD: predicted from the photographs under one light. ", page->html);
     if (scenes->near_lights)

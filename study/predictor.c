@@ -16,6 +16,7 @@ struct weft_predictor {
     const weft_weave *weave;
     weft_woven_table *table; /* of the weave */
     weft_weave_layout tiles;
+    weft_prepared_cloth threads;
     weft_dataset *other;
     int first_row;
     weft_half *samples; /* of the other dataset: [rows][width][image_count][3] */
@@ -152,6 +153,28 @@ weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave 
     if (code != WEFT_OK)
         weft_predictor_free(*result);
     return code;
+}
+
+/* ---- Microcylinder cloth ---- */
+
+static void predict_by_threads(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                               weft_rgb *prediction)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    for (int i = 0; i < image_count; i++) {
+        weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
+        weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image[i]], x, y);
+        weft_rgb brdf = weft_microcylinder_brdf(&predictor->threads, WEFT_CLOTH_BY_AREA, light, view);
+        prediction[i] = scaled(WEFT_PI * quantity(layout, light), brdf);
+    }
+}
+
+weft_code weft_predictor_of_threads(const weft_dataset *dataset, const weft_microcylinder_cloth *cloth,
+                                    weft_predictor **result, weft_error *error)
+{
+    WEFT_TRY(create(dataset, predict_by_threads, result, error));
+    (*result)->threads = weft_microcylinder_prepare(cloth);
+    return WEFT_OK;
 }
 
 /* ---- Another dataset ---- */

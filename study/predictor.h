@@ -5,6 +5,7 @@
 #include "btf/dataset.h"
 #include "btf/material.h"
 #include "btf/triangulation.h"
+#include "reflectance/microcylinder.h"
 #include "reflectance/weave.h"
 
 typedef struct weft_predictor weft_predictor;
@@ -19,6 +20,10 @@ weft_code weft_predictor_of_material(const weft_dataset *dataset, const weft_mat
  */
 weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,
                                   weft_predictor **result, weft_error *error);
+
+/* Microcylinder cloth, which is alike at all texels; threads count by area. */
+weft_code weft_predictor_of_threads(const weft_dataset *dataset, const weft_microcylinder_cloth *cloth,
+                                    weft_predictor **result, weft_error *error);
 
 /* The samples of another dataset, such as `weft bard` writes. Errors: WEFT_BAD_INPUT where it cannot be read, or its
  * size, images or quantity are not those of the dataset. */

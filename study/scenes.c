@@ -87,6 +87,8 @@ static weft_code set_models(weft_player *player, const weft_scenes_request *requ
     WEFT_TRY(weft_player_set_dataset(player, request->dataset, progress, &scenes->skipped_levels, error));
     if (request->weave)
         WEFT_TRY(weft_player_set_weave(player, request->weave, request->layout, error));
+    if (request->threads)
+        WEFT_TRY(weft_player_set_threads(player, request->threads, error));
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++)
         scenes->has[mode] = weft_player_has(player, (weft_mode)mode);
     return WEFT_OK;

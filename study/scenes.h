@@ -35,13 +35,14 @@ typedef struct weft_scenes {
     weft_scene_pictures scene[WEFT_SCENE_COUNT];
 } weft_scenes;
 
-/* What to draw; `cloth` and `bard` may be NULL. */
+/* What to draw; `weave`, `threads` (one of them at most) and `bard` may be NULL. */
 typedef struct weft_scenes_request {
     weft_dataset *dataset;
     const weft_material *material;
-    const weft_weave *weave;         /* or NULL */
+    const weft_weave *weave;
     const weft_weave_layout *layout; /* of the weave on the material */
-    const char *bard;                /* a dataset as `weft bard` writes it */
+    const weft_microcylinder_cloth *threads;
+    const char *bard; /* a dataset as `weft bard` writes it */
 } weft_scenes_request;
 
 /* Draws without a window. Having no OpenGL is not an error. Errors: WEFT_BAD_INPUT from reading a dataset;

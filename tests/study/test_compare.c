@@ -1,6 +1,7 @@
 #include "btf/atomic_file.h"
 #include "btf/direction.h"
 #include "fixture.h"
+#include "reflectance/microcylinder_file.h"
 #include "study/compare.h"
 
 #include <math.h>
@@ -224,6 +225,50 @@ static void the_page_compares_every_model_that_is_given(void **state)
     weft_comparison_free(&comparison);
 }
 
+static weft_prepared_cloth threads;
+
+static weft_rgb threaded(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    (void)x, (void)y;
+    weft_rgb brdf = weft_microcylinder_brdf(&threads, WEFT_CLOTH_BY_AREA, light, view);
+    return (weft_rgb){WEFT_PI * brdf.r, WEFT_PI * brdf.g, WEFT_PI * brdf.b};
+}
+
+/* A dataset of the cloth itself: only half floats lie between. */
+static void microcylinder_cloth_is_compared_as_it_is(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_microcylinder_description description;
+    weft_compare_options options = {.dataset = "compare.btf.h5",
+                                    .material = "compare.weft",
+                                    .weave = WEFT_ASSETS "/microcylinder/shot.mc",
+                                    .folder = "compare-report"};
+    expect_ok(weft_microcylinder_read(options.weave, NULL, 0, &description, &error), &error);
+    threads = weft_microcylinder_prepare(&description.cloth);
+    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 6, threaded, 0);
+    fixture_diffuse_material("compare.weft", WIDTH, HEIGHT, flat);
+    weft_comparison comparison;
+    expect_ok(weft_compare(&options, NULL, &comparison, &error), &error);
+    char *page = read_page("compare-report/index.html");
+    assert_int_equal(comparison.model_count, 2);
+    assert_true(comparison.model[1].texture.all.count > 0);
+    assert_true(comparison.model[1].texture.all.relative_rmse < 1e-3);
+    assert_true(comparison.model[1].mean.relative_rmse < 1e-3);
+    assert_true(comparison.model[0].texture.all.relative_rmse > 0.1);
+    assert_non_null(strstr(page, "The analytic cloth is the microcylinder cloth"));
+    const weft_prediction_error *drawn = comparison.scenes.scene[0].error;
+    print_message("drawn against raw: analytic %.4f, compressed %.4f\n", drawn[WEFT_MODE_ANALYTIC].relative_rmse,
+                  drawn[WEFT_MODE_COMPRESSED].relative_rmse);
+    if (comparison.scenes.drawn)
+        assert_true(drawn[WEFT_MODE_ANALYTIC].relative_rmse < 0.1);
+    free(page);
+    weft_comparison_free(&comparison);
+    options.fit = true;
+    assert_int_equal(weft_compare(&options, NULL, &comparison, &error), WEFT_BAD_USAGE);
+    assert_non_null(strstr(error.message, "shot.mc' is microcylinder cloth"));
+}
+
 static void a_prediction_of_another_dataset_is_refused(void **state)
 {
     (void)state;
@@ -293,6 +338,7 @@ int main(void)
         cmocka_unit_test(the_page_tells_the_errors_that_the_functions_have),
         cmocka_unit_test(the_page_compares_every_model_that_is_given),
         cmocka_unit_test(a_fitted_weave_lies_with_its_yarns_on_those_of_the_data),
+        cmocka_unit_test(microcylinder_cloth_is_compared_as_it_is),
         cmocka_unit_test(a_prediction_of_another_dataset_is_refused),
         cmocka_unit_test(a_matt_plane_is_predicted_from_the_other_photographs),
         cmocka_unit_test(a_material_of_another_size_is_refused),
