@@ -44,10 +44,10 @@ static int count_lines(const char *text)
     return count;
 }
 
-static void split_cells(char *line, char **cell)
+static void split_cells(char *line, int count, char **cell)
 {
-    for (char *rest = line; rest;)
-        *cell++ = trimmed(strsep(&rest, ","));
+    for (int i = 0; i < count; i++)
+        cell[i] = trimmed(strsep(&line, ","));
 }
 
 /* The first line fixes the number of columns, so the arrays can only be sized once it is seen. */
@@ -94,13 +94,13 @@ static weft_code split_lines(weft_csv *csv, bool has_header, weft_error *error)
             return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: %d cells, but %d in the first line", csv->path, number,
                              cells, csv->column_count);
         if (header_pending) {
-            split_cells(line, csv->column);
+            split_cells(line, cells, csv->column);
             WEFT_TRY(check_names(csv, number, error));
             header_pending = false;
             continue;
         }
         csv->line[csv->row_count] = number;
-        split_cells(line, csv->cell + (size_t)csv->row_count++ * (size_t)cells);
+        split_cells(line, cells, csv->cell + (size_t)csv->row_count++ * (size_t)cells);
     }
     if (!csv->cell)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is empty", csv->path);

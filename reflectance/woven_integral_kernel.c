@@ -36,9 +36,9 @@ typedef struct integral {
     lanes kappa, width;
     lane_spine spine;
     /* Staple: t = u - u0 where from_u0, else u; the whole yarn is range_low..range_high in t. */
-    bool filament, from_u0;
     lanes cot_psi, half_x, across, u0;
     float range_low, range_high;
+    bool from_u0, filament;
     /* Filament: the mirroring inclination. */
     lanes sin_u, cos_u, radius;
 } integral;
