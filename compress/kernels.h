@@ -6,6 +6,14 @@
 #include "compress/measure.h"
 #include "compress/normal.h"
 
+/* Sums over the samples of a view and a light, [light_count][view_stride], of a model f without T and S: <f|f> and
+ * <f|r>. 0 in the padding. */
+typedef struct weft_separable {
+    int light_count, view_stride;
+    float *square, *product;
+    float prior; /* S = 1 counts as much as this part of the mean <T f|T f> of a light */
+} weft_separable;
+
 struct weft_fit_kernels {
     /* sums [WEFT_GRAM_PRODUCTS][view_stride]: products of columns (see compress/gram.h) summed over the samples of each
      * view in a part of its slots; WEFT_PART_REST adds to what `sums` holds. table [view_stride] is T(v) in e. Views
@@ -34,6 +42,9 @@ struct weft_fit_kernels {
     /* See weft_normal_of_trial; without the curvature of the scale, which it returns. */
     double (*normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,
                      weft_normal *normal);
+    /* T(v) = <S f|r>_v / <S f|S f>_v, if wanted, then S(l) alike with its prior, `rounds` times from S = light; 1 where
+     * the model leaves nothing. table [view_stride], light [light_count]; energy [light_count]: <T f|T f>. */
+    void (*separate)(const weft_separable *own, bool with_table, int rounds, float *table, float *light, float *energy);
 };
 
 /* The functions of one set, by their names in it. */
@@ -53,7 +64,9 @@ struct weft_fit_kernels {
     double weft_linear_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,               \
                                     const weft_linear *linear, double *h, double *g);                                  \
     double weft_fit_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,     \
-                                 weft_normal *normal)
+                                 weft_normal *normal);                                                                 \
+    void weft_light_separate_##set(const weft_separable *own, bool with_table, int rounds, float *table, float *light, \
+                                   float *energy)
 #define WEFT_DECLARE_FIT_KERNELS(set) WEFT_DECLARE_FIT_KERNELS_OF(set)
 
 /* Those of an instruction set of this processor. */

@@ -1,24 +1,8 @@
-#include "compress/light.h"
 #include "compress/model_ladder.h"
 #include "compress/texel_parts.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static weft_code create_light(weft_texel_fitter *fitter, weft_error *error)
-{
-    size_t lights = (size_t)fitter->bundle.light_count;
-    size_t bytes = ((size_t)fitter->bundle.sample_count + WEFT_STRIP_LANES) * sizeof *fitter->cosine;
-    fitter->light_count = fitter->bundle.light_count;
-    fitter->light = calloc(2 * lights + 1, sizeof *fitter->light);
-    fitter->light_code = calloc(2 * WEFT_CHANNELS * lights + 1, 1);
-    fitter->cosine = aligned_alloc(64, bytes);
-    if (!fitter->light || !fitter->light_code || !fitter->cosine)
-        return weft_fail_memory(error, "light table of a texel", bytes);
-    fitter->decoded_light = fitter->light + lights;
-    return WEFT_OK;
-}
 
 weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_fitter **result, weft_error *error)
 {
@@ -46,7 +30,7 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
     if (code == WEFT_OK)
         code = weft_frame_search_create(source->layout->view_count, &fitter->frames, error);
     if (code == WEFT_OK && source->light_table)
-        code = create_light(fitter, error);
+        code = weft_texel_light_create(fitter, error);
     if (code != WEFT_OK) {
         weft_texel_fitter_free(fitter);
         return code;
@@ -67,9 +51,7 @@ void weft_texel_fitter_free(weft_texel_fitter *fitter)
     free(fitter->table);
     free(fitter->code);
     free(fitter->decoded);
-    free(fitter->light);
-    free(fitter->light_code);
-    free(fitter->cosine);
+    weft_texel_light_free(fitter);
     free(fitter);
 }
 
@@ -121,27 +103,6 @@ static void store_model(const weft_texel_fitter *fitter, weft_material *material
 
 /* ---- One model ---- */
 
-/* S goes on from that of the channel before. Its largest value becomes 1: what it is divided by goes into rho and the
- * amplitudes when the fit is refined once more for S as it will be read. */
-static void refine_with_light(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, weft_fit *fit)
-{
-    const weft_bundle *bundle = &fitter->bundle;
-    uint8_t *code = fitter->light_code + (size_t)channel * (size_t)fitter->light_count;
-    weft_fit_options once = *options;
-    double largest = 0;
-    for (int l = 0; channel == 0 && l < fitter->light_count; l++)
-        fitter->light[l] = 1;
-    weft_light_refine(bundle, &fitter->samples, channel, options, fitter->workspace, fitter->cosine, fit, fitter->table,
-                      fitter->light);
-    for (int l = 0; l < fitter->light_count; l++)
-        largest = fmax(largest, fitter->light[l]);
-    for (int l = 0; l < fitter->light_count; l++)
-        code[l] = weft_code_of_table(largest > 0 ? fitter->light[l] / largest : 1);
-    weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
-    once.max_passes = 1;
-    weft_fit_refine(bundle, &lit, channel, &once, fitter->workspace, fit, fitter->table);
-}
-
 static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, int channel,
                         const weft_grey_fit *start, const weft_frame *frame)
 {
@@ -154,7 +115,7 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
     if (fitter->light_count > 0)
         memset(fitter->light_code + (size_t)channel * (size_t)fitter->light_count, 255, (size_t)fitter->light_count);
     if (light)
-        refine_with_light(fitter, options, channel, &fit);
+        weft_texel_light_refine(fitter, options, channel, &fit);
     else
         weft_fit_refine(&fitter->bundle, &fitter->samples, channel, options, fitter->workspace, &fit, fitter->table);
     weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
@@ -169,7 +130,10 @@ static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options
     weft_frame_request request = {fitter->source->frames, given, *options};
     const weft_grey_fit *start =
         weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
-    fitter->turns = start == &fitter->frames.turned;
+    if (light)
+        start = weft_texel_light_start(fitter, options, start);
+    fitter->turns = start == &fitter->frames.turned ||
+                    (light && options->lobe_count > 0 && fitter->source->frames == WEFT_FRAMES_FITTED);
     fitter->second_start = start->fit.start > 0;
     weft_frame frame = weft_pack_frame(&start->fit.frame, fitter->frame);
     for (int channel = 0; channel < WEFT_CHANNELS; channel++)

@@ -1,5 +1,4 @@
 /* How far the model of a texel is from its samples. */
-#include "compress/light.h"
 #include "compress/texel_parts.h"
 
 /* In a level of many texels this share of them is enough for percentiles. */
@@ -32,7 +31,7 @@ weft_samples weft_texel_samples_as_lit(weft_texel_fitter *fitter, int channel)
     const uint8_t *code = fitter->light_code + (size_t)channel * (size_t)fitter->light_count;
     for (int l = 0; l < fitter->light_count; l++)
         fitter->decoded_light[l] = weft_table_of_code(code[l]);
-    return weft_light_apply(&fitter->bundle, &fitter->samples, fitter->decoded_light, fitter->cosine);
+    return weft_light_apply(&fitter->bundle, &fitter->samples, fitter->decoded_light, fitter->lights.cosine);
 }
 
 weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied)

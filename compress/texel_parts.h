@@ -3,6 +3,7 @@
 #define WEFT_COMPRESS_TEXEL_PARTS_H
 
 #include "compress/kernels.h"
+#include "compress/light.h"
 #include "compress/texel.h"
 
 struct weft_texel_fitter {
@@ -20,14 +21,30 @@ struct weft_texel_fitter {
     float *decoded;                    /* T of one channel as it will be read */
     int light_count;                   /* of S; 0 without */
     double *light, *decoded_light;     /* S of one channel, and as it will be read */
+    double *grey_light;                /* S of the grey samples */
+    weft_grey_fit lit;                 /* of the same: lobes and T beside it */
     uint8_t *light_code;               /* [2][channel][light_count] alike */
-    float *cosine;                     /* with S */
+    weft_light_workspace lights;
     const weft_fit_kernels *kernels;
     weft_error_tally *tally;
 };
 
 /* Is this one of the texels whose errors go into the percentiles? */
 bool weft_texel_is_tallied(const weft_material_level *level, int x, int y);
+
+/* What S needs; freed with weft_texel_light_free, also after an error. Errors: WEFT_SYSTEM. */
+weft_code weft_texel_light_create(weft_texel_fitter *fitter, weft_error *error);
+void weft_texel_light_free(weft_texel_fitter *fitter);
+
+/* The fit of the grey samples with S, begun from `start`: S takes over what lobes and frame stood in for without it, so
+ * that the frame, if it is fitted, must turn with it. */
+const weft_grey_fit *weft_texel_light_start(weft_texel_fitter *fitter, const weft_fit_options *options,
+                                            const weft_grey_fit *start);
+
+/* Improves the fit of a channel and its T, and codes its S, which goes on from that of the grey samples. The largest
+ * value of S becomes 1: what it is divided by goes into rho and the amplitudes when the fit is refined once more for S
+ * as it will be read. */
+void weft_texel_light_refine(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, weft_fit *fit);
 
 /* The samples of a channel with S as it will be read on their cosines. */
 weft_samples weft_texel_samples_as_lit(weft_texel_fitter *fitter, int channel);

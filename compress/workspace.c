@@ -41,10 +41,9 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
         return weft_fail_memory(error, "workspace of a fit", sizeof *workspace);
     size_t views = (size_t)bundle->view_stride;
     workspace->table = allocate_rows(1, views, sizeof *workspace->table);
-    workspace->scratch[0] = allocate_rows(3, views, sizeof *workspace->scratch[0]);
-    workspace->light = allocate_rows(5, (size_t)bundle->light_count + 1, sizeof *workspace->light);
+    workspace->scratch[0] = allocate_rows(2, views, sizeof *workspace->scratch[0]);
     workspace->model = allocate_rows((size_t)bundle->sample_count + WEFT_STRIP_LANES, 1, sizeof *workspace->model);
-    bool complete = workspace->table && workspace->scratch[0] && workspace->light && workspace->model;
+    bool complete = workspace->table && workspace->scratch[0] && workspace->model;
     for (int i = 0; i < WEFT_TRIALS; i++)
         complete = create_trial(bundle->view_stride, &workspace->trial[i]) && complete;
     if (!complete) {
@@ -52,11 +51,6 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
         return weft_fail_memory(error, "workspace of a fit", views * 2048);
     }
     workspace->scratch[1] = workspace->scratch[0] + views;
-    workspace->table_best = workspace->scratch[1] + views;
-    workspace->light_energy = workspace->light + bundle->light_count;
-    workspace->light_before = workspace->light_energy + bundle->light_count;
-    workspace->light_step = workspace->light_before + bundle->light_count;
-    workspace->light_best = workspace->light_step + bundle->light_count;
     *result = workspace;
     return WEFT_OK;
 }
@@ -69,7 +63,6 @@ void weft_fit_workspace_free(weft_fit_workspace *workspace)
         free_trial(&workspace->trial[i]);
     free(workspace->table);
     free(workspace->scratch[0]);
-    free(workspace->light);
     free(workspace->model);
     free(workspace);
 }

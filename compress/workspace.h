@@ -10,9 +10,7 @@ struct weft_fit_workspace {
     weft_trial trial[WEFT_TRIALS]; /* the point reached, the one being tried, the best of several starts */
     float *table;                  /* [view_stride] T to begin with */
     double *scratch[2];            /* [view_stride] */
-    double *light, *light_energy, *light_before, *light_step, *light_best; /* [light_count] of compress/light.c */
-    double *table_best;                                                    /* [view_stride] of the same */
-    float *model;                                                          /* [sample_count] */
+    float *model;                  /* [sample_count] */
 };
 
 /* Exchanges two trials, what they own included. */
