@@ -21,10 +21,11 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
     if (code == WEFT_OK)
         code = weft_error_tally_create(&fitter->tally, error);
     if (code == WEFT_OK) {
-        fitter->table = calloc(views, sizeof *fitter->table);
+        fitter->table = calloc(2 * views, sizeof *fitter->table);
+        fitter->seen = calloc(views, sizeof *fitter->seen);
         fitter->code = calloc(2 * WEFT_CHANNELS * views, 1);
         fitter->decoded = calloc(views, sizeof *fitter->decoded);
-        if (!fitter->table || !fitter->code || !fitter->decoded)
+        if (!fitter->table || !fitter->seen || !fitter->code || !fitter->decoded)
             code = weft_fail_memory(error, "view tables of a texel", views * sizeof *fitter->table);
     }
     if (code == WEFT_OK)
@@ -49,6 +50,7 @@ void weft_texel_fitter_free(weft_texel_fitter *fitter)
     weft_error_tally_free(fitter->tally);
     weft_frame_search_free(&fitter->frames);
     free(fitter->table);
+    free(fitter->seen);
     free(fitter->code);
     free(fitter->decoded);
     weft_texel_light_free(fitter);
@@ -122,6 +124,8 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
     weft_pack_channel(&fitter->bundle, &lit, channel, options, fitter->workspace, &fit, fitter->table,
                       &fitter->packed[channel], code);
     fitter->as_read[channel] = weft_unpack(&fitter->packed[channel], options->lobe_count, frame, fitter->samples.scale);
+    if (options->table)
+        weft_texel_limit_unseen(fitter, channel);
 }
 
 /* Fits and packs one model, with S or without; `fitter` holds the result. */

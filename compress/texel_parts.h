@@ -13,7 +13,8 @@ struct weft_texel_fitter {
     weft_fit_workspace *workspace;
     weft_frame_search frames;
     bool turns, second_start; /* the last model's frame was turned; its lobes began as thrown back to the light */
-    double *table;            /* of one channel */
+    double *table;            /* [2][view_count] of one channel; then room */
+    int *seen;                /* [view_count] valid samples */
     weft_packed packed[WEFT_CHANNELS]; /* the last model that was fitted */
     weft_fit as_read[WEFT_CHANNELS];   /* the same as it will be read */
     int16_t frame[3];                  /* its code */
@@ -48,6 +49,10 @@ void weft_texel_light_refine(weft_texel_fitter *fitter, const weft_fit_options *
 
 /* The samples of a channel with S as it will be read on their cosines. */
 weft_samples weft_texel_samples_as_lit(weft_texel_fitter *fitter, int channel);
+
+/* T of a channel is the mean of the others in views without any valid sample. Lowers its code where the model, whose
+ * lobes were fitted to the others and may be of any size there, would glare beside the nearest view with samples. */
+void weft_texel_limit_unseen(weft_texel_fitter *fitter, int channel);
 
 /* The last model as it will be read, against the samples. */
 weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied);

@@ -205,6 +205,80 @@ static void masked_samples_are_counted_and_not_used(void **state)
     weft_material_free(&masked);
 }
 
+/* As if a frame stood beside the texel: what looks from one side at a slant does not see it. */
+static bool is_hidden(weft_vec3 view)
+{
+    return view.x > 0 && view.z < 0.8;
+}
+
+static void fill_hidden(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_ward(layout, x, y, samples, mask);
+    for (int image = 0; image < layout->image_count; image++) {
+        weft_vec3 view = layout->view[layout->view_of_image[image]];
+        if (is_hidden(view))
+            mask[image] = WEFT_MASK_MISSING;
+    }
+}
+
+/* Root mean square over the images of a view of what a material reflects. */
+static double brightness(const weft_material *material, const weft_table_directions *directions, int x, int view,
+                         const weft_dataset_layout *layout)
+{
+    double square = 0;
+    int count = 0;
+    for (int image = 0; image < layout->image_count; image++) {
+        if (layout->view_of_image[image] != view)
+            continue;
+        weft_rgba seen = weft_material_texel(material, directions, 0, x, 0, layout->light[image], layout->view[view]);
+        square += (double)(seen.g * seen.g);
+        count++;
+    }
+    return sqrt(square / count);
+}
+
+static double brightest_neighbour(const weft_material *material, const weft_table_directions *directions, int x,
+                                  int view, const weft_dataset_layout *layout)
+{
+    double nearest = -2, bright = 0;
+    for (int other = 0; other < layout->view_count; other++) {
+        double cosine = weft_dot(layout->view[view], layout->view[other]);
+        if (is_hidden(layout->view[other]) || cosine < nearest - 1e-6)
+            continue;
+        double own = brightness(material, directions, x, other, layout);
+        bright = cosine > nearest + 1e-6 ? own : fmax(bright, own);
+        nearest = fmax(nearest, cosine);
+    }
+    return bright;
+}
+
+static void views_that_do_not_see_a_texel_do_not_glare(void **state)
+{
+    (void)state;
+    weft_compress_options options = weft_compress_default_options();
+    options.levels = false;
+    options.light_table = true;
+    write_fill("hidden.btf.h5", 8, 1, fill_hidden);
+    weft_material material = compress_file("hidden.btf.h5", &options, NULL);
+    weft_dataset *dataset = synthetic_dataset_open("hidden.btf.h5");
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    weft_table_directions directions;
+    assert_int_equal(weft_table_directions_create(&material, &directions, NULL), WEFT_OK);
+    for (int x = 0; x < 8; x++) {
+        for (int view = 0; view < layout->view_count; view++) {
+            if (!is_hidden(layout->view[view]))
+                continue;
+            double bright = brightness(&material, &directions, x, view, layout);
+            double near = brightest_neighbour(&material, &directions, x, view, layout);
+            if (bright >= 1.6 * near)
+                fail_msg("texel %d, view %d: %g beside %g", x, view, bright, near);
+        }
+    }
+    weft_table_directions_free(&directions);
+    weft_dataset_close(dataset);
+    weft_material_free(&material);
+}
+
 static void fill_missing(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
 {
     fill_ward(layout, x, y, samples, mask);
@@ -332,6 +406,7 @@ int main(void)
         cmocka_unit_test(number_of_threads_does_not_change_the_bytes),
         cmocka_unit_test(a_material_is_a_sixtieth_of_its_dataset),
         cmocka_unit_test(masked_samples_are_counted_and_not_used),
+        cmocka_unit_test(views_that_do_not_see_a_texel_do_not_glare),
         cmocka_unit_test(a_dataset_without_valid_samples_is_refused_by_name),
         cmocka_unit_test(images_held_out_have_no_influence),
         cmocka_unit_test(every_model_gives_a_material_of_its_shape),
