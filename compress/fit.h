@@ -56,8 +56,8 @@ int weft_fit_affordable_lobes(const weft_bundle *bundle, const weft_samples *sam
 void weft_fit_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                      const weft_fit_options *options, weft_fit_workspace *workspace, weft_fit *fit, double *table);
 
-/* From nothing: tries two starts on the coarse lights for a few passes, refines the better one. `frame` is the frame to
- * begin with. */
+/* From nothing: tries up to three starts on the coarse lights for a few passes, refines the best one. `frame` is the
+ * frame to begin with. */
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table);
 

@@ -107,10 +107,7 @@ WEFT_INLINE expansion expand(const weft_bundle *bundle, const shapes *at, const 
             own.f[1 + 4 * i + k] = linear->x[1 + i] * p;
             own.error[1 + 4 * i + k] = state->delta[1 + i] * p;
         }
-        own.f[4 + 4 * i] = own.error[4 + 4 * i] = lanes_of(0);
     }
-    own.f[1 + 4 * lobes] = lanes_of(0);
-    own.error[1 + 4 * lobes] = lanes_of(1);
     return own;
 }
 

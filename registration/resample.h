@@ -33,8 +33,9 @@ typedef struct weft_resampling {
  * the texel's quadrangle in the photograph, computed exactly. A pixel is itself an average over its square, so nothing
  * is interpolated, no weight is negative and none rings at a glint. Beside the frame only pixels count whose square,
  * and the smear around it, lies in the opening, so that the bright print does not leak in. A texel of which less than
- * half is seen so has no taps, or, where texels are filled, those of its square moved inward until all of it is seen.
- * The caller frees with weft_resampler_free. Errors: WEFT_BAD_INPUT for a size that is not positive; WEFT_SYSTEM. */
+ * a quarter is seen so has no taps, or, where texels are filled, those of its square moved inward until all of it is
+ * seen. The caller frees with weft_resampler_free. Errors: WEFT_BAD_INPUT for a size that is not positive; WEFT_SYSTEM.
+ */
 weft_code weft_resampler_create(const weft_resampling *resampling, int width, int height, weft_resampler *resampler,
                                 weft_error *error);
 void weft_resampler_free(weft_resampler *resampler);

@@ -54,7 +54,7 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
     fprintf(page->html, "; %.4g \u00d7 %.4g tiles across the material", layout->tiles_u, layout->tiles_v);
     if (comparison->weave_on_yarns)
         fprintf(page->html,
-                ", laid so that yarns lie on yarns (a tile begins %.2f tiles to the right of the lower left "
+                ", laid as the fit found its tiles (a tile begins %.2f tiles to the right of the lower left "
                 "corner and %.2f above it)",
                 layout->corner_u, layout->corner_v);
     fputs(".", page->html);
