@@ -10,13 +10,14 @@ static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent =
 static const weft_fit_lobe along_x_start = {.c = {1, 0.1, 0.2}, .log_exponent = 0.4055};
 static const weft_fit_lobe along_y_start = {.c = {0.1, 1, 0.2}, .log_exponent = 0.4055};
 
-enum { START_COUNT = 3, START_PASSES = 6 };
+enum { START_COUNT = 3, START_PASSES = 6, RACE_PASSES = 3 };
 
 #define VANISHED 1e-3       /* part of the energy */
 #define GOOD_ENOUGH 0.1     /* of the energy: no further start is tried below */
 #define CLEARLY_BETTER 0.98 /* times the residual: few passes over few lights tell no finer differences */
 #define START_TOLERANCE 1e-2
 #define HOPELESS 3 /* a start whose first residual is so many times that of the first start is not followed */
+#define BEATEN 1.2 /* a start that has so many times the residual of the best after RACE_PASSES is not, either */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
 
 /* Start number `index`: the mirror and a broad lobe, the same thrown back to the light, or two that are thrown back
@@ -43,6 +44,19 @@ static bool has_vanished_lobe(const weft_trial *trial)
     return false;
 }
 
+/* Follows a start that has been looked at once; one that came after others, to the end only if it does not fall behind
+ * `best`. */
+static void follow(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
+                   weft_fit_workspace *workspace, double best)
+{
+    weft_fit_options race = *options;
+    race.max_passes = RACE_PASSES;
+    if (isfinite(best))
+        weft_workspace_refine(bundle, samples, channel, &race, workspace, 0.1);
+    if (workspace->trial[0].residual < BEATEN * best)
+        weft_workspace_refine(bundle, samples, channel, options, workspace, 0.1);
+}
+
 /* The best start after a few coarse passes, into workspace->trial[0]. */
 static void try_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
                        const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame)
@@ -60,7 +74,7 @@ static void try_starts(const weft_bundle *bundle, const weft_samples *samples, i
         weft_workspace_begin_cold(bundle, samples, channel, options, now);
         first_residual = fmin(first_residual, now->residual);
         if (now->residual <= HOPELESS * first_residual)
-            weft_workspace_refine(bundle, samples, channel, options, workspace, 0.1);
+            follow(bundle, samples, channel, options, workspace, start ? best->residual : INFINITY);
         passes += (now->fit.passes + 3) / 4;
         if (start == 0 || now->residual < CLEARLY_BETTER * best->residual) {
             vanished = has_vanished_lobe(now);
