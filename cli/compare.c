@@ -17,7 +17,7 @@ static const struct argp_option option_table[] = {
     {"weave", KEY_WEAVE, "CLOTH.wv|CLOTH.mc", 0, "Compare this weave or microcylinder cloth, too", 0},
     {"fit", KEY_FIT, NULL, 0, "Fit that weave to the dataset first (see fit-weave); writes REPORT/fitted.wv", 0},
     {"tiles", KEY_TILES, "X,Y", 0,
-     "Tiles of the weave across the material (default: as --fit finds, its file says, or the virtual rig lays it)", 0},
+     "Tiles of a .wv across the material (default: as --fit finds, its file says, or the virtual rig lays it)", 0},
     {"bard", KEY_BARD, "NAME.bard.h5", 0, "Compare what `weft bard` predicted, too", 0},
     {"truth", KEY_TRUTH, "FILE.stitch", 0, "Trace the geometry that the dataset was simulated from, too", 0},
     {"paths", KEY_PATHS, "N", 0, "With --truth: paths of light for each pixel (default: 64)", 0},

@@ -18,7 +18,7 @@ static const struct argp_option option_table[] = {
      1},
     {"weave", KEY_WEAVE, "CLOTH.wv|CLOTH.mc", 0, "Show this weave or microcylinder cloth in mode analytic", 1},
     {"tiles", KEY_TILES, "X,Y", 0,
-     "Tiles of the weave across the material (default: as its file says, else as the virtual rig lays it)", 1},
+     "Tiles of a .wv across the material (default: as its file says, else as the virtual rig lays it)", 1},
     {"mode", KEY_MODE, "MODE[,MODE...]", 0, "raw, compressed, analytic: one pane each; split: all that are given", 1},
     {"layout", KEY_LAYOUT, "LAYOUT", 0,
      "panes (default): side by side; wipe: first mode left of the divider, second right; difference: second - first",

@@ -156,11 +156,9 @@ static double residual_at_contrast(const weft_bundle *bundle, const weft_fit_opt
 }
 
 /* A round that went too far leaves more than the one before: what leaves least is kept. */
-static void keep_best(const weft_bundle *bundle, const weft_fit *fit, double residual, const double *table,
-                      const double *light, weft_light_workspace *own)
+static void keep(const weft_bundle *bundle, const weft_fit *fit, double residual, const double *table,
+                 const double *light, weft_light_workspace *own)
 {
-    if (!(residual < own->least))
-        return;
     own->least = residual;
     own->best = *fit;
     memcpy(own->table_best, table, (size_t)bundle->view_count * sizeof *table);
@@ -173,7 +171,6 @@ weft_samples weft_light_refine(const weft_bundle *bundle, const weft_samples *sa
 {
     weft_fit_options few = *options;
     few.max_passes = PASSES_A_ROUND;
-    own->least = INFINITY;
     double before = INFINITY;
     int passes = 0;
     bool remembers = false;
@@ -181,9 +178,11 @@ weft_samples weft_light_refine(const weft_bundle *bundle, const weft_samples *sa
         weft_samples lit = weft_light_apply(bundle, samples, light, own->cosine);
         weft_fit_refine(bundle, &lit, channel, &few, workspace, fit, table);
         passes += fit->passes;
-        keep_best(bundle, fit, residual_at_contrast(bundle, options, workspace, fit, table), table, light, own);
+        double residual = residual_at_contrast(bundle, options, workspace, fit, table);
+        if (round == 0 || residual < own->least)
+            keep(bundle, fit, residual, table, light, own);
         double gain = before - fit->residual;
-        if (round == most_rounds || (gain >= 0 && gain < options->tolerance * fit->residual))
+        if (round == most_rounds || (gain >= 0 && gain <= options->tolerance * fit->residual))
             break;
         remembers = round > 0 && gain > 0;
         before = fit->residual;
