@@ -4,10 +4,13 @@
 
 WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
 
-/* max(0, product / square), 1 where the square is 0. */
+/* Less than this of a model, and the square of what makes up for it could overflow. */
+#define LEAST_SQUARE 1e-30f
+
+/* max(0, product / square), 1 where the square is nothing. */
 WEFT_INLINE lanes quotient(lanes product, lanes square)
 {
-    lane_bits seen = square > 0.0f;
+    lane_bits seen = square > LEAST_SQUARE;
     return lanes_select(seen, lanes_max(product / lanes_select(seen, square, lanes_of(1)), lanes_of(0)), lanes_of(1));
 }
 
