@@ -7,7 +7,7 @@ demo: program
 	scripts/demo.sh $(build)/cli/weft demo-out
 
 test: build
-	ctest --test-dir $(build) --output-on-failure
+	ctest --test-dir $(build) --output-on-failure -j $(shell nproc)
 
 build: program
 	cmake --build --preset release

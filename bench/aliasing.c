@@ -4,7 +4,7 @@
 #include "../tests/player/aliasing.h"
 #include "../tests/player/stage.h"
 
-#include "btf/colour.h"
+#include "base/colour.h"
 
 #include <stdio.h>
 #include <string.h>

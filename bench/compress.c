@@ -1,7 +1,7 @@
 /* The whole job of `weft compress` on an invented dataset: reading, fitting all levels, writing (docs/benchmarks.md).
  */
 #include "compress/compress.h"
-#include "btf/dataset_blocks.h"
+#include "btf/dataset/blocks.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <argp.h>

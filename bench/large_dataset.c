@@ -1,6 +1,6 @@
 /* Writes a large dataset of invented cloth for timing the whole job: `weft compress` from the page cache, with limits
  * on memory and with kills (docs/compression.md, "Large datasets"). */
-#include "btf/dataset_blocks.h"
+#include "btf/dataset/blocks.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <math.h>

@@ -2,8 +2,8 @@
 #ifndef WEFT_BENCH_MEASURE_H
 #define WEFT_BENCH_MEASURE_H
 
-#include "btf/image.h"
-#include "btf/status.h"
+#include "base/image.h"
+#include "base/status.h"
 
 #include <time.h>
 

@@ -1,12 +1,12 @@
 /* The representation of Daubert et al. 2001 as they stored and fitted it (all floats, the average frame of the
  * geometry, alternation until T changes by less than 0.1) against the material that Weft makes of the same dataset:
  * error and size (docs/benchmarks.md). */
-#include "btf/processor.h"
+#include "base/processor.h"
 #include "compress/compress.h"
-#include "compress/fit.h"
-#include "compress/given_frames.h"
-#include "compress/group_sums.h"
-#include "compress/texel.h"
+#include "compress/fit/fit.h"
+#include "compress/run/given_frames.h"
+#include "compress/run/group_sums.h"
+#include "compress/texel/texel.h"
 
 #include <argp.h>
 #include <math.h>

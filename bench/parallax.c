@@ -2,9 +2,9 @@
  * virtual rig against the dataset that weft simulate makes of the same stitch (docs/geometry.md).
  * Usage: bench_parallax STITCH REGISTERED.btf.h5 SIMULATED.btf.h5 */
 #include "bench/periodic_shift.h"
-#include "btf/dataset.h"
-#include "btf/direction.h"
-#include "geometry/stitch_sample.h"
+#include "btf/dataset/dataset.h"
+#include "btf/direction/direction.h"
+#include "geometry/light/stitch_sample.h"
 
 #include <stdio.h>
 #include <stdlib.h>

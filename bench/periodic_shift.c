@@ -1,6 +1,6 @@
 #include "bench/periodic_shift.h"
 
-#include "btf/vector.h"
+#include "base/vector.h"
 
 #include <complex.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_BENCH_PERIODIC_SHIFT_H
 #define WEFT_BENCH_PERIODIC_SHIFT_H
 
-#include "btf/status.h"
+#include "base/status.h"
 
 /* In pixels to the right and upward (row 0 is the top row), to 1/128. */
 typedef struct periodic_shift {

@@ -1,11 +1,11 @@
 /* Frame times of the player, each mode at 730 x 400, from the scene to what a window would show: median of FRAMES
  * frames by the wall and by the GPU's own timestamps, and the mean processor time. Usage: bench_player [NAME.weft]
  * [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
-#include "player/player.h"
+#include "player/draw/player.h"
 #include "bench/measure.h"
-#include "player/context.h"
-#include "player/environment.h"
-#include "reflectance/lafortune.h"
+#include "player/gl/context.h"
+#include "player/scene/environment.h"
+#include "reflectance/lafortune/lafortune.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -187,7 +187,7 @@ static double memory_speed(void)
     return 2 * 1e-6 * COPIED / best_ms;
 }
 
-/* Eight texels of packed words and three entries of each table (player/material_texture.h). */
+/* Eight texels of packed words and three entries of each table (player/texture/material_texture.h). */
 static int fetched_bytes(const weft_material *material)
 {
     int words = 16 * (1 + (3 * material->lobe_count + 1) / 2);

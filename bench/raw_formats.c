@@ -2,9 +2,9 @@
  * frame, and the errors of samples and of a picture against half floats. Usage: bench_raw_formats NAME.btf.h5 */
 #include "../tests/player/bc6h_decode.h"
 #include "bench/measure.h"
-#include "player/canvas.h"
-#include "player/context.h"
-#include "player/player_parts.h"
+#include "player/draw/canvas.h"
+#include "player/draw/player_parts.h"
+#include "player/gl/context.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 /* Evaluations per second on one core of the functions that the stages call most. Usage: bench_reflectance [WEAVE.wv
  * ...] */
-#include "btf/direction.h"
-#include "btf/processor.h"
-#include "reflectance/lafortune.h"
-#include "reflectance/woven_batch.h"
+#include "base/processor.h"
+#include "btf/direction/direction.h"
+#include "reflectance/lafortune/lafortune.h"
+#include "reflectance/weave/batch.h"
 
 #include <stdint.h>
 #include <stdio.h>

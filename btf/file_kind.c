@@ -1,6 +1,6 @@
 #include "btf/file_kind.h"
 
-#include "btf/material_format.h"
+#include "btf/material/format.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_BTF_FILE_KIND_H
 #define WEFT_BTF_FILE_KIND_H
 
-#include "btf/status.h"
+#include "base/status.h"
 
 typedef enum weft_file_kind {
     WEFT_FILE_SESSION,       /* a folder */

@@ -2,9 +2,9 @@
 
 #include "capture/photograph_writer.h"
 #include "capture/resume.h"
-#include "capture/rig_virtual.h"
 #include "capture/shooting.h"
-#include "capture/truth.h"
+#include "capture/virtual/ground_truth.h"
+#include "capture/virtual/virtual_rig.h"
 
 #include <stdlib.h>
 #include <string.h>

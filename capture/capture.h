@@ -2,7 +2,7 @@
 #ifndef WEFT_CAPTURE_CAPTURE_H
 #define WEFT_CAPTURE_CAPTURE_H
 
-#include "btf/progress.h"
+#include "base/progress.h"
 #include "capture/setup.h"
 
 #include <signal.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_CAPTURE_EXPOSURE_H
 #define WEFT_CAPTURE_EXPOSURE_H
 
-#include "btf/session.h"
+#include "btf/session/session.h"
 
 /* The pixels that the meter looks at: the opening and the white patches, where the calibrated camera expects them. */
 typedef struct weft_meter {

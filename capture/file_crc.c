@@ -1,6 +1,6 @@
 #include "capture/file_crc.h"
 
-#include "btf/atomic_file.h"
+#include "base/atomic_file.h"
 
 #include <stdlib.h>
 #include <zlib.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_CAPTURE_FILE_CRC_H
 #define WEFT_CAPTURE_FILE_CRC_H
 
-#include "btf/status.h"
+#include "base/status.h"
 
 #include <stdint.h>
 

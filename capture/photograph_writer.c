@@ -1,7 +1,7 @@
 #include "capture/photograph_writer.h"
 
-#include "btf/atomic_file.h"
-#include "btf/image.h"
+#include "base/atomic_file.h"
+#include "base/image.h"
 #include "capture/file_crc.h"
 
 #include <limits.h>

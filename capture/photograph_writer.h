@@ -2,7 +2,7 @@
 #ifndef WEFT_CAPTURE_PHOTOGRAPH_WRITER_H
 #define WEFT_CAPTURE_PHOTOGRAPH_WRITER_H
 
-#include "btf/session.h"
+#include "btf/session/session.h"
 
 typedef struct weft_photograph_writer weft_photograph_writer;
 

@@ -1,6 +1,6 @@
 #include "capture/plan.h"
 
-#include "btf/csv.h"
+#include "base/csv.h"
 
 #include <stdlib.h>
 #include <string.h>

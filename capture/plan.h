@@ -2,7 +2,7 @@
 #ifndef WEFT_CAPTURE_PLAN_H
 #define WEFT_CAPTURE_PLAN_H
 
-#include "btf/session.h"
+#include "btf/session/session.h"
 
 typedef struct weft_plan {
     int shot_count;

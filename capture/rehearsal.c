@@ -1,7 +1,7 @@
 #include "capture/capture.h"
 
-#include "capture/rig_virtual.h"
 #include "capture/shooting.h"
+#include "capture/virtual/virtual_rig.h"
 
 #include <stdlib.h>
 #include <string.h>

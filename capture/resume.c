@@ -1,6 +1,6 @@
 #include "capture/resume.h"
 
-#include "btf/atomic_file.h"
+#include "base/atomic_file.h"
 #include "capture/file_crc.h"
 
 #include <dirent.h>

@@ -2,8 +2,8 @@
 #ifndef WEFT_CAPTURE_RESUME_H
 #define WEFT_CAPTURE_RESUME_H
 
-#include "btf/progress.h"
-#include "btf/session.h"
+#include "base/progress.h"
+#include "btf/session/session.h"
 
 /* A session that this process alone may write to. */
 typedef struct weft_held_session {

@@ -1,12 +1,12 @@
 /* The rig: a camera, a stage and a light, each behind a small interface of its own, so that a back end can be written
- * and replaced device by device. The virtual rig (capture/rig_virtual.h) is one back end.
+ * and replaced device by device. The virtual rig (capture/virtual/virtual_rig.h) is one back end.
  *
  * Every call blocks until the device has done it. Errors: WEFT_SYSTEM with a message that names the device. No
  * interface is thread-safe: the capture loop calls them from one thread. */
 #ifndef WEFT_CAPTURE_RIG_H
 #define WEFT_CAPTURE_RIG_H
 
-#include "btf/session.h"
+#include "btf/session/session.h"
 
 typedef struct weft_rig_camera {
     void *device;

@@ -1,7 +1,7 @@
 #include "capture/settings.h"
 
-#include "btf/json_text.h"
-#include "geometry/stitch_sample.h"
+#include "base/json_text.h"
+#include "geometry/light/stitch_sample.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -3,10 +3,10 @@
 #ifndef WEFT_CAPTURE_SETTINGS_H
 #define WEFT_CAPTURE_SETTINGS_H
 
-#include "btf/session.h"
+#include "btf/session/session.h"
 
 typedef struct weft_rig_settings {
-    /* The camera as calibrated (btf/camera.h); the principal point is the centre of the photograph. */
+    /* The camera as calibrated (btf/session/camera.h); the principal point is the centre of the photograph. */
     double width_px, height_px, focal_length_px;
     double k1, k2;
     double vignetting_r2, vignetting_r4, vignetting_r6;

@@ -3,8 +3,8 @@
 #define WEFT_CAPTURE_SETUP_H
 
 #include "capture/settings.h"
-#include "capture/virtual_sample.h"
-#include "capture/virtual_world.h"
+#include "capture/virtual/sample.h"
+#include "capture/virtual/world.h"
 
 typedef struct weft_capture_request {
     const char *folder; /* of the session */

@@ -1,6 +1,6 @@
-#include "study/bard.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
+#include "study/bard/predict.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 #include "cli/command.h"
-#include "btf/json_text.h"
+#include "base/json_text.h"
 #include "cli/arguments.h"
 
 #include <limits.h>

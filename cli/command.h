@@ -2,8 +2,8 @@
 #ifndef WEFT_CLI_COMMAND_H
 #define WEFT_CLI_COMMAND_H
 
-#include "btf/progress.h"
-#include "btf/status.h"
+#include "base/progress.h"
+#include "base/status.h"
 
 #include <argp.h>
 #include <stdbool.h>

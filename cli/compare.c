@@ -1,4 +1,4 @@
-#include "study/compare.h"
+#include "study/compare/compare.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 

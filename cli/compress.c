@@ -1,8 +1,8 @@
 #include "compress/compress.h"
-#include "btf/atomic_file.h"
+#include "base/atomic_file.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "study/model_report.h"
+#include "study/inspect/model_report.h"
 
 #include <limits.h>
 #include <stdio.h>

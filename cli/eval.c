@@ -1,7 +1,7 @@
-#include "btf/atomic_file.h"
+#include "base/atomic_file.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "study/model.h"
+#include "study/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ typedef struct eval_command {
     conversion files;
     const char *directions;
     weft_model_options options;
-    weft_weave_parameter parameter[PARAMETER_LIMIT];
+    weft_parameter parameter[PARAMETER_LIMIT];
 } eval_command;
 
 enum { KEY_NOISE = 0x2000, KEY_AS_PRINTED };
@@ -49,7 +49,7 @@ static void add_parameter(eval_command *command, char *argument, struct argp_sta
     if (count == 2)
         argp_error(state, "--set %s needs one number or three", argument);
     weft_rgb colour = count == 1 ? (weft_rgb){rgb[0], rgb[0], rgb[0]} : (weft_rgb){rgb[0], rgb[1], rgb[2]};
-    command->parameter[command->options.parameter_count++] = (weft_weave_parameter){argument, colour};
+    command->parameter[command->options.parameter_count++] = (weft_parameter){argument, colour};
 }
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)

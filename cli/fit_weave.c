@@ -1,7 +1,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "study/fit_weave_dataset.h"
-#include "study/fit_weave_origin.h"
+#include "study/fit_weave/dataset.h"
+#include "study/fit_weave/origin.h"
 
 #include <math.h>
 #include <stdio.h>

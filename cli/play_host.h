@@ -3,9 +3,9 @@
 #define WEFT_CLI_PLAY_HOST_H
 
 #include "cli/scene_load.h"
-#include "player/application.h"
-#include "player/space_mouse.h"
-#include "player/watch.h"
+#include "player/window/application.h"
+#include "player/window/space_mouse/space_mouse.h"
+#include "player/window/watch.h"
 
 typedef struct play_host {
     scene_options *scene;

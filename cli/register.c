@@ -1,7 +1,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 #include "registration/registration.h"
-#include "registration/report_tables.h"
+#include "registration/report/tables.h"
 
 #include <limits.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "cli/scene_load.h"
 #include "cli/sequence.h"
 
-#include "player/context.h"
+#include "player/gl/context.h"
 
 typedef struct render_command {
     scene_options scene;

@@ -1,6 +1,6 @@
 #include "cli/scene_errors.h"
 
-#include "study/visible_error.h"
+#include "study/error/visible_error.h"
 
 #include <math.h>
 #include <stdio.h>

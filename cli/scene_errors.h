@@ -2,7 +2,7 @@
 #ifndef WEFT_CLI_SCENE_ERRORS_H
 #define WEFT_CLI_SCENE_ERRORS_H
 
-#include "player/settings.h"
+#include "player/settings/settings.h"
 
 enum { SCENE_ERRORS_SIZE = 256 };
 

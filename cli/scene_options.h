@@ -3,7 +3,7 @@
 #define WEFT_CLI_SCENE_OPTIONS_H
 
 #include "cli/command.h"
-#include "player/settings.h"
+#include "player/settings/settings.h"
 
 enum { SCENE_MAX_OPTIONS = 256 };
 

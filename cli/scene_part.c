@@ -1,10 +1,10 @@
 #include "cli/scene_part.h"
 
-#include "btf/dataset_fingerprint.h"
+#include "btf/dataset/fingerprint.h"
 #include "btf/file_kind.h"
-#include "capture/virtual_cloth.h"
-#include "player/dataset_load.h"
-#include "reflectance/microcylinder_file.h"
+#include "capture/virtual/cloth.h"
+#include "player/window/dataset_load.h"
+#include "reflectance/microcylinder/file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #define WEFT_CLI_SCENE_PART_H
 
 #include "cli/scene_options.h"
-#include "player/loader.h"
+#include "player/window/loader.h"
 
 typedef enum scene_slot {
     SCENE_MATERIAL,

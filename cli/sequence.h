@@ -3,7 +3,7 @@
 #define WEFT_CLI_SEQUENCE_H
 
 #include "cli/scene_options.h"
-#include "player/path.h"
+#include "player/settings/path.h"
 
 /* Whether the name holds exactly one place for a number, %d or %04d, and no other '%'. Pure. */
 bool sequence_is_pattern(const char *pattern);

@@ -1,8 +1,8 @@
-#include "btf/csv.h"
-#include "btf/direction.h"
+#include "base/csv.h"
+#include "btf/direction/direction.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "geometry/acquisition.h"
+#include "geometry/acquisition/acquisition.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "study/tile.h"
+#include "study/tile/tile.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 

@@ -1,5 +1,5 @@
 #include "cli/describe.h"
-#include "study/inspect.h"
+#include "study/inspect/inspect.h"
 
 int command_verify(int argc, char **argv)
 {

@@ -3,9 +3,11 @@
 find_program(WEFT_NEON_COMPILER aarch64-linux-gnu-gcc)
 find_program(WEFT_NEON_RUNNER qemu-aarch64)
 
-# weft_neon_program(NAME file...): from plain C sources, some of which may use btf/lanes.h, without libraries. Path: ${NAME}_PATH.
-function(weft_neon_program name)
-    set(flags -std=c17 -D_GNU_SOURCE -I${CMAKE_SOURCE_DIR} -O3 -Wall -Wextra -Werror -fno-math-errno
+# weft_neon_program(NAME file...): from plain C sources, some of which may use base/lanes.h, without libraries. Path: ${NAME}_PATH.
+function(weft_neon_program name room)
+    weft_target_of(target ${room})
+    set(shown "-I$<JOIN:$<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>,$<SEMICOLON>-I>")
+    set(flags -std=c17 -D_GNU_SOURCE -I${WEFT_INCLUDE}/inside -O3 -Wall -Wextra -Werror -fno-math-errno
         -DWEFT_INSTRUCTION_SET=baseline -ffp-contract=fast -fno-trapping-math -Wno-psabi)
     set(objects)
     foreach(source ${ARGN})
@@ -13,7 +15,8 @@ function(weft_neon_program name)
         string(REPLACE "/" "_" object ${object})
         set(object ${CMAKE_CURRENT_BINARY_DIR}/${name}_${object}.o)
         add_custom_command(OUTPUT ${object} DEPENDS ${source} DEPFILE ${object}.d
-            COMMAND ${WEFT_NEON_COMPILER} ${flags} -MD -MF ${object}.d -MT ${object} -c ${source} -o ${object})
+            COMMAND ${WEFT_NEON_COMPILER} "${shown}" ${flags} -MD -MF ${object}.d -MT ${object} -c ${source} -o ${object}
+            COMMAND_EXPAND_LISTS)
         list(APPEND objects ${object})
     endforeach()
     set(program ${CMAKE_CURRENT_BINARY_DIR}/${name})

@@ -1,14 +1,14 @@
 #include "compress/compress.h"
 
-#include "btf/dataset_fingerprint.h"
-#include "btf/material_models.h"
-#include "btf/processor.h"
-#include "compress/budget.h"
-#include "compress/given_frames.h"
-#include "compress/memory.h"
-#include "compress/opacity.h"
-#include "compress/sparse_material.h"
-#include "compress/table_pca.h"
+#include "base/processor.h"
+#include "btf/dataset/fingerprint.h"
+#include "btf/material/models.h"
+#include "compress/run/budget.h"
+#include "compress/run/given_frames.h"
+#include "compress/run/memory.h"
+#include "compress/run/opacity.h"
+#include "compress/run/table_pca.h"
+#include "compress/sparse/material.h"
 
 #include <inttypes.h>
 #include <jansson.h>
@@ -293,7 +293,7 @@ static weft_code fit_dense(fitting *of, weft_material *material, weft_compress_r
     return WEFT_OK;
 }
 
-/* Fields, their halves and the search of compress/sparse_search.h, from above. */
+/* Fields, their halves and the search of compress/sparse/search.h, from above. */
 static uint64_t sparse_bytes(const weft_dataset_layout *layout)
 {
     uint64_t texels = (uint64_t)layout->width * (uint64_t)layout->height, threads = (uint64_t)omp_get_max_threads();

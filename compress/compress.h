@@ -2,12 +2,12 @@
 #ifndef WEFT_COMPRESS_COMPRESS_H
 #define WEFT_COMPRESS_COMPRESS_H
 
-#include "btf/dataset.h"
-#include "btf/material.h"
-#include "btf/progress.h"
-#include "compress/bundle.h"
-#include "compress/frame_choice.h"
-#include "compress/note.h"
+#include "base/progress.h"
+#include "btf/dataset/dataset.h"
+#include "btf/material/material.h"
+#include "compress/fit/bundle.h"
+#include "compress/run/note.h"
+#include "compress/texel/frame_choice.h"
 
 #include <stdbool.h>
 

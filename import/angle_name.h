@@ -2,7 +2,7 @@
 #ifndef WEFT_IMPORT_ANGLE_NAME_H
 #define WEFT_IMPORT_ANGLE_NAME_H
 
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 
 #include <stdbool.h>
 

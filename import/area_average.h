@@ -2,7 +2,7 @@
 #ifndef WEFT_IMPORT_AREA_AVERAGE_H
 #define WEFT_IMPORT_AREA_AVERAGE_H
 
-#include "btf/image.h"
+#include "base/image.h"
 
 /* Every pixel of `result` (allocated, no larger than `image`) becomes the mean of `image` over the area it covers;
  * pixels that are covered in part count by that part. touched [result height][width] = whether any pixel with flagged

@@ -2,8 +2,8 @@
 #ifndef WEFT_IMPORT_COLLECTION_H
 #define WEFT_IMPORT_COLLECTION_H
 
-#include "btf/dataset.h"
-#include "btf/lines.h"
+#include "base/lines.h"
+#include "btf/dataset/dataset.h"
 
 typedef struct weft_photograph {
     char *name; /* of the file, relative to the folder; where it is missing, what it should be called */

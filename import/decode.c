@@ -1,7 +1,7 @@
 #include "import/decode.h"
 
-#include "btf/colour.h"
-#include "btf/image.h"
+#include "base/colour.h"
+#include "base/image.h"
 #include "import/area_average.h"
 
 #include <math.h>

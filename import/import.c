@@ -1,10 +1,10 @@
 #include "import/import.h"
 
-#include "btf/image.h"
+#include "base/image.h"
 #include "import/collection.h"
 #include "import/decode.h"
+#include "import/import_provenance.h"
 #include "import/layout.h"
-#include "import/provenance.h"
 
 #include <stdlib.h>
 

@@ -7,9 +7,9 @@
 #ifndef WEFT_IMPORT_IMPORT_H
 #define WEFT_IMPORT_IMPORT_H
 
-#include "btf/dataset.h"
-#include "btf/lines.h"
-#include "btf/progress.h"
+#include "base/lines.h"
+#include "base/progress.h"
+#include "btf/dataset/dataset.h"
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 #include "import/far_photograph.h"
 
-#include "btf/csv.h"
+#include "base/csv.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "registration/photographs.h"
 
-#include "btf/image.h"
+#include "base/image.h"
 
 #include <limits.h>
 #include <math.h>

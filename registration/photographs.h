@@ -2,7 +2,7 @@
 #ifndef WEFT_REGISTRATION_PHOTOGRAPHS_H
 #define WEFT_REGISTRATION_PHOTOGRAPHS_H
 
-#include "registration/prediction.h"
+#include "registration/pose/prediction.h"
 #include "registration/survey.h"
 
 #include <stddef.h>

@@ -1,6 +1,6 @@
 #include "registration/rectify.h"
 
-#include "registration/resample.h"
+#include "registration/resample/resample.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_REGISTRATION_RECTIFY_H
 #define WEFT_REGISTRATION_RECTIFY_H
 
-#include "btf/dataset.h"
+#include "btf/dataset/dataset.h"
 #include "registration/registration.h"
 
 /* What the stays of a registration share. */

@@ -1,7 +1,7 @@
 #include "registration/registration.h"
 
 #include "registration/rectify.h"
-#include "registration/report.h"
+#include "registration/report/report.h"
 #include "registration/white_estimate.h"
 
 #include <stdio.h>

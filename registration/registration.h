@@ -2,10 +2,10 @@
 #ifndef WEFT_REGISTRATION_REGISTRATION_H
 #define WEFT_REGISTRATION_REGISTRATION_H
 
-#include "btf/progress.h"
+#include "base/progress.h"
 #include "registration/photographs.h"
-#include "registration/pose_chain.h"
-#include "registration/radiometry.h"
+#include "registration/pose/pose_chain.h"
+#include "registration/radiometry/radiometry.h"
 
 typedef struct weft_registration_settings {
     int width, height; /* texels of the opening */

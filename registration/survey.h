@@ -2,7 +2,7 @@
 #ifndef WEFT_REGISTRATION_SURVEY_H
 #define WEFT_REGISTRATION_SURVEY_H
 
-#include "btf/session.h"
+#include "btf/session/session.h"
 
 /* Photographs taken while the camera stood still. */
 typedef struct weft_stay {

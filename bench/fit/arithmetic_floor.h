@@ -8,7 +8,7 @@
 #ifndef WEFT_BENCH_FIT_ARITHMETIC_FLOOR_H
 #define WEFT_BENCH_FIT_ARITHMETIC_FLOOR_H
 
-#include "btf/processor.h"
+#include "base/processor.h"
 
 /* Multiply-adds of a pass for one sample: 31, 71 and 124 for 1, 2 and 3 lobes. */
 int pass_multiply_adds(int lobe_count);

@@ -1,4 +1,4 @@
-#include "btf/lanes.h"
+#include "base/lanes.h"
 
 /* Enough chains to hide the latency of a multiply-add, few enough to stay in sixteen registers. */
 enum { CHAINS = 12 };

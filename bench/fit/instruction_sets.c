@@ -1,6 +1,6 @@
+#include "base/processor.h"
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"
-#include "btf/processor.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Speed and quality of the fit, against general solvers on the same texels (docs/benchmarks.md). */
+#include "base/processor.h"
 #include "bench/fit/sections.h"
-#include "btf/processor.h"
 
 #include <argp.h>
 #include <stdio.h>

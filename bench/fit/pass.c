@@ -1,7 +1,7 @@
 #include "bench/fit/arithmetic_floor.h"
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"
-#include "compress/kernels.h"
+#include "compress/fit/kernels.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 #include "bench/fit/texels.h"
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 
 #include <errno.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #define WEFT_BENCH_FIT_TEXELS_H
 
 #include "bench/fit/problem.h"
-#include "compress/fit.h"
+#include "compress/fit/fit.h"
 #include "tests/support/synthetic_texel.h"
 
 typedef struct texel_source {

@@ -1,5 +1,5 @@
-#include "btf/dataset.h"
-#include "tests/btf/fuzz.h"
+#include "btf/dataset/dataset.h"
+#include "tests/support/fuzz.h"
 #include "tests/support/tiny_dataset.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-#include "tests/btf/fuzz.h"
 #include "tests/btf/weft_bytes.h"
+#include "tests/support/fuzz.h"
 
 void fuzz_write_seed(const char *path)
 {

@@ -1,6 +1,6 @@
-#include "btf/material.h"
-#include "tests/btf/fuzz.h"
+#include "btf/material/material.h"
 #include "tests/btf/weft_bytes.h"
+#include "tests/support/fuzz.h"
 
 #include <stdlib.h>
 

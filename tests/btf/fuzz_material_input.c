@@ -1,7 +1,7 @@
 /* A .weft file of whatever seed. */
-#include "btf/material.h"
-#include "tests/btf/fuzz.h"
+#include "btf/material/material.h"
 #include "tests/btf/weft_bytes.h"
+#include "tests/support/fuzz.h"
 
 #include <stdlib.h>
 #include <string.h>

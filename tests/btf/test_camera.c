@@ -1,4 +1,4 @@
-#include "btf/camera.h"
+#include "btf/session/camera.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

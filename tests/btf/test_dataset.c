@@ -1,6 +1,6 @@
-#include "btf/dataset.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "btf/dataset/dataset.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/tiny_dataset.h"
 
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* Datasets that cannot be used, and disks that cannot hold them. */
-#include "btf/dataset.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "btf/dataset/dataset.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/tiny_dataset.h"
 
 #include <hdf5.h>

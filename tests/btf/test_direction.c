@@ -1,6 +1,6 @@
-#include "btf/csv.h"
-#include "btf/direction.h"
-#include "tests/btf/cmocka_all.h"
+#include "base/csv.h"
+#include "btf/direction/direction.h"
+#include "tests/support/cmocka_all.h"
 
 static void ubo81_equals_the_reference_table(void **state)
 {

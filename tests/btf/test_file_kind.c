@@ -1,7 +1,7 @@
 /* What a file is told to be, whatever its name. */
 #include "btf/file_kind.h"
 
-#include "cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdio.h>
 #include <string.h>

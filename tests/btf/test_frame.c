@@ -1,6 +1,6 @@
-#include "btf/direction.h"
-#include "btf/frame_sum.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "btf/direction/frame.h"
+#include "tests/support/cmocka_all.h"
 
 static weft_vec3 tilted(int theta_deg, int phi_deg)
 {

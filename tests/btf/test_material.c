@@ -1,7 +1,7 @@
-#include "btf/material_models.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "btf/material/models.h"
 #include "tests/btf/weft_bytes.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Sections that leave out the texels without such a part. */
-#include "btf/material_models.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "btf/material/models.h"
 #include "tests/btf/weft_bytes.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
-#include "btf/atomic_file.h"
-#include "btf/image.h"
-#include "btf/session.h"
+#include "base/atomic_file.h"
+#include "base/image.h"
+#include "btf/session/session.h"
 
 #include <setjmp.h>
 #include <signal.h>

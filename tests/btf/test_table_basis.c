@@ -1,8 +1,8 @@
 /* Tables stored by components: their decoding, and files that hold them. */
-#include "btf/direction.h"
-#include "btf/material.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "btf/material/material.h"
 #include "tests/btf/weft_bytes.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdio.h>
 #include <stdlib.h>

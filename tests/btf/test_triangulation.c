@@ -1,8 +1,8 @@
 /* Built twice: in double, and in single precision. */
-#include "btf/csv.h"
-#include "btf/direction.h"
-#include "btf/triangulation.h"
-#include "tests/btf/cmocka_all.h"
+#include "base/csv.h"
+#include "btf/direction/direction.h"
+#include "btf/direction/triangulation.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "tests/btf/weft_bytes.h"
 
-#include "btf/direction.h"
-#include "btf/material_models.h"
+#include "btf/direction/direction.h"
+#include "btf/material/models.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 #include "tests/capture/small_session.h"
 
-#include "btf/image.h"
+#include "base/image.h"
 #include "capture/file_crc.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <limits.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* The virtual rig with a sample that has depth. */
 #include "capture/capture.h"
-#include "capture/rig_virtual.h"
-#include "capture/truth.h"
-#include "tests/btf/cmocka_all.h"
+#include "capture/virtual/ground_truth.h"
+#include "capture/virtual/virtual_rig.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 #include "capture/exposure.h"
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 #include "capture/plan.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
 #include "tests/capture/small_session.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <limits.h>
 #include <signal.h>

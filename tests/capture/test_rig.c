@@ -1,6 +1,6 @@
-#include "capture/random.h"
-#include "capture/rig_virtual.h"
-#include "tests/btf/cmocka_all.h"
+#include "capture/virtual/random.h"
+#include "capture/virtual/virtual_rig.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
-#include "btf/image.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "base/image.h"
 #include "tests/capture/small_session.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <fcntl.h>
 #include <limits.h>

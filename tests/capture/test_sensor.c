@@ -1,6 +1,6 @@
-#include "capture/random.h"
-#include "capture/virtual_sensor.h"
-#include "tests/btf/cmocka_all.h"
+#include "capture/virtual/random.h"
+#include "capture/virtual/sensor.h"
+#include "tests/support/cmocka_all.h"
 
 #include <omp.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "capture/settings.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,9 @@
-#include "capture/truth.h"
+#include "capture/virtual/ground_truth.h"
 
-#include "btf/image.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "base/image.h"
 #include "tests/capture/small_session.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <hdf5.h>
 #include <limits.h>

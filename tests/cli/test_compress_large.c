@@ -1,8 +1,8 @@
 /* weft compress on a dataset of several blocks: killed, short of memory, with a full disk, with several threads. The
  * bytes of the material must always be the same. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/atomic_file.h"
+#include "base/atomic_file.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
 

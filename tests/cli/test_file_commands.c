@@ -1,6 +1,6 @@
 /* eval, info, verify and import as a user runs them. */
-#include "btf/image.h"
-#include "btf/material.h"
+#include "base/image.h"
+#include "btf/material/material.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

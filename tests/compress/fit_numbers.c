@@ -2,9 +2,9 @@
  * compared. Plain C without libraries: it is also cross-compiled. Exit code 1, saying why, where a fit contradicts the
  * samples or denormal floats are handled wrongly; 77 where this processor lacks the
  * instruction set of WEFT_ISA. */
-#include "btf/direction.h"
-#include "btf/processor.h"
-#include "compress/fit.h"
+#include "base/processor.h"
+#include "btf/direction/direction.h"
+#include "compress/fit/fit.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <float.h>

@@ -1,9 +1,9 @@
 /* The least error in a file of given size. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/material_models.h"
+#include "btf/material/models.h"
 #include "compress/compress.h"
-#include "reflectance/lafortune.h"
+#include "reflectance/lafortune/lafortune.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
 

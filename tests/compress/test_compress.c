@@ -1,9 +1,9 @@
 /* Whole datasets to whole materials. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/atomic_file.h"
+#include "base/atomic_file.h"
 #include "compress/compress.h"
-#include "reflectance/lafortune.h"
+#include "reflectance/lafortune/lafortune.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
 

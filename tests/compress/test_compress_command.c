@@ -1,8 +1,8 @@
 /* weft compress as a user runs it. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/image.h"
-#include "btf/material.h"
+#include "base/image.h"
+#include "btf/material/material.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
 

@@ -1,7 +1,7 @@
 /* Texels that are no texels: whatever comes in, the fit is finite and does not shine where the samples are dark. */
 #include "texel_fixture.h"
 
-#include "compress/pack.h"
+#include "compress/texel/pack.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -15,7 +15,8 @@ static void assert_sensible(texel_fixture *fixture, const weft_fit *fit, int cha
     for (int i = 0; i < fit->lobe_count; i++) {
         const weft_fit_lobe *lobe = &fit->lobe[i];
         assert_true(isfinite(lobe->amplitude) && lobe->amplitude >= 0);
-        assert_true(lobe->log_exponent >= 0 && lobe->log_exponent <= log(weft_fit_default_options().max_exponent) + 1e-9);
+        assert_true(lobe->log_exponent >= 0 &&
+                    lobe->log_exponent <= log(weft_fit_default_options().max_exponent) + 1e-9);
         for (int k = 0; k < 3; k++)
             assert_true(fabs(lobe->c[k]) <= 1 + 1e-9);
     }

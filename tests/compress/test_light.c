@@ -1,8 +1,8 @@
 /* The light table. */
 #include "texel_fixture.h"
 
-#include "compress/light.h"
-#include "compress/pack.h"
+#include "compress/fit/light.h"
+#include "compress/texel/pack.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* S of samples at the extremes, and of datasets with next to no directions: what comes out is finite and black where
  * nothing was seen. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
 #include "compress/compress.h"
-#include "reflectance/lafortune.h"
+#include "reflectance/lafortune/lafortune.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
 

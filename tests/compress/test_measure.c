@@ -1,7 +1,7 @@
 /* Percentiles by histogram against sorted values. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "compress/measure.h"
+#include "compress/fit/measure.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* Cloth with holes through the whole fit: opacity and reflectance of every level. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 #include "compress/compress.h"
-#include "reflectance/lafortune.h"
+#include "reflectance/lafortune/lafortune.h"
 
 #include <stdlib.h>
 #include <string.h>

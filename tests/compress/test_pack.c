@@ -1,8 +1,8 @@
 /* What rounding to half floats and 8 bits costs. */
 #include "texel_fixture.h"
 
-#include "compress/pack.h"
-#include "compress/workspace.h"
+#include "compress/fit/workspace.h"
+#include "compress/texel/pack.h"
 
 /* Error of a packed fit over the error of the fit. */
 static double loss(texel_fixture *fixture, const weft_fit_options *options, const weft_fit *fit)

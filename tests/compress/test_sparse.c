@@ -1,10 +1,10 @@
 /* Few images: the model that borrows from its neighbours, and near lights. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
 #include "compress/compress.h"
-#include "compress/sparse.h"
+#include "compress/sparse/sparse.h"
 #include "import/import.h"
-#include "reflectance/lafortune.h"
+#include "reflectance/lafortune/lafortune.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
 

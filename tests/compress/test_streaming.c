@@ -1,10 +1,10 @@
 /* The parts of compressing out of core, each by itself. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/dataset_fingerprint.h"
-#include "compress/checkpoint.h"
-#include "compress/memory.h"
-#include "compress/pyramid.h"
+#include "btf/dataset/fingerprint.h"
+#include "compress/run/checkpoint.h"
+#include "compress/run/memory.h"
+#include "compress/run/pyramid.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/tiny_dataset.h"
 

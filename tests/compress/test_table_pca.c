@@ -1,7 +1,7 @@
 /* Tables by principal components, from dataset to material. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 #include "compress/compress.h"
 #include "tests/support/synthetic_dataset.h"
 

@@ -1,9 +1,9 @@
 /* The smallest model that meets a target error. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/material_models.h"
+#include "btf/material/models.h"
 #include "compress/compress.h"
-#include "compress/model_ladder.h"
+#include "compress/texel/model_ladder.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
 

@@ -2,10 +2,10 @@
 #ifndef WEFT_TESTS_TEXEL_FIXTURE_H
 #define WEFT_TESTS_TEXEL_FIXTURE_H
 
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/direction.h"
-#include "compress/fit.h"
+#include "btf/direction/direction.h"
+#include "compress/fit/fit.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Mutated stitch files: refused with a message, or made into a mesh whose numbers are finite. */
-#include "geometry/tile_mesh.h"
-#include "tests/btf/fuzz.h"
+#include "geometry/yarn/tile_mesh.h"
 #include "tests/geometry/stitch_text.h"
+#include "tests/support/fuzz.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "tests/geometry/shipped_stitches.h"
 
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdio.h>
 

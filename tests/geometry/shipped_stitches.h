@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_SHIPPED_STITCHES_H
 #define WEFT_TESTS_SHIPPED_STITCHES_H
 
-#include "geometry/tile_mesh.h"
+#include "geometry/yarn/tile_mesh.h"
 
 enum { SHIPPED_STITCHES = 8 };
 extern const char *const shipped_stitch[SHIPPED_STITCHES];

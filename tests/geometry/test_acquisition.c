@@ -1,9 +1,9 @@
 /* Datasets simulated from stitches. */
-#include "btf/dataset.h"
-#include "geometry/acquisition.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
+#include "btf/dataset/dataset.h"
+#include "geometry/acquisition/acquisition.h"
 #include "tests/geometry/shipped_stitches.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <math.h>
 #include <omp.h>

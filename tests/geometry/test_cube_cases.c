@@ -1,6 +1,6 @@
 /* All 256 cases, alone and against every neighbour. */
-#include "geometry/cube_cases.h"
-#include "tests/btf/cmocka_all.h"
+#include "geometry/yarn/cube_cases.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdbool.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* The geometry of stitches laid over surfaces. */
-#include "geometry/draped_cloth.h"
-#include "geometry/illumination.h"
-#include "geometry/sample_sequence.h"
-#include "tests/btf/cmocka_all.h"
+#include "geometry/drape/draped_cloth.h"
+#include "geometry/light/illumination.h"
+#include "geometry/light/sample_sequence.h"
 #include "tests/geometry/shipped_stitches.h"
+#include "tests/support/cmocka_all.h"
 
 #include <string.h>
 

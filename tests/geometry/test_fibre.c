@@ -1,7 +1,7 @@
 /* The reflectance of a yarn's surface. */
-#include "btf/direction.h"
-#include "geometry/fibre.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "geometry/yarn/fibre.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 /* Light in the shipped stitches. */
-#include "btf/direction.h"
-#include "geometry/illumination.h"
-#include "geometry/sample_sequence.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "geometry/light/illumination.h"
+#include "geometry/light/sample_sequence.h"
 #include "tests/geometry/shipped_stitches.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <stdlib.h>

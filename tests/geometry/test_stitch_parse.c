@@ -1,7 +1,7 @@
 /* Reading stitch files: what each key becomes, and a line and column for every mistake. */
-#include "geometry/stitch.h"
-#include "tests/btf/cmocka_all.h"
+#include "geometry/yarn/stitch.h"
 #include "tests/geometry/stitch_text.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* Stitches as samples under a camera: the same light as in a simulated dataset, path by path. */
-#include "geometry/illumination.h"
-#include "geometry/stitch_sample.h"
-#include "tests/btf/cmocka_all.h"
+#include "geometry/light/illumination.h"
+#include "geometry/light/stitch_sample.h"
 #include "tests/geometry/shipped_stitches.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <stdio.h>

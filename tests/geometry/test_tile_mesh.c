@@ -1,6 +1,6 @@
 /* Every shipped stitch as a surface: closed, manifold, oriented, periodic, and where its yarns are. */
-#include "tests/btf/cmocka_all.h"
 #include "tests/geometry/shipped_stitches.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <omp.h>

@@ -1,7 +1,7 @@
 #include "folder.h"
 
-#include "btf/atomic_file.h"
-#include "btf/direction.h"
+#include "base/atomic_file.h"
+#include "btf/direction/direction.h"
 
 #include <fts.h>
 #include <setjmp.h>

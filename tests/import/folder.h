@@ -2,8 +2,8 @@
 #ifndef WEFT_TESTS_IMPORT_FOLDER_H
 #define WEFT_TESTS_IMPORT_FOLDER_H
 
-#include "btf/dataset.h"
-#include "btf/image.h"
+#include "base/image.h"
+#include "btf/dataset/dataset.h"
 #include "import/import.h"
 
 /* A new empty folder in the working directory; `dataset` is where an import may go. */

@@ -1,4 +1,4 @@
-#include "btf/colour.h"
+#include "base/colour.h"
 #include "folder.h"
 
 #include <math.h>

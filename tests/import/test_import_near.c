@@ -1,4 +1,4 @@
-#include "btf/vector.h"
+#include "base/vector.h"
 #include "folder.h"
 
 #include <math.h>

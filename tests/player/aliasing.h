@@ -4,7 +4,7 @@
 #ifndef WEFT_TESTS_PLAYER_ALIASING_H
 #define WEFT_TESTS_PLAYER_ALIASING_H
 
-#include "player/player.h"
+#include "player/draw/player.h"
 
 typedef struct aliasing {
     weft_image without, with, reference; /* level 0, mip levels by footprint, samples x samples of level 0 */

@@ -3,7 +3,7 @@
 #ifndef WEFT_TESTS_PLAYER_BC6H_DECODE_H
 #define WEFT_TESTS_PLAYER_BC6H_DECODE_H
 
-#include "btf/half.h"
+#include "base/half.h"
 
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 /* Mutated OBJ files: refused with a message, or a mesh whose numbers are finite and whose indices are its own. */
-#include "player/mesh.h"
-#include "tests/btf/fuzz.h"
+#include "player/mesh/mesh.h"
+#include "tests/support/fuzz.h"
 
 #include <math.h>
 #include <stdio.h>

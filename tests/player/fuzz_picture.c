@@ -1,7 +1,7 @@
 /* Mutated pictures: their settings are read, or refused with a message that names the file. */
-#include "player/settings.h"
-#include "tests/btf/fuzz.h"
+#include "player/settings/settings.h"
 #include "tests/player/settings_text.h"
+#include "tests/support/fuzz.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Mutated settings: refused with a message, or written back to a text that says the same. */
-#include "player/settings.h"
-#include "tests/btf/fuzz.h"
+#include "player/settings/settings.h"
 #include "tests/player/settings_text.h"
+#include "tests/support/fuzz.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -17,7 +17,7 @@
     " \"mip\": {\"level\": \"fixed\", \"fixed_level\": 1.1, \"filter\": \"stochastic\"},\n"                            \
     " \"model\": {\"raw_format\": \"bc6h\", \"lobes\": [true, false, true], \"view_table\": false, \"light_table\": "  \
     "false,\n"                                                                                                         \
-    "  \"table_bits\": 3, \"noise_seed\": 5},\n"                                                                                          \
+    "  \"table_bits\": 3, \"noise_seed\": 5},\n"                                                                       \
     " \"view\": {\"layout\": \"wipe\", \"modes\": [\"analytic\", \"raw\", \"compressed\"], \"panes\": 2,\n"            \
     "  \"divider\": 0.25, \"show_level\": true, \"show_extrapolation\": true, \"labels\": false}}\n"
 

@@ -2,10 +2,10 @@
 #ifndef WEFT_TESTS_PLAYER_STAGE_H
 #define WEFT_TESTS_PLAYER_STAGE_H
 
-#include "../btf/cmocka_all.h"
-#include "player/context.h"
-#include "player/player.h"
-#include "reflectance/lafortune.h"
+#include "player/draw/player.h"
+#include "player/gl/context.h"
+#include "reflectance/lafortune/lafortune.h"
+#include "tests/support/cmocka_all.h"
 
 /* Fails the test with the message of `error`. */
 void expect_ok(weft_code code, const weft_error *error);

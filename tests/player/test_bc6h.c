@@ -1,9 +1,9 @@
 /* Blocks that the encoder makes, as the specification decodes them, and as the graphics driver does. */
 #include "../support/keep_modules.h"
+#include "base/processor.h"
 #include "bc6h_decode.h"
-#include "btf/processor.h"
-#include "player/bc6h.h"
-#include "player/gl.h"
+#include "player/gl/gl.h"
+#include "player/raw/bc6h.h"
 #include "stage.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* What OpenGL must not notice: programs that only one profile takes, objects left behind, errors passed over. */
 #include "../support/keep_modules.h"
-#include "player/probe.h"
-#include "player/programs.h"
+#include "player/draw/probe.h"
+#include "player/draw/programs.h"
 #include "stage.h"
 
 #include <stdio.h>

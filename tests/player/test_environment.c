@@ -1,6 +1,6 @@
 /* Environment maps as lights. */
-#include "../btf/cmocka_all.h"
-#include "player/lighting.h"
+#include "player/draw/lighting.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <stdlib.h>

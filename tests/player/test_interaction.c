@@ -1,5 +1,5 @@
-#include "../btf/cmocka_all.h"
-#include "player/keys.h"
+#include "player/window/keys.h"
+#include "tests/support/cmocka_all.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

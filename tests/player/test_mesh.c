@@ -1,7 +1,7 @@
-#include "../btf/cmocka_all.h"
-#include "btf/atomic_file.h"
-#include "btf/real.h"
-#include "player/mesh.h"
+#include "base/atomic_file.h"
+#include "base/real.h"
+#include "player/mesh/mesh.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
-#include "player/path.h"
+#include "player/settings/path.h"
 
-#include "../btf/cmocka_all.h"
-#include "../btf/scratch_folder.h"
-#include "btf/atomic_file.h"
+#include "base/atomic_file.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Layouts, filters and lights of whole pictures. */
-#include "btf/colour.h"
-#include "player/false_colour.h"
+#include "base/colour.h"
+#include "player/scene/false_colour.h"
 #include "stage.h"
 
 #include <math.h>

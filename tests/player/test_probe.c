@@ -1,6 +1,6 @@
 /* What the panel says of the pixel under the pointer. */
-#include "player/probe.h"
-#include "player/texel.h"
+#include "player/draw/lobe_probe.h"
+#include "player/draw/probe.h"
 #include "stage.h"
 
 #include <math.h>

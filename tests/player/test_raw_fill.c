@@ -1,6 +1,6 @@
-#include "../btf/cmocka_all.h"
-#include "btf/direction.h"
-#include "player/raw_fill.h"
+#include "btf/direction/direction.h"
+#include "player/raw/fill.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* The same dataset in every format: what is drawn is what the evaluator in C finds in the file. */
-#include "player/player_parts.h"
+#include "player/draw/player_parts.h"
 #include "stage.h"
-#include "study/raw_btf.h"
+#include "study/model/raw_btf.h"
 
 #include <math.h>
 #include <stdio.h>

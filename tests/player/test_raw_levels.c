@@ -1,7 +1,7 @@
 /* Rows that go in as texels come out as blocks, on every level. */
-#include "../btf/cmocka_all.h"
-#include "btf/half.h"
-#include "player/raw_levels.h"
+#include "base/half.h"
+#include "player/raw/levels.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* What is chosen for datasets of every size, and where their levels lie. */
-#include "../btf/cmocka_all.h"
-#include "player/raw_plan.h"
+#include "player/raw/plan.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 #include <string.h>

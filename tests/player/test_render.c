@@ -1,8 +1,8 @@
 /* `weft render` from end to end, as a user runs it. With --make FOLDER: writes the files it works on and leaves. */
 #include "stage.h"
 
-#include "btf/atomic_file.h"
-#include "btf/colour.h"
+#include "base/atomic_file.h"
+#include "base/colour.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Files of a scene that arrive, are dropped, are broken, and change while a player shows them. */
 #include "cli/scene_load.h"
-#include "player/gl.h"
+#include "player/gl/gl.h"
 #include "stage.h"
 
 #include <math.h>

@@ -1,10 +1,10 @@
-#include "player/settings.h"
+#include "player/settings/settings.h"
 
-#include "../btf/cmocka_all.h"
-#include "../btf/scratch_folder.h"
-#include "btf/atomic_file.h"
-#include "player/relative_path.h"
+#include "base/atomic_file.h"
+#include "player/settings/relative_path.h"
 #include "settings_text.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <math.h>
 #include <stdio.h>

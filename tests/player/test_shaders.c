@@ -2,10 +2,10 @@
  * difference below 4/255, of 8-bit sRGB values. */
 #include "stage.h"
 
-#include "player/player_parts.h"
-#include "reflectance/lafortune.h"
-#include "reflectance/microcylinder_file.h"
-#include "study/raw_btf.h"
+#include "player/draw/player_parts.h"
+#include "reflectance/lafortune/lafortune.h"
+#include "reflectance/microcylinder/file.h"
+#include "study/model/raw_btf.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* What the cap does to a camera, the reports of devices, and a spacenavd that misbehaves. */
-#include "player/space_mouse_daemon.h"
-#include "player/space_mouse_device.h"
+#include "player/window/space_mouse/daemon.h"
+#include "player/window/space_mouse/device.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* A SpaceMouse through the real libhidapi: reports, a pulled cable, a forbidden node. Runs under umockdev-wrapper. */
-#include "player/space_mouse.h"
+#include "player/window/space_mouse/space_mouse.h"
 #include "tests/player/fake_hid.h"
 
 #include <setjmp.h>

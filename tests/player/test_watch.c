@@ -1,5 +1,5 @@
 /* Files that change while they are watched. */
-#include "player/watch.h"
+#include "player/window/watch.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

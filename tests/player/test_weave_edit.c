@@ -1,5 +1,5 @@
 /* Changing the weave on the cloth. */
-#include "player/weave_edit.h"
+#include "player/window/weave_edit.h"
 #include "stage.h"
 
 #include <math.h>

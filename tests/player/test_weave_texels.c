@@ -1,7 +1,7 @@
 /* The tabulated means of a weave against its texture. */
-#include "../btf/cmocka_all.h"
 #include "../reflectance/random.h"
-#include "player/weave_texels.h"
+#include "player/texture/weave_texels.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_REFLECTANCE_BARD_FIXTURE_H
 #define WEFT_TESTS_REFLECTANCE_BARD_FIXTURE_H
 
-#include "reflectance/bard.h"
+#include "reflectance/bard/bard.h"
 #include "tests/reflectance/random.h"
 #include "tests/reflectance/vectors.h"
 

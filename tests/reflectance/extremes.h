@@ -2,8 +2,8 @@
 #ifndef WEFT_TESTS_REFLECTANCE_EXTREMES_H
 #define WEFT_TESTS_REFLECTANCE_EXTREMES_H
 
-#include "tests/btf/cmocka_all.h"
 #include "tests/reflectance/random.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Mutated microcylinder files: refused with a message, or read and evaluated to finite values. */
-#include "reflectance/microcylinder_file.h"
-#include "tests/btf/fuzz.h"
+#include "reflectance/microcylinder/file.h"
 #include "tests/reflectance/microcylinder_text.h"
+#include "tests/support/fuzz.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,7 +26,7 @@ static void evaluate(const weft_microcylinder_cloth *cloth)
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
-    const weft_weave_parameter parameters[] = {{"a", {1, 1, 1}}};
+    const weft_parameter parameters[] = {{"a", {1, 1, 1}}};
     char *text = malloc(size + 1);
     weft_microcylinder_description description;
     weft_error error = {0};

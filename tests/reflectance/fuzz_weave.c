@@ -1,7 +1,7 @@
 /* Mutated weave files: refused with a message, or read and evaluated to finite values. */
-#include "reflectance/weave_syntax.h"
-#include "tests/btf/fuzz.h"
+#include "reflectance/weave/syntax.h"
 #include "tests/reflectance/weave_text.h"
+#include "tests/support/fuzz.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,7 +30,7 @@ static void evaluate(const weft_weave *weave)
 /* Without the scale, which only takes time: it is 1 here. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
-    const weft_weave_parameter parameters[] = {{"a", {1, 1, 1}}};
+    const weft_parameter parameters[] = {{"a", {1, 1, 1}}};
     char warning[WEFT_MESSAGE_SIZE], *text = malloc(size + 1);
     weft_weave weave;
     weft_error error = {0};

@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_REFLECTANCE_MICROCYLINDER_CLOTHS_H
 #define WEFT_TESTS_REFLECTANCE_MICROCYLINDER_CLOTHS_H
 
-#include "reflectance/microcylinder.h"
+#include "reflectance/microcylinder/microcylinder.h"
 
 enum { REFERENCE_CLOTHS = 4 };
 

@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_REFLECTANCE_RANDOM_H
 #define WEFT_TESTS_REFLECTANCE_RANDOM_H
 
-#include "btf/vector.h"
+#include "base/vector.h"
 
 #include <stdint.h>
 

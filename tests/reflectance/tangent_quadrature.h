@@ -3,7 +3,7 @@
 #ifndef WEFT_TESTS_REFLECTANCE_TANGENT_QUADRATURE_H
 #define WEFT_TESTS_REFLECTANCE_TANGENT_QUADRATURE_H
 
-#include "reflectance/microcylinder.h"
+#include "reflectance/microcylinder/microcylinder.h"
 
 /* Called for every node with the solid angle it stands for. */
 typedef void (*direction_visitor)(void *context, weft_vec3 direction, double solid_angle);

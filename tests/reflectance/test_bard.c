@@ -1,7 +1,7 @@
 /* BARD: the reference vectors, the properties of the map, and extremes. Built twice: in double, and in single
  * precision. */
-#include "btf/direction.h"
-#include "reflectance/bard.h"
+#include "btf/direction/direction.h"
+#include "reflectance/bard/bard.h"
 #include "tests/reflectance/bard_fixture.h"
 
 #include <string.h>

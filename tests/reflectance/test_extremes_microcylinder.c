@@ -1,6 +1,6 @@
 /* No microcylinder thread or cloth, however extreme, gives NaN, infinity, a negative value or one above its bound. The
  * number of cases is the argument. Built twice: in double, and in single precision. */
-#include "reflectance/microcylinder.h"
+#include "reflectance/microcylinder/microcylinder.h"
 #include "tests/reflectance/extremes.h"
 
 static long cases;

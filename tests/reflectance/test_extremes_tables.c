@@ -1,7 +1,7 @@
 /* No extreme input makes Lafortune lobes or BARD give NaN, infinity, a negative value or one above its bound. The
  * number of cases is the argument. Built twice: in double, and in single precision. */
-#include "btf/direction.h"
-#include "reflectance/lafortune.h"
+#include "btf/direction/direction.h"
+#include "reflectance/lafortune/lafortune.h"
 #include "tests/reflectance/bard_fixture.h"
 #include "tests/reflectance/extremes.h"
 

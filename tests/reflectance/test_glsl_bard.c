@@ -1,5 +1,5 @@
 /* bard.glsl gives what weft_bard_brdf gives, both maps, in both dialects of GLSL, on random and extreme inputs. */
-#include "player/shaders.h"
+#include "player/gl/shaders.h"
 #include "tests/reflectance/bard_fixture.h"
 #include "tests/reflectance/twin_stage.h"
 

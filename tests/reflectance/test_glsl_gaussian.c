@@ -1,5 +1,5 @@
 /* spherical_gaussian.glsl gives what the C functions give, in both dialects of GLSL, on random and extreme inputs. */
-#include "reflectance/spherical_gaussian.h"
+#include "reflectance/gaussian/spherical_gaussian.h"
 #include "tests/reflectance/extremes.h"
 #include "tests/reflectance/twin_stage.h"
 

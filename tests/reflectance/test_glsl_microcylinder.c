@@ -1,9 +1,9 @@
 /* microcylinder.glsl gives what weft_microcylinder_scattering gives, both weightings, in both dialects of GLSL, on
  * random and extreme directions. */
-#include "tests/btf/cmocka_all.h"
 #include "tests/reflectance/microcylinder_cloths.h"
 #include "tests/reflectance/random.h"
 #include "tests/reflectance/twin_stage.h"
+#include "tests/support/cmocka_all.h"
 
 extern const char twin_glsl_microcylinder[];
 

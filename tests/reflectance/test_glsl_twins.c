@@ -1,12 +1,12 @@
 /* weave.glsl and woven.glsl give what weft_weave_locate and weft_weave_brdf give, noise included, in both dialects of
  * GLSL. */
-#include "btf/direction.h"
-#include "player/context.h"
-#include "player/gl.h"
-#include "player/shaders.h"
-#include "reflectance/weave_table.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "player/gl/context.h"
+#include "player/gl/gl.h"
+#include "player/gl/shaders.h"
+#include "reflectance/weave/table.h"
 #include "tests/reflectance/random.h"
+#include "tests/support/cmocka_all.h"
 #include "tests/support/keep_modules.h"
 
 #include <stdio.h>

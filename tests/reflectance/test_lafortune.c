@@ -1,5 +1,5 @@
 /* Lafortune lobes, frames and the view table. Built twice: in double, and in single precision. */
-#include "reflectance/lafortune.h"
+#include "reflectance/lafortune/lafortune.h"
 #include "tests/reflectance/vectors.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* A material decoded and evaluated: the reference of the player's shader. */
-#include "btf/direction.h"
-#include "reflectance/lafortune.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "reflectance/lafortune/lafortune.h"
+#include "tests/support/cmocka_all.h"
 
 enum { WIDTH = 5, HEIGHT = 3, LOBES = 2, VIEWS = 7, LIGHTS = 9 };
 

@@ -1,6 +1,6 @@
 /* Microcylinder cloth under spherical-Gaussian light: the reference vectors of environment light and of table entries.
  * Built twice: in double, and in single precision. */
-#include "reflectance/spherical_gaussian.h"
+#include "reflectance/gaussian/spherical_gaussian.h"
 #include "tests/reflectance/microcylinder_cloths.h"
 #include "tests/reflectance/tangent_quadrature.h"
 #include "tests/reflectance/vectors.h"

@@ -1,6 +1,6 @@
 /* Reading microcylinder files: the shipped ones are the reference cloths; a line and column for every mistake. */
-#include "btf/direction.h"
-#include "reflectance/microcylinder_file.h"
+#include "btf/direction/direction.h"
+#include "reflectance/microcylinder/file.h"
 #include "tests/reflectance/microcylinder_cloths.h"
 #include "tests/reflectance/microcylinder_text.h"
 #include "tests/reflectance/vectors.h"
@@ -84,7 +84,7 @@ static void names_stand_for_what_the_caller_gives(void **state)
     (void)state;
     char text[] = MICROCYLINDER_TEXT;
     memcpy(strstr(text, "{ 0.2, 0.8, 1 }"), "$colour        ", 15);
-    const weft_weave_parameter parameter = {"colour", {(weft_real)0.1, (weft_real)0.2, (weft_real)0.4}};
+    const weft_parameter parameter = {"colour", {(weft_real)0.1, (weft_real)0.2, (weft_real)0.4}};
     weft_microcylinder_description description;
     weft_error error = {0};
     assert_int_equal(weft_microcylinder_parse(text, "plain.mc", &parameter, 1, &description, &error), WEFT_OK);

@@ -1,7 +1,7 @@
 /* What must hold for any microcylinder cloth. Built twice: in double, and in single precision. */
-#include "reflectance/microcylinder.h"
-#include "tests/btf/cmocka_all.h"
+#include "reflectance/microcylinder/microcylinder.h"
 #include "tests/reflectance/random.h"
+#include "tests/support/cmocka_all.h"
 
 static const double same = (WEFT_REAL_EPSILON < 1e-9) ? 1e-12 : 2e-5;
 

@@ -1,6 +1,6 @@
 /* Spherical and circular Gaussians: the reference vectors and the limits. Built twice: in double, and in single
  * precision. */
-#include "reflectance/spherical_gaussian.h"
+#include "reflectance/gaussian/spherical_gaussian.h"
 #include "tests/reflectance/random.h"
 #include "tests/reflectance/representable.h"
 

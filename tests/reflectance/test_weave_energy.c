@@ -1,7 +1,7 @@
 /* No published fabric reflects more light than it receives. Built twice: in double, and in single precision. */
-#include "btf/direction.h"
-#include "reflectance/weave.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "reflectance/weave/weave.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdio.h>
 

@@ -1,9 +1,9 @@
 /* Irregularities of cloth and the balance of energy. Built twice: in double, and in single precision. */
-#include "btf/direction.h"
-#include "reflectance/weave.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "reflectance/weave/weave.h"
 #include "tests/reflectance/random.h"
 #include "tests/reflectance/weave_text.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* Reading weave files: the published ones, what each key becomes, and a line and column for every mistake. */
-#include "btf/direction.h"
-#include "reflectance/weave.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "reflectance/weave/weave.h"
 #include "tests/reflectance/weave_text.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -106,8 +106,8 @@ static void parameters_fill_in_numbers_and_colours(void **state)
     (void)state;
     char *text = edited("beta = 3", "beta = $sharpness"), *at = strstr(text, "kd = {0.1, 0.2, 0.3}");
     memcpy(at, "kd = $dye           ", strlen("kd = {0.1, 0.2, 0.3}"));
-    const weft_weave_parameter parameters[] = {{"sharpness", {7, 0, 0}},
-                                               {"dye", {(weft_real)0.5, (weft_real)0.25, (weft_real)0.125}}};
+    const weft_parameter parameters[] = {{"sharpness", {7, 0, 0}},
+                                         {"dye", {(weft_real)0.5, (weft_real)0.25, (weft_real)0.125}}};
     weft_weave weave;
     weft_error error = {0};
     assert_int_equal(weft_weave_parse(text, "plain.wv", parameters, 2, &weave, NULL, &error), WEFT_OK);
@@ -225,7 +225,7 @@ static void files_that_are_no_weaves_are_refused(void **state)
     assert_int_equal(weft_weave_read("zero.wv", NULL, 0, &weave, NULL, &error), WEFT_BAD_INPUT);
     assert_string_equal(error.message, "zero.wv: byte 5 is 0, not a text file");
     assert_int_equal(weft_weave_read("/dev/zero", NULL, 0, &weave, NULL, &error), WEFT_BAD_INPUT);
-    assert_string_equal(error.message, "/dev/zero: more than 10485760 bytes, not a weave file");
+    assert_string_equal(error.message, "/dev/zero: more than 10485760 bytes, too long for a description of cloth");
     remove("zero.wv");
 }
 

@@ -1,8 +1,8 @@
 /* The texture for the shader holds what the evaluator in C uses. */
-#include "btf/direction.h"
-#include "reflectance/weave_table.h"
-#include "tests/btf/cmocka_all.h"
+#include "btf/direction/direction.h"
+#include "reflectance/weave/table.h"
 #include "tests/reflectance/weave_text.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* The reference vectors of whole weaves. Built twice: in double, and in single precision. */
-#include "reflectance/weave.h"
+#include "reflectance/weave/weave.h"
 #include "tests/reflectance/vectors.h"
 
 #include <omp.h>

@@ -1,8 +1,8 @@
 /* Batches against the scalar functions, for ordinary and extreme segments and directions. */
-#include "btf/direction.h"
-#include "btf/processor.h"
+#include "base/processor.h"
+#include "btf/direction/direction.h"
 #include "random.h"
-#include "reflectance/woven_batch.h"
+#include "reflectance/weave/batch.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* What must hold for any yarn segment. Built twice: in double, and in single precision. */
-#include "reflectance/woven.h"
-#include "tests/btf/cmocka_all.h"
+#include "reflectance/woven/woven.h"
 #include "tests/reflectance/random.h"
+#include "tests/support/cmocka_all.h"
 
 /* Rounding of the integral, relative to the value. */
 static const double same = (WEFT_REAL_EPSILON < 1e-9) ? 1e-12 : 2e-5;

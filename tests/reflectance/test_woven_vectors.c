@@ -1,5 +1,5 @@
 /* The reference vectors of one yarn segment. Built twice: in double, and in single precision. */
-#include "reflectance/woven.h"
+#include "reflectance/woven/woven.h"
 #include "tests/reflectance/vectors.h"
 
 #include <string.h>

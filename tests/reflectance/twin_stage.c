@@ -1,8 +1,8 @@
 #include "tests/reflectance/twin_stage.h"
 
-#include "player/gl.h"
-#include "player/shaders.h"
-#include "tests/btf/cmocka_all.h"
+#include "player/gl/gl.h"
+#include "player/gl/shaders.h"
+#include "tests/support/cmocka_all.h"
 #include "tests/support/keep_modules.h"
 
 #include <stdlib.h>

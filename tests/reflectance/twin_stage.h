@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_REFLECTANCE_TWIN_STAGE_H
 #define WEFT_TESTS_REFLECTANCE_TWIN_STAGE_H
 
-#include "player/context.h"
+#include "player/gl/context.h"
 
 enum { TWIN_WIDTH = 256, TWIN_HEIGHT = 128, TWIN_QUERIES = TWIN_WIDTH * TWIN_HEIGHT, TWIN_BANDS = 3 };
 

@@ -2,9 +2,9 @@
 #ifndef WEFT_TESTS_REFLECTANCE_VECTORS_H
 #define WEFT_TESTS_REFLECTANCE_VECTORS_H
 
-#include "btf/csv.h"
-#include "btf/vector.h"
-#include "tests/btf/cmocka_all.h"
+#include "base/csv.h"
+#include "base/vector.h"
+#include "tests/support/cmocka_all.h"
 
 typedef struct reference_vectors {
     weft_csv csv;

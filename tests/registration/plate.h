@@ -2,8 +2,8 @@
 #ifndef WEFT_TESTS_REGISTRATION_PLATE_H
 #define WEFT_TESTS_REGISTRATION_PLATE_H
 
-#include "btf/camera.h"
-#include "btf/target.h"
+#include "btf/session/camera.h"
+#include "btf/session/target.h"
 
 /* What lies on the plate and how it is lit. */
 typedef struct plate_scene {

@@ -1,9 +1,9 @@
 #include "plate_session.h"
 
-#include "btf/atomic_file.h"
-#include "btf/image.h"
+#include "base/atomic_file.h"
+#include "base/image.h"
 #include "plate.h"
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_REGISTRATION_PLATE_SESSION_H
 #define WEFT_TESTS_REGISTRATION_PLATE_SESSION_H
 
-#include "btf/session.h"
+#include "btf/session/session.h"
 
 enum {
     PLATE_SESSION_VIEWS = 3,

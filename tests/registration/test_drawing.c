@@ -1,7 +1,7 @@
-#include "registration/drawing.h"
+#include "registration/pose/drawing.h"
 
-#include "tests/btf/cmocka_all.h"
 #include "tests/registration/near.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 

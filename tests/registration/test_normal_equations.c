@@ -1,8 +1,8 @@
-#include "registration/normal_equations.h"
+#include "registration/pose/normal_equations.h"
 
-#include "registration/statistics.h"
-#include "tests/btf/cmocka_all.h"
+#include "registration/radiometry/statistics.h"
 #include "tests/registration/near.h"
+#include "tests/support/cmocka_all.h"
 
 /* y = 2 + 3 t over t = 0..9, with the point at t = 4 wrong by 100 and given `weight_of_wrong`. */
 static weft_normal_equations line(double weight_of_wrong)

@@ -1,7 +1,7 @@
-#include "registration/overlap.h"
+#include "registration/resample/overlap.h"
 
-#include "tests/btf/cmocka_all.h"
 #include "tests/registration/near.h"
+#include "tests/support/cmocka_all.h"
 
 static void a_quadrangle_around_a_pixel_covers_it_wholly(void **state)
 {

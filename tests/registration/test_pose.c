@@ -1,9 +1,9 @@
-#include "registration/markers.h"
-#include "registration/pose_chain.h"
+#include "registration/pose/markers.h"
+#include "registration/pose/pose_chain.h"
 
 #include "plate.h"
-#include "tests/btf/cmocka_all.h"
 #include "tests/registration/near.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdio.h>
 #include <stdlib.h>

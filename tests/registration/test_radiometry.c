@@ -1,8 +1,8 @@
-#include "registration/radiometry.h"
+#include "registration/radiometry/radiometry.h"
 
 #include "plate.h"
-#include "tests/btf/cmocka_all.h"
 #include "tests/registration/near.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 

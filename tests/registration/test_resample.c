@@ -1,9 +1,9 @@
-#include "registration/resample.h"
+#include "registration/resample/resample.h"
 
-#include "btf/dataset.h"
+#include "btf/dataset/dataset.h"
 #include "plate.h"
-#include "tests/btf/cmocka_all.h"
 #include "tests/registration/near.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 

@@ -1,11 +1,11 @@
 #include "registration/registration.h"
 
-#include "btf/dataset.h"
-#include "btf/image.h"
+#include "base/image.h"
+#include "btf/dataset/dataset.h"
 #include "plate_session.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
 #include "tests/registration/near.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
 
 #include <math.h>
 #include <stdio.h>

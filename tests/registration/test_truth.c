@@ -1,11 +1,11 @@
 #include "capture/capture.h"
 #include "registration/registration.h"
 
-#include "btf/dataset.h"
-#include "registration/statistics.h"
-#include "tests/btf/cmocka_all.h"
-#include "tests/btf/scratch_folder.h"
-#include "tests/support/truth.h"
+#include "btf/dataset/dataset.h"
+#include "registration/radiometry/statistics.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/ground_truth.h"
+#include "tests/support/scratch_folder.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
-#include "registration/refine.h"
+#include "registration/pose/refine.h"
 
-#include "btf/image.h"
-#include "tests/btf/cmocka_all.h"
+#include "base/image.h"
+#include "tests/support/cmocka_all.h"
 
 #include <math.h>
 #include <stdio.h>

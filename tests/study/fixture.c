@@ -1,6 +1,6 @@
 #include "fixture.h"
 
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 
 #include <math.h>
 #include <stdlib.h>

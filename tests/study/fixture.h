@@ -2,9 +2,9 @@
 #ifndef WEFT_TESTS_STUDY_FIXTURE_H
 #define WEFT_TESTS_STUDY_FIXTURE_H
 
-#include "btf/dataset.h"
-#include "btf/material.h"
-#include "reflectance/weave.h"
+#include "btf/dataset/dataset.h"
+#include "btf/material/material.h"
+#include "reflectance/weave/weave.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,8 +1,8 @@
 /* weft bard on datasets whose truth is known. */
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 #include "fixture.h"
-#include "study/bard.h"
-#include "study/bard_plan.h"
+#include "study/bard/plan.h"
+#include "study/bard/predict.h"
 
 #include <stdio.h>
 #include <stdlib.h>

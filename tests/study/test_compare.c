@@ -1,8 +1,8 @@
-#include "btf/atomic_file.h"
-#include "btf/direction.h"
+#include "base/atomic_file.h"
+#include "btf/direction/direction.h"
 #include "fixture.h"
-#include "reflectance/microcylinder_file.h"
-#include "study/compare.h"
+#include "reflectance/microcylinder/file.h"
+#include "study/compare/compare.h"
 
 #include <math.h>
 #include <stdio.h>

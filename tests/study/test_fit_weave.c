@@ -1,9 +1,9 @@
 /* Weaves found again from what they reflect. */
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
-#include "btf/direction.h"
-#include "study/fit_weave.h"
-#include "study/least_squares.h"
+#include "btf/direction/direction.h"
+#include "study/fit_weave/fit_weave.h"
+#include "study/fit_weave/least_squares.h"
 
 #include <math.h>
 #include <stdio.h>

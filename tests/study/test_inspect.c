@@ -1,6 +1,6 @@
-#include "btf/atomic_file.h"
+#include "base/atomic_file.h"
 #include "fixture.h"
-#include "study/inspect.h"
+#include "study/inspect/inspect.h"
 
 #include <stdio.h>
 #include <stdlib.h>

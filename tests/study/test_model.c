@@ -1,7 +1,7 @@
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 #include "fixture.h"
-#include "reflectance/lafortune.h"
-#include "study/model.h"
+#include "reflectance/lafortune/lafortune.h"
+#include "study/model/model.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* The picture and the page of the models that texels have. */
-#include "btf/atomic_file.h"
-#include "btf/material_models.h"
-#include "study/model_report.h"
+#include "base/atomic_file.h"
+#include "btf/material/models.h"
+#include "study/inspect/model_report.h"
 #include "tests/study/fixture.h"
 
 #include <stdlib.h>

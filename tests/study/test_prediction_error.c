@@ -1,4 +1,4 @@
-#include "study/prediction_error.h"
+#include "study/error/prediction_error.h"
 
 #include <math.h>
 #include <setjmp.h>

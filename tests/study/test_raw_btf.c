@@ -1,6 +1,6 @@
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 #include "fixture.h"
-#include "study/raw_btf.h"
+#include "study/model/raw_btf.h"
 
 #include <math.h>
 #include <unistd.h>

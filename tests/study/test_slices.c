@@ -1,7 +1,7 @@
-#include "btf/csv.h"
-#include "btf/direction.h"
+#include "base/csv.h"
+#include "btf/direction/direction.h"
 #include "fixture.h"
-#include "study/slices.h"
+#include "study/compare/slices.h"
 
 #include <math.h>
 #include <stdlib.h>

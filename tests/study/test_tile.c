@@ -1,8 +1,8 @@
 /* weft tile on cloth whose tile is known. */
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 #include "fixture.h"
-#include "study/tile.h"
-#include "study/tile_pictures.h"
+#include "study/tile/pictures.h"
+#include "study/tile/tile.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,12 +1,12 @@
 /* Draped cloth from geometry beside the dataset and the material made of it. Skipped without OpenGL. */
-#include "btf/atomic_file.h"
+#include "base/atomic_file.h"
 #include "compress/compress.h"
 #include "fixture.h"
-#include "geometry/acquisition.h"
-#include "player/context.h"
-#include "player/player.h"
-#include "study/truth.h"
-#include "study/truth_trace.h"
+#include "geometry/acquisition/acquisition.h"
+#include "player/draw/player.h"
+#include "player/gl/context.h"
+#include "study/truth/comparison.h"
+#include "study/truth/trace.h"
 
 #include <math.h>
 #include <omp.h>

@@ -1,6 +1,6 @@
 #include "synthetic_dataset.h"
 
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_SYNTHETIC_DATASET_H
 #define WEFT_TESTS_SYNTHETIC_DATASET_H
 
-#include "btf/dataset.h"
+#include "btf/dataset/dataset.h"
 
 /* Fills samples [image_count][3] and masks [image_count] (zeroed) of texel (x, y). */
 typedef void synthetic_fill(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask);

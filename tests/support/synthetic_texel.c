@@ -1,6 +1,6 @@
 #include "synthetic_texel.h"
 
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 
 #include <math.h>
 #include <string.h>

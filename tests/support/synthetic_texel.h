@@ -2,8 +2,8 @@
 #ifndef WEFT_TESTS_SYNTHETIC_TEXEL_H
 #define WEFT_TESTS_SYNTHETIC_TEXEL_H
 
-#include "btf/dataset.h"
-#include "compress/fit.h"
+#include "btf/dataset/dataset.h"
+#include "compress/fit/fit.h"
 
 #include <stdint.h>
 

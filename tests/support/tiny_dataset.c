@@ -1,6 +1,6 @@
 #include "tests/support/tiny_dataset.h"
 
-#include "btf/direction.h"
+#include "btf/direction/direction.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_TINY_DATASET_H
 #define WEFT_TESTS_TINY_DATASET_H
 
-#include "btf/dataset.h"
+#include "btf/dataset/dataset.h"
 
 /* Far layout of ubo81 directions 0 .. views - 1 and 0 .. lights - 1, all pairs, lights fastest. Freed with
  * weft_dataset_layout_free. A failure ends the test. */

@@ -1,0 +1,48 @@
+/* Files that are never half-written: written under a temporary name beside their final place,
+ * synced, then renamed. */
+#ifndef WEFT_BASE_ATOMIC_FILE_H
+#define WEFT_BASE_ATOMIC_FILE_H
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A path being written. Owned by the caller; begin, then exactly one of commit or abandon. */
+typedef struct weft_atomic_file {
+    char *final_path;     /* of a link: what it points to */
+    char *temporary_path; /* in the same folder, unique to this process, same extension */
+} weft_atomic_file;
+
+/* Chooses the temporary path; creates nothing. Errors: WEFT_BAD_USAGE where `path` names no file, or
+ * a folder, device or pipe; WEFT_SYSTEM for memory, or where its folder does not exist or is not writable. */
+weft_code weft_atomic_file_begin(const char *path, weft_atomic_file *file, weft_error *error);
+
+/* Syncs the temporary file to disk, renames it to its final name and syncs the folder. On failure the
+ * temporary file is removed and the final one is as it was. Frees `file` either way. */
+weft_code weft_atomic_file_commit(weft_atomic_file *file, weft_error *error);
+
+/* Removes the temporary file, if it exists, and frees `file`. Harmless after commit. */
+void weft_atomic_file_abandon(weft_atomic_file *file);
+
+/* The whole of begin, write, commit for `size` bytes in memory. */
+weft_code weft_write_file(const char *path, const void *bytes, size_t size, weft_error *error);
+
+/* Writes `size` bytes under a name that the caller renames later; no sync. A file that cannot be written whole is
+ * removed. Errors: WEFT_SYSTEM. */
+weft_code weft_write_new_file(const char *path, const void *bytes, size_t size, weft_error *error);
+
+/* Reads a whole file. *bytes is NUL-terminated beyond *size, owned by the caller (free). Errors:
+ * WEFT_BAD_INPUT where the file is missing, a folder, or larger than `limit` bytes. */
+weft_code weft_read_file(const char *path, size_t limit, char **bytes, size_t *size, weft_error *error);
+
+/* Creates a folder and its parents; an existing folder is fine. */
+weft_code weft_make_folder(const char *path, weft_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,49 @@
+/* IEEE 754 binary16 ("half float"), the storage type of samples and lobes. Rounds to nearest
+ * even; values beyond 65504 become infinity, NaN stays NaN. Pure functions. */
+#ifndef WEFT_BASE_HALF_H
+#define WEFT_BASE_HALF_H
+
+#include <stdint.h>
+#include <string.h>
+
+typedef uint16_t weft_half;
+
+static inline float weft_float_of_half(weft_half half)
+{
+    /* Shift exponent and mantissa into place, then rescale by 2^112: this turns half
+     * subnormals into normal floats without a branch. */
+    uint32_t bits = (uint32_t)(half & 0x7fff) << 13;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    value *= 0x1p112f;
+    memcpy(&bits, &value, sizeof bits);
+    uint32_t infinite = (half & 0x7c00) == 0x7c00 ? 0x7f800000u : 0;
+    bits |= infinite | (uint32_t)(half & 0x8000) << 16;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static inline weft_half weft_half_of_float(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    uint32_t sign = bits >> 16 & 0x8000;
+    uint32_t magnitude = bits & 0x7fffffff;
+    if (magnitude > 0x7f800000)
+        return (weft_half)(sign | 0x7e00);
+    if (magnitude >= 0x477ff000)
+        return (weft_half)(sign | 0x7c00);
+    if (magnitude < 0x38800000) {
+        /* Subnormal half: adding 0.5 lets the float adder round the mantissa to 2^-24. */
+        float shifted;
+        memcpy(&shifted, &magnitude, sizeof shifted);
+        shifted += 0.5f;
+        memcpy(&magnitude, &shifted, sizeof magnitude);
+        return (weft_half)(sign | (magnitude - 0x3f000000));
+    }
+    uint32_t odd = magnitude >> 13 & 1;
+    magnitude += 0xc8000fff + odd;
+    return (weft_half)(sign | magnitude >> 13);
+}
+
+#endif

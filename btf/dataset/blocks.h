@@ -1,0 +1,37 @@
+/* Writing a dataset block of texels by block of texels: for what is computed from another dataset, texel by texel.
+ * Keeps one block in memory and needs no scratch file (btf/dataset/dataset.h has the writer that takes whole images).
+ */
+#ifndef WEFT_BTF_DATASET_BLOCKS_H
+#define WEFT_BTF_DATASET_BLOCKS_H
+
+#include "btf/dataset/dataset.h"
+
+/* Size of the blocks to read and write, texels: whole chunks of the file, about 64 MiB of samples at most where a chunk
+ * is not larger. Blocks lie at multiples of it. Pure. */
+void weft_dataset_block_size(const weft_dataset_layout *layout, int *width, int *height);
+
+typedef struct weft_dataset_block_writer weft_dataset_block_writer;
+
+/* Copies `path`; `layout` must outlive the writer. Reserves the disk space of the samples. Errors: WEFT_BAD_INPUT for
+ * an impossible layout, WEFT_SYSTEM. */
+weft_code weft_dataset_block_writer_create(const char *path, const weft_dataset_layout *layout,
+                                           weft_dataset_block_writer **result, weft_error *error);
+
+/* Texels [x, x + width) x [y, y + height): samples [height][width][image_count][3], mask [height][width][image_count].
+ * Every texel must be put once. Not thread-safe. Errors: WEFT_SYSTEM. */
+weft_code weft_dataset_block_writer_put(weft_dataset_block_writer *writer, int x, int y, int width, int height,
+                                        const weft_half *samples, const uint8_t *mask, weft_error *error);
+
+/* Optional, once: opacity [height][width][view_count] of the whole material. Errors: WEFT_SYSTEM. */
+weft_code weft_dataset_block_writer_put_opacity(weft_dataset_block_writer *writer, const float *opacity,
+                                                weft_error *error);
+
+/* Writes the file under its final name (atomically) and frees the writer, also on failure. `provenance` is JSON text.
+ */
+weft_code weft_dataset_block_writer_finish(weft_dataset_block_writer *writer, const char *provenance,
+                                           weft_error *error);
+
+/* Frees the writer and removes what it wrote. NULL is fine. */
+void weft_dataset_block_writer_abandon(weft_dataset_block_writer *writer);
+
+#endif

@@ -1,0 +1,58 @@
+/* What the reader and the writer of datasets share: names of docs/dataset-format.md and small helpers over the HDF5
+ * library. Private to btf/. HDF5 is not thread-safe; neither is this. */
+#ifndef WEFT_BTF_DATASET_HDF5_H
+#define WEFT_BTF_DATASET_HDF5_H
+
+#include "btf/dataset/dataset.h"
+
+#include <hdf5.h>
+
+enum { WEFT_DATASET_VERSION = 1 };
+
+#define WEFT_DATASET_FORMAT "weft btf"
+#define WEFT_DATASET_COLOUR_SPACE "linear Rec. 709"
+
+extern const char *const weft_values_name[2];   /* by weft_values */
+extern const char *const weft_distance_name[2]; /* by weft_distance */
+
+/* An open dataset. */
+struct weft_dataset {
+    char *path;
+    uint64_t file_size;
+    weft_dataset_layout layout;
+    hid_t file, half, samples, mask;
+    hid_t opacity, frames; /* invalid where the file has none */
+};
+
+/* Keeps HDF5 from printing its error stack. */
+void weft_hdf5_quiet(void);
+
+/* The innermost message of HDF5's error stack, for our own one-line errors; "" where there is none. Valid until the
+ * next call. */
+const char *weft_hdf5_cause(void);
+
+/* IEEE binary16, which HDF5 1.10 has no name for; h5py shows it as float16. The caller closes it. Negative on failure.
+ */
+hid_t weft_hdf5_half_type(void);
+
+/* Opens a dataset of the file so that its filtered chunks, once decoded, are kept for a while. Negative on failure. */
+hid_t weft_hdf5_open_cached(hid_t file, const char *name);
+
+/* Checks every count, index, direction and the provenance of a layout. Errors: `code` with a message that starts with
+ * `path`. */
+weft_code weft_dataset_layout_check(const weft_dataset_layout *layout, const char *path, weft_code code,
+                                    weft_error *error);
+
+/* The counts of the layout alone, so that arrays can be allocated. Errors as above. */
+weft_code weft_dataset_layout_check_counts(const weft_dataset_layout *layout, const char *path, weft_code code,
+                                           weft_error *error);
+
+/* That each of `count` frames [2][3] is a unit normal not below the horizon and a unit tangent perpendicular to it, to
+ * 0.001; `row` is the first of them, `width` frames long. Errors as above. */
+weft_code weft_dataset_frames_check(const float *frames, size_t count, int row, int width, const char *path,
+                                    weft_code code, weft_error *error);
+
+/* That `text` is a JSON object. Errors as above. */
+weft_code weft_dataset_provenance_check(const char *text, const char *path, weft_code code, weft_error *error);
+
+#endif

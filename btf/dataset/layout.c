@@ -1,0 +1,47 @@
+#include "btf/dataset/dataset.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+weft_code weft_dataset_layout_allocate(weft_dataset_layout *layout, weft_error *error)
+{
+    size_t images = (size_t)layout->image_count, views = (size_t)layout->view_count;
+    layout->light = calloc(images, sizeof *layout->light);
+    layout->view = calloc(views, sizeof *layout->view);
+    layout->view_of_image = calloc(images, sizeof *layout->view_of_image);
+    layout->provenance = strdup("{}");
+    if (layout->light && layout->view && layout->view_of_image && layout->provenance)
+        return WEFT_OK;
+    weft_dataset_layout_free(layout);
+    return weft_fail_memory(error, "layout of a dataset", (images + views) * sizeof *layout->light);
+}
+
+void weft_dataset_layout_free(weft_dataset_layout *layout)
+{
+    free(layout->light);
+    free(layout->view);
+    free(layout->view_of_image);
+    free(layout->provenance);
+    layout->light = layout->view = NULL;
+    layout->view_of_image = NULL;
+    layout->provenance = NULL;
+}
+
+static weft_vec3 direction_from_texel(const weft_dataset_layout *layout, weft_vec3 place, int x, int y)
+{
+    if (layout->distance == WEFT_FAR)
+        return place;
+    double pitch = layout->texel_pitch_mm;
+    weft_vec3 texel = {(x + 0.5 - layout->width / 2.0) * pitch, (layout->height / 2.0 - y - 0.5) * pitch, 0};
+    return weft_unit(weft_subtract(place, texel));
+}
+
+weft_vec3 weft_dataset_light_direction(const weft_dataset_layout *layout, int image, int x, int y)
+{
+    return direction_from_texel(layout, layout->light[image], x, y);
+}
+
+weft_vec3 weft_dataset_view_direction(const weft_dataset_layout *layout, int view, int x, int y)
+{
+    return direction_from_texel(layout, layout->view[view], x, y);
+}

@@ -1,0 +1,38 @@
+/* Directions on the hemisphere and the samplings made of them. */
+#ifndef WEFT_BTF_DIRECTION_DIRECTION_H
+#define WEFT_BTF_DIRECTION_DIRECTION_H
+
+#include "base/vector.h"
+
+/* theta from the normal (z), phi from x toward y. */
+typedef struct weft_angles {
+    weft_real theta_rad, phi_rad;
+} weft_angles;
+
+enum { WEFT_UBO81_COUNT = 81 };
+
+/* (sin theta cos phi, sin theta sin phi, cos theta), unit. Pure. */
+weft_vec3 weft_direction_of_angles(weft_angles angles);
+
+/* Inverse of weft_direction_of_angles; phi in [0, 2 pi), 0 for the pole. Pure. */
+weft_angles weft_angles_of_direction(weft_vec3 direction);
+
+/* The hemisphere sampling of the Bonn and UTIA sets: 1, 6, 12, 18, 20, 24 directions at theta
+ * 0, 15, 30, 45, 60, 75 degrees, each ring equally spaced from phi = 0.
+ * index in [0, WEFT_UBO81_COUNT). Pure. */
+weft_angles weft_ubo81_angles(int index);
+
+/* Index in [0, 6) of the ring of ubo81 nearest to an elevation. Pure. */
+int weft_ubo81_ring(weft_real theta_rad);
+
+static inline weft_real weft_rad_of_deg(weft_real deg)
+{
+    return deg * (WEFT_PI / 180);
+}
+
+static inline weft_real weft_deg_of_rad(weft_real rad)
+{
+    return rad * (180 / WEFT_PI);
+}
+
+#endif

@@ -1,0 +1,90 @@
+/* The material NAME.weft: what compress writes and the player and other renderers read.
+ * The file format is docs/weft-format.md; this is its image in memory, laid out as it is uploaded to a GPU.
+ *
+ * Value of a texel (Daubert et al. 2001, eq. 1 and 2), as BRDF x pi, with a table of lights beside the one of views:
+ *     f(l, v) = T(v) S(l) (rho + sum_i max(0, l' . diag(Cx, Cy, Cz)_i . v')^N_i)
+ * l', v' in the frame of the texel. Multiplied by l_z it is the dataset's reflectance times cosine. */
+#ifndef WEFT_BTF_MATERIAL_MATERIAL_H
+#define WEFT_BTF_MATERIAL_MATERIAL_H
+
+#include "base/half.h"
+#include "base/status.h"
+#include "btf/direction/frame.h"
+#include "btf/material/table_basis.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum {
+    WEFT_MATERIAL_MAX_LOBES = 3,
+    WEFT_MATERIAL_MAX_LEVELS = 16,
+    WEFT_MATERIAL_MAX_VIEWS = 4096,
+    WEFT_MATERIAL_MAX_LIGHTS = 4096
+};
+
+/* What was measured when the material was written: decoded material against the dataset, over its valid samples. */
+typedef struct weft_material_error {
+    double median_relative; /* |fit - sample| / sample over samples above 1e-4 of the largest */
+    double percentile80_relative;
+    double rmse;          /* of reflectance times cosine */
+    double relative_rmse; /* rmse / rms of the samples */
+    double psnr_db;       /* 20 log10(peak / rmse), peak = 99.9th percentile of the samples */
+} weft_material_error;
+
+/* One mip level, row 0 at the top. Every array is owned by the material. */
+typedef struct weft_material_level {
+    int width, height;
+    int16_t *frame;     /* [height][width][3]: n_x, n_y (x 32767; n_z = sqrt(1 - n_x^2 - n_y^2)), azimuth of the tangent
+                           about n, from x projected on the tangent plane, / pi (x 32767) */
+    weft_half *diffuse; /* [height][width][4]: rho r, g, b, 0 */
+    weft_half *lobe;    /* [lobe_count][channel 3][height][width][4]: Cx, Cy, Cz, N */
+    uint8_t *table; /* [view_count][height][width][4]: r, g, b square-root coded, T = (code/255)^2; alpha = code/255.
+                       NULL where the material has no table (T = 1) */
+    uint8_t *light_table; /* [light_count][height][width][4]: r, g, b coded alike, S = (code/255)^2; 255 unused.
+                             NULL where the material has none (S = 1) */
+    weft_table_basis *table_basis, *light_table_basis; /* what the tables were decoded from, where the material
+                                                          has_table_bases; else NULL */
+    uint8_t *model; /* [height][width]: its model, see btf/material/models.h; NULL where all have the same */
+    weft_material_error error;
+} weft_material_level;
+
+typedef struct weft_material {
+    int lobe_count;        /* 0..WEFT_MATERIAL_MAX_LOBES */
+    int level_count;       /* level k + 1 has ceil half the size of level k, down to 1 x 1 */
+    int view_count;        /* directions of T; 0 without a table */
+    int light_count;       /* directions of S; 0 without a light table */
+    bool has_models;       /* every level says which model each texel has */
+    bool has_table_bases;  /* tables are stored by components, and so */
+    bool has_opacity;      /* are opacities by themselves, if any is below 1 */
+    double texel_pitch_mm; /* of level 0 */
+    weft_vec3 *view;       /* [view_count], unit, upper hemisphere */
+    weft_vec3 *light;      /* [light_count], unit, upper hemisphere */
+    weft_material_level level[WEFT_MATERIAL_MAX_LEVELS];
+    char *metadata; /* JSON text: provenance, fit settings; never NULL once read */
+} weft_material;
+
+/* Allocates all arrays of a material (zeroed) for a level 0 of width x height; full mip chain when
+ * `with_levels`, else one level. metadata = "{}". Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. */
+weft_code weft_material_create(int width, int height, int lobe_count, int view_count, int light_count, int with_levels,
+                               weft_material *material, weft_error *error);
+void weft_material_free(weft_material *material);
+
+/* Adds maps of models, all 0. Errors: WEFT_SYSTEM. */
+weft_code weft_material_add_models(weft_material *material, weft_error *error);
+
+/* Whether any texel has an opacity below 1 in any view. Pure. */
+bool weft_material_has_holes(const weft_material *material);
+
+/* Writes atomically. Errors: WEFT_BAD_USAGE for contents that could not be read back (not finite, negative diffuse
+ * terms or exponents, directions that are no unit vectors of the upper hemisphere, metadata that is no JSON object),
+ * WEFT_SYSTEM. */
+weft_code weft_material_write(const char *path, const weft_material *material, weft_error *error);
+
+/* Bytes of the file that weft_material_write would write. Errors: as there. */
+weft_code weft_material_size(const weft_material *material, uint64_t *size, weft_error *error);
+
+/* Reads and checks all of a file: every size against the file before anything is allocated, every checksum.
+ * Errors: WEFT_BAD_INPUT naming the file and the section. The caller frees with weft_material_free. */
+weft_code weft_material_read(const char *path, weft_material *material, weft_error *error);
+
+#endif

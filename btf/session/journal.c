@@ -1,0 +1,121 @@
+#include "btf/session/journal.h"
+
+#include "base/atomic_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <jansson.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MAX_JOURNAL_BYTES = 1 << 30 };
+
+static void journal_path(const weft_session *session, char path[PATH_MAX])
+{
+    snprintf(path, PATH_MAX, "%s/journal.jsonl", session->folder);
+}
+
+/* ---- Reading ---- */
+
+static bool unpack_record(json_t *json, int *shot, weft_shot_record *record)
+{
+    json_int_t bytes, crc32;
+    if (json_unpack(json, "{si si sF sI sI}", "shot", shot, "stay", &record->stay, "exposure_s", &record->exposure_s,
+                    "bytes", &bytes, "crc32", &crc32) != 0)
+        return false;
+    if (bytes < 0 || crc32 < 0 || crc32 > UINT32_MAX || record->stay < 0 || record->stay >= WEFT_SESSION_MAX_SHOTS ||
+        !(record->exposure_s > 0))
+        return false;
+    record->taken = true;
+    record->bytes = (uint64_t)bytes;
+    record->crc32 = (uint32_t)crc32;
+    return true;
+}
+
+static weft_code read_line(weft_session *session, const char *path, int line, const char *text, size_t length,
+                           weft_error *error)
+{
+    json_error_t where;
+    json_t *json = json_loadb(text, length, 0, &where);
+    int shot = -1;
+    weft_shot_record record = {0};
+    bool understood = json && unpack_record(json, &shot, &record);
+    json_decref(json);
+    if (!understood)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d is not a journal line", path, line);
+    if (shot < 0 || shot >= session->shot_count)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d names shot %d, the plan has %d", path, line, shot,
+                         session->shot_count);
+    session->record[shot] = record;
+    return WEFT_OK;
+}
+
+static weft_code read_lines(weft_session *session, const char *path, const char *text, weft_error *error)
+{
+    int line = 1;
+    for (const char *end; (end = strchr(text, '\n')); text = end + 1, line++)
+        WEFT_TRY(read_line(session, path, line, text, (size_t)(end - text), error));
+    return WEFT_OK;
+}
+
+weft_code weft_journal_read(weft_session *session, weft_error *error)
+{
+    char path[PATH_MAX], *text = NULL;
+    size_t size;
+    journal_path(session, path);
+    if (access(path, F_OK) != 0)
+        return WEFT_OK;
+    WEFT_TRY(weft_read_file(path, MAX_JOURNAL_BYTES, &text, &size, error));
+    weft_code code = read_lines(session, path, text, error);
+    free(text);
+    return code;
+}
+
+/* ---- Appending ---- */
+
+/* Offset just behind the last newline: a crash can leave a cut line after it. */
+static off_t end_of_complete_lines(int descriptor)
+{
+    off_t end = lseek(descriptor, 0, SEEK_END);
+    char byte;
+    while (end > 0 && pread(descriptor, &byte, 1, end - 1) == 1 && byte != '\n')
+        end--;
+    return end;
+}
+
+static int append_text(const char *path, const char *text, size_t length)
+{
+    int descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0)
+        return -1;
+    off_t end = end_of_complete_lines(descriptor);
+    ssize_t written = -1;
+    if (end >= 0 && ftruncate(descriptor, end) == 0)
+        written = pwrite(descriptor, text, length, end);
+    int saved = errno;
+    if (written >= 0 && (size_t)written < length) {
+        saved = ENOSPC;
+        written = -1;
+    }
+    close(descriptor);
+    errno = saved;
+    return written < 0 ? -1 : 0;
+}
+
+weft_code weft_session_append(weft_session *session, int shot, const weft_shot_record *record, weft_error *error)
+{
+    char path[PATH_MAX], line[256];
+    journal_path(session, path);
+    int length =
+        snprintf(line, sizeof line, "{\"shot\":%d,\"stay\":%d,\"exposure_s\":%.9g,\"bytes\":%llu,\"crc32\":%u}\n", shot,
+                 record->stay, record->exposure_s, (unsigned long long)record->bytes, record->crc32);
+    if (append_text(path, line, (size_t)length) != 0)
+        return weft_fail_errno(error, "append to", path);
+    session->record[shot] = *record;
+    session->record[shot].taken = true;
+    return WEFT_OK;
+}

@@ -1,0 +1,213 @@
+#include "btf/session/session.h"
+
+#include "base/atomic_file.h"
+#include "base/json_text.h"
+#include "btf/session/journal.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SESSION_VERSION = 1, MAX_SESSION_BYTES = 1 << 28 };
+
+static const char session_name[] = "session.json";
+
+static void session_path(const weft_session *session, char path[PATH_MAX])
+{
+    snprintf(path, PATH_MAX, "%s/%s", session->folder, session_name);
+}
+
+/* ---- Writing ---- */
+
+static json_t *pack_camera(const weft_camera *c)
+{
+    return json_pack("{si si sf sf sf sf sf sf s[fff]}", "width", c->width, "height", c->height, "fx", c->fx, "fy",
+                     c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2", c->k2, "vignetting", c->vignetting[0],
+                     c->vignetting[1], c->vignetting[2]);
+}
+
+static json_t *pack_target(const weft_target *t)
+{
+    return json_pack("{sf sf sf sf}", "opening_mm", t->opening_mm, "white_reflectance", t->white_reflectance,
+                     "paper_reflectance", t->paper_reflectance, "ink_reflectance", t->ink_reflectance);
+}
+
+static json_t *pack_angles(weft_angles a)
+{
+    return json_pack("[ff]", weft_deg_of_rad(a.theta_rad), weft_deg_of_rad(a.phi_rad));
+}
+
+static json_t *pack_plan(const weft_session *session)
+{
+    json_t *plan = json_array();
+    for (int i = 0; i < session->shot_count; i++) {
+        const weft_shot *shot = &session->shot[i];
+        json_array_append_new(plan,
+                              json_pack("{so so so}", "light", pack_angles(shot->light), "view",
+                                        pack_angles(shot->view), "light_driven", pack_angles(shot->light_driven)));
+    }
+    return plan;
+}
+
+static json_t *pack_session(const weft_session *s)
+{
+    json_error_t ignored;
+    json_t *settings = json_loads(s->rig_settings ? s->rig_settings : "{}", 0, &ignored);
+    return json_pack("{si ss so so so sf sf si si so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
+                     weft_json_text(s->sample, strlen(s->sample)), "rig_settings", settings ? settings : json_object(),
+                     "camera", pack_camera(&s->camera), "camera_distance_mm", s->camera_distance_mm,
+                     "light_distance_mm", s->light_distance_mm, "bits", s->bits, "black_level", s->black_level,
+                     "target", pack_target(&s->target), "plan", pack_plan(s));
+}
+
+weft_code weft_session_create(const weft_session *session, weft_error *error)
+{
+    char path[PATH_MAX];
+    session_path(session, path);
+    json_t *root = pack_session(session);
+    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
+    json_decref(root);
+    if (!text)
+        return weft_fail_memory(error, session_name, 0);
+    weft_code code = weft_write_file(path, text, strlen(text), error);
+    free(text);
+    return code;
+}
+
+/* ---- Reading ---- */
+
+static bool unpack_camera(json_t *json, weft_camera *c)
+{
+    return json_unpack(json, "{si si sF sF sF sF sF sF s[FFF]}", "width", &c->width, "height", &c->height, "fx", &c->fx,
+                       "fy", &c->fy, "cx", &c->cx, "cy", &c->cy, "k1", &c->k1, "k2", &c->k2, "vignetting",
+                       &c->vignetting[0], &c->vignetting[1], &c->vignetting[2]) == 0;
+}
+
+static bool unpack_target(json_t *json, weft_target *t)
+{
+    return json_unpack(json, "{sF sF sF sF}", "opening_mm", &t->opening_mm, "white_reflectance", &t->white_reflectance,
+                       "paper_reflectance", &t->paper_reflectance, "ink_reflectance", &t->ink_reflectance) == 0;
+}
+
+static bool unpack_angles(json_t *json, weft_angles *angles)
+{
+    double theta_deg, phi_deg;
+    if (json_unpack(json, "[FF]", &theta_deg, &phi_deg) != 0 || !(theta_deg >= 0 && theta_deg < 90))
+        return false;
+    *angles = (weft_angles){weft_rad_of_deg(theta_deg), weft_rad_of_deg(phi_deg)};
+    return true;
+}
+
+static bool unpack_shot(json_t *json, weft_shot *shot)
+{
+    return unpack_angles(json_object_get(json, "light"), &shot->light) &&
+           unpack_angles(json_object_get(json, "view"), &shot->view) &&
+           unpack_angles(json_object_get(json, "light_driven"), &shot->light_driven);
+}
+
+static weft_code unpack_plan(json_t *plan, const char *path, weft_session *session, weft_error *error)
+{
+    size_t count = json_array_size(plan);
+    if (count < 1 || count > WEFT_SESSION_MAX_SHOTS)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': the plan has %zu shots, not 1 to %d", path, count,
+                         WEFT_SESSION_MAX_SHOTS);
+    session->shot_count = (int)count;
+    session->shot = calloc(count, sizeof *session->shot);
+    session->record = calloc(count, sizeof *session->record);
+    if (!session->shot || !session->record)
+        return weft_fail_memory(error, "plan", count * sizeof *session->shot);
+    for (size_t i = 0; i < count; i++) {
+        if (!unpack_shot(json_array_get(plan, i), &session->shot[i]))
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': shot %zu of the plan is malformed", path, i);
+    }
+    return WEFT_OK;
+}
+
+static weft_code check_values(const weft_session *s, const char *path, weft_error *error)
+{
+    const weft_camera *c = &s->camera;
+    if (c->width < 1 || c->height < 1 || c->width > 32768 || c->height > 32768)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': photographs of %d x %d pixels", path, c->width, c->height);
+    if (s->bits < 8 || s->bits > 16 || s->black_level < 0 || s->black_level >= 1 << s->bits)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': %d bits with black level %d", path, s->bits, s->black_level);
+    if (!(c->fx > 0 && c->fy > 0 && s->camera_distance_mm > 0 && s->light_distance_mm > 0 && s->target.opening_mm > 0))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': a focal length, distance or opening is not positive", path);
+    if (!(s->target.white_reflectance > 0 && s->target.white_reflectance <= 1))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': white reference of reflectance %g", path,
+                         s->target.white_reflectance);
+    return WEFT_OK;
+}
+
+static bool unpack_strings(json_t *root, weft_session *s)
+{
+    const char *rig, *sample;
+    if (json_unpack(root, "{ss ss}", "rig", &rig, "sample", &sample) != 0)
+        return false;
+    s->rig = strdup(rig);
+    s->sample = strdup(sample);
+    json_t *settings = json_object_get(root, "rig_settings");
+    s->rig_settings = settings ? json_dumps(settings, JSON_COMPACT) : strdup("{}");
+    return s->rig && s->sample && s->rig_settings;
+}
+
+static weft_code unpack_session(json_t *root, const char *path, weft_session *s, weft_error *error)
+{
+    int version = 0;
+    if (json_unpack(root, "{si}", "weft_session", &version) != 0 || version != SESSION_VERSION)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a session of version %d", path, SESSION_VERSION);
+    if (!unpack_strings(root, s) || !unpack_camera(json_object_get(root, "camera"), &s->camera) ||
+        !unpack_target(json_object_get(root, "target"), &s->target) ||
+        json_unpack(root, "{sF sF si si}", "camera_distance_mm", &s->camera_distance_mm, "light_distance_mm",
+                    &s->light_distance_mm, "bits", &s->bits, "black_level", &s->black_level) != 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' lacks a field, or one has the wrong type", path);
+    WEFT_TRY(check_values(s, path, error));
+    return unpack_plan(json_object_get(root, "plan"), path, s, error);
+}
+
+static weft_code read_session_json(weft_session *session, weft_error *error)
+{
+    char path[PATH_MAX];
+    json_t *root = NULL;
+    session_path(session, path);
+    WEFT_TRY(weft_json_read(path, MAX_SESSION_BYTES, &root, error));
+    weft_code code = unpack_session(root, path, session, error);
+    json_decref(root);
+    return code;
+}
+
+weft_code weft_session_open(const char *folder, weft_session *session, weft_error *error)
+{
+    *session = (weft_session){.folder = strdup(folder)};
+    weft_code code = session->folder ? read_session_json(session, error) : weft_fail_memory(error, folder, 0);
+    if (code == WEFT_OK)
+        code = weft_journal_read(session, error);
+    if (code != WEFT_OK)
+        weft_session_free(session);
+    return code;
+}
+
+void weft_session_free(weft_session *session)
+{
+    free(session->folder);
+    free(session->rig);
+    free(session->sample);
+    free(session->rig_settings);
+    free(session->shot);
+    free(session->record);
+    *session = (weft_session){0};
+}
+
+static int whole_degrees(weft_real rad)
+{
+    return (int)lround(weft_deg_of_rad(rad));
+}
+
+void weft_session_photograph_path(const weft_session *session, int shot, char *path, int size)
+{
+    const weft_shot *s = &session->shot[shot];
+    int tl = whole_degrees(s->light.theta_rad), pl = whole_degrees(s->light.phi_rad);
+    int tv = whole_degrees(s->view.theta_rad), pv = whole_degrees(s->view.phi_rad);
+    snprintf(path, (size_t)size, "%s/tv%03d_pv%03d/tl%03d_pl%03d_tv%03d_pv%03d.tif", session->folder, tv, pv, tl, pl,
+             tv, pv);
+}

@@ -1,0 +1,65 @@
+/* The session: what capture hands to registration. A folder with
+ *   session.json   what was planned, with which rig and calibration (docs/session-format.md)
+ *   journal.jsonl  one line for every photograph taken, appended after the photograph is complete
+ *   tvTTT_pvPPP/tlTTT_plPPP_tvTTT_pvPPP.tif  the photographs, raw linear camera values
+ * A shot exists when its photograph lies under its final name and its journal line is complete. */
+#ifndef WEFT_BTF_SESSION_SESSION_H
+#define WEFT_BTF_SESSION_SESSION_H
+
+#include "base/status.h"
+#include "btf/session/camera.h"
+#include "btf/session/target.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { WEFT_SESSION_MAX_SHOTS = 1000000 };
+
+/* One planned photograph. */
+typedef struct weft_shot {
+    weft_angles light, view;  /* of the grid: they name the file */
+    weft_angles light_driven; /* where the light is really sent; differs where the camera would stand in its way */
+} weft_shot;
+
+/* What the journal says of a shot. */
+typedef struct weft_shot_record {
+    bool taken;
+    int stay; /* counts the moves of the camera axes, below WEFT_SESSION_MAX_SHOTS: photographs of one stay share one
+                 pose */
+    double exposure_s;
+    uint64_t bytes; /* size of the file */
+    uint32_t crc32; /* of its bytes */
+} weft_shot_record;
+
+typedef struct weft_session {
+    char *folder;
+    char *rig;                                    /* name of the back end */
+    char *sample;                                 /* name of the sample, for the report */
+    char *rig_settings;                           /* JSON text of the back end's own settings (seed, ...) */
+    weft_camera camera;                           /* as calibrated */
+    double camera_distance_mm, light_distance_mm; /* as set up */
+    int bits;                                     /* of the raw values; full scale is 2^bits - 1 */
+    int black_level;                              /* raw value of no light */
+    weft_target target;
+    int shot_count;
+    weft_shot *shot;          /* [shot_count], in the order of the plan */
+    weft_shot_record *record; /* [shot_count] */
+} weft_session;
+
+/* Writes session.json atomically into session->folder, which must exist. Errors: WEFT_SYSTEM. */
+weft_code weft_session_create(const weft_session *session, weft_error *error);
+
+/* Reads session.json and the journal. A last journal line that is cut is ignored (the process died while it
+ * wrote); any other malformed line is an error. The caller frees with weft_session_free.
+ * Errors: WEFT_BAD_INPUT naming the file, and the line in the journal. */
+weft_code weft_session_open(const char *folder, weft_session *session, weft_error *error);
+void weft_session_free(weft_session *session);
+
+/* Path of the photograph of a shot inside the folder; `path` holds at least `size` bytes. Pure. */
+void weft_session_photograph_path(const weft_session *session, int shot, char *path, int size);
+
+/* Appends a shot to the journal with one write() and updates session->record[shot]. A cut last line left by a
+ * crash is removed first. Errors: WEFT_SYSTEM. */
+weft_code weft_session_append(weft_session *session, int shot, const weft_shot_record *record, weft_error *error);
+
+#endif

@@ -1,0 +1,42 @@
+#include "capture/virtual/sample.h"
+
+#include <string.h>
+
+static bool is_stitch(const char *path)
+{
+    static const char ending[] = ".stitch";
+    size_t length = strlen(path), tail = sizeof ending - 1;
+    return length >= tail && strcmp(path + length - tail, ending) == 0;
+}
+
+weft_code weft_virtual_sample_read(const char *path, const weft_rig_settings *settings, uint64_t seed,
+                                   weft_virtual_sample *sample, char warning[WEFT_MESSAGE_SIZE], weft_error *error)
+{
+    *sample = (weft_virtual_sample){.opening_mm = settings->opening_mm};
+    if (!is_stitch(path))
+        return weft_virtual_cloth_read(path, settings, seed, &sample->flat, warning, error);
+    warning[0] = '\0';
+    if (settings->tiles_x > 0 || settings->tiles_y > 0)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s': the tiles of a stitch have a size in mm, so that tiles_x and tiles_y must be 0", path);
+    return weft_stitch_sample_read(path, (int)settings->bounces, &sample->deep, error);
+}
+
+void weft_virtual_sample_free(weft_virtual_sample *sample)
+{
+    weft_virtual_cloth_free(&sample->flat);
+    weft_stitch_sample_free(sample->deep);
+    *sample = (weft_virtual_sample){0};
+}
+
+const char *weft_virtual_sample_name(const weft_virtual_sample *sample)
+{
+    return sample->deep ? weft_stitch_sample_stitch(sample->deep)->name : sample->flat.weave.name;
+}
+
+int weft_virtual_sample_see(const weft_virtual_sample *sample, double x_mm, double y_mm, weft_vec3 view, uint64_t key,
+                            uint32_t index, weft_seen_vertex *vertex)
+{
+    double half = sample->opening_mm / 2;
+    return weft_stitch_sample_see(sample->deep, x_mm + half, y_mm + half, view, key, index, vertex);
+}

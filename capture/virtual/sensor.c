@@ -1,0 +1,91 @@
+#include "capture/virtual/sensor.h"
+
+#include <stdlib.h>
+
+/* The value below which a fraction p of the standard normal lies: Newton on its distribution function. */
+static double normal_quantile(double p)
+{
+    double x = 0;
+    for (int i = 0; i < 60; i++) {
+        double excess = 0.5 * erfc(-x / sqrt(2)) - p;
+        double step = excess * sqrt(2 * WEFT_PI) * exp(x * x / 2);
+        x -= weft_clamp(step, -0.5, 0.5);
+    }
+    return x;
+}
+
+/* Equally likely values, scaled to variance 1 (the finite table misses a little of the tails). */
+static float *make_quantiles(void)
+{
+    float *quantiles = malloc(WEFT_NORMAL_COUNT * sizeof *quantiles);
+    double squares = 0;
+    for (int i = 0; quantiles && i < WEFT_NORMAL_COUNT; i++) {
+        double value = normal_quantile((i + 0.5) / WEFT_NORMAL_COUNT);
+        squares += value * value;
+        quantiles[i] = (float)value;
+    }
+    for (int i = 0; quantiles && i < WEFT_NORMAL_COUNT; i++)
+        quantiles[i] /= (float)sqrt(squares / WEFT_NORMAL_COUNT);
+    return quantiles;
+}
+
+weft_code weft_virtual_sensor_make(const weft_rig_settings *s, weft_virtual_sensor *sensor, weft_error *error)
+{
+    int full_scale = (1 << (int)s->bits) - 1, black_level = (int)s->black_level;
+    *sensor = (weft_virtual_sensor){
+        .read_noise = (float)s->read_noise_electrons,
+        .electrons_per_step = (float)(s->full_well_electrons / (full_scale - black_level)),
+        .black_level = black_level,
+        .full_scale = full_scale,
+        .normal = make_quantiles(),
+    };
+    return sensor->normal ? WEFT_OK : weft_fail_memory(error, "noise table", WEFT_NORMAL_COUNT * sizeof(float));
+}
+
+void weft_virtual_sensor_free(weft_virtual_sensor *sensor)
+{
+    free((float *)sensor->normal);
+    *sensor = (weft_virtual_sensor){0};
+}
+
+/* An integer hash in the manner of Wellons' "lowbias32", keyed between its rounds so that two keys never give shifted
+ * copies of one sequence. */
+static inline uint32_t hash_sample(uint32_t index, uint32_t key, uint32_t second_key)
+{
+    uint32_t h = index ^ key;
+    h = (h ^ h >> 16) * 0x7feb352du;
+    h += second_key;
+    h = (h ^ h >> 15) * 0x846ca68bu;
+    return h ^ h >> 16;
+}
+
+WEFT_HOT static void read_block(const weft_virtual_sensor *s, const float *radiance, uint32_t first, int count,
+                                float gain, uint64_t key, uint16_t *samples)
+{
+    const float *normal = s->normal;
+    float read_variance = s->read_noise * s->read_noise;
+    float per_electron = 1 / s->electrons_per_step, zero = (float)s->black_level + 0.5f;
+    float full_scale = (float)s->full_scale;
+    uint32_t low = (uint32_t)key, high = (uint32_t)(key >> 32);
+    for (int i = 0; i < count; i++) {
+        float electrons = radiance[i] * gain;
+        uint32_t quantile = hash_sample(first + (uint32_t)i, low, high) >> (32 - WEFT_NORMAL_BITS);
+        float noisy = electrons + sqrtf(electrons + read_variance) * normal[quantile];
+        float raw = zero + noisy * per_electron;
+        raw = raw > 0 ? raw : 0;
+        samples[i] = (uint16_t)(int)(raw < full_scale ? raw : full_scale);
+    }
+}
+
+void weft_virtual_sensor_read(const weft_virtual_sensor *sensor, const float *radiance, size_t count, double gain,
+                              uint64_t key, uint16_t *samples)
+{
+    enum { BLOCK = 8192 };
+    long blocks = (long)((count + BLOCK - 1) / BLOCK);
+#pragma omp parallel for schedule(static)
+    for (long block = 0; block < blocks; block++) {
+        size_t first = (size_t)block * BLOCK;
+        int length = count - first < BLOCK ? (int)(count - first) : BLOCK;
+        read_block(sensor, radiance + first, (uint32_t)first, length, (float)gain, key, samples + first);
+    }
+}

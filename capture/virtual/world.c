@@ -1,0 +1,99 @@
+#include "capture/virtual/world.h"
+
+#include "capture/virtual/random.h"
+
+static weft_vec3 apply(const weft_pose *pose, weft_vec3 p)
+{
+    const double(*r)[3] = pose->rotation;
+    weft_vec3 rotated = {r[0][0] * p.x + r[0][1] * p.y + r[0][2] * p.z, r[1][0] * p.x + r[1][1] * p.y + r[1][2] * p.z,
+                         r[2][0] * p.x + r[2][1] * p.y + r[2][2] * p.z};
+    return weft_add(rotated, pose->translation);
+}
+
+static weft_vec3 apply_inverse(const weft_pose *pose, weft_vec3 p)
+{
+    const double(*r)[3] = pose->rotation;
+    weft_vec3 d = weft_subtract(p, pose->translation);
+    return (weft_vec3){r[0][0] * d.x + r[1][0] * d.y + r[2][0] * d.z, r[0][1] * d.x + r[1][1] * d.y + r[2][1] * d.z,
+                       r[0][2] * d.x + r[1][2] * d.y + r[2][2] * d.z};
+}
+
+/* The rotation about `vector` by its length in radians (Rodrigues 1840). */
+static weft_pose pose_of_vectors(weft_vec3 vector, weft_vec3 translation)
+{
+    double angle = weft_length(vector), c = cos(angle), s = sin(angle);
+    weft_vec3 k = weft_unit(vector);
+    return (weft_pose){{{c + k.x * k.x * (1 - c), k.x * k.y * (1 - c) - k.z * s, k.x * k.z * (1 - c) + k.y * s},
+                        {k.y * k.x * (1 - c) + k.z * s, c + k.y * k.y * (1 - c), k.y * k.z * (1 - c) - k.x * s},
+                        {k.z * k.x * (1 - c) - k.y * s, k.z * k.y * (1 - c) + k.x * s, c + k.z * k.z * (1 - c)}},
+                       translation};
+}
+
+weft_pose weft_pose_compose(const weft_pose *outer, const weft_pose *inner)
+{
+    weft_pose result;
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 3; column++) {
+            result.rotation[row][column] = 0;
+            for (int k = 0; k < 3; k++)
+                result.rotation[row][column] += outer->rotation[row][k] * inner->rotation[k][column];
+        }
+    }
+    result.translation = apply(outer, inner->translation);
+    return result;
+}
+
+weft_virtual_world weft_virtual_world_of(const weft_rig_settings *settings, uint64_t seed)
+{
+    weft_virtual_world world = {.settings = *settings, .seed = seed, .camera = weft_rig_settings_camera(settings)};
+    weft_vec3 error = weft_random_direction(seed, WEFT_RANDOM_CALIBRATION, 0);
+    double angle = 2 * WEFT_PI * weft_random_uniform(seed, WEFT_RANDOM_CALIBRATION, 1);
+    world.camera.fx *= 1 + settings->focal_length_error * copysign(1, error.x);
+    world.camera.fy *= 1 + settings->focal_length_error * copysign(1, error.x);
+    world.camera.k1 *= 1 + settings->k1_error * copysign(1, error.y);
+    world.camera.cx += settings->principal_point_error_px * cos(angle);
+    world.camera.cy += settings->principal_point_error_px * sin(angle);
+    double rotation_rad = weft_rad_of_deg(settings->mounting_rotation_deg);
+    world.mounting = pose_of_vectors(
+        weft_scale(weft_random_direction(seed, WEFT_RANDOM_MOUNTING, 0), rotation_rad),
+        weft_scale(weft_random_direction(seed, WEFT_RANDOM_MOUNTING, 1), settings->mounting_translation_mm));
+    return world;
+}
+
+weft_pose weft_virtual_world_pose(const weft_virtual_world *world, weft_angles view, int stay)
+{
+    const weft_rig_settings *s = &world->settings;
+    uint64_t index = 2 * (uint64_t)stay;
+    weft_vec3 turn = weft_random_normal3(world->seed, WEFT_RANDOM_STAY, index);
+    weft_vec3 shift = weft_random_normal3(world->seed, WEFT_RANDOM_STAY, index + 1);
+    weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->stay_rotation_deg)),
+                                      weft_scale(shift, s->stay_translation_mm));
+    weft_pose nominal = weft_pose_of_view(view, s->camera_distance_mm);
+    weft_pose in_rig = weft_pose_compose(&nominal, &error);
+    return weft_pose_compose(&in_rig, &world->mounting);
+}
+
+/* A number for a stay and a commanded direction, insensitive to the last digits of a stored angle. */
+static uint64_t index_of_move(weft_angles driven, int stay)
+{
+    uint64_t theta = (uint64_t)llround(weft_deg_of_rad(driven.theta_rad) * 1e4);
+    uint64_t phi = (uint64_t)llround(weft_deg_of_rad(driven.phi_rad) * 1e4);
+    return ((uint64_t)stay * 1000003 + theta) * 10000019 + phi;
+}
+
+weft_vec3 weft_virtual_world_light(const weft_virtual_world *world, weft_angles driven, int stay)
+{
+    const weft_rig_settings *s = &world->settings;
+    weft_vec3 turn = weft_random_normal3(world->seed, WEFT_RANDOM_LIGHT, index_of_move(driven, stay));
+    weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->light_rotation_deg)), (weft_vec3){0, 0, 0});
+    weft_vec3 nominal = weft_scale(weft_direction_of_angles(driven), s->light_distance_mm);
+    weft_vec3 in_rig = apply(&error, nominal);
+    return apply_inverse(&world->mounting, in_rig);
+}
+
+bool weft_virtual_world_shadowed(const weft_virtual_world *world, const weft_pose *pose, weft_vec3 light)
+{
+    double covered_rad = 0.9 * weft_rad_of_deg(world->settings.camera_half_angle_deg);
+    weft_vec3 toward_camera = weft_unit(weft_pose_camera_position(pose));
+    return weft_dot(toward_camera, weft_unit(light)) > cos(covered_rad);
+}

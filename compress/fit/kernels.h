@@ -1,0 +1,75 @@
+/* The inner loops of the fit: compiled once for every instruction set, each copy behind one table of functions. */
+#ifndef WEFT_COMPRESS_FIT_KERNELS_H
+#define WEFT_COMPRESS_FIT_KERNELS_H
+
+#include "base/processor.h"
+#include "compress/fit/measure.h"
+#include "compress/fit/normal.h"
+
+/* Sums over the samples of a view and a light, [light_count][view_stride], of a model f without T and S: <f|f> and
+ * <f|r>. 0 in the padding. */
+typedef struct weft_separable {
+    int light_count, view_stride;
+    float *square, *product;
+    float prior; /* S = 1 counts as much as this part of the mean <T f|T f> of a light */
+} weft_separable;
+
+struct weft_fit_kernels {
+    /* sums [WEFT_GRAM_PRODUCTS][view_stride]: products of columns (see compress/fit/gram.h) summed over the samples of
+     * each view in a part of its slots; WEFT_PART_REST adds to what `sums` holds. table [view_stride] is T(v) in e.
+     * Views without samples keep what their sums were. */
+    void (*accumulate)(const weft_bundle *bundle, const float *cosine, const float *value, const weft_gram_point *point,
+                       const float *table, weft_part part, float *sums);
+    /* The samples of a texel: see weft_samples_gather. */
+    void (*gather)(const weft_bundle *bundle, weft_values values, const float *sum, const float *count, int group_size,
+                   weft_samples *samples);
+    /* See weft_samples_weigh_for_screen. */
+    void (*weigh)(const weft_bundle *bundle, weft_samples *samples);
+    /* Adds the squares of the samples, each counted once whatever its weight, and of what `model` [sample_count] times
+     * table [view_stride] leaves of them. */
+    void (*compare)(const weft_bundle *bundle, const weft_samples *samples, int channel, const float *model,
+                    const float *table, weft_error_sums *sums);
+    /* k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [sample_count]. */
+    void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
+    /* The linear rows of a trial from its sums at `point`, and their totals. Returns the sum of <f|f> without T. */
+    double (*digest)(const weft_bundle *bundle, weft_trial *trial);
+    /* Residual at other linear parameters than those of the pass; their T into table [view_stride]. */
+    double (*residual)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, const weft_linear *linear,
+                       float *table);
+    /* The same residual, and normal equations of the linear parameters alone, T eliminated: h [n][n], g [n]. */
+    double (*linear_normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table,
+                            const weft_linear *linear, double *h, double *g);
+    /* See weft_normal_of_trial; without the curvature of the scale, which it returns. */
+    double (*normal)(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,
+                     weft_normal *normal);
+    /* T(v) = <S f|r>_v / <S f|S f>_v, if wanted, then S(l) alike with its prior, `rounds` times from S = light; 1 where
+     * the model leaves nothing. table [view_stride], light [light_count]; energy [light_count]: <T f|T f>. */
+    void (*separate)(const weft_separable *own, bool with_table, int rounds, float *table, float *light, float *energy);
+};
+
+/* The functions of one set, by their names in it. */
+#define WEFT_DECLARE_FIT_KERNELS_OF(set)                                                                               \
+    void weft_gram_accumulate_##set(const weft_bundle *bundle, const float *cosine, const float *value,                \
+                                    const weft_gram_point *point, const float *table, weft_part part, float *sums);    \
+    void weft_gather_samples_##set(const weft_bundle *bundle, weft_values values, const float *sum,                    \
+                                   const float *count, int group_size, weft_samples *samples);                         \
+    void weft_gather_weigh_##set(const weft_bundle *bundle, weft_samples *samples);                                    \
+    void weft_gather_compare_##set(const weft_bundle *bundle, const weft_samples *samples, int channel,                \
+                                   const float *model, const float *table, weft_error_sums *sums);                     \
+    void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \
+                                  float *result);                                                                      \
+    double weft_linear_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                     \
+    double weft_linear_residual_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,             \
+                                      const weft_linear *linear, float *table);                                        \
+    double weft_linear_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,               \
+                                    const weft_linear *linear, double *h, double *g);                                  \
+    double weft_fit_normal_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table, bool rotate,     \
+                                 weft_normal *normal);                                                                 \
+    void weft_light_separate_##set(const weft_separable *own, bool with_table, int rounds, float *table, float *light, \
+                                   float *energy)
+#define WEFT_DECLARE_FIT_KERNELS(set) WEFT_DECLARE_FIT_KERNELS_OF(set)
+
+/* Those of an instruction set of this processor. */
+const weft_fit_kernels *weft_fit_kernels_of(weft_instruction_set set);
+
+#endif

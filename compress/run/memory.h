@@ -1,0 +1,29 @@
+/* How much memory there is, and how much this process has taken. */
+#ifndef WEFT_COMPRESS_RUN_MEMORY_H
+#define WEFT_COMPRESS_RUN_MEMORY_H
+
+#include <stdint.h>
+
+/* A quarter of what this process may have: of the physical memory or of the smallest limit among its control groups
+ * (cgroup v1 and v2), whichever is less. */
+uint64_t weft_memory_default(void);
+
+/* Bytes of the process in physical memory. 0 where /proc is missing. */
+uint64_t weft_memory_resident(void);
+
+/* Bytes that malloc has handed out and not got back, touched or not. */
+uint64_t weft_memory_allocated(void);
+
+/* How much memory a computation may take. */
+typedef struct weft_memory_budget {
+    uint64_t limit;    /* of the whole process */
+    uint64_t overhead; /* what is resident besides memory from malloc: code, libraries, stacks */
+} weft_memory_budget;
+
+/* limit 0 stands for weft_memory_default. Call it before anything large is allocated. */
+weft_memory_budget weft_memory_budget_begin(uint64_t limit);
+
+/* Bytes of the limit that are taken, counting all memory from malloc as if it had been touched. */
+uint64_t weft_memory_budget_taken(const weft_memory_budget *budget);
+
+#endif

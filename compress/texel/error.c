@@ -1,0 +1,52 @@
+/* How far the model of a texel is from its samples. */
+#include "compress/texel/parts.h"
+
+/* In a level of many texels this share of them is enough for percentiles. */
+enum { TALLIED_TEXELS = 1024 };
+
+bool weft_texel_is_tallied(const weft_material_level *level, int x, int y)
+{
+    int stride = level->width * level->height / TALLIED_TEXELS;
+    return stride < 2 || (y * level->width + x) % stride == 0;
+}
+
+static void tally_channel(weft_texel_fitter *fitter, int channel, const float *model, const float *table)
+{
+    const weft_bundle *bundle = &fitter->bundle;
+    const weft_samples *samples = &fitter->samples;
+    for (int i = 0; i < bundle->sample_count; i++) {
+        float cosine = samples->cosine[i];
+        if (!(cosine > 0))
+            continue;
+        float scale = (float)samples->scale * bundle->light[2][i] / cosine;
+        weft_error_tally_add(fitter->tally, samples->value[channel][i] * scale,
+                             model[i] * table[bundle->view_of[i]] * scale);
+    }
+}
+
+weft_samples weft_texel_samples_as_lit(weft_texel_fitter *fitter, int channel)
+{
+    if (fitter->light_count == 0)
+        return fitter->samples;
+    const uint8_t *code = fitter->light_code + (size_t)channel * (size_t)fitter->light_count;
+    for (int l = 0; l < fitter->light_count; l++)
+        fitter->decoded_light[l] = weft_table_of_code(code[l]);
+    return weft_light_apply(&fitter->bundle, &fitter->samples, fitter->decoded_light, fitter->lights.cosine);
+}
+
+weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied)
+{
+    const weft_bundle *bundle = &fitter->bundle;
+    weft_error_sums sums = {0};
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
+        const uint8_t *code = fitter->code + (size_t)channel * (size_t)bundle->view_count;
+        weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
+        const float *model = weft_fit_evaluate(bundle, &lit, fitter->workspace, &fitter->as_read[channel]);
+        for (int view = 0; view < bundle->view_count; view++)
+            fitter->decoded[view] = (float)weft_table_of_code(code[view]);
+        fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, &sums);
+        if (tallied)
+            tally_channel(fitter, channel, model, fitter->decoded);
+    }
+    return sums;
+}

@@ -1,0 +1,35 @@
+/* The frame of a texel, found by fits of its grey samples: three channels with frames of their own would take thrice
+ * the time and three frames to store. Private to the room. */
+#ifndef WEFT_COMPRESS_TEXEL_FRAME_SEARCH_H
+#define WEFT_COMPRESS_TEXEL_FRAME_SEARCH_H
+
+#include "compress/fit/fit.h"
+#include "compress/texel/frame_choice.h"
+
+/* A fit of the grey samples and its T. */
+typedef struct weft_grey_fit {
+    weft_fit fit;
+    double *table; /* [view_count] */
+} weft_grey_fit;
+
+/* Room for the fits of a thread. */
+typedef struct weft_frame_search {
+    weft_grey_fit upright, given, turned; /* in the frame of the surface, the given one, and turned from the better */
+} weft_frame_search;
+
+/* Errors: WEFT_SYSTEM. The caller frees, also after a failure. */
+weft_code weft_frame_search_create(int view_count, weft_frame_search *search, weft_error *error);
+void weft_frame_search_free(weft_frame_search *search);
+
+typedef struct weft_frame_request {
+    weft_frame_choice choice;
+    const weft_frame *given; /* NULL where there is none */
+    weft_fit_options options;
+} weft_frame_request;
+
+/* The fit, one of the three of `search`, whose frame the texel is to have. */
+const weft_grey_fit *weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle,
+                                           const weft_samples *samples, weft_fit_workspace *workspace,
+                                           const weft_frame_request *request);
+
+#endif

@@ -1,0 +1,66 @@
+/* What the sources of a texel's fit share. Private to texel*.c. */
+#ifndef WEFT_COMPRESS_TEXEL_PARTS_H
+#define WEFT_COMPRESS_TEXEL_PARTS_H
+
+#include "compress/fit/kernels.h"
+#include "compress/fit/light.h"
+#include "compress/texel/texel.h"
+
+struct weft_texel_fitter {
+    const weft_texel_source *source;
+    weft_bundle bundle;
+    weft_samples samples;
+    weft_fit_workspace *workspace;
+    weft_frame_search frames;
+    bool turns, second_start; /* the last model's frame was turned; its lobes began as thrown back to the light */
+    double *table;            /* [2][view_count] of one channel; then room */
+    int *seen;                /* [view_count] valid samples */
+    weft_packed packed[WEFT_CHANNELS]; /* the last model that was fitted */
+    weft_fit as_read[WEFT_CHANNELS];   /* the same as it will be read */
+    int16_t frame[3];                  /* its code */
+    uint8_t *code;                     /* [2][channel][view_count] its T; then room for a copy */
+    float *decoded;                    /* T of one channel as it will be read */
+    int light_count;                   /* of S; 0 without */
+    double *light, *decoded_light;     /* S of one channel, and as it will be read */
+    double *grey_light;                /* S of the grey samples */
+    weft_grey_fit lit;                 /* of the same: lobes and T beside it */
+    uint8_t *light_code;               /* [2][channel][light_count] alike */
+    weft_light_workspace lights;
+    const weft_fit_kernels *kernels;
+    weft_error_tally *tally;
+};
+
+/* Is this one of the texels whose errors go into the percentiles? */
+bool weft_texel_is_tallied(const weft_material_level *level, int x, int y);
+
+/* What S needs; freed with weft_texel_light_free, also after an error. Errors: WEFT_SYSTEM. */
+weft_code weft_texel_light_create(weft_texel_fitter *fitter, weft_error *error);
+void weft_texel_light_free(weft_texel_fitter *fitter);
+
+/* The fit of the grey samples with S, begun from `start`: S takes over what lobes and frame stood in for without it, so
+ * that the frame, if it is fitted, must turn with it. */
+const weft_grey_fit *weft_texel_light_start(weft_texel_fitter *fitter, const weft_fit_options *options,
+                                            const weft_grey_fit *start);
+
+/* Improves the fit of a channel and its T, and codes its S, which goes on from that of the grey samples. The largest
+ * value of S becomes 1: what it is divided by goes into rho and the amplitudes when the fit is refined once more for S
+ * as it will be read. */
+void weft_texel_light_refine(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, weft_fit *fit);
+
+/* The samples of a channel with S as it will be read on their cosines. */
+weft_samples weft_texel_samples_as_lit(weft_texel_fitter *fitter, int channel);
+
+/* T of a channel is the mean of the others in views without any valid sample. Lowers its code where the model, whose
+ * lobes were fitted to the others and may be of any size there, would glare beside the nearest view with samples. */
+void weft_texel_limit_unseen(weft_texel_fitter *fitter, int channel);
+
+/* The last model as it will be read, against the samples. */
+weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied);
+
+/* Measures every candidate of the source's judgement; returns the sums of the last. */
+weft_error_sums weft_texel_judge(weft_texel_fitter *fitter, int level, int x, int y);
+
+/* Lobes for tables that are given. */
+void weft_texel_refit(weft_texel_fitter *fitter, const weft_material *from, int level, size_t texel);
+
+#endif

@@ -1,0 +1,253 @@
+#include "compress/texel/model_ladder.h"
+#include "compress/texel/parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_fitter **result, weft_error *error)
+{
+    *result = NULL;
+    weft_texel_fitter *fitter = calloc(1, sizeof *fitter);
+    if (!fitter)
+        return weft_fail_memory(error, "texel fitter", sizeof *fitter);
+    fitter->source = source;
+    fitter->kernels = weft_fit_kernels_of(weft_processor_instruction_set());
+    size_t views = (size_t)source->layout->view_count;
+    weft_code code = weft_bundle_create(source->layout, source->held_out, &fitter->bundle, error);
+    if (code == WEFT_OK)
+        code = weft_samples_create(&fitter->bundle, &fitter->samples, error);
+    if (code == WEFT_OK)
+        code = weft_fit_workspace_create(&fitter->bundle, &fitter->workspace, error);
+    if (code == WEFT_OK)
+        code = weft_error_tally_create(&fitter->tally, error);
+    if (code == WEFT_OK) {
+        fitter->table = calloc(2 * views, sizeof *fitter->table);
+        fitter->seen = calloc(views, sizeof *fitter->seen);
+        fitter->code = calloc(2 * WEFT_CHANNELS * views, 1);
+        fitter->decoded = calloc(views, sizeof *fitter->decoded);
+        if (!fitter->table || !fitter->seen || !fitter->code || !fitter->decoded)
+            code = weft_fail_memory(error, "view tables of a texel", views * sizeof *fitter->table);
+    }
+    if (code == WEFT_OK)
+        code = weft_frame_search_create(source->layout->view_count, &fitter->frames, error);
+    if (code == WEFT_OK && source->light_table)
+        code = weft_texel_light_create(fitter, error);
+    if (code != WEFT_OK) {
+        weft_texel_fitter_free(fitter);
+        return code;
+    }
+    *result = fitter;
+    return WEFT_OK;
+}
+
+void weft_texel_fitter_free(weft_texel_fitter *fitter)
+{
+    if (!fitter)
+        return;
+    weft_bundle_free(&fitter->bundle);
+    weft_samples_free(&fitter->samples);
+    weft_fit_workspace_free(fitter->workspace);
+    weft_error_tally_free(fitter->tally);
+    weft_frame_search_free(&fitter->frames);
+    free(fitter->table);
+    free(fitter->seen);
+    free(fitter->code);
+    free(fitter->decoded);
+    weft_texel_light_free(fitter);
+    free(fitter);
+}
+
+weft_error_tally *weft_texel_fitter_tally(weft_texel_fitter *fitter)
+{
+    return fitter->tally;
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+int weft_texel_group(const weft_dataset_layout *layout, int level, int x, int y, int extent[4])
+{
+    int side = 1 << level;
+    extent[0] = x * side;
+    extent[1] = y * side;
+    extent[2] = smaller((x + 1) * side, layout->width);
+    extent[3] = smaller((y + 1) * side, layout->height);
+    return (extent[2] - extent[0]) * (extent[3] - extent[1]);
+}
+
+void weft_texel_store(weft_material *material, int level, int x, int y, int channel, const weft_packed *packed,
+                      const uint8_t *code, const uint8_t *light_code)
+{
+    weft_material_level *to = &material->level[level];
+    size_t texels = (size_t)to->width * (size_t)to->height, texel = (size_t)y * (size_t)to->width + (size_t)x;
+    to->diffuse[4 * texel + (size_t)channel] = packed->diffuse;
+    for (int i = 0; i < material->lobe_count; i++) {
+        size_t at = ((size_t)(3 * i + channel) * texels + texel) * 4;
+        memcpy(to->lobe + at, packed->lobe[i], sizeof packed->lobe[i]);
+    }
+    for (int view = 0; code && view < material->view_count; view++)
+        to->table[((size_t)view * texels + texel) * 4 + (size_t)channel] = code[view];
+    for (int light = 0; light_code && light < material->light_count; light++)
+        to->light_table[((size_t)light * texels + texel) * 4 + (size_t)channel] = light_code[light];
+}
+
+static void store_model(const weft_texel_fitter *fitter, weft_material *material, int level, int x, int y)
+{
+    size_t texel = (size_t)y * (size_t)material->level[level].width + (size_t)x;
+    memcpy(material->level[level].frame + 3 * texel, fitter->frame, sizeof fitter->frame);
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+        weft_texel_store(material, level, x, y, channel, &fitter->packed[channel],
+                         fitter->code + (size_t)channel * (size_t)fitter->bundle.view_count,
+                         fitter->light_count ? fitter->light_code + channel * fitter->light_count : NULL);
+}
+
+/* ---- One model ---- */
+
+static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, int channel,
+                        const weft_grey_fit *start, const weft_frame *frame)
+{
+    size_t views = (size_t)fitter->bundle.view_count;
+    uint8_t *code = fitter->code + (size_t)channel * views;
+    weft_fit fit = start->fit;
+    fit.frame = *frame;
+    memcpy(fitter->table, start->table, views * sizeof *fitter->table);
+    memset(code, 255, views);
+    if (fitter->light_count > 0)
+        memset(fitter->light_code + (size_t)channel * (size_t)fitter->light_count, 255, (size_t)fitter->light_count);
+    if (light)
+        weft_texel_light_refine(fitter, options, channel, &fit);
+    else
+        weft_fit_refine(&fitter->bundle, &fitter->samples, channel, options, fitter->workspace, &fit, fitter->table);
+    weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
+    weft_pack_channel(&fitter->bundle, &lit, channel, options, fitter->workspace, &fit, fitter->table,
+                      &fitter->packed[channel], code);
+    fitter->as_read[channel] = weft_unpack(&fitter->packed[channel], options->lobe_count, frame, fitter->samples.scale);
+    if (options->table)
+        weft_texel_limit_unseen(fitter, channel);
+}
+
+/* Fits and packs one model, with S or without; `fitter` holds the result. */
+static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given)
+{
+    weft_frame_request request = {fitter->source->frames, given, *options};
+    const weft_grey_fit *start =
+        weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+    if (light)
+        start = weft_texel_light_start(fitter, options, start);
+    fitter->turns = start == &fitter->frames.turned ||
+                    (light && options->lobe_count > 0 && fitter->source->frames == WEFT_FRAMES_FITTED);
+    fitter->second_start = start->fit.start > 0;
+    weft_frame frame = weft_pack_frame(&start->fit.frame, fitter->frame);
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+        fit_channel(fitter, options, light, channel, start, &frame);
+}
+
+/* ---- The model that suffices ---- */
+
+/* The largest model that the samples can carry. */
+static weft_fit_options whole_model(const weft_texel_fitter *fitter)
+{
+    weft_fit_options options = fitter->source->options;
+    options.lobe_count =
+        weft_fit_affordable_lobes(&fitter->bundle, &fitter->samples, options.lobe_count, options.table);
+    return options;
+}
+
+static bool meets_target(weft_texel_fitter *fitter)
+{
+    double target = fitter->source->target_error;
+    weft_error_sums sums = weft_texel_measure(fitter, false);
+    return sums.square_error <= target * target * sums.square;
+}
+
+static void round_codes(const uint8_t *whole, size_t count, int bits, uint8_t *rounded)
+{
+    for (size_t i = 0; i < count; i++)
+        rounded[i] = weft_table_code_rounded(whole[i], bits);
+}
+
+/* The fewest bits of T and S with which a model that meets the target still does. */
+static void spare_bits(weft_texel_fitter *fitter)
+{
+    size_t codes = WEFT_CHANNELS * (size_t)fitter->bundle.view_count;
+    size_t light_codes = WEFT_CHANNELS * (size_t)fitter->light_count;
+    uint8_t *whole = fitter->code + codes, *whole_light = fitter->light_code + light_codes;
+    memcpy(whole, fitter->code, codes);
+    if (light_codes > 0)
+        memcpy(whole_light, fitter->light_code, light_codes);
+    for (int bits = 4; bits <= 8; bits += 2) {
+        round_codes(whole, codes, bits, fitter->code);
+        round_codes(whole_light, light_codes, bits, fitter->light_code);
+        if (bits == 8 || meets_target(fitter))
+            return;
+    }
+}
+
+/* Climbs from the smallest model to the whole one, at last with S, until the target is met; returns whether it is. */
+static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
+{
+    weft_model_ladder ladder = weft_model_ladder_make(whole, fitter->bundle.view_count);
+    for (int rung = 0; rung < ladder.count + (fitter->light_count > 0); rung++) {
+        bool light = rung == ladder.count;
+        weft_texel_model model = ladder.model[light ? rung - 1 : rung];
+        weft_fit_options options = *whole;
+        options.lobe_count = model.lobe_count;
+        options.table = model.table;
+        fit_model(fitter, &options, light, given);
+        if (meets_target(fitter)) {
+            if (model.table || light)
+                spare_bits(fitter);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The frame that a texel is given; NULL where there is none. */
+static const weft_frame *find_given(const weft_material *given, int level, int x, int y, weft_frame *frame)
+{
+    if (!given)
+        return NULL;
+    const weft_material_level *from = &given->level[level];
+    *frame = weft_frame_decode(from->frame + 3 * ((size_t)y * (size_t)from->width + (size_t)x));
+    return frame;
+}
+
+void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int level, int x, int y, const float *sum,
+                    const float *count, weft_texel_counts *counts)
+{
+    const weft_dataset_layout *layout = fitter->source->layout;
+    int extent[4], group = weft_texel_group(layout, level, x, y, extent);
+    if (layout->distance == WEFT_NEAR) {
+        double x_mm, y_mm;
+        weft_bundle_place(layout, extent[0], extent[1], extent[2], extent[3], &x_mm, &y_mm);
+        weft_bundle_aim(&fitter->bundle, layout, x_mm, y_mm);
+    }
+    weft_samples_gather(&fitter->bundle, layout->values, sum, count, group, &fitter->samples);
+    if (fitter->source->weights == WEFT_WEIGHTS_SCREEN)
+        weft_samples_weigh_for_screen(&fitter->bundle, &fitter->samples);
+    counts->texels++;
+    counts->empty += fitter->samples.valid_count == 0;
+    if (fitter->source->judgement) {
+        weft_error_sums judged = weft_texel_judge(fitter, level, x, y);
+        weft_error_sums_add(&counts->sums, &judged);
+        return;
+    }
+    weft_fit_options whole = whole_model(fitter);
+    weft_frame frame;
+    const weft_frame *given = find_given(fitter->source->given, level, x, y, &frame);
+    if (fitter->source->tables)
+        weft_texel_refit(fitter, fitter->source->tables, level,
+                         (size_t)y * (size_t)material->level[level].width + (size_t)x);
+    else if (fitter->source->target_error > 0)
+        counts->missed += !fit_smallest(fitter, &whole, given);
+    else
+        fit_model(fitter, &whole, fitter->light_count > 0, given);
+    weft_error_sums sums = weft_texel_measure(fitter, weft_texel_is_tallied(&material->level[level], x, y));
+    weft_error_sums_add(&counts->sums, &sums);
+    store_model(fitter, material, level, x, y);
+    counts->turned += fitter->turns;
+    counts->second_start += fitter->second_start;
+}

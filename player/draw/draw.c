@@ -1,0 +1,299 @@
+#include "player/draw/player.h"
+
+#include "player/draw/legend.h"
+#include "player/draw/lighting.h"
+#include "player/draw/player_parts.h"
+#include "player/scene/false_colour.h"
+
+static const double golden_ratio = 0.6180339887498949;
+
+static void set_lights(const weft_player *p, GLuint program, const weft_scene *scene, long frame)
+{
+    weft_lighting lighting = weft_lighting_of(scene, p->environment, frame);
+    weft_gl_set_int(program, "light_count", lighting.count);
+    glUniform3fv(glGetUniformLocation(program, "light_direction"), lighting.count, lighting.direction[0]);
+    glUniform3fv(glGetUniformLocation(program, "light_irradiance"), lighting.count, lighting.irradiance[0]);
+}
+
+/* Successive frames start their choices a golden section apart: evenly spread, however many there are. */
+static double sequence_of(const weft_player *p, long frame)
+{
+    return fmod((frame < 0 ? (double)p->frames_drawn : (double)frame) * golden_ratio, 1);
+}
+
+void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane)
+{
+    weft_orbit_axes ray = weft_orbit_rays(&scene->orbit, pane->width, pane->height,
+                                          pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height);
+    weft_gl_set_vec3(program, "ray_right", ray.right.x, ray.right.y, ray.right.z);
+    weft_gl_set_vec3(program, "ray_up", ray.up.x, ray.up.y, ray.up.z);
+    weft_gl_set_vec3(program, "ray_forward", -ray.backward.x, -ray.backward.y, -ray.backward.z);
+    weft_gl_set_vec2(program, "pane_origin", pane->left, 0);
+}
+
+void weft_player_set_point(const weft_player *p, GLuint program, const weft_scene *scene, const weft_pane *pane,
+                           const weft_layer *layer)
+{
+    weft_player_set_rays(program, scene, pane);
+    set_lights(p, program, scene, pane->sampling.frame);
+    weft_gl_set_float(program, "sequence", sequence_of(p, pane->sampling.frame));
+    weft_layer_bind(layer, program);
+    if (!weft_scene_has_shadows(scene))
+        return;
+    weft_vec3 eye = weft_orbit_eye(&scene->orbit, p->centre, p->radius);
+    weft_gl_set_vec3(program, "eye", eye.x, eye.y, eye.z);
+    weft_shadow_map_bind(&p->shadow, program, 14);
+}
+
+static void set_shown(const weft_player *p, GLuint program, const weft_scene *scene, weft_mode mode)
+{
+    weft_gl_set_float(program, "exposure", scene->exposure);
+    weft_gl_set_int(program, "show_level", scene->show_level);
+    weft_gl_set_int(program, "show_extrapolation", scene->show_extrapolation);
+    glUniform3fv(glGetUniformLocation(program, "level_palette"), WEFT_LEVEL_COLOURS, weft_level_palette[0]);
+    glUniform3fv(glGetUniformLocation(program, "extrapolation_tint"), 2, weft_extrapolation_tint[0]);
+    /* A ring was measured to within rounding. */
+    weft_gl_set_vec2(program, "last_ring", p->last_ring_z[mode][0] - 1e-3, p->last_ring_z[mode][1] - 1e-3);
+}
+
+weft_code weft_player_check_mode(const weft_player *p, weft_mode mode, weft_error *error)
+{
+    static const char *const needs[WEFT_MODE_COUNT] = {"a dataset", "a material", "a weave or microcylinder cloth"};
+    if (!p->triangle_count)
+        return weft_fail(error, WEFT_BAD_USAGE, "there is no mesh to draw");
+    if (!p->has[mode])
+        return weft_fail(error, WEFT_BAD_USAGE, "mode '%s' needs %s", weft_mode_name(mode), needs[mode]);
+    return WEFT_OK;
+}
+
+/* ---- Panes ---- */
+
+void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_mode mode, GLuint program)
+{
+    switch (mode) {
+    case WEFT_MODE_RAW:
+        weft_raw_texture_bind(&p->raw, program);
+        break;
+    case WEFT_MODE_COMPRESSED:
+        weft_material_texture_bind(&p->material, program);
+        glUniform1fv(glGetUniformLocation(program, "lobe_share"), WEFT_SCENE_MAX_LOBES,
+                     (const GLfloat[]){scene->lobe[0], scene->lobe[1], scene->lobe[2]});
+        weft_gl_set_float(program, "view_table_share", scene->view_table);
+        weft_gl_set_float(program, "light_table_share", scene->light_table);
+        weft_gl_set_float(program, "table_steps", (1 << scene->table_bits) - 1);
+        break;
+    default:
+        if (weft_player_has_threads(p))
+            weft_thread_texture_bind(&p->threads, program);
+        else
+            weft_weave_texture_bind(&p->weave, program, (unsigned)scene->noise_seed);
+        break;
+    }
+}
+
+/* All lights of an environment through all neighbours of every pixel would take seconds. */
+static bool is_stochastic(const weft_player *p, const weft_scene *scene, weft_sampling sampling)
+{
+    if (scene->filter == WEFT_FILTER_AUTO)
+        return sampling.hurry || (scene->environment && p->environment);
+    return scene->filter == WEFT_FILTER_STOCHASTIC;
+}
+
+weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene, const weft_pane *pane)
+{
+    weft_program_kind kind = {
+        .mode = pane->mode,
+        .stochastic = is_stochastic(p, scene, pane->sampling),
+        .shadows = weft_scene_has_shadows(scene),
+        .one_light = weft_lighting_count(scene, p->environment) == 1,
+    };
+    kind.threads = pane->mode == WEFT_MODE_ANALYTIC && weft_player_has_threads(p);
+    kind.noise = pane->mode == WEFT_MODE_ANALYTIC && scene->noise_seed != 0 && p->weave.has_noise;
+    if (pane->mode == WEFT_MODE_RAW)
+        kind.opacity = !p->raw.opaque;
+    if (pane->mode == WEFT_MODE_COMPRESSED) {
+        kind.lobe_count = p->material.lobe_count;
+        kind.view_table = p->material.table.count > 0;
+        kind.light_table = p->material.light_table.count > 0;
+        kind.fewer_bits = scene->table_bits < 8;
+    }
+    return kind;
+}
+
+static void draw_screen(const weft_player *p)
+{
+    glBindVertexArray(p->empty_array);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+static void draw_background(const weft_player *p, const weft_scene *scene, const weft_pane *pane)
+{
+    bool has_map = scene->environment && p->environment;
+    GLuint program = has_map ? p->environment_background : p->background;
+    glDisable(GL_BLEND);
+    glUseProgram(program);
+    if (has_map) {
+        weft_player_set_rays(program, scene, pane);
+        weft_gl_bind(program, "map", 0, GL_TEXTURE_2D, p->environment_map);
+        weft_gl_set_float(program, "strength", scene->environment_strength * scene->exposure);
+        weft_gl_set_float(program, "turn", scene->environment_turn_rad / (2 * WEFT_PI));
+    }
+    draw_screen(p);
+}
+
+static weft_code shade_layer(weft_player *p, const weft_scene *scene, const weft_pane *pane, const weft_layer *layer,
+                             GLuint target, weft_error *error)
+{
+    GLuint program;
+    const weft_program_kind kind = weft_player_kind(p, scene, pane);
+    WEFT_TRY(weft_programs_find(&p->programs, &kind, &program, error));
+    glUseProgram(program);
+    weft_player_set_point(p, program, scene, pane, layer);
+    set_shown(p, program, scene, pane->mode);
+    weft_player_bind_mode(p, scene, pane->mode, program);
+    weft_player_shade(p, pane, layer, target);
+    return WEFT_OK;
+}
+
+static bool is_opaque(const weft_player *p, weft_mode mode)
+{
+    return mode == WEFT_MODE_ANALYTIC || (mode == WEFT_MODE_RAW ? p->raw.opaque : p->material.opaque);
+}
+
+/* Through the holes of the cloth one more layer is seen, and the background. Reflectance is that of the whole texel,
+ * holes included, and takes no further factor. */
+static weft_code draw_pane(weft_player *p, const weft_scene *scene, const weft_pane *pane, GLuint target,
+                           weft_error *error)
+{
+    bool opaque = is_opaque(p, pane->mode);
+    int layers = opaque ? 1 : WEFT_LAYER_COUNT;
+    WEFT_TRY(weft_player_draw_layers(p, scene, pane, layers, error));
+    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    glViewport(pane->left, 0, pane->width, pane->height);
+    draw_background(p, scene, pane);
+    weft_code code = WEFT_OK;
+    for (int i = layers - 1; code == WEFT_OK && i >= 0; i--) {
+        if (!opaque)
+            glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        code = shade_layer(p, scene, pane, &p->layer[i], target, error);
+    }
+    glDisable(GL_BLEND);
+    return code;
+}
+
+/* ---- Layouts ---- */
+
+static weft_code draw_panes(weft_player *p, const weft_scene *scene, const weft_pane *whole, GLuint target,
+                            weft_error *error)
+{
+    int panes = scene->pane_count;
+    for (int i = 0; i < panes; i++) {
+        int left = whole->width * i / panes, right = whole->width * (i + 1) / panes;
+        const weft_pane pane = {scene->pane[i], left, right - left, whole->height, whole->sampling};
+        WEFT_TRY(draw_pane(p, scene, &pane, target, error));
+    }
+    glViewport(0, 0, whole->width, whole->height);
+    return WEFT_OK;
+}
+
+static weft_code draw_wipe(weft_player *p, const weft_scene *scene, const weft_pane *whole, GLuint target,
+                           weft_error *error)
+{
+    int line = (int)lround(scene->divider * whole->width);
+    weft_code code = WEFT_OK;
+    glEnable(GL_SCISSOR_TEST);
+    for (int i = 0; code == WEFT_OK && i < 2; i++) {
+        weft_pane pane = *whole;
+        pane.mode = scene->pane[i];
+        glScissor(i == 0 ? 0 : line, 0, i == 0 ? line : whole->width - line, whole->height);
+        code = draw_pane(p, scene, &pane, target, error);
+    }
+    glDisable(GL_SCISSOR_TEST);
+    return code;
+}
+
+static weft_code keep_picture(weft_player *p, const weft_pane *whole, weft_error *error)
+{
+    if (p->kept_width != whole->width || p->kept_height != whole->height) {
+        glDeleteTextures(1, &p->kept);
+        p->kept_width = p->kept_height = 0;
+        WEFT_TRY(weft_gl_texture((weft_texture_format){GL_RGBA32F, GL_RGBA, GL_FLOAT}, whole->width, whole->height, 0,
+                                 NULL, &p->kept, error));
+        p->kept_width = whole->width;
+        p->kept_height = whole->height;
+    }
+    glBindTexture(GL_TEXTURE_2D, p->kept);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, whole->width, whole->height);
+    return weft_gl_check("keeping a picture", error);
+}
+
+static weft_code draw_difference(weft_player *p, const weft_scene *scene, const weft_pane *whole, GLuint target,
+                                 weft_error *error)
+{
+    weft_pane pane = *whole;
+    pane.mode = scene->pane[0];
+    WEFT_TRY(draw_pane(p, scene, &pane, target, error));
+    WEFT_TRY(keep_picture(p, whole, error));
+    pane.mode = scene->pane[1];
+    WEFT_TRY(draw_pane(p, scene, &pane, target, error));
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+    glBlendEquation(GL_FUNC_REVERSE_SUBTRACT);
+    glUseProgram(p->copy);
+    weft_gl_bind(p->copy, "frame", 0, GL_TEXTURE_2D, p->kept);
+    draw_screen(p);
+    glBlendEquation(GL_FUNC_ADD);
+    glDisable(GL_BLEND);
+    return WEFT_OK;
+}
+
+static weft_code draw_pane_labels(weft_player *p, const weft_scene *scene, int width, int height, int margin,
+                                  weft_error *error)
+{
+    for (int i = 0; scene->pane_count > 1 && i < scene->pane_count; i++)
+        WEFT_TRY(weft_label_draw(&p->labels, width, height, width * i / scene->pane_count + margin, margin, false,
+                                 weft_mode_name(scene->pane[i]), &weft_plain_ink, error));
+    return WEFT_OK;
+}
+
+static weft_code draw_labels(weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)
+{
+    int margin = weft_label_size(height) / 2;
+    if (!scene->labels)
+        return WEFT_OK;
+    if (scene->layout == WEFT_LAYOUT_DIFFERENCE)
+        return weft_legend_draw(&p->labels, width, height, scene->pane[1], error);
+    if (scene->layout == WEFT_LAYOUT_PANES)
+        return draw_pane_labels(p, scene, width, height, margin, error);
+    WEFT_TRY(weft_label_draw(&p->labels, width, height, margin, margin, false, weft_mode_name(scene->pane[0]),
+                             &weft_plain_ink, error));
+    return weft_label_draw(&p->labels, width, height, width - margin, margin, true, weft_mode_name(scene->pane[1]),
+                           &weft_plain_ink, error);
+}
+
+static weft_code check_scene(const weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)
+{
+    int panes = weft_scene_panes(scene);
+    if (width < panes || height < 1 || panes < 1 || panes > WEFT_MODE_COUNT)
+        return weft_fail(error, WEFT_BAD_USAGE, "%d panes do not fit into %d x %d pixels", panes, width, height);
+    for (int i = 0; i < panes; i++)
+        WEFT_TRY(weft_player_check_mode(p, scene->pane[i], error));
+    return WEFT_OK;
+}
+
+weft_code weft_player_draw(weft_player *p, const weft_scene *scene, int width, int height, weft_sampling sampling,
+                           weft_error *error)
+{
+    static weft_code (*const draw[WEFT_LAYOUT_COUNT])(weft_player *, const weft_scene *, const weft_pane *, GLuint,
+                                                      weft_error *) = {draw_panes, draw_wipe, draw_difference};
+    WEFT_TRY(check_scene(p, scene, width, height, error));
+    GLint target;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+    weft_player_draw_shadows(p, scene);
+    const weft_pane whole = {.width = width, .height = height, .sampling = sampling};
+    WEFT_TRY(draw[scene->layout](p, scene, &whole, (GLuint)target, error));
+    p->frames_drawn++;
+    WEFT_TRY(draw_labels(p, scene, width, height, error));
+    return weft_gl_check("drawing", error);
+}

@@ -1,0 +1,22 @@
+/* The lights of one frame: those of the scene, then those that stand for the environment. Pure: no OpenGL. */
+#ifndef WEFT_PLAYER_DRAW_LIGHTING_H
+#define WEFT_PLAYER_DRAW_LIGHTING_H
+
+#include "player/draw/programs.h"
+#include "player/scene/environment.h"
+#include "player/scene/scene.h"
+
+typedef struct weft_lighting {
+    int count;
+    float direction[WEFT_MAX_LIGHTS][3]; /* of the world, unit, toward the light */
+    float irradiance[WEFT_MAX_LIGHTS][3];
+} weft_lighting;
+
+/* `environment` may be NULL. frame: number of the frame in the mean of a picture at rest, or -1 for a picture that
+ * moves (player/scene/environment.h says what follows). There is always a light, though it may be black. */
+weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame);
+
+/* Its number of lights. */
+int weft_lighting_count(const weft_scene *scene, const weft_environment *environment);
+
+#endif

@@ -1,0 +1,318 @@
+#include "player/draw/player.h"
+
+#include "player/draw/player_parts.h"
+#include "player/gl/shaders.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+
+/* ---- Programs ---- */
+
+static weft_code build_programs(weft_player *p, weft_error *error)
+{
+    const char *const screen[] = {weft_glsl_fullscreen_vert, NULL};
+    const char *const environment[] = {weft_glsl_environment_frag, NULL};
+    const char *const background[] = {weft_glsl_background_frag, NULL}, *const copy[] = {weft_glsl_add_frag, NULL};
+    WEFT_TRY(weft_gl_program("background", screen, background, &p->background, error));
+    WEFT_TRY(weft_gl_program("environment", screen, environment, &p->environment_background, error));
+    WEFT_TRY(weft_gl_program("copy", screen, copy, &p->copy, error));
+    return weft_shadow_map_create(&p->shadow, error);
+}
+
+weft_code weft_player_create(weft_player **result, weft_error *error)
+{
+    *result = NULL;
+    weft_player *p = calloc(1, sizeof *p);
+    if (!p)
+        return weft_fail_memory(error, "player", sizeof *p);
+    glGenVertexArrays(1, &p->empty_array);
+    weft_code code = build_programs(p, error);
+    if (code == WEFT_OK)
+        code = weft_labels_create(&p->labels, error);
+    if (code == WEFT_OK)
+        *result = p;
+    else
+        weft_player_free(p);
+    return code;
+}
+
+static void free_mesh(weft_player *p)
+{
+    glDeleteVertexArrays(1, &p->vertex_array);
+    glDeleteBuffers(1, &p->vertex_buffer);
+    glDeleteBuffers(1, &p->index_buffer);
+    p->vertex_array = p->vertex_buffer = p->index_buffer = 0;
+    p->triangle_count = p->coarse_count = 0;
+}
+
+void weft_player_free(weft_player *p)
+{
+    if (!p)
+        return;
+    glUseProgram(0); /* a program in use would outlive its deletion */
+    free_mesh(p);
+    weft_raw_texture_free(&p->raw);
+    weft_material_texture_free(&p->material);
+    weft_table_directions_free(&p->directions);
+    weft_weave_texture_free(&p->weave);
+    weft_thread_texture_free(&p->threads);
+    weft_programs_free(&p->programs);
+    weft_shadow_map_free(&p->shadow);
+    for (int i = 0; i < WEFT_LAYER_COUNT; i++)
+        weft_layer_free(&p->layer[i]);
+    glDeleteProgram(p->background);
+    glDeleteProgram(p->environment_background);
+    glDeleteProgram(p->copy);
+    glDeleteTextures(1, &p->kept);
+    glDeleteTextures(1, &p->environment_map);
+    free(p->environment);
+    glDeleteVertexArrays(1, &p->empty_array);
+    weft_labels_free(&p->labels);
+    free(p);
+}
+
+/* ---- What is shown ---- */
+
+static void describe_attribute(GLuint location, GLint size, size_t offset)
+{
+    glEnableVertexAttribArray(location);
+    glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, sizeof(weft_vertex), (void *)offset);
+}
+
+weft_code weft_player_set_mesh(weft_player *p, const weft_mesh *mesh, weft_error *error)
+{
+    float centre[3], radius;
+    weft_mesh_bounds(mesh, centre, &radius);
+    if (!(radius > 0) || !isfinite(radius))
+        return weft_fail(error, WEFT_BAD_INPUT, "the mesh is %g units large and cannot be looked at", (double)radius);
+    free_mesh(p);
+    weft_shadow_map_forget(&p->shadow);
+    p->centre = weft_vec3_of((weft_real)centre[0], (weft_real)centre[1], (weft_real)centre[2]);
+    p->radius = (double)radius;
+    p->triangle_count = mesh->triangle_count;
+    p->coarse_count = mesh->coarse_count;
+    glGenVertexArrays(1, &p->vertex_array);
+    glGenBuffers(1, &p->vertex_buffer);
+    glGenBuffers(1, &p->index_buffer);
+    glBindVertexArray(p->vertex_array);
+    glBindBuffer(GL_ARRAY_BUFFER, p->vertex_buffer);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, p->index_buffer);
+    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)mesh->vertex_count * (GLsizeiptr)sizeof *mesh->vertex, mesh->vertex,
+                 GL_STATIC_DRAW);
+    GLsizeiptr triangles = (GLsizeiptr)mesh->triangle_count + mesh->coarse_count;
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, triangles * (GLsizeiptr)sizeof *mesh->index, mesh->index, GL_STATIC_DRAW);
+    describe_attribute(WEFT_ATTRIBUTE_POSITION, 3, offsetof(weft_vertex, position));
+    describe_attribute(WEFT_ATTRIBUTE_NORMAL, 3, offsetof(weft_vertex, normal));
+    describe_attribute(WEFT_ATTRIBUTE_TANGENT, 4, offsetof(weft_vertex, tangent));
+    describe_attribute(WEFT_ATTRIBUTE_COORDINATE, 2, offsetof(weft_vertex, coordinate));
+    glBindVertexArray(0);
+    return weft_gl_check("uploading the mesh", error);
+}
+
+static void has_now(weft_player *p, weft_mode mode, double width, double height)
+{
+    p->has[mode] = true;
+    p->texel_count[mode][0] = width;
+    p->texel_count[mode][1] = height;
+}
+
+double weft_player_last_ring_z(const weft_vec3 *direction, int count)
+{
+    double smallest = 1;
+    for (int i = 0; i < count; i++)
+        smallest = fmin(smallest, (double)direction[i].z);
+    return smallest;
+}
+
+weft_code weft_player_set_material(weft_player *p, const weft_material *material, weft_error *error)
+{
+    weft_material_texture texture;
+    weft_table_directions directions = {0};
+    weft_code code = weft_material_texture_upload(material, &texture, error);
+    if (code == WEFT_OK)
+        code = weft_table_directions_create(material, &directions, error);
+    if (code != WEFT_OK) {
+        weft_material_texture_free(&texture);
+        return code;
+    }
+    weft_material_texture_free(&p->material);
+    weft_table_directions_free(&p->directions);
+    p->material = texture;
+    p->directions = directions;
+    double *last = p->last_ring_z[WEFT_MODE_COMPRESSED];
+    last[0] = material->view_count > 0 ? weft_player_last_ring_z(material->view, material->view_count) : 0;
+    last[1] = material->light_count > 0 ? weft_player_last_ring_z(material->light, material->light_count) : last[0];
+    has_now(p, WEFT_MODE_COMPRESSED, material->level[0].width, material->level[0].height);
+    return WEFT_OK;
+}
+
+void weft_player_take_raw(weft_player *p, weft_raw_texture *texture, const double last_ring_z[2])
+{
+    weft_raw_texture_free(&p->raw);
+    p->raw = *texture;
+    *texture = (weft_raw_texture){0};
+    p->last_ring_z[WEFT_MODE_RAW][0] = last_ring_z[0];
+    p->last_ring_z[WEFT_MODE_RAW][1] = last_ring_z[1];
+    weft_mip_area finest = p->raw.plan.layout.area[0];
+    has_now(p, WEFT_MODE_RAW, finest.width, finest.height);
+}
+
+weft_code weft_player_set_dataset(weft_player *p, weft_dataset *dataset, const weft_progress *progress,
+                                  int *skipped_levels, weft_error *error)
+{
+    weft_raw_texture texture;
+    weft_raw_limits limits = weft_raw_texture_limits(WEFT_RAW_FITTING);
+    /* Other models are held against these samples: blocks, which are 5 % off, would be measured as their error. */
+    limits.has_bc6h = false;
+    weft_code code = weft_raw_texture_upload(dataset, &limits, progress, &texture, error);
+    if (code != WEFT_OK) {
+        weft_raw_texture_free(&texture);
+        return code;
+    }
+    *skipped_levels = texture.plan.skipped_levels;
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    const double last_ring_z[2] = {weft_player_last_ring_z(layout->view, layout->view_count),
+                                   weft_player_last_ring_z(layout->light, layout->image_count)};
+    weft_player_take_raw(p, &texture, last_ring_z);
+    return WEFT_OK;
+}
+
+weft_code weft_player_set_weave_texels(weft_player *p, const weft_weave_texels *texels, const weft_weave_layout *layout,
+                                       weft_error *error)
+{
+    WEFT_TRY(weft_weave_texture_upload(texels, layout, &p->weave, error));
+    weft_thread_texture_free(&p->threads);
+    p->weave_revision++;
+    has_now(p, WEFT_MODE_ANALYTIC, layout->tiles_u * texels->tile_width, layout->tiles_v * texels->tile_height);
+    return WEFT_OK;
+}
+
+weft_code weft_player_set_weave(weft_player *p, const weft_weave *weave, const weft_weave_layout *layout,
+                                weft_error *error)
+{
+    weft_weave_texels texels;
+    weft_code code = weft_weave_texels_of(weave, &texels, error);
+    if (code == WEFT_OK)
+        code = weft_player_set_weave_texels(p, &texels, layout, error);
+    weft_weave_texels_free(&texels);
+    return code;
+}
+
+weft_code weft_player_set_threads(weft_player *p, const weft_microcylinder_cloth *cloth, weft_error *error)
+{
+    WEFT_TRY(weft_thread_texture_upload(cloth, &p->threads, error));
+    weft_weave_texture_free(&p->weave);
+    p->weave_revision++;
+    has_now(p, WEFT_MODE_ANALYTIC, 1, 1);
+    return WEFT_OK;
+}
+
+bool weft_player_has_threads(const weft_player *p)
+{
+    return p->threads.table != 0;
+}
+
+long weft_player_weave_revision(const weft_player *p)
+{
+    return p->weave_revision;
+}
+
+weft_weave_layout weft_player_weave_layout(const weft_player *p)
+{
+    return p->weave.layout;
+}
+
+void weft_player_clear(weft_player *p, weft_mode mode)
+{
+    p->has[mode] = false;
+    if (mode == WEFT_MODE_RAW)
+        weft_raw_texture_free(&p->raw);
+    if (mode == WEFT_MODE_COMPRESSED)
+        weft_material_texture_free(&p->material);
+    if (mode == WEFT_MODE_ANALYTIC) {
+        weft_weave_texture_free(&p->weave);
+        weft_thread_texture_free(&p->threads);
+    }
+}
+
+bool weft_player_has_mesh(const weft_player *p)
+{
+    return p->triangle_count > 0;
+}
+
+bool weft_player_has(const weft_player *p, weft_mode mode)
+{
+    return p->has[mode];
+}
+
+/* ---- Environment ---- */
+
+static weft_code upload_map(const weft_image *image, GLuint *texture, weft_error *error)
+{
+    WEFT_TRY(weft_gl_texture((weft_texture_format){GL_RGB16F, GL_RGB, GL_FLOAT}, image->width, image->height, 0,
+                             image->pixels, texture, error));
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    return weft_gl_check("uploading an environment map", error);
+}
+
+weft_code weft_player_set_environment(weft_player *p, const weft_image *image, weft_error *error)
+{
+    weft_environment *environment = NULL;
+    GLuint map = 0;
+    if (image) {
+        environment = calloc(1, sizeof *environment);
+        weft_code code = environment ? weft_environment_of_image(image, environment, error)
+                                     : weft_fail_memory(error, "environment", sizeof *environment);
+        if (code == WEFT_OK)
+            code = upload_map(image, &map, error);
+        if (code != WEFT_OK) {
+            free(environment);
+            return code;
+        }
+    }
+    free(p->environment);
+    glDeleteTextures(1, &p->environment_map);
+    p->environment = environment;
+    p->environment_map = map;
+    return WEFT_OK;
+}
+
+bool weft_player_has_environment(const weft_player *p)
+{
+    return p->environment != NULL;
+}
+
+/* ---- What there is ---- */
+
+void weft_player_material_parts(const weft_player *p, int *lobe_count, bool *view_table, bool *light_table)
+{
+    *lobe_count = p->material.lobe_count;
+    *view_table = p->material.table.count > 0;
+    *light_table = p->material.light_table.count > 0;
+}
+
+void weft_player_last_ring(const weft_player *p, weft_mode mode, double *view_rad, double *light_rad)
+{
+    *view_rad = acos(p->last_ring_z[mode][0]);
+    *light_rad = acos(p->last_ring_z[mode][1]);
+}
+
+size_t weft_player_bytes(const weft_player *p, weft_mode mode)
+{
+    if (!p->has[mode])
+        return 0;
+    switch (mode) {
+    case WEFT_MODE_RAW:
+        return weft_raw_texture_bytes(&p->raw);
+    case WEFT_MODE_COMPRESSED:
+        return weft_material_texture_bytes(&p->material);
+    default:
+        return weft_weave_texture_bytes(&p->weave) + weft_thread_texture_bytes(&p->threads);
+    }
+}
+
+const char *weft_player_raw_format(const weft_player *p)
+{
+    return p->has[WEFT_MODE_RAW] ? weft_raw_format_name(p->raw.plan.tiles[WEFT_RAW_SAMPLES].format) : "";
+}

@@ -1,0 +1,90 @@
+/* The inside of weft_player, shared by the files that make it. */
+#ifndef WEFT_PLAYER_DRAW_PLAYER_PARTS_H
+#define WEFT_PLAYER_DRAW_PLAYER_PARTS_H
+
+#include "player/draw/player.h"
+#include "player/draw/programs.h"
+#include "player/draw/shadow.h"
+#include "player/gl/label.h"
+#include "player/gl/layer.h"
+#include "player/raw/texture.h"
+#include "player/scene/environment.h"
+#include "player/texture/material_texture.h"
+#include "player/texture/thread_texture.h"
+#include "player/texture/weave_texture.h"
+#include "reflectance/lafortune/lafortune.h"
+
+enum { WEFT_LAYER_COUNT = 2 };
+
+struct weft_player {
+    /* Mesh */
+    GLuint vertex_array, vertex_buffer, index_buffer;
+    int triangle_count, coarse_count; /* coarse ones come after the others (player/mesh/mesh.h) */
+    weft_vec3 centre;
+    double radius;
+    /* What may lie on it */
+    bool has[WEFT_MODE_COUNT];
+    weft_raw_texture raw;
+    weft_material_texture material;
+    weft_table_directions directions; /* of its tables */
+    weft_weave_texture weave;         /* or, where there is a table of them, threads */
+    weft_thread_texture threads;
+    long weave_revision;
+    double texel_count[WEFT_MODE_COUNT][2]; /* of level 0, for one material */
+    double last_ring_z[WEFT_MODE_COUNT][2]; /* smallest z of the measured views and lights */
+    /* Light */
+    weft_environment *environment; /* or NULL */
+    GLuint environment_map;
+    weft_shadow_map shadow;
+    /* Programs */
+    weft_programs programs;
+    GLuint background, environment_background, copy;
+    GLuint empty_array;
+    weft_labels labels;
+    weft_layer layer[WEFT_LAYER_COUNT]; /* the second lies behind the first */
+    GLuint kept;                        /* picture of the first mode of a difference */
+    int kept_width, kept_height;
+    unsigned frames_drawn;
+};
+
+/* A pane of `width` x `height` pixels, `left` pixels from the left edge of the frame. */
+typedef struct weft_pane {
+    weft_mode mode;
+    int left, width, height;
+    weft_sampling sampling;
+} weft_pane;
+
+/* Draws the first `layer_count` layers of the pane into player->layer. Leaves another framebuffer bound. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_player_draw_layers(weft_player *player, const weft_scene *scene, const weft_pane *pane, int layer_count,
+                                  weft_error *error);
+
+/* Sets what player/draw/shaders/surface.glsl needs, `program` being in use. */
+void weft_player_set_point(const weft_player *player, GLuint program, const weft_scene *scene, const weft_pane *pane,
+                           const weft_layer *layer);
+
+/* Its rays alone. */
+void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane);
+
+/* Runs the program in use on every pixel of the layer that shows the mesh, and on no other: a triangle at the far end
+ * of the depth range passes where something is nearer. `target` is the framebuffer that is bound, with 24 bits of
+ * depth. */
+void weft_player_shade(const weft_player *player, const weft_pane *pane, const weft_layer *layer, GLuint target);
+
+/* Which program shades a pane, and its textures and switches. */
+weft_program_kind weft_player_kind(const weft_player *player, const weft_scene *scene, const weft_pane *pane);
+void weft_player_bind_mode(const weft_player *player, const weft_scene *scene, weft_mode mode, GLuint program);
+
+/* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. */
+void weft_player_draw_shadows(weft_player *player, const weft_scene *scene);
+
+/* Shows `texture`, which is taken. last_ring_z: the smallest z of the views and of the lights. */
+void weft_player_take_raw(weft_player *player, weft_raw_texture *texture, const double last_ring_z[2]);
+
+/* The smallest z of directions, 1 without any. Pure. */
+double weft_player_last_ring_z(const weft_vec3 *direction, int count);
+
+/* Errors: WEFT_BAD_USAGE unless a mesh and the mode are there. */
+weft_code weft_player_check_mode(const weft_player *player, weft_mode mode, weft_error *error);
+
+#endif

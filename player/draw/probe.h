@@ -1,0 +1,40 @@
+/* What lies under one pixel of the picture drawn last, and the reflectance there over a hemisphere. */
+#ifndef WEFT_PLAYER_DRAW_PROBE_H
+#define WEFT_PLAYER_DRAW_PROBE_H
+
+#include "player/draw/player.h"
+
+/* Directions in the axes of the surface; place: texture coordinates of the material, level. */
+typedef struct weft_probe {
+    bool on_mesh;
+    weft_mode mode;
+    weft_vec3 light, view; /* of the key light */
+    double u, v, level;
+    int texel_x, texel_y, texel_level; /* the one whose centre is nearest, at the nearest level; row 0 at the top */
+    double radiance[3];                /* linear, as the canvas has it: with exposure */
+} weft_probe;
+
+/* Reads pixel (x, y) from the upper left corner of what weft_player_draw drew last, and its radiance from `canvas`.
+ * Every pane must have been drawn with this scene and the size of the canvas. Errors: WEFT_SYSTEM. */
+weft_code weft_probe_read(weft_player *player, const weft_scene *scene, const weft_canvas *canvas, int x, int y,
+                          weft_probe *probe, weft_error *error);
+
+/* Draws BRDF x pi at the probe's place and level, as the shader of its mode has it, into two discs of directions: over
+ * lights for the probe's view, and over views for its light. Radius: the sine of half the angle from the normal, so
+ * that areas are solid angles; +x to the right. Colours are those of the screen (the scene's exposure and tone); beside
+ * the discs nothing. */
+typedef struct weft_probe_plots {
+    int size; /* pixels of each side */
+    GLuint buffer, linear, shown, shown_buffer, program, vertex_array;
+} weft_probe_plots;
+
+/* The caller frees with weft_probe_plots_free, also on failure. Errors: WEFT_SYSTEM. */
+weft_code weft_probe_plots_create(int size, weft_probe_plots *plots, weft_error *error);
+void weft_probe_plots_free(weft_probe_plots *plots);
+
+/* plots->shown, RGBA, 2 size x size texels, gets lights left and views right. Framebuffer and viewport in use are the
+ * caller's to restore. Errors: WEFT_SYSTEM. */
+weft_code weft_probe_plots_draw(weft_probe_plots *plots, weft_player *player, const weft_scene *scene,
+                                const weft_probe *probe, weft_error *error);
+
+#endif

@@ -1,0 +1,128 @@
+#include "player/draw/programs.h"
+
+#include "player/gl/shaders.h"
+#include "player/scene/false_colour.h"
+
+#include <stdio.h>
+
+static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
+{
+    return a->mode == b->mode && a->stochastic == b->stochastic && a->shadows == b->shadows &&
+           a->one_light == b->one_light && a->plot == b->plot && a->opacity == b->opacity && a->threads == b->threads &&
+           a->noise == b->noise && a->lobe_count == b->lobe_count && a->view_table == b->view_table &&
+           a->light_table == b->light_table && a->fewer_bits == b->fewer_bits;
+}
+
+static const char *name_of(bool value)
+{
+    return value ? "true" : "false";
+}
+
+static void define(const weft_program_kind *kind, char *text, size_t size)
+{
+    snprintf(
+        text, size,
+        "#define MAX_LIGHTS %d\n#define LEVEL_COLOURS %d\n#define LIGHT_COUNT %s\n#define ONE_LIGHT %s\n"
+        "#define STOCHASTIC %s\n#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
+        "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n",
+        WEFT_MAX_LIGHTS, WEFT_LEVEL_COLOURS, kind->one_light ? "1" : "light_count", name_of(kind->one_light),
+        name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity), kind->lobe_count,
+        name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits), name_of(kind->noise));
+}
+
+static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)
+{
+    char constants[512];
+    define(kind, constants, sizeof constants);
+    const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
+    const char *const raw[] = {
+        constants, weft_glsl_rotation, weft_glsl_surface, weft_glsl_directions, weft_glsl_raw, weft_glsl_shade_frag,
+        NULL};
+    const char *const compressed[] = {
+        constants,           weft_glsl_rotation,   weft_glsl_surface,    weft_glsl_directions,
+        weft_glsl_lafortune, weft_glsl_compressed, weft_glsl_shade_frag, NULL};
+    const char *const analytic[] = {constants,
+                                    weft_glsl_rotation,
+                                    weft_glsl_surface,
+                                    weft_glsl_directions,
+                                    weft_glsl_woven,
+                                    weft_glsl_weave,
+                                    weft_glsl_analytic,
+                                    weft_glsl_shade_frag,
+                                    NULL};
+    const char *const threads[] = {constants,
+                                   weft_glsl_rotation,
+                                   weft_glsl_surface,
+                                   weft_glsl_microcylinder,
+                                   weft_glsl_threads,
+                                   weft_glsl_shade_frag,
+                                   NULL};
+    const char *const *const fragment[WEFT_MODE_COUNT] = {raw, compressed, kind->threads ? threads : analytic};
+    return weft_gl_program(weft_mode_name(kind->mode), vertex, fragment[kind->mode], program, error);
+}
+
+static void forget(weft_programs *p)
+{
+    glUseProgram(0); /* a program in use would outlive its deletion */
+    for (int i = 0; i < p->count; i++)
+        glDeleteProgram(p->name[i]);
+    p->count = 0;
+}
+
+void weft_programs_free(weft_programs *p)
+{
+    forget(p);
+    for (int i = 0; i < 2; i++) {
+        glDeleteProgram(p->surface[i]);
+        glDeleteProgram(p->geometry[i]);
+    }
+    *p = (weft_programs){0};
+}
+
+weft_code weft_programs_find(weft_programs *p, const weft_program_kind *kind, GLuint *program, weft_error *error)
+{
+    int i = 0;
+    while (i < p->count && !same_kind(&p->kind[i], kind))
+        i++;
+    if (i == WEFT_PROGRAM_CAPACITY) {
+        forget(p);
+        i = 0;
+    }
+    if (i == p->count) {
+        WEFT_TRY(build(kind, &p->name[i], error));
+        p->kind[i] = *kind;
+        p->count++;
+    }
+    *program = p->name[i];
+    return WEFT_OK;
+}
+
+weft_code weft_programs_find_surface(weft_programs *p, bool behind, GLuint *program, weft_error *error)
+{
+    GLuint *wanted = &p->surface[behind];
+    if (!*wanted) {
+        char constants[64];
+        snprintf(constants, sizeof constants, "#define BEHIND %s\n", name_of(behind));
+        const char *const vertex[] = {weft_glsl_surface_vert, NULL};
+        const char *const fragment[] = {constants, weft_glsl_surface_frag, NULL};
+        WEFT_TRY(weft_gl_program("surface", vertex, fragment, wanted, error));
+    }
+    *program = *wanted;
+    return WEFT_OK;
+}
+
+weft_code weft_programs_find_geometry(weft_programs *p, bool shadows, GLuint *program, weft_error *error)
+{
+    GLuint *wanted = &p->geometry[shadows];
+    if (!*wanted) {
+        const weft_program_kind kind = {.shadows = shadows};
+        char constants[512];
+        define(&kind, constants, sizeof constants);
+        const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
+        const char *const fragment[] = {constants, weft_glsl_rotation, weft_glsl_surface, weft_glsl_geometry_frag,
+                                        NULL};
+        WEFT_TRY(weft_gl_program("geometry", vertex, fragment, wanted, error));
+    }
+    *program = *wanted;
+    return WEFT_OK;
+}

@@ -1,0 +1,46 @@
+/* The shading programs, built when they are first used: each with what it must do as constants, so that a picture pays
+ * for nothing else. */
+#ifndef WEFT_PLAYER_DRAW_PROGRAMS_H
+#define WEFT_PLAYER_DRAW_PROGRAMS_H
+
+#include "player/gl/gl.h"
+#include "player/scene/scene.h"
+
+enum { WEFT_MAX_LIGHTS = 52 }; /* of one frame: those of the scene and 48 of the environment */
+
+typedef struct weft_program_kind {
+    weft_mode mode;
+    bool stochastic, shadows, one_light;
+    int plot;     /* 0: of the picture; 1, 2: of lights, of views (player/draw/probe.h) */
+    bool opacity; /* raw: some is below 1 */
+    bool threads; /* analytic: microcylinders, else a weave */
+    bool noise;   /* analytic: that of the weave */
+    /* Of the compressed material: */
+    int lobe_count;
+    bool view_table, light_table;
+    bool fewer_bits; /* of T and S than they have */
+} weft_program_kind;
+
+enum { WEFT_PROGRAM_CAPACITY = 32 };
+
+typedef struct weft_programs {
+    int count;
+    weft_program_kind kind[WEFT_PROGRAM_CAPACITY];
+    GLuint name[WEFT_PROGRAM_CAPACITY];
+    GLuint surface[2];  /* [1]: of what lies behind another layer */
+    GLuint geometry[2]; /* [1]: with shadows */
+} weft_programs;
+
+/* Start from a zeroed value. */
+void weft_programs_free(weft_programs *programs);
+
+/* *program stays owned by `programs`. Errors: WEFT_SYSTEM where the driver refuses the source. */
+weft_code weft_programs_find(weft_programs *programs, const weft_program_kind *kind, GLuint *program,
+                             weft_error *error);
+
+/* The same for the program that draws a layer of the surface (player/draw/shaders/surface.frag.glsl) and for the one
+ * that writes the inputs of the shading (player/draw/shaders/geometry.frag.glsl). */
+weft_code weft_programs_find_surface(weft_programs *programs, bool behind, GLuint *program, weft_error *error);
+weft_code weft_programs_find_geometry(weft_programs *programs, bool shadows, GLuint *program, weft_error *error);
+
+#endif

@@ -1,0 +1,132 @@
+// The compressed material: lobes with a view and a light table, evaluated per texel, then interpolated between texels
+// and levels. C twin: weft_material_sample. All levels lie side by side in each texture (player/texture/mip_layout.h).
+// Constants defined by player/draw/programs.c: LOBES, VIEW_TABLE, LIGHT_TABLE, FEWER_BITS (see table_steps).
+// Fetched by textureLod at the middle of texels: software rasterisers take longer over texelFetch, which may name a
+// level.
+uniform usampler2DArray material_texel;      // packed, see player/texture/material_texture.h
+uniform sampler2DArray material_table;       // views in columns, then layers
+uniform sampler2DArray material_light_table; // lights alike
+uniform float lobe_share[3];                 // 1, or 0 to do without
+uniform float view_table_share, light_table_share;
+uniform float table_steps; // where FEWER_BITS: what 255 would be if T and S were coded in them
+uniform int level_count;
+uniform vec2 texel_step;                           // 1 / size of the texture of all levels
+uniform float table_columns, light_table_columns;
+uniform vec4 level_area[16];                       // x, y, width, height
+
+// Where three entries of a table are: the tile, in widths of the texture, and the layer.
+struct Entries {
+    vec3 column, layer, weight;
+    float tile;
+};
+
+Entries table_entries(Corners corners, float columns)
+{
+    vec3 label = vec3(corners.label);
+    vec3 layer = floor((label + 0.5) / columns);
+    return Entries(label / columns - layer, layer, corners.weight, 1.0 / columns);
+}
+
+vec4 table_value(sampler2DArray table, vec2 texel, Entries entries)
+{
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 3; i++) {
+        vec2 place = vec2(texel.x * entries.tile + entries.column[i], texel.y);
+        vec4 code = textureLod(table, vec3(place, entries.layer[i]), 0.0);
+        if (FEWER_BITS)
+            code.rgb = floor(code.rgb * table_steps + 0.5) / table_steps;
+        sum += entries.weight[i] * vec4(code.rgb * code.rgb, code.a);
+    }
+    return sum;
+}
+
+vec3 lobes_value(vec4 lobe[3 * LOBES + 2], vec3 light)
+{
+    vec3 value = vec3(0.0);
+    for (int i = 0; i < 3 * LOBES; i++)
+        value[i % 3] += lobe_share[i / 3] * lobe_power(dot(lobe[i].xyz, light), lobe[i].w);
+    return value;
+}
+
+// Two signed fractions of 32767, the lower half first.
+vec2 fractions_of(uint word)
+{
+    return vec2(ivec2(int(word) << 16, int(word)) >> 16) * (1.0 / 32767.0);
+}
+
+// Two half floats, the lower half first (unpackHalf2x16 is not in GLSL 3.30). Their exponent and fraction are moved to
+// those of a float, whose exponent is then 112 too small.
+vec2 halves_of(uint word)
+{
+    ivec2 bits = ivec2(int(word) << 16, int(word)) >> 3;
+    return intBitsToFloat(bits & int(0x8fffe000u)) * 5.192296858534828e33;
+}
+
+// `texel` is its middle, in sizes of the texture.
+vec4 texel_value(vec2 texel, SurfacePoint point, Entries views)
+{
+    uvec4 base = textureLod(material_texel, vec3(texel, 0.0), 0.0);
+    mat3 axes = axes_of_quaternion(vec4(fractions_of(base.x), fractions_of(base.y))); // in those of the surface
+    vec3 view = point.view * axes;
+    vec3 diffuse = vec3(halves_of(base.z), halves_of(base.w).x);
+    vec4 lobe[3 * LOBES + 2];
+    for (int i = 0; i < 3 * LOBES; i += 2) {
+        uvec4 pair = textureLod(material_texel, vec3(texel, float(1 + i / 2)), 0.0);
+        lobe[i] = vec4(vec3(halves_of(pair.x), halves_of(pair.y).x) * view, halves_of(pair.y).y);
+        lobe[i + 1] = vec4(vec3(halves_of(pair.z), halves_of(pair.w).x) * view, halves_of(pair.w).y);
+    }
+    // One light is turned into the axes of the surface, once for all texels; for many, the axes of the texel into the
+    // world.
+    axes = ONE_LIGHT ? axes : point.axes * axes;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < LIGHT_COUNT; i++) {
+        vec3 irradiance = surface_irradiance(point, i);
+        if (irradiance == vec3(0.0))
+            continue;
+        if (LIGHT_TABLE) {
+            Entries lights = table_entries(find_corners(1, surface_light(point, i)), light_table_columns);
+            irradiance *= mix(vec3(1.0), table_value(material_light_table, texel, lights).rgb, light_table_share);
+        }
+        vec3 light = ONE_LIGHT ? surface_light(point, i) : world_light(i);
+        sum += irradiance * (diffuse + lobes_value(lobe, light * axes));
+    }
+    if (!VIEW_TABLE)
+        return vec4(sum, 1.0);
+    vec4 table = table_value(material_table, texel, views);
+    return vec4(sum * mix(vec3(1.0), table.rgb, view_table_share), table.a);
+}
+
+vec4 level_value(int level, SurfacePoint point, Entries views)
+{
+    vec4 area = level_area[level];
+    // Wrapped before it is scaled, so that far repeats keep their precision. Row 0 is the top: v near 1.
+    vec2 position = fract(vec2(point.coordinate.x, -point.coordinate.y)) * area.zw - 0.5;
+    vec2 corner = floor(position);
+    vec2 share = position - corner;
+    vec2 low = (area.xy + mod(corner, area.zw) + 0.5) * texel_step;
+    vec2 high = (area.xy + mod(corner + 1.0, area.zw) + 0.5) * texel_step;
+    if (STOCHASTIC) {
+        bool right = happens(point.chance, share.x);
+        bool below = happens(point.chance, share.y);
+        return texel_value(vec2(right ? high.x : low.x, below ? high.y : low.y), point, views);
+    }
+    vec4 top = mix(texel_value(low, point, views), texel_value(vec2(high.x, low.y), point, views), share.x);
+    vec4 bottom = mix(texel_value(vec2(low.x, high.y), point, views), texel_value(high, point, views), share.x);
+    return mix(top, bottom, share.y);
+}
+
+vec4 radiance(SurfacePoint point)
+{
+    Entries views;
+    if (VIEW_TABLE)
+        views = table_entries(find_corners(0, point.view), table_columns);
+    float level = clamp(point.level, 0.0, float(level_count - 1));
+    int fine = int(level);
+    float share = level - float(fine);
+    if (STOCHASTIC)
+        return level_value(happens(point.chance, share) ? fine + 1 : fine, point, views);
+    vec4 value = level_value(fine, point, views);
+    if (share > 0.0)
+        value = mix(value, level_value(fine + 1, point, views), share);
+    return value;
+}

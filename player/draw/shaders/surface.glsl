@@ -1,0 +1,122 @@
+// What every mode needs to know of the surface behind a pixel (written by surface.frag.glsl), and of the light on it.
+// Constants defined by player/draw/programs.c: MAX_LIGHTS, LEVEL_COLOURS, LIGHT_COUNT (light_count, or 1), ONE_LIGHT,
+// STOCHASTIC, SHADOWS, and PLOT: 0 for the picture; else a disc of directions at one place of the material, 1 of
+// lights, 2 of views (player/draw/probe.h).
+uniform sampler2D surface_rotation;
+uniform sampler2D surface_place;
+uniform vec3 ray_right, ray_up, ray_forward; // the ray through a pixel: x right + y up + forward
+uniform vec2 pane_origin;
+uniform vec3 eye;
+uniform mat4 shadow_of_world;
+uniform highp sampler2DShadow shadow_map; // of the first light
+uniform int light_count;
+uniform vec3 light_direction[MAX_LIGHTS];  // world, unit, toward the light
+uniform vec3 light_irradiance[MAX_LIGHTS]; // on a surface that faces it, over pi
+uniform float sequence;                    // [0, 1), of the frame: where its random choices begin
+
+uniform vec3 probe_light, probe_view; // in the axes of the surface
+uniform vec3 probe_place;              // texture coordinates and level
+uniform float plot_size;               // pixels
+
+struct SurfacePoint {
+    mat3 axes;       // of the surface in the world: x along u, y along v, the normal
+    vec3 view;       // in these axes
+    vec2 coordinate; // texture coordinates of the material, repeated
+    float level;     // log2 of the pixel's footprint in texels, may be negative
+    float key_share; // of the first light that is not in shadow
+    float chance;    // in [0, 1)
+};
+
+// Interpolated normals may turn away from the eye at a silhouette; the view is kept just above the horizon.
+vec3 above_horizon(vec3 view)
+{
+    return normalize(vec3(view.xy, max(view.z, 0.02)));
+}
+
+// Interleaved gradient noise (Jimenez 2014), moved by the frame: neighbours in the picture and in time differ.
+float pixel_chance()
+{
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    return fract(noise + sequence);
+}
+
+// Equal areas: z = 1 - r^2. Beside the disc z is negative.
+vec3 plotted_direction()
+{
+    vec2 place = 2.0 * (gl_FragCoord.xy - pane_origin) / plot_size - 1.0;
+    float square = dot(place, place);
+    return vec3(place * sqrt(max(2.0 - square, 0.0)), 1.0 - square);
+}
+
+SurfacePoint plotted_point()
+{
+    SurfacePoint point;
+    point.axes = mat3(1.0);
+    point.view = PLOT == 2 ? plotted_direction() : probe_view;
+    point.view.z = max(point.view.z, 0.0);
+    point.coordinate = probe_place.xy;
+    point.level = probe_place.z;
+    point.key_share = 1.0;
+    point.chance = 0.0;
+    return point;
+}
+
+// True with probability `share`; what is left of the chance is uniform again.
+bool happens(inout float chance, float share)
+{
+    bool yes = chance < share;
+    chance = yes ? chance / share : (chance - share) / (1.0 - share);
+    return yes;
+}
+
+// Sixteen comparisons, bilinear by the hardware: a soft edge of about three texels of the map.
+float unshadowed_share(vec3 position)
+{
+    vec3 at = (shadow_of_world * vec4(position, 1.0)).xyz;
+    vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
+    float sum = 0.0;
+    for (int i = 0; i < 4; i++) {
+        vec2 shift = (vec2(float(i % 2), float(i / 2)) - 0.5) * 1.5 * texel;
+        sum += textureLod(shadow_map, vec3(at.xy + shift, at.z), 0.0);
+    }
+    return 0.25 * sum;
+}
+
+SurfacePoint surface_point()
+{
+    if (PLOT != 0)
+        return plotted_point();
+    vec2 pixel = gl_FragCoord.xy / vec2(textureSize(surface_place, 0));
+    vec4 place = textureLod(surface_place, pixel, 0.0);
+    vec2 at = gl_FragCoord.xy - pane_origin;
+    vec3 ray = at.x * ray_right + at.y * ray_up + ray_forward;
+    SurfacePoint point;
+    point.axes = axes_of_quaternion(textureLod(surface_rotation, pixel, 0.0));
+    point.axes[1] *= sign(place.w);
+    point.view = above_horizon(-normalize(ray) * point.axes);
+    point.coordinate = place.xy;
+    point.level = place.z;
+    point.key_share = SHADOWS ? unshadowed_share(eye + abs(place.w) * ray) : 1.0;
+    point.chance = STOCHASTIC ? pixel_chance() : 0.0;
+    return point;
+}
+
+// Of the world, unit, toward the light.
+vec3 world_light(int light)
+{
+    return PLOT == 0 ? light_direction[light] : PLOT == 1 ? plotted_direction() : probe_light;
+}
+
+vec3 surface_light(SurfacePoint point, int light)
+{
+    return world_light(light) * point.axes;
+}
+
+// Over pi, with the cosine; 0 below the horizon of the surface.
+vec3 surface_irradiance(SurfacePoint point, int light)
+{
+    if (PLOT != 0)
+        return vec3(1.0); // without the cosine: BRDF x pi
+    float cosine = max(dot(light_direction[light], point.axes[2]), 0.0);
+    return light_irradiance[light] * (light == 0 ? cosine * point.key_share : cosine);
+}

@@ -1,0 +1,116 @@
+#include "player/draw/player_parts.h"
+
+#include "player/draw/player.h"
+
+static const double automatic = -1000, finest_of_all = -100;
+static const double smallest_triangle = 8; /* pixels */
+
+static double level_uniform(const weft_scene *scene)
+{
+    switch (scene->level_choice) {
+    case WEFT_LEVEL_NONE:
+        return finest_of_all;
+    case WEFT_LEVEL_FIXED:
+        return scene->level;
+    default:
+        return automatic;
+    }
+}
+
+static void draw_mesh(const weft_player *p, bool coarse)
+{
+    size_t first = coarse ? (size_t)p->triangle_count : 0;
+    glBindVertexArray(p->vertex_array);
+    glDrawElements(GL_TRIANGLES, 3 * (coarse ? p->coarse_count : p->triangle_count), GL_UNSIGNED_INT,
+                   (void *)(first * sizeof(uint32_t[3])));
+    glBindVertexArray(0);
+}
+
+/* Rasterisers take blocks of some 4 x 4 pixels, so that smaller triangles cost as much. The pixels (of which a sampled
+ * picture has more) are those of the ball round the mesh. */
+static bool wants_coarse(const weft_player *p, const weft_scene *scene, const weft_pane *pane)
+{
+    double side = pane->width < pane->height ? pane->width : pane->height;
+    double radius = exp2(-pane->sampling.level_bias) * side / (2 * weft_orbit_slope() * scene->orbit.distance);
+    return p->coarse_count > 0 && WEFT_PI * radius * radius < smallest_triangle * p->triangle_count;
+}
+
+/* Width by height of what is shown. A cell of a weave need not be square, a texel is. */
+static double proportion_of(const weft_player *p)
+{
+    const double *texels = p->texel_count[p->has[WEFT_MODE_RAW] ? WEFT_MODE_RAW : WEFT_MODE_COMPRESSED];
+    return p->has[WEFT_MODE_RAW] || p->has[WEFT_MODE_COMPRESSED] ? texels[0] / texels[1] : 1;
+}
+
+static void set_view(const weft_player *p, GLuint program, const weft_scene *scene, const weft_pane *pane)
+{
+    float matrix[16];
+    weft_orbit_clip_of_world(&scene->orbit, p->centre, p->radius, (double)pane->width / pane->height,
+                             pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height, matrix);
+    glUniformMatrix4fv(glGetUniformLocation(program, "clip_of_world"), 1, GL_FALSE, matrix);
+    weft_gl_set_vec2(program, "repeat", scene->repeat, scene->repeat * proportion_of(p));
+    weft_gl_set_vec2(program, "texel_count", p->texel_count[pane->mode][0], p->texel_count[pane->mode][1]);
+    weft_gl_set_float(program, "level_choice", level_uniform(scene));
+    weft_gl_set_float(program, "level_bias", pane->sampling.level_bias);
+    weft_gl_set_int(program, "level_nearest", scene->level_choice == WEFT_LEVEL_NEAREST);
+}
+
+/* `front` is the layer that this one lies behind, or NULL. */
+static weft_code draw_layer(weft_player *p, const weft_scene *scene, const weft_pane *pane, const weft_layer *front,
+                            const weft_layer *layer, weft_error *error)
+{
+    GLuint program;
+    WEFT_TRY(weft_programs_find_surface(&p->programs, front != NULL, &program, error));
+    glBindFramebuffer(GL_FRAMEBUFFER, layer->buffer);
+    glViewport(pane->left, 0, pane->width, pane->height);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_BLEND);
+    glUseProgram(program);
+    set_view(p, program, scene, pane);
+    if (front)
+        weft_gl_bind(program, "front_depth", 0, GL_TEXTURE_2D, front->depth);
+    draw_mesh(p, wants_coarse(p, scene, pane));
+    glDisable(GL_DEPTH_TEST);
+    return WEFT_OK;
+}
+
+weft_code weft_player_draw_layers(weft_player *p, const weft_scene *scene, const weft_pane *pane, int layer_count,
+                                  weft_error *error)
+{
+    for (int i = 0; i < layer_count; i++) {
+        WEFT_TRY(weft_layer_resize(&p->layer[i], pane->left + pane->width, pane->height, error));
+        WEFT_TRY(draw_layer(p, scene, pane, i > 0 ? &p->layer[i - 1] : NULL, &p->layer[i], error));
+    }
+    return WEFT_OK;
+}
+
+void weft_player_shade(const weft_player *p, const weft_pane *pane, const weft_layer *layer, GLuint target)
+{
+    int right = pane->left + pane->width;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, layer->buffer);
+    glBlitFramebuffer(pane->left, 0, right, pane->height, pane->left, 0, right, pane->height, GL_DEPTH_BUFFER_BIT,
+                      GL_NEAREST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_FALSE);
+    glDepthRangef(1, 1);
+    glBindVertexArray(p->empty_array);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthRangef(0, 1);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_DEPTH_TEST);
+}
+
+void weft_player_draw_shadows(weft_player *p, const weft_scene *scene)
+{
+    if (!weft_scene_has_shadows(scene))
+        return;
+    weft_vec3 light = weft_direction_of_angles(scene->light[0].direction);
+    if (weft_shadow_map_begin(&p->shadow, light, p->centre, p->radius)) {
+        draw_mesh(p, false);
+        weft_shadow_map_end();
+    }
+}

@@ -1,0 +1,208 @@
+#include "player/mesh/mesh.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+weft_code weft_mesh_allocate(int vertex_count, int triangle_count, weft_mesh *mesh, weft_error *error)
+{
+    *mesh = (weft_mesh){0};
+    if (vertex_count < 3 || vertex_count > WEFT_MESH_MAX_VERTICES || triangle_count < 1 ||
+        triangle_count > WEFT_MESH_MAX_TRIANGLES)
+        return weft_fail(error, WEFT_BAD_USAGE, "a mesh of %d vertices and %d triangles cannot be made", vertex_count,
+                         triangle_count);
+    mesh->vertex_count = vertex_count;
+    mesh->triangle_count = triangle_count;
+    mesh->size = mesh->coordinate_length = 1;
+    mesh->vertex = calloc((size_t)vertex_count, sizeof *mesh->vertex);
+    mesh->index = calloc((size_t)triangle_count + (size_t)triangle_count / 4, sizeof *mesh->index);
+    if (mesh->vertex && mesh->index)
+        return WEFT_OK;
+    weft_mesh_free(mesh);
+    return weft_fail_memory(error, "mesh", (unsigned long long)vertex_count * sizeof *mesh->vertex);
+}
+
+void weft_mesh_free(weft_mesh *mesh)
+{
+    free(mesh->vertex);
+    free(mesh->index);
+    *mesh = (weft_mesh){0};
+}
+
+static void find_box(const weft_mesh *mesh, float low[3], float high[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = INFINITY;
+        high[axis] = -INFINITY;
+        for (int i = 0; i < mesh->vertex_count; i++) {
+            low[axis] = fminf(low[axis], mesh->vertex[i].position[axis]);
+            high[axis] = fmaxf(high[axis], mesh->vertex[i].position[axis]);
+        }
+    }
+}
+
+void weft_mesh_bounds(const weft_mesh *mesh, float centre[3], float *radius)
+{
+    float low[3], high[3];
+    find_box(mesh, low, high);
+    for (int axis = 0; axis < 3; axis++)
+        centre[axis] = low[axis] + (high[axis] - low[axis]) / 2;
+    *radius = 0;
+    for (int i = 0; i < mesh->vertex_count; i++) {
+        const float *p = mesh->vertex[i].position;
+        *radius = fmaxf(*radius, hypotf(hypotf(p[0] - centre[0], p[1] - centre[1]), p[2] - centre[2]));
+    }
+}
+
+/* ---- Normals and tangents. Sums are kept in double: a mesh may have slivers beside large faces. ---- */
+
+typedef struct vector {
+    double x[3];
+} vector;
+
+static vector difference(const float a[3], const float b[3])
+{
+    return (vector){{(double)a[0] - b[0], (double)a[1] - b[1], (double)a[2] - b[2]}};
+}
+
+static vector cross(vector a, vector b)
+{
+    return (vector){
+        {a.x[1] * b.x[2] - a.x[2] * b.x[1], a.x[2] * b.x[0] - a.x[0] * b.x[2], a.x[0] * b.x[1] - a.x[1] * b.x[0]}};
+}
+
+static double dot(vector a, vector b)
+{
+    return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2];
+}
+
+static void add_scaled(vector *sum, vector a, double scale)
+{
+    for (int axis = 0; axis < 3; axis++)
+        sum->x[axis] += a.x[axis] * scale;
+}
+
+/* False, and `a` unchanged, where it has no direction. */
+static bool make_unit(vector *a)
+{
+    double length = sqrt(dot(*a, *a));
+    if (!(length > 0) || !isfinite(length))
+        return false;
+    for (int axis = 0; axis < 3; axis++)
+        a->x[axis] /= length;
+    return true;
+}
+
+static void store(vector a, float result[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        result[axis] = (float)a.x[axis];
+}
+
+static vector load(const float a[3])
+{
+    return (vector){{a[0], a[1], a[2]}};
+}
+
+weft_code weft_mesh_compute_normals(weft_mesh *mesh, const uint32_t *group, weft_error *error)
+{
+    size_t count = (size_t)mesh->vertex_count;
+    vector *sum = calloc(count, sizeof *sum);
+    if (!sum)
+        return weft_fail_memory(error, "normals", count * sizeof *sum);
+    for (int t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *corner = mesh->index[t];
+        const float *p = mesh->vertex[corner[0]].position;
+        vector area =
+            cross(difference(mesh->vertex[corner[1]].position, p), difference(mesh->vertex[corner[2]].position, p));
+        for (int i = 0; i < 3; i++)
+            add_scaled(&sum[group ? group[corner[i]] : corner[i]], area, 1);
+    }
+    for (size_t i = 0; i < count; i++) {
+        vector normal = sum[group ? group[i] : i];
+        store(make_unit(&normal) ? normal : (vector){{0, 0, 1}}, mesh->vertex[i].normal);
+    }
+    free(sum);
+    return WEFT_OK;
+}
+
+/* dp/du and dp/dv of a triangle, times its area in texture space. */
+static bool texture_gradients(const weft_mesh *mesh, const uint32_t corner[3], vector *along_u, vector *along_v)
+{
+    const weft_vertex *a = &mesh->vertex[corner[0]], *b = &mesh->vertex[corner[1]], *c = &mesh->vertex[corner[2]];
+    vector ab = difference(b->position, a->position), ac = difference(c->position, a->position);
+    double ab_u = (double)b->coordinate[0] - a->coordinate[0], ab_v = (double)b->coordinate[1] - a->coordinate[1];
+    double ac_u = (double)c->coordinate[0] - a->coordinate[0], ac_v = (double)c->coordinate[1] - a->coordinate[1];
+    double sign = ab_u * ac_v - ac_u * ab_v < 0 ? -1 : 1;
+    *along_u = *along_v = (vector){{0, 0, 0}};
+    add_scaled(along_u, ab, sign * ac_v);
+    add_scaled(along_u, ac, -sign * ab_v);
+    add_scaled(along_v, ac, sign * ab_u);
+    add_scaled(along_v, ab, -sign * ac_u);
+    return ab_u * ac_v != ac_u * ab_v;
+}
+
+static vector any_perpendicular(vector normal)
+{
+    vector axis = {{fabs(normal.x[0]) < 0.9, fabs(normal.x[0]) >= 0.9, 0}};
+    add_scaled(&axis, normal, -dot(axis, normal));
+    make_unit(&axis);
+    return axis;
+}
+
+static void set_tangent(weft_vertex *vertex, vector along_u, vector along_v)
+{
+    vector normal = load(vertex->normal);
+    add_scaled(&along_u, normal, -dot(along_u, normal));
+    if (!make_unit(&along_u))
+        along_u = any_perpendicular(normal);
+    store(along_u, vertex->tangent);
+    vertex->tangent[3] = dot(cross(normal, along_u), along_v) < 0 ? -1 : 1;
+}
+
+weft_code weft_mesh_compute_tangents(weft_mesh *mesh, weft_error *error)
+{
+    size_t count = (size_t)mesh->vertex_count;
+    vector(*sum)[2] = calloc(count, sizeof *sum);
+    if (!sum)
+        return weft_fail_memory(error, "tangents", count * sizeof *sum);
+    for (int t = 0; t < mesh->triangle_count; t++) {
+        vector along_u, along_v;
+        if (!texture_gradients(mesh, mesh->index[t], &along_u, &along_v))
+            continue;
+        for (int i = 0; i < 3; i++) {
+            add_scaled(&sum[mesh->index[t][i]][0], along_u, 1);
+            add_scaled(&sum[mesh->index[t][i]][1], along_v, 1);
+        }
+    }
+    for (size_t i = 0; i < count; i++)
+        set_tangent(&mesh->vertex[i], sum[i][0], sum[i][1]);
+    free(sum);
+    return WEFT_OK;
+}
+
+/* Twice the signed area of a triangle of the texture. */
+static double coordinate_area(const float a[2], const float b[2], const float c[2])
+{
+    double ab_u = (double)b[0] - a[0], ab_v = (double)b[1] - a[1];
+    double ac_u = (double)c[0] - a[0], ac_v = (double)c[1] - a[1];
+    return ab_u * ac_v - ac_u * ab_v;
+}
+
+void weft_mesh_measure(weft_mesh *mesh)
+{
+    double on_mesh = 0, on_texture = 0;
+    for (int t = 0; t < mesh->triangle_count; t++) {
+        const weft_vertex *a = &mesh->vertex[mesh->index[t][0]], *b = &mesh->vertex[mesh->index[t][1]];
+        const weft_vertex *c = &mesh->vertex[mesh->index[t][2]];
+        vector area = cross(difference(b->position, a->position), difference(c->position, a->position));
+        on_mesh += sqrt(dot(area, area));
+        on_texture += fabs(coordinate_area(a->coordinate, b->coordinate, c->coordinate));
+    }
+    mesh->coordinate_length = on_texture > 0 ? sqrt(on_mesh / on_texture) : 0;
+    float low[3], high[3];
+    find_box(mesh, low, high);
+    mesh->size = 0;
+    for (int axis = 0; axis < 3; axis++)
+        mesh->size = fmax(mesh->size, (double)high[axis] - low[axis]);
+}

@@ -1,0 +1,44 @@
+/* A compressed material on the GPU (shader: player/draw/shaders/compressed.glsl). */
+#ifndef WEFT_PLAYER_TEXTURE_MATERIAL_TEXTURE_H
+#define WEFT_PLAYER_TEXTURE_MATERIAL_TEXTURE_H
+
+#include "btf/material/material.h"
+#include "player/texture/direction_texture.h"
+#include "player/texture/mip_layout.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* T or S: a picture of all levels for each direction. */
+typedef struct weft_table_texture {
+    GLuint name;
+    int count;   /* of directions; 0 without the table */
+    int columns; /* directions side by side in a layer */
+} weft_table_texture;
+
+/* The texels are packed into words of 32 bits, four a layer: what they share with their neighbours in memory is what
+ * one fetch brings. Layer 0: the rotation from the axes of the surface to those of the texel, as a unit quaternion of
+ * signed 16-bit fractions (x, y; z, w), and the diffuse term in half floats (r, g; b). Layer 1 + i: lobes 2i and 2i +
+ * 1, counted 3 lobe + channel, as half floats (Cx, Cy; Cz, N). */
+typedef struct weft_material_texture {
+    GLuint texel;
+    weft_table_texture table, light_table;
+    weft_direction_texture directions; /* set 0: views, set 1: lights */
+    weft_mip_layout layout;
+    int lobe_count;
+    bool opaque;
+} weft_material_texture;
+
+/* Uploads all levels as they are. Errors: WEFT_SYSTEM where the driver's textures are too small; WEFT_BAD_INPUT for
+ * directions that cannot be triangulated. The caller frees with weft_material_texture_free, also on failure. */
+weft_code weft_material_texture_upload(const weft_material *material, weft_material_texture *texture,
+                                       weft_error *error);
+void weft_material_texture_free(weft_material_texture *texture);
+
+/* Of graphics memory, without the directions. */
+size_t weft_material_texture_bytes(const weft_material_texture *texture);
+
+/* Sets the uniforms of compressed.glsl; `program` is in use. */
+void weft_material_texture_bind(const weft_material_texture *texture, GLuint program);
+
+#endif

@@ -1,0 +1,35 @@
+/* Analytic cloth on the GPU (shader: player/draw/shaders/analytic.glsl). */
+#ifndef WEFT_PLAYER_TEXTURE_WEAVE_TEXTURE_H
+#define WEFT_PLAYER_TEXTURE_WEAVE_TEXTURE_H
+
+#include "player/texture/direction_texture.h"
+#include "player/texture/weave_texels.h"
+
+#include <stddef.h>
+
+/* Where a pixel covers less than half a cell the woven texture is evaluated, where it covers more than two the mean of
+ * the tile, in between a blend by the logarithm of the footprint. The mean is tabulated for ubo81 lights and views.
+ * Intensity noise fades likewise, by the size of its own cells. Begins zeroed. */
+typedef struct weft_weave_texture {
+    GLuint table, mean, noisy_mean; /* noisy_mean: 0 where it is the same */
+    bool has_noise;
+    int table_texels;
+    weft_direction_texture directions;
+    weft_weave_layout layout;
+} weft_weave_texture;
+
+/* Takes the place of what `texture` had, which stays on failure. `layout` is that on one material, with which it
+ * repeats.
+ * Errors: WEFT_BAD_USAGE for a number of tiles that is not positive, WEFT_SYSTEM. The caller frees with
+ * weft_weave_texture_free. */
+weft_code weft_weave_texture_upload(const weft_weave_texels *texels, const weft_weave_layout *layout,
+                                    weft_weave_texture *texture, weft_error *error);
+void weft_weave_texture_free(weft_weave_texture *texture);
+
+/* Of graphics memory, without the directions. */
+size_t weft_weave_texture_bytes(const weft_weave_texture *texture);
+
+/* Sets the uniforms of analytic.glsl; `program` is in use. noise_seed 0: without noise. */
+void weft_weave_texture_bind(const weft_weave_texture *texture, GLuint program, unsigned noise_seed);
+
+#endif

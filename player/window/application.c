@@ -1,0 +1,453 @@
+#include "player/window/application_parts.h"
+
+#include "player/window/keys.h"
+#include "player/window/ui_bridge.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64, PLOT_SIZE = 142 };
+
+static const double settle_s = 0.12; /* after the last change the mean of a picture at rest begins */
+static const double hurry_ms = 15;   /* exact frames longer than this are drawn stochastically while things move */
+static const double poll_s = 0.1;
+static const double turn_rad_per_s = 0.5;
+static const double note_s = 8, short_note_s = 1.5;
+static const double poll_of_loading_s = 0.01; /* frames that show nothing new would take from the thread that reads */
+
+double weft_application_now_s(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+void weft_application_tell(weft_application *a, bool is_error, const char *text)
+{
+    if (!text[0])
+        return;
+    snprintf(a->note, sizeof a->note, "%s", text);
+    a->note_is_error = is_error;
+    a->note_ends_s = weft_application_now_s() + note_s;
+}
+
+/* What the host could not do is told and the window stays. */
+static void tell_outcome(weft_application *a, weft_code code, const weft_error *error, const char *note)
+{
+    weft_application_tell(a, code != WEFT_OK, code == WEFT_OK ? note : error->message);
+}
+
+/* ---- Events ---- */
+
+static double picture_x(const weft_application *a, double x)
+{
+    return x - weft_application_panel_width(a);
+}
+
+/* Where the pointer is now: what the widgets know of it is as old as the last frame. */
+static bool is_on_picture(const weft_application *a, double x)
+{
+    return picture_x(a, x) >= 0 && !weft_ui_holds_mouse();
+}
+
+static void on_press(void *context, int button, bool pressed, int modifiers, double x, double y)
+{
+    weft_application *a = context;
+    if (!pressed || is_on_picture(a, x))
+        weft_interaction_press(&a->interaction, button, pressed, modifiers, picture_x(a, x), y);
+}
+
+static void on_move(void *context, double x, double y)
+{
+    weft_application *a = context;
+    weft_interaction_move(&a->interaction, picture_x(a, x), y);
+}
+
+static void on_scroll(void *context, double steps)
+{
+    weft_application *a = context;
+    bool scrolls_list = a->interaction.shows_help;
+    if (!scrolls_list && is_on_picture(a, a->interaction.x + weft_application_panel_width(a)))
+        weft_interaction_scroll(&a->interaction, steps);
+}
+
+/* A key that was pressed over the picture is released wherever the keys go by then. */
+static void on_key(void *context, int key, int action, int modifiers)
+{
+    weft_application *a = context;
+    weft_interaction *i = &a->interaction;
+    if (action == GLFW_RELEASE)
+        weft_keys_release(i, key);
+    else if (!weft_ui_wants_keyboard())
+        weft_keys_press(i, key, modifiers, action == GLFW_REPEAT);
+    if (i->said[0]) {
+        weft_application_tell(a, false, i->said);
+        a->note_ends_s = weft_application_now_s() + short_note_s;
+        i->said[0] = 0;
+    }
+}
+
+void weft_application_open(weft_application *a, const char *path)
+{
+    const weft_application_host *host = &a->setup.host;
+    char note[WEFT_NOTE_SIZE] = "";
+    weft_error error = {0};
+    if (!host->open)
+        return;
+    tell_outcome(a, host->open(host->context, path, &a->interaction.scene, note, &error), &error, note);
+    a->interaction.changed = true;
+}
+
+static void on_drop(void *context, const char *path)
+{
+    weft_application_open(context, path);
+}
+
+/* ---- Life ---- */
+
+static weft_code open_window(weft_application *a, weft_error *error)
+{
+    const weft_window_events events = {on_press, on_move, on_scroll, on_key, on_drop, a};
+    char title[256];
+    snprintf(title, sizeof title, "Weft - %s", a->setup.title);
+    WEFT_TRY(weft_window_create(title, a->setup.width, a->setup.height, &events, &a->window, error));
+    a->scale = weft_window_scale(a->window);
+    WEFT_TRY(weft_ui_create(weft_window_handle(a->window), a->scale, error));
+    WEFT_TRY(weft_probe_plots_create((int)(PLOT_SIZE * a->scale), &a->plots, error));
+    return weft_player_create(&a->player, error);
+}
+
+weft_code weft_application_create(const weft_application_setup *setup, weft_application **result, weft_error *error)
+{
+    *result = NULL;
+    weft_application *a = calloc(1, sizeof *a);
+    if (!a)
+        return weft_fail_memory(error, "application", sizeof *a);
+    a->setup = *setup;
+    a->progress = -1;
+    weft_code code = open_window(a, error);
+    if (code == WEFT_OK)
+        *result = a;
+    else
+        weft_application_free(a);
+    return code;
+}
+
+void weft_application_free(weft_application *a)
+{
+    if (!a)
+        return;
+    if (a->window) {
+        weft_canvas_free(&a->canvas);
+        weft_probe_plots_free(&a->plots);
+        weft_ui_free();
+    }
+    weft_weave_edit_free(&a->weave);
+    weft_player_free(a->player);
+    weft_window_free(a->window);
+    free(a);
+}
+
+weft_player *weft_application_player(weft_application *a)
+{
+    return a->player;
+}
+
+void weft_application_set_file(weft_application *a, weft_mode mode, const char *path)
+{
+    a->setup.file[mode] = path;
+}
+
+void weft_application_set_mesh(weft_application *a, const char *name)
+{
+    a->mesh = name;
+}
+
+void weft_application_speed(const weft_application *a, long *frames, double *frame_ms)
+{
+    *frames = a->frame_count;
+    *frame_ms = a->frame_count > 0 ? a->total_ms / (double)a->frame_count : 0;
+}
+
+/* ---- Frames ---- */
+
+/* A canvas as large as the picture, begun anew when that is out of date. */
+static weft_code prepare_canvas(weft_application *a, int width, int height, weft_error *error)
+{
+    weft_interaction *i = &a->interaction;
+    i->width = width;
+    i->height = height;
+    bool is_resized = width != a->canvas.width || height != a->canvas.height;
+    if (is_resized) {
+        weft_canvas_free(&a->canvas);
+        WEFT_TRY(weft_canvas_create(width, height, &a->canvas, error));
+    }
+    if (i->changed || is_resized) {
+        weft_canvas_clear(&a->canvas);
+        a->moved_s = weft_application_now_s();
+        a->rests = false;
+        a->errors[0] = 0;
+    } else if (!a->rests && weft_application_now_s() - a->moved_s > settle_s) {
+        weft_canvas_clear(&a->canvas);
+        a->rests = true;
+    }
+    i->changed = false;
+    return WEFT_OK;
+}
+
+/* Radical inverses: any first few of these shifts spread evenly over the pixel. */
+static double radical_inverse(int index, int base)
+{
+    double result = 0, digit = 1;
+    for (; index > 0; index /= base) {
+        digit /= base;
+        result += digit * (index % base);
+    }
+    return result;
+}
+
+static weft_sampling sampling_of(const weft_application *a)
+{
+    int index = a->canvas.frame_count;
+    if (!a->rests)
+        return (weft_sampling){.frame = -1, .hurry = a->exact_ms > hurry_ms};
+    return (weft_sampling){
+        .shift_x = index > 0 ? radical_inverse(index, 2) - 0.5 : 0,
+        .shift_y = index > 0 ? radical_inverse(index, 3) - 0.5 : 0,
+        .frame = index,
+    };
+}
+
+static void note_time(weft_application *a, double elapsed_ms, bool is_exact)
+{
+    double *smooth[2] = {&a->frame_ms, is_exact ? &a->exact_ms : NULL};
+    for (int i = 0; i < 2 && smooth[i]; i++)
+        *smooth[i] = *smooth[i] > 0 ? 0.8 * *smooth[i] + 0.2 * elapsed_ms : elapsed_ms;
+}
+
+static weft_code draw_frame(weft_application *a, weft_error *error)
+{
+    const weft_scene *scene = &a->interaction.scene;
+    weft_sampling sampling = sampling_of(a);
+    double start = weft_application_now_s();
+    weft_canvas_begin_frame(&a->canvas);
+    WEFT_TRY(weft_player_draw(a->player, scene, a->canvas.width, a->canvas.height, sampling, error));
+    weft_canvas_end_frame(&a->canvas);
+    glFinish();
+    double elapsed_ms = 1000 * (weft_application_now_s() - start);
+    a->total_ms += elapsed_ms;
+    /* The first frame builds programs and is no measure of the others. */
+    if (a->frame_count++ > 0)
+        note_time(a, elapsed_ms, scene->filter == WEFT_FILTER_AUTO && !sampling.hurry);
+    return WEFT_OK;
+}
+
+static int still_frames(const weft_application *a)
+{
+    bool many_lights = a->interaction.scene.environment && weft_player_has_environment(a->player);
+    return many_lights ? STILL_FRAMES_OF_ENVIRONMENT : STILL_FRAMES;
+}
+
+static bool is_finished(const weft_application *a)
+{
+    return a->rests && a->canvas.frame_count >= still_frames(a);
+}
+
+static void measure(weft_application *a)
+{
+    const weft_application_host *host = &a->setup.host;
+    weft_error error = {0};
+    if (host->measure && host->measure(host->context, &a->interaction.scene, a->canvas.width, a->canvas.height,
+                                       a->errors, &error) != WEFT_OK)
+        weft_application_tell(a, true, error.message);
+}
+
+/* One frame more, unless the mean is finished or a moving picture stands. */
+static weft_code advance(weft_application *a, weft_error *error)
+{
+    if (a->setup.frame_limit > 0 && is_finished(a))
+        weft_canvas_clear(&a->canvas);
+    if (is_finished(a) || (!a->rests && a->canvas.frame_count > 0))
+        return WEFT_OK;
+    WEFT_TRY(draw_frame(a, error));
+    if (is_finished(a))
+        measure(a);
+    return WEFT_OK;
+}
+
+/* ---- Wishes ---- */
+
+/* A picture names the file of its weave; what was changed since is not in that. */
+static void warn_of_changes(const weft_application *a, char note[WEFT_NOTE_SIZE])
+{
+    size_t used = strlen(note);
+    bool shows_changed = a->weave.is_changed && a->weave.revision == weft_player_weave_revision(a->player);
+    if (shows_changed)
+        snprintf(note + used, WEFT_NOTE_SIZE - used, "; it names the weave's file, without your changes");
+}
+
+static void save_picture(weft_application *a)
+{
+    const weft_application_host *host = &a->setup.host;
+    char note[WEFT_NOTE_SIZE] = "";
+    weft_error error = {0};
+    weft_code code = WEFT_OK;
+    if (host->save)
+        code = host->save(host->context, &a->interaction.scene, a->canvas.width, a->canvas.height, note, &error);
+    warn_of_changes(a, note);
+    tell_outcome(a, code, &error, note);
+}
+
+static void change_mesh(weft_application *a)
+{
+    const weft_application_host *host = &a->setup.host;
+    weft_error error = {0};
+    weft_code code = WEFT_OK;
+    if (host->mesh)
+        code = host->mesh(host->context, a->interaction.wants_mesh, &a->interaction.scene, &error);
+    tell_outcome(a, code, &error, "");
+    a->interaction.wants_mesh = NULL;
+    a->interaction.changed = true;
+}
+
+static void grant_wishes(weft_application *a)
+{
+    weft_interaction *i = &a->interaction;
+    if (i->wants_mesh)
+        change_mesh(a);
+    if (i->wants_reload) {
+        i->wants_reload = false;
+        weft_application_open(a, NULL);
+    }
+    if (i->wants_screenshot) {
+        i->wants_screenshot = false;
+        save_picture(a);
+    }
+    weft_window_set_full_screen(a->window, i->full_screen);
+    if (i->wants_quit)
+        weft_window_close(a->window);
+}
+
+static void turn_by_itself(weft_application *a)
+{
+    double now = weft_application_now_s();
+    if (a->interaction.turns && a->interaction.drag == WEFT_DRAG_NONE)
+        weft_interaction_turn(&a->interaction, turn_rad_per_s * (now - a->stepped_s), 0);
+    a->stepped_s = now;
+}
+
+static void poll_host(weft_application *a)
+{
+    const weft_application_host *host = &a->setup.host;
+    char note[WEFT_NOTE_SIZE] = "";
+    weft_error error = {0};
+    bool changed = false;
+    if (!host->poll)
+        return;
+    weft_code code = host->poll(host->context, &a->interaction.scene, &a->progress, &changed, note, &error);
+    tell_outcome(a, code, &error, note);
+    if (code != WEFT_OK)
+        a->failure = error;
+    a->interaction.changed |= changed;
+}
+
+/* ---- The loop ---- */
+
+/* While the picture moves the numbers would be of one frame's choices. */
+static weft_code probe(weft_application *a, weft_error *error)
+{
+    const weft_interaction *i = &a->interaction;
+    if (!a->rests || weft_application_panel_width(a) == 0 || i->drag != WEFT_DRAG_NONE)
+        return WEFT_OK;
+    weft_probe probe;
+    WEFT_TRY(weft_probe_read(a->player, &i->scene, &a->canvas, (int)i->x, (int)i->y, &probe, error));
+    if (!probe.on_mesh)
+        return WEFT_OK;
+    a->probe = probe;
+    if (probe.mode == WEFT_MODE_COMPRESSED)
+        WEFT_TRY(weft_texel_read(a->player, probe.texel_level, probe.texel_x, probe.texel_y, probe.light, probe.view,
+                                 &a->texel, error));
+    return weft_probe_plots_draw(&a->plots, a->player, &i->scene, &a->probe, error);
+}
+
+static void show(weft_application *a, int width, int height)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width, height);
+    glClearColor(0.02f, 0.02f, 0.02f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    if (a->canvas.frame_count > 0)
+        weft_canvas_present(&a->canvas, &a->interaction.scene, weft_application_panel_width(a));
+    weft_ui_begin();
+    weft_application_show_panel(a, width, height);
+    weft_ui_end();
+    weft_window_show(a->window);
+}
+
+static void find_modes(weft_application *a)
+{
+    weft_interaction *i = &a->interaction;
+    i->is_reading = a->progress >= 0;
+    i->has_environment = weft_player_has_environment(a->player);
+    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++)
+        i->available[mode] = weft_player_has(a->player, (weft_mode)mode);
+    for (int pane = 0; pane < weft_scene_panes(&i->scene); pane++) {
+        for (int mode = 0; !i->available[i->scene.pane[pane]] && mode < WEFT_MODE_COUNT; mode++) {
+            if (i->available[mode])
+                weft_interaction_show(i, (weft_mode)mode);
+        }
+    }
+}
+
+static bool has_something(const weft_application *a)
+{
+    const bool *has = a->interaction.available;
+    bool has_model = has[WEFT_MODE_RAW] || has[WEFT_MODE_COMPRESSED] || has[WEFT_MODE_ANALYTIC];
+    return has_model && weft_player_has_mesh(a->player);
+}
+
+static double wait_s(const weft_application *a)
+{
+    bool is_drawing = (has_something(a) && !is_finished(a)) || a->interaction.changed;
+    return is_drawing ? 0 : a->progress >= 0 || a->weave.is_pending ? poll_of_loading_s : poll_s;
+}
+
+static weft_code step(weft_application *a, weft_error *error)
+{
+    int width, height;
+    grant_wishes(a);
+    turn_by_itself(a);
+    poll_host(a);
+    weft_application_follow_weave(a);
+    find_modes(a);
+    /* A window that would stay empty closes, and says why. */
+    if (!has_something(a) && a->progress < 0 && a->failure.code != WEFT_OK)
+        return weft_fail(error, a->failure.code, "%s", a->failure.message);
+    weft_window_size(a->window, &width, &height);
+    int left = weft_application_panel_width(a);
+    if (width <= left || height == 0)
+        return WEFT_OK;
+    WEFT_TRY(prepare_canvas(a, width - left, height, error));
+    if (has_something(a)) {
+        WEFT_TRY(advance(a, error));
+        WEFT_TRY(probe(a, error));
+    }
+    show(a, width, height);
+    return weft_gl_check("showing the window", error);
+}
+
+weft_code weft_application_run(weft_application *a, const weft_scene *scene, weft_error *error)
+{
+    a->interaction = (weft_interaction){.scene = *scene, .start = *scene, .changed = true, .shows_panel = true};
+    a->interaction.before = scene->pane[0];
+    a->stepped_s = weft_application_now_s();
+    find_modes(a);
+    long limit = a->setup.frame_limit;
+    while (weft_window_poll(a->window, wait_s(a)) && (limit == 0 || a->frame_count < limit))
+        WEFT_TRY(step(a, error));
+    return WEFT_OK;
+}

@@ -1,0 +1,166 @@
+#include "reflectance/weave/batch.h"
+
+#include "base/processor.h"
+#include "reflectance/weave/kernels.h"
+
+#include <stdlib.h>
+
+typedef struct woven_kernels {
+    void (*texture)(const weft_woven_table *table, weft_weave_batch *batch);
+    void (*reflectance)(const weft_prepared_segment *prepared, int count, const weft_vec3 *light, const weft_vec3 *view,
+                        weft_real *value);
+} woven_kernels;
+
+static woven_kernels kernels_in_use(void)
+{
+#if defined(__x86_64__)
+    weft_instruction_set set = weft_processor_instruction_set();
+    if (set == WEFT_AVX512)
+        return (woven_kernels){weft_woven_texture_avx512, weft_woven_reflectance_avx512};
+    if (set == WEFT_AVX2)
+        return (woven_kernels){weft_woven_texture_avx2, weft_woven_reflectance_avx2};
+#endif
+    return (woven_kernels){weft_woven_texture_baseline, weft_woven_reflectance_baseline};
+}
+
+/* ---- Texture ---- */
+
+static void fill_row(const weft_yarn *yarn, float *const column[TABLE_COLUMNS], int row)
+{
+    const weft_prepared_segment *prepared = &yarn->prepared;
+    const weft_segment *segment = &prepared->segment;
+    const weft_real value[TABLE_COLUMNS] = {
+        [TABLE_STAPLE] = prepared->admissible && !prepared->filament,
+        [TABLE_FILAMENT] = prepared->admissible && prepared->filament,
+        [TABLE_WARP] = yarn->warp,
+        [TABLE_AREA_WEIGHT] = yarn->area_weight,
+        [TABLE_ALPHA] = segment->alpha,
+        [TABLE_BETA] = segment->beta,
+        [TABLE_DELTA] = segment->delta,
+        [TABLE_UMAX] = segment->umax,
+        [TABLE_KAPPA] = segment->kappa,
+        [TABLE_WIDTH] = segment->width,
+        [TABLE_LENGTH] = segment->length,
+        [TABLE_HIGHLIGHT_WIDTH] = segment->highlight_width,
+        [TABLE_COT_PSI] = prepared->cot_psi,
+        [TABLE_INVERSE_SIN_PSI] = prepared->inverse_sin_psi,
+        [TABLE_PHASE_SCALE] = prepared->phase_scale,
+        [TABLE_RADIUS_SHARE] = prepared->radius_share,
+    };
+    for (int c = 0; c < TABLE_COLUMNS; c++)
+        column[c][row] = (float)value[c];
+}
+
+weft_code weft_woven_table_create(const weft_weave *weave, weft_woven_table **result, weft_error *error)
+{
+    size_t count = (size_t)weave->yarn_count, bytes = TABLE_COLUMNS * (count + 1) * sizeof(float);
+    weft_woven_table *table = calloc(1, sizeof *table);
+    float *block = malloc(bytes);
+    if (!table || !block) {
+        free(table);
+        free(block);
+        return weft_fail_memory(error, "weave table", bytes);
+    }
+    table->yarn_count = weave->yarn_count;
+    for (size_t c = 0; c < TABLE_COLUMNS; c++)
+        table->column[c] = block + c * count;
+    for (int i = 0; i < weave->yarn_count; i++) {
+        const weft_prepared_segment *prepared = &weave->yarn[i].prepared;
+        fill_row(&weave->yarn[i], table->column, i);
+        table->any_staple |= prepared->admissible && !prepared->filament;
+        table->any_filament |= prepared->admissible && prepared->filament;
+    }
+    *result = table;
+    return WEFT_OK;
+}
+
+void weft_woven_table_free(weft_woven_table *table)
+{
+    if (!table)
+        return;
+    free(table->column[0]);
+    free(table);
+}
+
+/* Vectors reach beyond the last evaluation: to yarns that exist, lit from below. */
+static void pad(weft_weave_batch *batch)
+{
+    enum { WIDEST = WEFT_BATCH_ALIGNMENT / sizeof(float) };
+    for (int i = batch->count; i % WIDEST != 0; i++) {
+        batch->yarn[i] = 0;
+        batch->x[i] = batch->y[i] = batch->umax_offset_rad[i] = batch->intensity[i] = 0;
+        batch->light.x[i] = batch->light.y[i] = batch->light.z[i] = 0;
+        batch->view.x[i] = batch->view.y[i] = batch->view.z[i] = 0;
+    }
+}
+
+void weft_weave_specular_batch(const weft_woven_table *table, weft_weave_batch *batch)
+{
+    pad(batch);
+    kernels_in_use().texture(table, batch);
+}
+
+/* ---- Reflectance ---- */
+
+void weft_prepared_reflectance_batch(const weft_prepared_segment *prepared, int count, const weft_vec3 *light,
+                                     const weft_vec3 *view, weft_real *value)
+{
+    kernels_in_use().reflectance(prepared, count, light, view, value);
+}
+
+/* The frame of weft segments is turned a quarter. */
+static void turn_directions(const weft_vec3 *from, int count, weft_vec3 *to)
+{
+    for (int i = 0; i < count; i++)
+        to[i] = weft_vec3_of(-from[i].y, from[i].x, from[i].z);
+}
+
+/* F aw of all yarns alike, 0 but for the first of them. */
+static weft_real share_of(const weft_weave *weave, int index)
+{
+    weft_real share = 0;
+    if (weave->yarn[index].alike != index)
+        return 0;
+    for (int i = index; i < weave->yarn_count; i++) {
+        const weft_yarn *yarn = &weave->yarn[i];
+        share += yarn->alike == index ? yarn->cell_fraction * yarn->area_weight : 0;
+    }
+    return share;
+}
+
+static void add_kinds(const weft_weave *weave, int count, const weft_vec3 *const direction[2][2], weft_real *kind,
+                      weft_real *value)
+{
+    woven_kernels kernels = kernels_in_use();
+    for (int i = 0; i < count; i++)
+        value[i] = 0;
+    for (int k = 0; k < weave->yarn_count; k++) {
+        weft_real share = share_of(weave, k);
+        int turned = !weave->yarn[k].warp;
+        if (!(share > 0))
+            continue;
+        kernels.reflectance(&weave->yarn[k].prepared, count, direction[turned][0], direction[turned][1], kind);
+        for (int i = 0; i < count; i++)
+            value[i] += share * kind[i];
+    }
+}
+
+weft_code weft_weave_mean_specular_batch(const weft_weave *weave, int count, const weft_vec3 *light,
+                                         const weft_vec3 *view, weft_real *value, weft_error *error)
+{
+    size_t n = (size_t)count + 1;
+    weft_vec3 *turned = malloc(2 * n * sizeof *turned);
+    weft_real *kind = malloc(n * sizeof *kind);
+    weft_code code = WEFT_OK;
+    if (turned && kind) {
+        turn_directions(light, count, turned);
+        turn_directions(view, count, turned + n);
+        const weft_vec3 *const direction[2][2] = {{light, view}, {turned, turned + n}};
+        add_kinds(weave, count, direction, kind, value);
+    } else {
+        code = weft_fail_memory(error, "directions", 2 * n * sizeof *turned + n * sizeof *kind);
+    }
+    free(turned);
+    free(kind);
+    return code;
+}

@@ -1,0 +1,93 @@
+#include "reflectance/weave/noise.h"
+#include "reflectance/weave/weave.h"
+
+#include "btf/direction/direction.h"
+
+#include <stdlib.h>
+
+/* Beyond this many tiles a coordinate says nothing about the place within one. */
+#define MAX_COORDINATE 1e9
+
+/* A coordinate in cells, split into the tile and the place within it. */
+typedef struct tiled {
+    weft_real tile;  /* whole number */
+    weft_real local; /* cells, [0, size) */
+    int cell;
+} tiled;
+
+static tiled split(weft_real tiles, int size)
+{
+    weft_real tile = floor(tiles), local = (tiles - tile) * (weft_real)size;
+    int cell = (int)local;
+    return (tiled){tile, local, cell < size ? cell : size - 1};
+}
+
+static weft_real finite_coordinate(weft_real x)
+{
+    return fabs(x) < (weft_real)MAX_COORDINATE ? x : 0;
+}
+
+/* Places along y count upward, tiles down. */
+static weave_segment_place place_of(const weft_weave *weave, const weft_yarn *yarn, weft_real tile_x, weft_real tile_y)
+{
+    weft_real center_x = (tile_x + yarn->center_u) * (weft_real)weave->tile_width;
+    weft_real center_y = (yarn->center_v - tile_y) * (weft_real)weave->tile_height;
+    return (weave_segment_place){llround(4 * center_x), llround(4 * center_y), yarn->warp};
+}
+
+static weft_real umax_offset(const weft_weave *weave, const weft_yarn *yarn, weave_segment_place place, uint64_t seed)
+{
+    const weft_real *amplitude_deg = weave->inclination_noise_deg + (yarn->warp ? 0 : 2);
+    weft_real offset_deg = amplitude_deg[0] * weave_yarn_noise(seed, place, true, weave->period) +
+                           amplitude_deg[1] * weave_yarn_noise(seed, place, false, weave->period);
+    weft_real umax = yarn->segment.umax;
+    return weft_clamp(umax + weft_rad_of_deg(offset_deg), yarn->min_umax, yarn->max_umax) - umax;
+}
+
+static void add_noise(const weft_weave *weave, weave_segment_place place, uint64_t seed, weft_weave_point *point)
+{
+    const weft_yarn *yarn = &weave->yarn[point->yarn];
+    const weft_segment *segment = &yarn->segment;
+    if (weave->period > 0)
+        point->umax_offset_rad = umax_offset(weave, yarn, place, seed);
+    if (weave->fineness > 0)
+        point->intensity =
+            weave_intensity_noise(seed, place, weave->fineness, point->x / segment->width + (weft_real)0.5,
+                                  point->y / segment->length + (weft_real)0.5);
+}
+
+weft_weave_point weft_weave_locate(const weft_weave *weave, weft_real U, weft_real V, uint64_t seed)
+{
+    tiled across = split(finite_coordinate(U), weave->tile_width);
+    tiled down = split(1 - finite_coordinate(V), weave->tile_height);
+    int index = weave->pattern[down.cell * weave->tile_width + across.cell];
+    const weft_yarn *yarn = &weave->yarn[index];
+    weft_real dx = across.local - yarn->center_u * (weft_real)weave->tile_width;
+    weft_real dy = down.local - (1 - yarn->center_v) * (weft_real)weave->tile_height;
+    weft_weave_point point = {.yarn = index, .x = yarn->warp ? dx : dy, .y = yarn->warp ? -dy : dx, .intensity = 1};
+    if (seed && yarn->admissible)
+        add_noise(weave, place_of(weave, yarn, across.tile, down.tile), seed, &point);
+    return point;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    weft_real x = *(const weft_real *)a, y = *(const weft_real *)b;
+    return (x > y) - (x < y);
+}
+
+void weft_weave_umax_offsets(const weft_weave *weave, int yarn, weft_real offset_rad[WEFT_WEAVE_OFFSETS])
+{
+    /* Steps of a few hundred tiles that have no factor in common with usual tiles and periods. */
+    enum { CLASS = 64, COUNT = CLASS * WEFT_WEAVE_OFFSETS, STEP_X = 211, STEP_Y = 307, SEED = 1 };
+    const weft_yarn *y = &weave->yarn[yarn];
+    weft_real offset[COUNT] = {0};
+    for (int i = 0; i < COUNT && weave->period > 0 && y->admissible; i++)
+        offset[i] = umax_offset(weave, y, place_of(weave, y, (weft_real)(STEP_X * i), (weft_real)(STEP_Y * i)), SEED);
+    qsort(offset, COUNT, sizeof *offset, ascending);
+    for (int k = 0; k < WEFT_WEAVE_OFFSETS; k++) {
+        offset_rad[k] = 0;
+        for (int i = k * CLASS; i < (k + 1) * CLASS; i++)
+            offset_rad[k] += offset[i] / CLASS;
+    }
+}

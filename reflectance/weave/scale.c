@@ -1,0 +1,81 @@
+/* The constant s of a weave: 1/s = (1/pi) times the integral of its specular part against both cosines, a
+ * five-dimensional quadrature (two directions and the coordinate along or round the yarn) over an additive recurrence.
+ */
+#include "reflectance/weave/direction_sequence.h"
+#include "reflectance/weave/weave.h"
+
+#include <stdlib.h>
+
+enum { DIMENSIONS = 5, BLOCK_POINTS = 4096, MAX_BLOCKS = 256, MIN_BLOCKS = 1, BUDGET_BLOCKS = 1024 };
+
+/* One segment and the share of the cloth that looks like it. */
+typedef struct kind_of_yarn {
+    const weft_prepared_segment *prepared;
+    double share; /* sum of F aw */
+} kind_of_yarn;
+
+static double block_sum(const weft_prepared_segment *prepared, const double step[DIMENSIONS], int block)
+{
+    weft_real limit = prepared->filament ? (weft_real)(WEFT_PI / 2) : prepared->spine.umax;
+    double sum = 0;
+    for (int k = block * BLOCK_POINTS + 1; k <= (block + 1) * BLOCK_POINTS; k++) {
+        double r[DIMENSIONS];
+        for (int i = 0; i < DIMENSIONS; i++)
+            r[i] = recurrence_at(step[i], k);
+        weft_vec3 light = cosine_weighted(r[0], r[1]), view = cosine_weighted(r[2], r[3]);
+        sum += weft_prepared_integrand(prepared, (weft_real)(2 * r[4] - 1) * limit, light, view);
+    }
+    return sum * 2 * limit;
+}
+
+/* Mean of f_s over cosine-weighted pairs of directions. */
+static double mean_reflectance(const weft_prepared_segment *prepared, int blocks)
+{
+    double step[DIMENSIONS], partial[MAX_BLOCKS], sum = 0;
+    recurrence_steps(DIMENSIONS, step);
+#pragma omp parallel for schedule(dynamic)
+    for (int block = 0; block < blocks; block++)
+        partial[block] = block_sum(prepared, step, block);
+    for (int block = 0; block < blocks; block++)
+        sum += partial[block];
+    return sum / ((double)blocks * BLOCK_POINTS);
+}
+
+/* Merges yarns that are alike. Turning the frame of a weft leaves the integral over both hemispheres as it is. */
+static int collect_kinds(const weft_weave *weave, kind_of_yarn *kind)
+{
+    int count = 0;
+    for (int i = 0; i < weave->yarn_count; i++) {
+        const weft_yarn *yarn = &weave->yarn[i];
+        double share = (double)yarn->cell_fraction * yarn->area_weight;
+        const weft_prepared_segment *prepared = &weave->yarn[yarn->alike].prepared;
+        if (!yarn->admissible || !(share > 0))
+            continue;
+        int k = 0;
+        while (k < count && kind[k].prepared != prepared)
+            k++;
+        if (k == count)
+            kind[count++] = (kind_of_yarn){prepared, 0};
+        kind[k].share += share;
+    }
+    return count;
+}
+
+static double inverse_scale(const kind_of_yarn *kind, int count)
+{
+    int blocks = (int)weft_clamp((weft_real)(BUDGET_BLOCKS / (count > 0 ? count : 1)), MIN_BLOCKS, MAX_BLOCKS);
+    double sum = 0;
+    for (int k = 0; k < count; k++)
+        sum += kind[k].share * mean_reflectance(kind[k].prepared, blocks);
+    return (double)WEFT_PI * sum;
+}
+
+weft_real weft_weave_specular_scale(const weft_weave *weave)
+{
+    kind_of_yarn *kind = calloc((size_t)weave->yarn_count, sizeof *kind);
+    if (!kind)
+        return 0;
+    double inverse = inverse_scale(kind, collect_kinds(weave, kind));
+    free(kind);
+    return inverse > 0 ? (weft_real)(1 / inverse) : 0;
+}

@@ -1,0 +1,42 @@
+/* From the pose that the rig promises to the one the photographs show: markers, then the drawn target. */
+#ifndef WEFT_REGISTRATION_POSE_POSE_CHAIN_H
+#define WEFT_REGISTRATION_POSE_POSE_CHAIN_H
+
+#include "registration/pose/refine.h"
+
+/* What a pose rests on in the end. */
+typedef enum weft_pose_source {
+    WEFT_POSE_FAILED,  /* nothing: the view cannot be used */
+    WEFT_POSE_MARKERS, /* the markers' corners: the refinement failed */
+    WEFT_POSE_DRAWING  /* refined against the drawn target */
+} weft_pose_source;
+
+typedef struct weft_pose_limits {
+    double tolerance_mm;      /* how far from the rig's promise a view may lie, RMS over the opening */
+    double least_correlation; /* of the photograph with its prediction */
+} weft_pose_limits;
+
+typedef struct weft_view_pose {
+    weft_pose_source source;
+    bool from_markers;          /* the refinement started from the markers, not from the rig's promise */
+    int marker_count;           /* markers seen */
+    double marker_rms_px;       /* reprojection of the corners that agree */
+    weft_homography homography; /* plate mm to undistorted pixels */
+    weft_smear smear;
+    double correlation;    /* 0 where the refinement never ran */
+    double uncertainty_mm; /* standard error of positions in the opening; of the markers: their reprojection error */
+    double shift_mm;       /* against the rig's promise, RMS over the opening */
+    char remark[160];      /* why it failed, or fell back; empty when all went well */
+} weft_view_pose;
+
+/* Finds the pose in `photograph` ([height][width], linear, vignetting removed, NaN where unknown). `smear` is the guess
+ * the refinement starts from. `fitted` [height][width] may be NULL: the prediction under the fitted lighting, where the
+ * source is the drawing. A pose that cannot be found is a result, not an error. Errors: WEFT_SYSTEM. */
+weft_code weft_find_pose(const weft_sight *sight, const weft_target *target, const float *photograph,
+                         const weft_homography *promised, weft_smear smear, const weft_pose_limits *limits,
+                         weft_view_pose *pose, float *fitted, weft_error *error);
+
+/* Distance on the plate between where two homographies put the same pixels, mm, RMS over the opening. Pure. */
+double weft_homography_distance_mm(const weft_homography *a, const weft_homography *b, double opening_mm);
+
+#endif

@@ -1,0 +1,194 @@
+#include "registration/pose/prediction.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { smear_samples = 64 };
+
+/* Beyond its square and smear, how far around a pixel (in pixels) nothing else may lie for it to be compared: central
+ * differences look at its neighbours. */
+static const double neighbour_reach = 1.2;
+
+static void calibrate_pixels(weft_sight *sight)
+{
+    const weft_camera *camera = &sight->camera;
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < camera->height; y++) {
+        for (int x = 0; x < camera->width; x++) {
+            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
+            weft_pixel pixel = weft_camera_undistort(camera, (weft_pixel){x, y});
+            sight->undistorted[at][0] = (float)pixel.x;
+            sight->undistorted[at][1] = (float)pixel.y;
+            sight->inverse_vignetting[at] = (float)(1 / weft_camera_vignetting(camera, (weft_pixel){x, y}));
+        }
+    }
+}
+
+weft_code weft_sight_create(const weft_camera *camera, const weft_target *target, double pixels_per_mm,
+                            weft_sight *sight, weft_error *error)
+{
+    *sight = (weft_sight){.camera = *camera, .opening_mm = target->opening_mm};
+    if (camera->width < 8 || camera->height < 8 || !(pixels_per_mm > 0))
+        return weft_fail(error, WEFT_BAD_INPUT, "a camera of %d x %d pixels cannot be registered", camera->width,
+                         camera->height);
+    size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    sight->undistorted = malloc(pixels * sizeof *sight->undistorted);
+    sight->inverse_vignetting = malloc(pixels * sizeof *sight->inverse_vignetting);
+    if (!sight->undistorted || !sight->inverse_vignetting) {
+        weft_sight_free(sight);
+        return weft_fail_memory(error, "the calibration of all pixels", pixels * 12);
+    }
+    calibrate_pixels(sight);
+    weft_code code = weft_drawing_create(target, 1 / (8 * pixels_per_mm), &sight->drawing, error);
+    if (code != WEFT_OK)
+        weft_sight_free(sight);
+    return code;
+}
+
+void weft_sight_free(weft_sight *sight)
+{
+    free(sight->undistorted);
+    free(sight->inverse_vignetting);
+    weft_drawing_free(&sight->drawing);
+    *sight = (weft_sight){0};
+}
+
+weft_code weft_prediction_create(const weft_camera *camera, weft_prediction *prediction, weft_error *error)
+{
+    size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    *prediction = (weft_prediction){calloc(pixels, sizeof(float)), calloc(pixels, sizeof(float)), calloc(pixels, 1)};
+    if (prediction->reflectance && prediction->focus && prediction->compared)
+        return WEFT_OK;
+    weft_prediction_free(prediction);
+    return weft_fail_memory(error, "a predicted photograph", pixels * 9);
+}
+
+void weft_prediction_free(weft_prediction *prediction)
+{
+    free(prediction->reflectance);
+    free(prediction->focus);
+    free(prediction->compared);
+    *prediction = (weft_prediction){0};
+}
+
+/* Points of a pixel's square (first pair, -1/2..1/2) and of a disc with unit variance per axis (second pair), from
+ * the four-dimensional additive recurrence of Roberts (2018): even in every projection, so that no direction of an
+ * edge is preferred. */
+typedef struct smear_pattern {
+    float square_x[smear_samples], square_y[smear_samples], disc_x[smear_samples], disc_y[smear_samples];
+} smear_pattern;
+
+static void remove_mean(float *value)
+{
+    float mean = 0;
+    for (int i = 0; i < smear_samples; i++)
+        mean += value[i] / smear_samples;
+    for (int i = 0; i < smear_samples; i++)
+        value[i] -= mean;
+}
+
+static smear_pattern place_samples(void)
+{
+    const double phi4 = 1.1673039782614187; /* root of x^5 = x + 1 */
+    smear_pattern pattern;
+    for (int i = 0; i < smear_samples; i++) {
+        double u[4], step = 1;
+        for (int axis = 0; axis < 4; axis++)
+            u[axis] = fmod(0.5 + (i + 1) * (step /= phi4), 1);
+        double radius = 2 * sqrt(u[2]), azimuth = 2 * WEFT_PI * u[3];
+        pattern.square_x[i] = (float)(u[0] - 0.5);
+        pattern.square_y[i] = (float)(u[1] - 0.5);
+        pattern.disc_x[i] = (float)(radius * cos(azimuth));
+        pattern.disc_y[i] = (float)(radius * sin(azimuth));
+    }
+    remove_mean(pattern.square_x);
+    remove_mean(pattern.square_y);
+    remove_mean(pattern.disc_x);
+    remove_mean(pattern.disc_y);
+    return pattern;
+}
+
+/* A pixel on the plate: its centre, mm, and the derivative by the pixel coordinates, mm a pixel. */
+typedef struct footprint {
+    float x, y, dx[2], dy[2];
+} footprint;
+
+static void plate_point(const weft_homography *inverse, const float undistorted[2], float point[2])
+{
+    weft_pixel plate = weft_homography_apply(inverse, undistorted[0], undistorted[1]);
+    point[0] = (float)plate.x;
+    point[1] = (float)plate.y;
+}
+
+static footprint footprint_of(const weft_sight *sight, const weft_homography *inverse, int x, int y)
+{
+    int width = sight->camera.width;
+    const float(*here)[2] = (const float(*)[2])sight->undistorted + (long)y * width + x;
+    int right = x + 1 < width ? 1 : -1, below = y + 1 < sight->camera.height ? 1 : -1;
+    float centre[2], beside[2], under[2];
+    plate_point(inverse, here[0], centre);
+    plate_point(inverse, here[right], beside);
+    plate_point(inverse, here[(long)below * width], under);
+    return (footprint){centre[0],
+                       centre[1],
+                       {(float)right * (beside[0] - centre[0]), (float)right * (beside[1] - centre[1])},
+                       {(float)below * (under[0] - centre[0]), (float)below * (under[1] - centre[1])}};
+}
+
+static weft_rectangle reach_of(const footprint *print, double pixels)
+{
+    double x = pixels * (fabsf(print->dx[0]) + fabsf(print->dy[0]));
+    double y = pixels * (fabsf(print->dx[1]) + fabsf(print->dy[1]));
+    return (weft_rectangle){print->x - x, print->y - y, print->x + x, print->y + y};
+}
+
+/* The footprint must lie inside the raster: what is not excluded does. */
+WEFT_HOT static float average_over(const weft_drawing *drawing, const footprint *print, float deviation,
+                                   const smear_pattern *pattern)
+{
+    float cells = 1 / (float)drawing->cell_mm, half = (float)drawing->half_mm, seen[smear_samples];
+    float x0 = (print->x + half) * cells - 0.5f, y0 = (print->y + half) * cells - 0.5f;
+    float xu = print->dx[0] * cells, xv = print->dy[0] * cells, yu = print->dx[1] * cells, yv = print->dy[1] * cells;
+    for (int i = 0; i < smear_samples; i++) {
+        float u = pattern->square_x[i] + deviation * pattern->disc_x[i];
+        float v = pattern->square_y[i] + deviation * pattern->disc_y[i];
+        seen[i] = weft_drawing_between(drawing, x0 + u * xu + v * xv, y0 + u * yu + v * yv);
+    }
+    float sum = 0;
+    for (int i = 0; i < smear_samples; i++)
+        sum += seen[i];
+    return sum / smear_samples;
+}
+
+static void predict_pixel(const weft_sight *sight, const footprint *print, const weft_homography *homography,
+                          weft_smear smear, const smear_pattern *pattern, size_t at, weft_prediction *prediction)
+{
+    /* The last row of the homography is the distance along the camera's axis, up to a factor. */
+    double z = (homography->m[2][0] * print->x + homography->m[2][1] * print->y) / homography->m[2][2] + 1;
+    double focus = z > 0 ? (1 - 1 / z) * (1 - 1 / z) : 0;
+    double deviation = sqrt(fmax(0, smear.constant + smear.depth * focus)), reach = 0.5 + 2 * deviation;
+    weft_drawing_content around = weft_drawing_content_of(&sight->drawing, reach_of(print, reach + neighbour_reach));
+    prediction->focus[at] = (float)focus;
+    prediction->compared[at] = z > 0 && !around.excluded;
+    /* A pixel that is not compared itself may be the neighbour of one that is. */
+    if (around.excluded)
+        around = weft_drawing_content_of(&sight->drawing, reach_of(print, reach));
+    prediction->reflectance[at] = around.uniform || around.excluded
+                                      ? weft_drawing_at(&sight->drawing, print->x, print->y)
+                                      : average_over(&sight->drawing, print, (float)deviation, pattern);
+}
+
+void weft_predict(const weft_sight *sight, const weft_homography *homography, weft_smear smear,
+                  weft_prediction *prediction)
+{
+    smear_pattern pattern = place_samples();
+    weft_homography inverse = weft_homography_inverse(homography);
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int y = 0; y < sight->camera.height; y++) {
+        for (int x = 0; x < sight->camera.width; x++) {
+            footprint print = footprint_of(sight, &inverse, x, y);
+            size_t at = (size_t)y * (size_t)sight->camera.width + (size_t)x;
+            predict_pixel(sight, &print, homography, smear, &pattern, at, prediction);
+        }
+    }
+}

@@ -1,0 +1,440 @@
+#include "registration/pose/refine.h"
+
+#include "registration/pose/normal_equations.h"
+#include "registration/pose/opencv_bridge.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The unknowns of one step. The homography is multiplied from the left by I + D, D's last element zero, in normalised
+ * camera coordinates; the lighting is a polynomial of second degree over the photograph times the drawing, plus stray
+ * light; the smear enters by the heat equation, d T / d variance = laplacian(T) / 2. */
+enum {
+    motion_at = 0,
+    motion_count = 8,
+    gain_at = 8,
+    gain_count = 6,
+    stray_at = 14,
+    smear_at = 15,
+    unknown_count = 17,
+    unknown_count_blurred = smear_at,
+    strip_count = 32, /* fixed, so that sums do not depend on the number of threads */
+    smear_steps = 4,  /* the smear creeps for long in a direction that hardly matters; then it is held */
+    iteration_limit = 15
+};
+
+static const double settled_px = 0.005, held_stiffness = 1e12, largest_step_px = 3, robust_reach = 6;
+
+typedef struct comparison {
+    const weft_sight *sight;
+    double blur_px;
+    float *photograph, *weight; /* [height][width]; weight is the blurred mask where blur_px > 0 */
+    weft_prediction prediction;
+    double gain[gain_count], stray;
+    double deviation;   /* of the residual of the last step, 0 before the first */
+    double focus_limit; /* largest focus factor among the compared pixels */
+    weft_normal_equations equations;
+} comparison;
+
+static void comparison_free(comparison *c)
+{
+    free(c->photograph);
+    free(c->weight);
+    weft_prediction_free(&c->prediction);
+}
+
+static size_t pixel_count(const weft_sight *sight)
+{
+    return (size_t)sight->camera.width * (size_t)sight->camera.height;
+}
+
+static weft_code comparison_create(const weft_sight *sight, double blur_px, comparison *c, weft_error *error)
+{
+    size_t pixels = pixel_count(sight);
+    *c = (comparison){.sight = sight, .blur_px = blur_px};
+    WEFT_TRY(weft_prediction_create(&sight->camera, &c->prediction, error));
+    c->photograph = malloc(pixels * sizeof(float));
+    c->weight = malloc(pixels * sizeof(float));
+    if (c->photograph && c->weight)
+        return WEFT_OK;
+    comparison_free(c);
+    return weft_fail_memory(error, "refinement", pixels * 8);
+}
+
+/* Blurs both sides with the pixels that are not compared taken out (normalised convolution), so that neither the sample
+ * nor the world beyond the plate leaks in. */
+static weft_code blur_both(comparison *c, weft_error *error)
+{
+    int width = c->sight->camera.width, height = c->sight->camera.height;
+    size_t pixels = pixel_count(c->sight);
+    for (size_t i = 0; i < pixels; i++) {
+        c->weight[i] = c->prediction.compared[i];
+        c->photograph[i] = c->prediction.compared[i] ? c->photograph[i] : 0;
+        c->prediction.reflectance[i] *= c->weight[i];
+    }
+    WEFT_TRY(weft_bridge_blur(c->weight, width, height, c->blur_px, error));
+    WEFT_TRY(weft_bridge_blur(c->photograph, width, height, c->blur_px, error));
+    WEFT_TRY(weft_bridge_blur(c->prediction.reflectance, width, height, c->blur_px, error));
+    for (size_t i = 0; i < pixels; i++) {
+        float inverse = c->weight[i] > 1e-6f ? 1 / c->weight[i] : 0;
+        c->photograph[i] *= inverse;
+        c->prediction.reflectance[i] *= inverse;
+    }
+    return WEFT_OK;
+}
+
+static weft_code look(comparison *c, const float *photograph, const weft_refinement *estimate, weft_error *error)
+{
+    size_t pixels = pixel_count(c->sight);
+    weft_predict(c->sight, &estimate->homography, estimate->smear, &c->prediction);
+    memcpy(c->photograph, photograph, pixels * sizeof(float));
+    c->focus_limit = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        c->prediction.compared[i] &= isfinite(photograph[i]) != 0;
+        if (c->prediction.compared[i])
+            c->focus_limit = fmax(c->focus_limit, c->prediction.focus[i]);
+    }
+    return c->blur_px > 0 ? blur_both(c, error) : WEFT_OK;
+}
+
+/* Before the first step: the lighting is even and there is no stray light. */
+static void guess_lighting(comparison *c)
+{
+    double photograph = 0, drawing = 0;
+    for (size_t i = 0; i < pixel_count(c->sight); i++) {
+        photograph += c->prediction.compared[i] ? c->photograph[i] : 0;
+        drawing += c->prediction.compared[i] ? c->prediction.reflectance[i] : 0;
+    }
+    memset(c->gain, 0, sizeof c->gain);
+    c->gain[0] = drawing > 0 ? photograph / drawing : 1;
+    c->stray = 0;
+}
+
+static void lighting_basis(const weft_camera *camera, int x, int y, double basis[gain_count])
+{
+    double scale = 2.0 / (camera->width > camera->height ? camera->width : camera->height);
+    double u = (x - 0.5 * camera->width) * scale, v = (y - 0.5 * camera->height) * scale;
+    const double values[gain_count] = {1, u, v, u * u, u * v, v * v};
+    memcpy(basis, values, sizeof values);
+}
+
+static double polynomial(const double basis[gain_count], const double coefficient[gain_count])
+{
+    double sum = 0;
+    for (int k = 0; k < gain_count; k++)
+        sum += coefficient[k] * basis[k];
+    return sum;
+}
+
+/* Motion, in pixels, of the image of a plate point at normalised coordinates (x, y) by D: du . d and dv . d. */
+static void motion_rows(const weft_camera *camera, double x, double y, double du[motion_count], double dv[motion_count])
+{
+    const double u[motion_count] = {x, y, 1, 0, 0, 0, -x * x, -x * y};
+    const double v[motion_count] = {0, 0, 0, x, y, 1, -x * y, -y * y};
+    for (int k = 0; k < motion_count; k++) {
+        du[k] = camera->fx * u[k];
+        dv[k] = camera->fy * v[k];
+    }
+}
+
+static void equation_at(const comparison *c, int x, int y, double row[WEFT_UNKNOWNS_LIMIT], double *residual)
+{
+    const weft_camera *camera = &c->sight->camera;
+    long width = camera->width, at = y * width + x;
+    const float *t = c->prediction.reflectance + at;
+    double basis[gain_count], du[motion_count], dv[motion_count];
+    lighting_basis(camera, x, y, basis);
+    double gain = polynomial(basis, c->gain);
+    const float *undistorted = c->sight->undistorted[at];
+    motion_rows(camera, (undistorted[0] - camera->cx) / camera->fx, (undistorted[1] - camera->cy) / camera->fy, du, dv);
+    double slope_x = gain * 0.5 * (t[1] - t[-1]), slope_y = gain * 0.5 * (t[width] - t[-width]);
+    double half_laplacian = 0.5 * gain * (t[1] + t[-1] + t[width] + t[-width] - 4 * t[0]);
+    for (int k = 0; k < motion_count; k++)
+        row[motion_at + k] = -(slope_x * du[k] + slope_y * dv[k]);
+    for (int k = 0; k < gain_count; k++)
+        row[gain_at + k] = basis[k] * t[0];
+    row[stray_at] = 1;
+    row[smear_at] = half_laplacian;
+    row[smear_at + 1] = half_laplacian * c->prediction.focus[at];
+    *residual = c->photograph[at] - gain * t[0] - c->stray;
+}
+
+/* Cauchy's weight: what the drawing does not explain (a hair, a hand, a stain) hardly counts. */
+static double robust_weight(double residual, double deviation)
+{
+    if (deviation <= 0)
+        return 1;
+    double t = residual / (robust_reach * deviation);
+    return 1 / (1 + t * t);
+}
+
+WEFT_HOT static void gather_strip(const comparison *c, int first, int end, weft_normal_equations *equations,
+                                  double *deviation)
+{
+    double row[WEFT_UNKNOWNS_LIMIT] = {0};
+    for (int y = first; y < end; y++) {
+        for (int x = 1; x + 1 < c->sight->camera.width; x++) {
+            if (!c->prediction.compared[(long)y * c->sight->camera.width + x])
+                continue;
+            double residual;
+            equation_at(c, x, y, row, &residual);
+            weft_normal_equations_add(equations, row, c->photograph[(long)y * c->sight->camera.width + x],
+                                      robust_weight(residual, c->deviation));
+            deviation[0] += fabs(residual);
+            deviation[1]++;
+        }
+    }
+}
+
+static weft_code gather(comparison *c, weft_error *error)
+{
+    weft_normal_equations *strip = calloc(strip_count, sizeof *strip);
+    double deviation[strip_count][2] = {{0}}, sum = 0, count = 0;
+    if (!strip)
+        return weft_fail_memory(error, "refinement", strip_count * sizeof *strip);
+    int rows = c->sight->camera.height - 2;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int i = 0; i < strip_count; i++)
+        gather_strip(c, 1 + rows * i / strip_count, 1 + rows * (i + 1) / strip_count, &strip[i], deviation[i]);
+    c->equations = (weft_normal_equations){0};
+    for (int i = 0; i < strip_count; i++) {
+        weft_normal_equations_merge(&c->equations, &strip[i]);
+        sum += deviation[i][0];
+        count += deviation[i][1];
+    }
+    free(strip);
+    c->deviation = count > 0 ? 1.25 * sum / count : 0; /* of a normal distribution, from its mean modulus */
+    return WEFT_OK;
+}
+
+/* H <- K (I + D) K^-1 H, scaled so that the last element stays as it is in size. */
+static weft_homography moved(const weft_camera *camera, const weft_homography *homography, const double *d)
+{
+    const double k[3][3] = {{camera->fx, 0, camera->cx}, {0, camera->fy, camera->cy}, {0, 0, 1}};
+    const double change[3][3] = {{1 + d[0], d[1], d[2]}, {d[3], 1 + d[4], d[5]}, {d[6], d[7], 1}};
+    weft_homography result = {{{0}}};
+    for (int column = 0; column < 3; column++) {
+        double w = homography->m[2][column];
+        const double ray[3] = {(homography->m[0][column] - camera->cx * w) / camera->fx,
+                               (homography->m[1][column] - camera->cy * w) / camera->fy, w};
+        double turned[3];
+        for (int row = 0; row < 3; row++)
+            turned[row] = change[row][0] * ray[0] + change[row][1] * ray[1] + change[row][2] * ray[2];
+        for (int row = 0; row < 3; row++)
+            result.m[row][column] = k[row][0] * turned[0] + k[row][1] * turned[1] + k[row][2] * turned[2];
+    }
+    return result;
+}
+
+/* Largest motion of a point on the rim of the plate, pixels. */
+static double largest_motion(const weft_sight *sight, const weft_homography *from, const weft_homography *to)
+{
+    double largest = 0, radius = sight->drawing.half_mm;
+    for (int i = 0; i < 8; i++) {
+        double x = radius * cos(i * WEFT_PI / 4), y = radius * sin(i * WEFT_PI / 4);
+        weft_pixel a = weft_homography_apply(from, x, y), b = weft_homography_apply(to, x, y);
+        largest = fmax(largest, hypot(a.x - b.x, a.y - b.y));
+    }
+    return largest;
+}
+
+/* Applies a solution, its motion shortened where it leaves the reach of the linearisation. Returns the motion, pixels.
+ */
+static double apply_step(comparison *c, const double *solution, weft_refinement *refinement)
+{
+    const weft_camera *camera = &c->sight->camera;
+    weft_homography next = moved(camera, &refinement->homography, solution);
+    double motion = largest_motion(c->sight, &refinement->homography, &next);
+    double limit = largest_step_px * fmax(1, c->blur_px);
+    if (motion > limit) {
+        double shorter[motion_count];
+        for (int k = 0; k < motion_count; k++)
+            shorter[k] = solution[k] * limit / motion;
+        next = moved(camera, &refinement->homography, shorter);
+    }
+    refinement->homography = next;
+    memcpy(c->gain, solution + gain_at, sizeof c->gain);
+    c->stray = solution[stray_at];
+    if (c->blur_px <= 0) {
+        refinement->smear.constant = fmax(0, refinement->smear.constant + solution[smear_at]);
+        refinement->smear.depth = fmax(0, refinement->smear.depth + solution[smear_at + 1]);
+    }
+    return motion;
+}
+
+/* At a frontal view the depth term has no effect: hold it where it is. */
+static void hold_smear(comparison *c)
+{
+    double(*m)[WEFT_UNKNOWNS_LIMIT] = c->equations.matrix;
+    double scale = fmax(c->focus_limit, 1e-3);
+    m[smear_at][smear_at] *= 1 + 1e-6;
+    m[smear_at + 1][smear_at + 1] += 1e-4 * scale * scale * m[smear_at][smear_at];
+}
+
+/* Standard error of positions in the opening, mm RMS, from the factored equations. */
+static double uncertainty_mm(const weft_sight *sight, const weft_normal_equations *factored, int count, double variance,
+                             const weft_homography *homography)
+{
+    const weft_camera *camera = &sight->camera;
+    weft_homography inverse = weft_homography_inverse(homography);
+    enum { grid = 5 };
+    double sum = 0, half = sight->opening_mm / 2;
+    for (int i = 0; i < grid * grid; i++) {
+        double px = half * (2 * (i % grid + 0.5) / grid - 1), py = half * (2 * (i / grid + 0.5) / grid - 1);
+        weft_pixel at = weft_homography_apply(homography, px, py);
+        weft_pixel right = weft_homography_apply(&inverse, at.x + 0.5, at.y);
+        weft_pixel left = weft_homography_apply(&inverse, at.x - 0.5, at.y);
+        weft_pixel below = weft_homography_apply(&inverse, at.x, at.y + 0.5);
+        weft_pixel above = weft_homography_apply(&inverse, at.x, at.y - 0.5);
+        double du[motion_count], dv[motion_count], row[2][WEFT_UNKNOWNS_LIMIT] = {{0}};
+        motion_rows(camera, (at.x - camera->cx) / camera->fx, (at.y - camera->cy) / camera->fy, du, dv);
+        for (int k = 0; k < motion_count; k++) {
+            row[0][k] = (right.x - left.x) * du[k] + (below.x - above.x) * dv[k];
+            row[1][k] = (right.y - left.y) * du[k] + (below.y - above.y) * dv[k];
+        }
+        sum += weft_normal_equations_variance(factored, count, row[0]) +
+               weft_normal_equations_variance(factored, count, row[1]);
+    }
+    return sqrt(variance * sum / (grid * grid));
+}
+
+/* The prediction under the fitted lighting at a pixel. */
+static double lit_prediction(const comparison *c, const double basis[gain_count], size_t at)
+{
+    return polynomial(basis, c->gain) * (double)c->prediction.reflectance[at] + c->stray;
+}
+
+/* Polynomials of the lighting's degree through the photograph and through the prediction under the fitted lighting. */
+static bool smooth_parts(const comparison *c, double photograph[gain_count], double prediction[gain_count])
+{
+    const weft_camera *camera = &c->sight->camera;
+    weft_normal_equations seen = {0}, model = {0};
+    double row[WEFT_UNKNOWNS_LIMIT] = {0};
+    for (int y = 0; y < camera->height; y++) {
+        for (int x = 0; x < camera->width; x++) {
+            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
+            if (!c->prediction.compared[at])
+                continue;
+            lighting_basis(camera, x, y, row);
+            weft_normal_equations_add(&seen, row, (double)c->photograph[at], 1);
+            weft_normal_equations_add(&model, row, lit_prediction(c, row, at), 1);
+        }
+    }
+    if (!weft_normal_equations_factor(&seen, gain_count) || !weft_normal_equations_factor(&model, gain_count))
+        return false;
+    weft_normal_equations_solve(&seen, gain_count, photograph);
+    weft_normal_equations_solve(&model, gain_count, prediction);
+    return true;
+}
+
+/* Correlation of the photograph with the prediction under the fitted lighting, over what is left of both when their
+ * smooth parts are taken away: a lighting gradient on a bare surface would correlate by itself. */
+static double correlate(const comparison *c)
+{
+    const weft_camera *camera = &c->sight->camera;
+    double photograph[gain_count], prediction[gain_count], aa = 0, bb = 0, ab = 0;
+    if (!smooth_parts(c, photograph, prediction))
+        return 0;
+    for (int y = 0; y < camera->height; y++) {
+        for (int x = 0; x < camera->width; x++) {
+            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
+            double basis[gain_count];
+            if (!c->prediction.compared[at])
+                continue;
+            lighting_basis(camera, x, y, basis);
+            double a = (double)c->photograph[at] - polynomial(basis, photograph);
+            double b = lit_prediction(c, basis, at) - polynomial(basis, prediction);
+            aa += a * a, bb += b * b, ab += a * b;
+        }
+    }
+    return aa > 0 && bb > 0 ? ab / sqrt(aa * bb) : 0;
+}
+
+static void write_fitted(const comparison *c, float *fitted)
+{
+    const weft_camera *camera = &c->sight->camera;
+    for (int y = 0; y < camera->height; y++) {
+        for (int x = 0; x < camera->width; x++) {
+            double basis[gain_count];
+            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
+            lighting_basis(camera, x, y, basis);
+            fitted[at] = (float)lit_prediction(c, basis, at);
+        }
+    }
+}
+
+/* Solves for a step; a smear that would become negative is held (an active set, at most two constraints), and so are
+ * both where `hold_both`. False where the equations have no solution. `factored` receives what the uncertainty is
+ * computed from. */
+static bool solve(const comparison *c, weft_smear smear, bool hold_both, int count, double *solution,
+                  weft_normal_equations *factored)
+{
+    bool held[2] = {hold_both, hold_both};
+    const double current[2] = {smear.constant, smear.depth};
+    for (bool again = true; again;) {
+        again = false;
+        *factored = c->equations;
+        for (int k = 0; k < 2; k++)
+            factored->matrix[smear_at + k][smear_at + k] *= held[k] ? held_stiffness : 1;
+        if (!weft_normal_equations_factor(factored, count))
+            return false;
+        weft_normal_equations_solve(factored, count, solution);
+        for (int k = 0; k < 2 && count == unknown_count; k++) {
+            if (!held[k] && current[k] <= 0 && solution[smear_at + k] < 0)
+                held[k] = again = true;
+        }
+    }
+    return true;
+}
+
+/* One step. False where the equations have no solution. */
+static bool step(comparison *c, weft_refinement *refinement, bool hold_smear_now, double *motion)
+{
+    int count = c->blur_px > 0 ? unknown_count_blurred : unknown_count;
+    double solution[WEFT_UNKNOWNS_LIMIT] = {0};
+    weft_normal_equations factored;
+    hold_smear(c);
+    if (!solve(c, refinement->smear, hold_smear_now, count, solution, &factored))
+        return false;
+    double freedom = fmax(1, c->equations.weights - count);
+    double variance = c->deviation * c->deviation * fmax(1, c->equations.weights) / freedom;
+    refinement->uncertainty_mm = uncertainty_mm(c->sight, &factored, count, variance, &refinement->homography);
+    *motion = apply_step(c, solution, refinement);
+    return isfinite(*motion);
+}
+
+static weft_code iterate(comparison *c, const float *photograph, weft_refinement *refinement, weft_error *error)
+{
+    for (int i = 0; i < iteration_limit && !refinement->converged; i++) {
+        double motion;
+        WEFT_TRY(look(c, photograph, refinement, error));
+        if (i == 0)
+            guess_lighting(c);
+        WEFT_TRY(gather(c, error));
+        refinement->iterations = i + 1;
+        if (!step(c, refinement, i >= smear_steps, &motion))
+            return WEFT_OK;
+        /* The second step is the first one with robust weights. */
+        refinement->converged = i > 0 && motion < settled_px * fmax(1, 10 * c->blur_px);
+    }
+    return WEFT_OK;
+}
+
+weft_code weft_refine(const weft_sight *sight, const float *photograph, double blur_px, weft_refinement *refinement,
+                      float *fitted, weft_error *error)
+{
+    comparison c;
+    WEFT_TRY(comparison_create(sight, blur_px, &c, error));
+    refinement->converged = false;
+    refinement->correlation = refinement->uncertainty_mm = 0;
+    weft_code code = iterate(&c, photograph, refinement, error);
+    if (code == WEFT_OK)
+        code = look(&c, photograph, refinement, error);
+    if (code == WEFT_OK)
+        refinement->correlation = correlate(&c);
+    if (code == WEFT_OK && fitted)
+        write_fitted(&c, fitted);
+    comparison_free(&c);
+    return code;
+}

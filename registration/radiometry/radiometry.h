@@ -1,0 +1,53 @@
+/* From raw values to reflectance: how much light fell on the sample, measured on the white reference patches round it.
+ */
+#ifndef WEFT_REGISTRATION_RADIOMETRY_RADIOMETRY_H
+#define WEFT_REGISTRATION_RADIOMETRY_RADIOMETRY_H
+
+#include "registration/pose/prediction.h"
+
+/* The pixels of the reference patches under one pose, away from their borders by the smear of the lens. */
+typedef struct weft_reference_pixels {
+    int count[WEFT_TARGET_REFERENCE_COUNT];
+    int32_t *pixel[WEFT_TARGET_REFERENCE_COUNT];    /* [count] indices into the photograph */
+    weft_pixel centre[WEFT_TARGET_REFERENCE_COUNT]; /* mean place on the plate, mm */
+} weft_reference_pixels;
+
+/* The white level of a photograph: the raw value above black, per second of exposure and without vignetting, of a
+ * perfect white diffuser at the origin lit along its normal by the same light. */
+typedef struct weft_white {
+    double level[3];
+    int patches;         /* reference patches it was measured on; 0: not measured */
+    double disagreement; /* largest relative difference of a used patch from their mean */
+} weft_white;
+
+/* Irradiance at a point of the plate (mm) from a point light of unit power at `light` (mm), relative to that at the
+ * origin lit along the normal from the same distance: cos(theta) (|light| / r)^2, r the distance from the light to the
+ * point. Pure. */
+double weft_relative_irradiance(weft_vec3 light, double x_mm, double y_mm);
+
+/* The caller frees with weft_reference_pixels_free. Errors: WEFT_SYSTEM. */
+weft_code weft_reference_pixels_find(const weft_sight *sight, const weft_target *target,
+                                     const weft_homography *homography, weft_smear smear,
+                                     weft_reference_pixels *reference, weft_error *error);
+void weft_reference_pixels_free(weft_reference_pixels *reference);
+
+/* How a photograph was taken. */
+typedef struct weft_exposure {
+    int black_level, full_scale;
+    double exposure_s;
+    weft_vec3 light; /* place of the light as driven, mm */
+} weft_exposure;
+
+/* Measures the white level in `samples` [height][width][3]. Patches that are unseen or saturated are left out, and so
+ * is one that differs from the median of three or more by over a tenth (a shadow or a stain on it). Pure. */
+weft_white weft_white_measure(const weft_sight *sight, const weft_target *target,
+                              const weft_reference_pixels *reference, const uint16_t *samples,
+                              const weft_exposure *exposure);
+
+/* Turns resampled raw values above black, texel [height][width][3], into reflectance times cosine in place:
+ * pi BRDF cos(theta_light) with theta_light that of the far direction of the light, the same for all texels; the
+ * nearness of the light is taken out. Pure. */
+void weft_reflectance_of_raw(const weft_white *white, const weft_exposure *exposure, double opening_mm, int width,
+                             int height, float *texel);
+
+#endif

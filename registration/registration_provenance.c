@@ -1,0 +1,67 @@
+#include "registration/registration.h"
+
+#include "base/json_text.h"
+#include "registration/report/tables.h"
+
+#include <string.h>
+
+static json_t *pack_stay(const weft_session *session, const weft_registration *r, int stay)
+{
+    const weft_stay *one = &r->survey.stay[stay];
+    const weft_view_pose *pose = &r->pose[stay];
+    const double(*m)[3] = pose->homography.m;
+    json_t *packed =
+        json_pack("{si si si si ss si sf sf sf sf}", "view", one->view, "stay", one->stay, "photographs", one->count,
+                  "used", r->used[stay], "rests_on", weft_pose_source_name(pose), "markers", pose->marker_count,
+                  "marker_rms_px", pose->marker_rms_px, "correlation", pose->correlation, "standard_error_texels",
+                  weft_registration_uncertainty_texels(session, r, stay), "shift_mm", pose->shift_mm);
+    if (!packed)
+        return NULL;
+    json_object_set_new(packed, "plate_mm_to_undistorted_pixels",
+                        json_pack("[[fff][fff][fff]]", m[0][0], m[0][1], m[0][2], m[1][0], m[1][1], m[1][2], m[2][0],
+                                  m[2][1], m[2][2]));
+    if (pose->remark[0])
+        json_object_set_new(packed, "remark", json_string(pose->remark));
+    return packed;
+}
+
+static json_t *pack_session(const weft_session *s)
+{
+    return json_pack("{so ss* ss* sf sf sf si si}", "folder", weft_json_text(s->folder, strlen(s->folder)), "rig",
+                     s->rig, "sample", s->sample, "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
+                     s->light_distance_mm, "opening_mm", s->target.opening_mm, "bits", s->bits, "black_level",
+                     s->black_level);
+}
+
+static json_t *pack_camera(const weft_camera *c)
+{
+    return json_pack("{si si sf sf sf sf sf sf s[fff]}", "width", c->width, "height", c->height, "fx", c->fx, "fy",
+                     c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2", c->k2, "vignetting", c->vignetting[0],
+                     c->vignetting[1], c->vignetting[2]);
+}
+
+static json_t *pack_faults(const weft_session *session, const weft_registration *r)
+{
+    json_t *faults = json_array();
+    for (int shot = 0; shot < session->shot_count; shot++) {
+        if (r->fault[shot].reason[0])
+            json_array_append_new(faults, json_pack("{si ss}", "image", shot, "reason", r->fault[shot].reason));
+    }
+    return faults;
+}
+
+char *weft_registration_provenance(const weft_session *session, const weft_registration *r)
+{
+    json_t *stays = json_array();
+    for (int stay = 0; stay < r->survey.stay_count; stay++)
+        json_array_append_new(stays, pack_stay(session, r, stay));
+    json_t *root =
+        json_pack("{ss so so s{si si sf sf} si si so so}", "made_by", "weft register " WEFT_VERSION, "session",
+                  pack_session(session), "camera", pack_camera(&session->camera), "settings", "width",
+                  r->settings.width, "height", r->settings.height, "tolerance_mm", r->settings.limits.tolerance_mm,
+                  "least_correlation", r->settings.limits.least_correlation, "images", r->image_count,
+                  "white_levels_estimated", r->estimated_whites, "faults", pack_faults(session, r), "stays", stays);
+    char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    json_decref(root);
+    return text;
+}

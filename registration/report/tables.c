@@ -1,0 +1,170 @@
+#include "registration/report/tables.h"
+
+#include "registration/radiometry/statistics.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+void weft_write_escaped(FILE *page, const char *text)
+{
+    for (; *text; text++) {
+        switch (*text) {
+        case '&':
+            fputs("&amp;", page);
+            break;
+        case '<':
+            fputs("&lt;", page);
+            break;
+        case '>':
+            fputs("&gt;", page);
+            break;
+        default:
+            fputc(*text, page);
+        }
+    }
+}
+
+const char *weft_pose_source_name(const weft_view_pose *pose)
+{
+    switch (pose->source) {
+    case WEFT_POSE_DRAWING:
+        return pose->from_markers ? "rig, markers, drawing" : "rig, drawing";
+    case WEFT_POSE_MARKERS:
+        return "rig, markers";
+    case WEFT_POSE_FAILED:
+        break;
+    }
+    return "nothing";
+}
+
+static int ring_of_stay(const weft_registration *r, int stay)
+{
+    return weft_ubo81_ring(r->survey.view[r->survey.stay[stay].view].theta_rad);
+}
+
+/* Fraction of the texels of the photographs of a ring that are saturated. */
+static double saturated_fraction(const weft_registration *r, int ring)
+{
+    double sum = 0;
+    int count = 0;
+    for (int stay = 0; stay < r->survey.stay_count; stay++) {
+        const weft_stay *one = &r->survey.stay[stay];
+        if ((ring >= 0 && ring_of_stay(r, stay) != ring) || r->used[stay] == 0)
+            continue;
+        for (int i = 0; i < one->count; i++)
+            sum += (double)r->saturated[one->shot[i]];
+        count += r->used[stay];
+    }
+    return count ? sum / count : 0;
+}
+
+weft_ring_summary weft_ring_summarise(const weft_session *session, const weft_registration *r, int ring)
+{
+    weft_ring_summary summary = {.saturated = saturated_fraction(r, ring)};
+    size_t stays = (size_t)r->survey.stay_count;
+    double *uncertainty = calloc(3 * stays, sizeof *uncertainty);
+    if (!uncertainty)
+        return summary;
+    double *correlation = uncertainty + stays, *shift = correlation + stays;
+    int count = 0;
+    for (int stay = 0; stay < r->survey.stay_count; stay++) {
+        if (ring >= 0 && ring_of_stay(r, stay) != ring)
+            continue;
+        summary.stays++;
+        if (r->pose[stay].source == WEFT_POSE_FAILED) {
+            summary.failed++;
+            continue;
+        }
+        uncertainty[count] = weft_registration_uncertainty_texels(session, r, stay);
+        correlation[count] = r->pose[stay].correlation;
+        shift[count++] = r->pose[stay].shift_mm;
+    }
+    summary.median_uncertainty = weft_quantile(uncertainty, count, 0.5);
+    summary.worst_uncertainty = weft_quantile(uncertainty, count, 1);
+    summary.median_correlation = weft_quantile(correlation, count, 0.5);
+    summary.worst_correlation = weft_quantile(correlation, count, 0);
+    summary.median_shift_mm = weft_quantile(shift, count, 0.5);
+    summary.worst_shift_mm = weft_quantile(shift, count, 1);
+    free(uncertainty);
+    return summary;
+}
+
+void weft_write_faults(FILE *page, const weft_session *session, const weft_registration *r)
+{
+    if (r->fault_count == 0 && r->failed_stays == 0)
+        return;
+    fputs("<h2>What could not be used</h2>\n<table><tr><th class=\"text\">what</th><th class=\"text\">why</th></tr>\n",
+          page);
+    for (int stay = 0; stay < r->survey.stay_count; stay++) {
+        const weft_stay *one = &r->survey.stay[stay];
+        if (r->pose[stay].source != WEFT_POSE_FAILED)
+            continue;
+        fprintf(page, "<tr class=\"bad\"><td class=\"text\">view %s, stay %d, %d photographs</td><td class=\"text\">",
+                weft_view_name_of(r->survey.view[one->view]).text, one->stay, one->count);
+        weft_write_escaped(page, r->pose[stay].remark);
+        fputs("</td></tr>\n", page);
+    }
+    for (int shot = 0; shot < session->shot_count; shot++) {
+        if (!r->fault[shot].reason[0])
+            continue;
+        fprintf(page, "<tr class=\"bad\"><td class=\"text\">photograph %d</td><td class=\"text\">", shot);
+        weft_write_escaped(page, r->fault[shot].reason);
+        fputs("</td></tr>\n", page);
+    }
+    fputs("</table>\n", page);
+}
+
+void weft_write_rings(FILE *page, const weft_session *session, const weft_registration *r)
+{
+    fputs(
+        "<h2>By ring of views</h2>\n<p>The error is the random one, estimated from what the drawing leaves unexplained "
+        "in "
+        "the photograph, RMS over the opening; what the calibration of the lens has wrong comes on top and is not seen "
+        "here. The shift is against the pose that the rig promised.</p>\n"
+        "<table><tr><th>view</th><th>stays</th><th>failed</th><th>error, median (texels)</th><th>worst</th>"
+        "<th>correlation, median</th><th>worst</th><th>shift, median (mm)</th><th>worst</th><th>saturated "
+        "(%)</th></tr>\n",
+        page);
+    for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
+        weft_ring_summary s = weft_ring_summarise(session, r, ring);
+        if (s.stays == 0)
+            continue;
+        fprintf(page,
+                "<tr%s><td>%d&deg;</td><td>%d</td><td>%d</td><td>%.4f</td><td>%.4f</td><td>%.4f</td><td>%.4f</td>"
+                "<td>%.3f</td><td>%.3f</td><td>%.3f</td></tr>\n",
+                s.failed ? " class=\"weak\"" : "", 15 * ring, s.stays, s.failed, s.median_uncertainty,
+                s.worst_uncertainty, s.median_correlation, s.worst_correlation, s.median_shift_mm, s.worst_shift_mm,
+                100 * s.saturated);
+    }
+    fputs("</table>\n", page);
+}
+
+static void write_stay(FILE *page, const weft_session *session, const weft_registration *r, int stay)
+{
+    const weft_stay *one = &r->survey.stay[stay];
+    const weft_view_pose *pose = &r->pose[stay];
+    weft_angles view = r->survey.view[one->view];
+    const char *class = pose->source == WEFT_POSE_FAILED                ? " class=\"bad\""
+                        : pose->remark[0] || r->used[stay] < one->count ? " class=\"weak\""
+                                                                        : "";
+    fprintf(page, "<tr%s><td>%s</td><td>%.1f</td><td>%.1f</td><td>%d</td><td>%d of %d</td><td class=\"text\">%s</td>",
+            class, weft_view_name_of(view).text, weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad),
+            one->stay, r->used[stay], one->count, weft_pose_source_name(pose));
+    fprintf(page, "<td>%d</td><td>%.2f</td><td>%.4f</td><td>%.4f</td><td>%.3f</td><td class=\"text\">",
+            pose->marker_count, pose->marker_rms_px, pose->correlation,
+            weft_registration_uncertainty_texels(session, r, stay), pose->shift_mm);
+    weft_write_escaped(page, pose->remark);
+    fputs("</td></tr>\n", page);
+}
+
+void weft_write_stays(FILE *page, const weft_session *session, const weft_registration *r)
+{
+    fputs(
+        "<h2>Every view</h2>\n<table><tr><th>view</th><th>&theta;&deg;</th><th>&phi;&deg;</th><th>stay</th>"
+        "<th>photographs</th><th class=\"text\">used</th><th>markers</th><th>markers' RMS (px)</th><th>correlation</th>"
+        "<th>error (texels)</th><th>shift (mm)</th><th class=\"text\">remark</th></tr>\n",
+        page);
+    for (int stay = 0; stay < r->survey.stay_count; stay++)
+        write_stay(page, session, r, stay);
+    fputs("</table>\n", page);
+}

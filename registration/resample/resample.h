@@ -1,0 +1,49 @@
+/* From raw pixels to texels in one step: every texel is a weighted sum of raw pixels, with weights that hold the
+ * projective warp, the lens distortion, the average over the texel's square and the vignetting. Made once for a pose,
+ * applied to all photographs that share it. */
+#ifndef WEFT_REGISTRATION_RESAMPLE_RESAMPLE_H
+#define WEFT_REGISTRATION_RESAMPLE_RESAMPLE_H
+
+#include "base/status.h"
+#include "btf/session/camera.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Texel (0, 0) is the top left one of the opening (x = -opening/2, y = +opening/2); [height][width]. */
+typedef struct weft_resampler {
+    int width, height;
+    long *first;    /* [height x width + 1] of its taps; a texel without taps is not seen */
+    int32_t *pixel; /* [taps] index of the pixel in the photograph */
+    float *weight;  /* [taps] */
+    float *sum;     /* [height x width] of the weights, to take the black level away */
+} weft_resampler;
+
+/* What a photograph is resampled under. */
+typedef struct weft_resampling {
+    const weft_camera *camera;
+    const float *inverse_vignetting; /* [camera height][width]; NULL: none */
+    weft_homography homography;      /* plate mm to undistorted pixels */
+    double opening_mm;
+    double smear_px; /* reach of the lens's smear beyond a pixel's own square */
+    bool fill;       /* texels that are not seen take the nearest place that is */
+} weft_resampling;
+
+/* Weights by area, as in conservative remapping (Jones 1999): a pixel counts as much of a texel as its square covers of
+ * the texel's quadrangle in the photograph, computed exactly. A pixel is itself an average over its square, so nothing
+ * is interpolated, no weight is negative and none rings at a glint. Beside the frame only pixels count whose square,
+ * and the smear around it, lies in the opening, so that the bright print does not leak in. A texel of which less than
+ * a quarter is seen so has no taps, or, where texels are filled, those of its square moved inward until all of it is
+ * seen. The caller frees with weft_resampler_free. Errors: WEFT_BAD_INPUT for a size that is not positive; WEFT_SYSTEM.
+ */
+weft_code weft_resampler_create(const weft_resampling *resampling, int width, int height, weft_resampler *resampler,
+                                weft_error *error);
+void weft_resampler_free(weft_resampler *resampler);
+
+/* Resamples one photograph ([height][width][3] raw values) into texel [height][width][3] = weighted sum of (raw -
+ * black), and mask [height][width] of WEFT_MASK_ bits: MISSING where the texel is not seen, SATURATED where a raw value
+ * that contributes has reached `full_scale`. Thread-safe. */
+void weft_resampler_apply(const weft_resampler *resampler, const uint16_t *samples, int black_level, int full_scale,
+                          float *texel, uint8_t *mask);
+
+#endif

@@ -1,0 +1,40 @@
+#include "study/compare/page/sections.h"
+
+static void print_table(weft_page *page, const weft_leave_one_out *left_out)
+{
+    fputs("<table><tr><th>photograph left out</th><th>values</th><th>relative RMSE</th><th>median relative</th></tr>\n",
+          page->html);
+    for (int i = 0; i < left_out->count; i++) {
+        const weft_left_out *photograph = &left_out->photograph[i];
+        fputs("<tr><td>", page->html);
+        weft_page_text(page, photograph->name);
+        fprintf(page->html, "</td><td>%ld</td><td>%.4f</td><td>%.4f</td></tr>\n", photograph->error.count,
+                photograph->error.relative_rmse, photograph->error.median_relative);
+    }
+    fprintf(page->html, "<tr><th>mean</th><th></th><th>%.4f</th><th>%.4f</th></tr></table>\n",
+            left_out->mean_relative_rmse, left_out->mean_median_relative);
+}
+
+weft_code weft_page_left_out(weft_page *page, const weft_leave_one_out *left_out, weft_error *error)
+{
+    if (left_out->count == 0)
+        return WEFT_OK;
+    fprintf(
+        page->html,
+        "<h2>Leave one out</h2>\n<p class=\"note\">Each photograph predicted by a fit to the %d others, over its valid "
+        "samples "
+        "and all channels. Relative RMSE: \u221a(mean (p \u2212 s)\u00b2 / mean s\u00b2). Median relative: of |p "
+        "\u2212 s| / s, "
+        "where s counts as at least 1e-4 of the largest sample of the photograph. All fits together took %.1f s.</p>\n",
+        left_out->count - 1, left_out->seconds);
+    print_table(page, left_out);
+    for (int i = 0; i < left_out->count; i++) {
+        const weft_left_out *photograph = &left_out->photograph[i];
+        char name[32], caption[160];
+        snprintf(name, sizeof name, "left-out-%d", i);
+        snprintf(caption, sizeof caption, "%s left out: relative RMSE %.3f, median relative %.3f", photograph->name,
+                 photograph->error.relative_rmse, photograph->error.median_relative);
+        WEFT_TRY(weft_page_pair(page, name, &photograph->pair, caption, error));
+    }
+    return WEFT_OK;
+}

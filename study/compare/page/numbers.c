@@ -1,0 +1,224 @@
+#include "study/compare/page/sections.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void print_tile(weft_page *page, const char *label, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void print_tile(weft_page *page, const char *label, const char *format, ...)
+{
+    fputs("<div><b>", page->html);
+    va_list arguments;
+    va_start(arguments, format);
+    vfprintf(page->html, format, arguments);
+    va_end(arguments);
+    fprintf(page->html, "</b>%s</div>\n", label);
+}
+
+void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison)
+{
+    const weft_prediction_error *all = &comparison->model[0].texture.all;
+    fprintf(page->html, "<p>%d \u00d7 %d texels of %.4g mm, %d images from %d views; lights and cameras %s.</p>\n",
+            layout->width, layout->height, layout->texel_pitch_mm, layout->image_count, layout->view_count,
+            layout->distance == WEFT_NEAR ? "near, their directions differ from texel to texel" : "far away");
+    fputs("<div class=\"tiles\">\n", page->html);
+    print_tile(page, "half floats : material", "%.1f : 1", comparison->half_float_bytes / comparison->material_bytes);
+    print_tile(page, "relative RMSE, level 0", "%.4f", all->relative_rmse);
+    print_tile(page, "median relative error, level 0", "%.2f %%", 100 * all->median_relative);
+    if (comparison->left_out.count > 0) {
+        print_tile(page, "relative RMSE, photographs left out", "%.4f", comparison->left_out.mean_relative_rmse);
+        print_tile(page, "median relative error, photographs left out", "%.4f",
+                   comparison->left_out.mean_median_relative);
+    }
+    fputs("</div>\n", page->html);
+}
+
+static void print_weave(weft_page *page, const weft_comparison *comparison)
+{
+    if (comparison->weave_name[0] == 0)
+        return;
+    fprintf(page->html, " The analytic cloth is the %s \u201c",
+            comparison->weave_is_threads ? "microcylinder cloth" : "weave");
+    weft_page_text(page, comparison->weave_name);
+    fprintf(page->html, "\u201d, ");
+    weft_page_text(page, comparison->weave_origin);
+    if (comparison->weave_is_threads) {
+        fputs(".", page->html);
+        return;
+    }
+    const weft_weave_layout *layout = &comparison->weave_layout;
+    fprintf(page->html, "; %.4g \u00d7 %.4g tiles across the material", layout->tiles_u, layout->tiles_v);
+    if (comparison->weave_on_yarns)
+        fprintf(page->html,
+                ", laid as the fit found its tiles (a tile begins %.2f tiles to the right of the lower left "
+                "corner and %.2f above it)",
+                layout->corner_u, layout->corner_v);
+    fputs(".", page->html);
+    if (comparison->fit.image_count > 0)
+        fprintf(
+            page->html,
+            " Before the fit the relative error of its mean BRDF was %.2f %% (median) and %.2f %% (80th percentile); "
+            "<a href=\"fitted.wv\">fitted.wv</a> is the fitted weave.",
+            100 * comparison->fit.before.median_relative, 100 * comparison->fit.before.percentile80_relative);
+}
+
+static void print_model_error(weft_page *page, const char *name, const weft_prediction_error *e)
+{
+    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td><td>%.2f %%</td></tr>\n", name,
+            e->count, e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
+}
+
+void weft_page_models(weft_page *page, const weft_comparison *comparison)
+{
+    fputs("<h2 id=\"models\">Models against the data</h2>\n<table><tr><th>every sample of every texel</th><th>values"
+          "</th><th>relative RMSE</th><th>median relative</th><th>80th percentile</th></tr>\n",
+          page->html);
+    for (int i = 0; i < comparison->model_count; i++)
+        print_model_error(page, comparison->model[i].name, &comparison->model[i].texture.all);
+    fputs("<tr><th>mean BRDF of the material</th><th></th><th></th><th></th><th></th></tr>\n", page->html);
+    for (int i = 0; i < comparison->model_count; i++)
+        print_model_error(page, comparison->model[i].name, &comparison->model[i].mean);
+    fputs("</table>\n<p class=\"note\">Relative RMSE: \u221a(mean (p \u2212 s)\u00b2 / mean s\u00b2). Relative: |p "
+          "\u2212 s| / s, where s counts as at least 1e-4 of the largest sample. Samples in the quantity of the "
+          "dataset, the analytic cloth averaged over each texel and without its noise; mean BRDFs over the directions "
+          "of the images, as <code>weft eval</code> gives them without texture coordinates.",
+          page->html);
+    print_weave(page, comparison);
+    fputs("</p>\n", page->html);
+}
+
+static void print_levels(weft_page *page, const weft_material *material)
+{
+    fputs("<h2>Error of the material, level by level</h2>\n<p class=\"note\">Measured over all valid samples when the "
+          "file was written, decoded "
+          "as a player sees it.</p>\n<table><tr><th>texels</th><th>median relative</th><th>80th "
+          "percentile</th><th>RMSE</th>"
+          "<th>relative RMSE</th><th>PSNR</th></tr>\n",
+          page->html);
+    for (int i = 0; i < material->level_count; i++) {
+        const weft_material_level *level = &material->level[i];
+        const weft_material_error *e = &level->error;
+        fprintf(page->html,
+                "<tr><td>%d \u00d7 %d</td><td>%.2f %%</td><td>%.2f %%</td><td>%.4f</td><td>%.4f</td><td>%.1f "
+                "dB</td></tr>\n",
+                level->width, level->height, 100 * e->median_relative, 100 * e->percentile80_relative, e->rmse,
+                e->relative_rmse, e->psnr_db);
+    }
+    fputs("</table>\n", page->html);
+}
+
+static void print_error(weft_page *page, const char *name, const weft_prediction_error *e)
+{
+    if (e->count == 0)
+        return;
+    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.2f %%</td><td>%.4f</td></tr>\n", name, e->count,
+            100 * e->median_relative, e->relative_rmse);
+}
+
+static void print_rings(weft_page *page, const char *title, const weft_prediction_error ring[WEFT_RING_COUNT])
+{
+    fprintf(page->html, "<tr><th>%s</th><th></th><th></th><th></th></tr>\n", title);
+    for (int i = 0; i < WEFT_RING_COUNT; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "about %d\u00b0", 15 * i);
+        print_error(page, name, &ring[i]);
+    }
+}
+
+static void print_directions(weft_page *page, const weft_dataset_layout *layout, const weft_measurement *measurement)
+{
+    fputs("<h2>Error by direction</h2>\n", page->html);
+    fprintf(
+        page->html,
+        "<p class=\"note\">Level 0 against the dataset, measured for this page over %ld of %ld texels. Relative RMSE: "
+        "\u221a(mean (p \u2212 s)\u00b2 / mean s\u00b2). Median relative: of |p \u2212 s| / s, where s counts as at "
+        "least "
+        "1e-4 of the largest sample.</p>\n",
+        measurement->texel_count, (long)layout->width * layout->height);
+    fputs("<table><tr><th></th><th>values</th><th>median relative</th><th>relative RMSE</th></tr>\n", page->html);
+    print_error(page, "all", &measurement->all);
+    print_rings(page, "view from the normal", measurement->by_view);
+    print_rings(page, "light from the normal", measurement->by_light);
+    fputs("</table>\n", page->html);
+}
+
+static void print_sizes(weft_page *page, const weft_comparison *comparison)
+{
+    fputs("<h2>Size</h2>\n<table>\n", page->html);
+    weft_page_fact(page, "samples as half floats", "%.0f bytes", comparison->half_float_bytes);
+    weft_page_fact(page, "dataset on disk", "%.0f bytes", comparison->dataset_bytes);
+    weft_page_fact(page, "material", "%.0f bytes", comparison->material_bytes);
+    weft_page_fact(page, "half floats : material", "%.1f : 1",
+                   comparison->half_float_bytes / comparison->material_bytes);
+    weft_page_fact(page, "dataset : material", "%.1f : 1", comparison->dataset_bytes / comparison->material_bytes);
+    if (comparison->warning[0])
+        weft_page_fact(page, "warning", "%s", comparison->warning);
+    fputs("</table>\n", page->html);
+}
+
+/* What the material says of its fit. */
+static void print_fit(weft_page *page, const weft_material *material)
+{
+    json_t *metadata = json_loads(material->metadata, 0, NULL);
+    const char *name;
+    json_t *value;
+    fputs("<h2>Fit</h2>\n<table>\n", page->html);
+    weft_page_fact(page, "lobes", "%d", material->lobe_count);
+    weft_page_fact(page, "views in the table", "%d", material->view_count);
+    json_object_foreach(json_object_get(metadata, "fit"), name, value)
+    {
+        if (strcmp(name, "lobes") == 0)
+            continue;
+        char *text = json_is_string(value) ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(4));
+        weft_page_fact(page, name, "%s", text ? text : json_string_value(value));
+        free(text);
+    }
+    fputs("</table>\n", page->html);
+    json_decref(metadata);
+}
+
+static void print_times(weft_page *page, const weft_scenes *scenes)
+{
+    if (!scenes->drawn)
+        return;
+    fputs("<h2>Time</h2>\n<table>\n", page->html);
+    for (int model = 0; model < WEFT_SCENE_MODELS; model++) {
+        if (scenes->has[model])
+            weft_page_fact(page, weft_scenes_model_name(model), "%.2f ms a frame", scenes->frame_ms[model]);
+    }
+    fputs("</table>\n", page->html);
+    fprintf(
+        page->html,
+        "<p class=\"note\">Frames of %d \u00d7 %d pixels of the first scene, timed while this page was made, drawn by ",
+        scenes->width, scenes->height);
+    weft_page_text(page, scenes->renderer);
+    fputs(".</p>\n", page->html);
+}
+
+static void print_masks(weft_page *page, const weft_measurement *measurement)
+{
+    double percent = 100 / fmax((double)measurement->sample_count, 1);
+    fputs("<h2>Masked samples</h2>\n<table>\n", page->html);
+    weft_page_fact(page, "samples (texels \u00d7 images)", "%ld", measurement->sample_count);
+    weft_page_fact(page, "missing", "%ld (%.2f %%)", measurement->missing, percent * (double)measurement->missing);
+    weft_page_fact(page, "saturated", "%ld (%.2f %%)", measurement->saturated,
+                   percent * (double)measurement->saturated);
+    weft_page_fact(page, "shadowed by the rig", "%ld (%.2f %%)", measurement->shadowed,
+                   percent * (double)measurement->shadowed);
+    fputs("</table>\n", page->html);
+}
+
+void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
+                       const weft_comparison *comparison)
+{
+    print_levels(page, material);
+    print_directions(page, layout, &comparison->model[0].texture);
+    print_sizes(page, comparison);
+    print_fit(page, material);
+    print_times(page, &comparison->scenes);
+    print_masks(page, &comparison->model[0].texture);
+}

@@ -1,0 +1,59 @@
+#include "study/compare/sample_picture.h"
+
+#include "base/colour.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const float masked_grey = 0.55f;
+
+static int ascending(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+double weft_picture_exposure(const weft_image *image, const uint8_t *mask)
+{
+    size_t texels = (size_t)image->width * (size_t)image->height, count = 0;
+    float *value = malloc(3 * texels * sizeof *value);
+    if (!value)
+        return 1;
+    for (size_t i = 0; i < 3 * texels; i++) {
+        if (!(mask && mask[i / 3]) && isfinite(image->pixels[i]))
+            value[count++] = image->pixels[i];
+    }
+    qsort(value, count, sizeof *value, ascending);
+    double high = count > 0 ? (double)value[(size_t)(0.99 * (double)(count - 1))] : 0;
+    free(value);
+    return high > 0 ? 0.9 / high : 1;
+}
+
+weft_code weft_picture_encode(const weft_image *linear, const uint8_t *mask, double exposure, weft_image *result,
+                              weft_error *error)
+{
+    WEFT_TRY(weft_image_create(linear->width, linear->height, result, error));
+    size_t count = 3 * (size_t)linear->width * (size_t)linear->height;
+    for (size_t i = 0; i < count; i++) {
+        float encoded = weft_srgb_of_linear((float)((double)linear->pixels[i] * exposure));
+        result->pixels[i] = mask && mask[i / 3] ? masked_grey : fminf(encoded, 1);
+    }
+    return WEFT_OK;
+}
+
+weft_code weft_picture_difference(const weft_image *a, const weft_image *b, const uint8_t *mask, double exposure,
+                                  weft_image *result, weft_error *error)
+{
+    WEFT_TRY(weft_image_create(a->width, a->height, result, error));
+    size_t count = (size_t)a->width * (size_t)a->height;
+    for (size_t i = 0; i < count; i++) {
+        float *rgb = result->pixels + 3 * i;
+        if (mask && mask[i])
+            rgb[0] = rgb[1] = rgb[2] = masked_grey;
+        else
+            weft_difference_colour((float)(exposure / WEFT_PICTURE_FULL_DIFFERENCE) *
+                                       (weft_channel_mean(b->pixels + 3 * i) - weft_channel_mean(a->pixels + 3 * i)),
+                                   rgb);
+    }
+    return WEFT_OK;
+}

@@ -1,0 +1,241 @@
+#include "study/error/predictor.h"
+
+#include "reflectance/lafortune/lafortune.h"
+#include "reflectance/weave/batch.h"
+
+#include <stdlib.h>
+
+typedef void predict_function(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                              weft_rgb *prediction);
+
+struct weft_predictor {
+    predict_function *predict;
+    const weft_dataset_layout *layout;
+    const weft_material *material;
+    weft_table_directions directions; /* of the material */
+    const weft_weave *weave;
+    weft_woven_table *table; /* of the weave */
+    weft_weave_layout tiles;
+    weft_prepared_cloth threads;
+    weft_dataset *other;
+    int first_row;
+    weft_half *samples; /* of the other dataset: [rows][width][image_count][3] */
+    uint8_t *mask;
+};
+
+static weft_code create(const weft_dataset *dataset, predict_function *predict, weft_predictor **result,
+                        weft_error *error)
+{
+    *result = calloc(1, sizeof **result);
+    if (!*result)
+        return weft_fail_memory(error, "predictor", sizeof **result);
+    (*result)->predict = predict;
+    (*result)->layout = weft_dataset_get_layout(dataset);
+    return WEFT_OK;
+}
+
+void weft_predictor_free(weft_predictor *predictor)
+{
+    if (!predictor)
+        return;
+    weft_table_directions_free(&predictor->directions);
+    weft_woven_table_free(predictor->table);
+    weft_dataset_close(predictor->other);
+    free(predictor->samples);
+    free(predictor->mask);
+    free(predictor);
+}
+
+void weft_predictor_predict(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                            weft_rgb *prediction)
+{
+    predictor->predict(predictor, x, y, image, image_count, prediction);
+}
+
+/* Of a sample for a BRDF of 1 / pi, in the quantity of the dataset. */
+static double quantity(const weft_dataset_layout *layout, weft_vec3 light)
+{
+    return layout->values == WEFT_REFLECTANCE_COSINE ? light.z : 1;
+}
+
+static weft_rgb scaled(double factor, weft_rgb value)
+{
+    return (weft_rgb){factor * value.r, factor * value.g, factor * value.b};
+}
+
+/* ---- Material ---- */
+
+static void predict_by_material(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                                weft_rgb *prediction)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    for (int i = 0; i < image_count; i++) {
+        weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
+        weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image[i]], x, y);
+        weft_rgba value = weft_material_texel(predictor->material, &predictor->directions, 0, x, y, light, view);
+        prediction[i] = scaled(quantity(layout, light), (weft_rgb){value.r, value.g, value.b});
+    }
+}
+
+weft_code weft_predictor_of_material(const weft_dataset *dataset, const weft_material *material,
+                                     weft_predictor **result, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    if (material->level[0].width != layout->width || material->level[0].height != layout->height)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' has %d x %d texels, but the material %d x %d: it is not made from it",
+                         weft_dataset_path(dataset), layout->width, layout->height, material->level[0].width,
+                         material->level[0].height);
+    WEFT_TRY(create(dataset, predict_by_material, result, error));
+    (*result)->material = material;
+    weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
+    if (code != WEFT_OK)
+        weft_predictor_free(*result);
+    return code;
+}
+
+/* ---- Weave ---- */
+
+enum { SIDE = 4, POINTS = SIDE * SIDE };
+
+static void locate_points(const weft_predictor *predictor, int x, int y, weft_weave_point point[POINTS])
+{
+    const weft_weave_layout *tiles = &predictor->tiles;
+    double texel_u = tiles->tiles_u / predictor->layout->width;
+    double texel_v = tiles->tiles_v / predictor->layout->height;
+    for (int i = 0; i < POINTS; i++) {
+        double across = x + (i % SIDE + 0.5) / SIDE, down = y + (i / SIDE + 0.5) / SIDE;
+        point[i] = weft_weave_locate(predictor->weave, across * texel_u - tiles->corner_u,
+                                     tiles->tiles_v - down * texel_v - tiles->corner_v, 0);
+    }
+}
+
+/* The mean BRDF of the points in one image. */
+static weft_rgb mean_of_points(const weft_predictor *predictor, const weft_weave_point point[POINTS], weft_vec3 light,
+                               weft_vec3 view)
+{
+    weft_weave_batch batch;
+    weft_rgb sum = {0};
+    if (!(light.z > 0 && view.z > 0))
+        return sum;
+    batch.count = 0;
+    for (int i = 0; i < POINTS; i++)
+        weft_weave_batch_put(&batch, &point[i], light, view);
+    weft_weave_specular_batch(predictor->table, &batch);
+    for (int i = 0; i < POINTS; i++) {
+        const weft_yarn *yarn = &predictor->weave->yarn[point[i].yarn];
+        weft_rgb brdf = weft_weave_shade(predictor->weave, yarn, (weft_real)batch.specular[i]);
+        sum = (weft_rgb){sum.r + brdf.r, sum.g + brdf.g, sum.b + brdf.b};
+    }
+    return scaled(1.0 / POINTS, sum);
+}
+
+static void predict_by_weave(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                             weft_rgb *prediction)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    weft_weave_point point[POINTS];
+    locate_points(predictor, x, y, point);
+    for (int i = 0; i < image_count; i++) {
+        weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
+        weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image[i]], x, y);
+        prediction[i] = scaled(WEFT_PI * quantity(layout, light), mean_of_points(predictor, point, light, view));
+    }
+}
+
+weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,
+                                  weft_predictor **result, weft_error *error)
+{
+    WEFT_TRY(create(dataset, predict_by_weave, result, error));
+    (*result)->weave = weave;
+    (*result)->tiles = *layout;
+    weft_code code = weft_woven_table_create(weave, &(*result)->table, error);
+    if (code != WEFT_OK)
+        weft_predictor_free(*result);
+    return code;
+}
+
+/* ---- Microcylinder cloth ---- */
+
+static void predict_by_threads(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                               weft_rgb *prediction)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    for (int i = 0; i < image_count; i++) {
+        weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
+        weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image[i]], x, y);
+        weft_rgb brdf = weft_microcylinder_brdf(&predictor->threads, WEFT_CLOTH_BY_AREA, light, view);
+        prediction[i] = scaled(WEFT_PI * quantity(layout, light), brdf);
+    }
+}
+
+weft_code weft_predictor_of_threads(const weft_dataset *dataset, const weft_microcylinder_cloth *cloth,
+                                    weft_predictor **result, weft_error *error)
+{
+    WEFT_TRY(create(dataset, predict_by_threads, result, error));
+    (*result)->threads = weft_microcylinder_prepare(cloth);
+    return WEFT_OK;
+}
+
+/* ---- Another dataset ---- */
+
+static void predict_by_dataset(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                               weft_rgb *prediction)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    size_t texel = (size_t)(y - predictor->first_row) * (size_t)layout->width + (size_t)x;
+    for (int i = 0; i < image_count; i++) {
+        size_t sample = texel * (size_t)layout->image_count + (size_t)image[i];
+        const weft_half *half = predictor->samples + 3 * sample;
+        prediction[i] = (weft_rgb){(double)weft_float_of_half(half[0]), (double)weft_float_of_half(half[1]),
+                                   (double)weft_float_of_half(half[2])};
+    }
+}
+
+static bool same_place(weft_vec3 a, weft_vec3 b)
+{
+    return weft_length(weft_subtract(a, b)) < 1e-4 * (1 + weft_length(a));
+}
+
+static bool same_images(const weft_dataset_layout *a, const weft_dataset_layout *b)
+{
+    bool same = a->width == b->width && a->height == b->height && a->image_count == b->image_count &&
+                a->values == b->values && a->distance == b->distance;
+    for (int i = 0; same && i < a->image_count; i++)
+        same = same_place(a->light[i], b->light[i]) &&
+               same_place(a->view[a->view_of_image[i]], b->view[b->view_of_image[i]]);
+    return same;
+}
+
+weft_code weft_predictor_of_dataset(const weft_dataset *dataset, const char *path, weft_predictor **result,
+                                    weft_error *error)
+{
+    weft_predictor *predictor;
+    WEFT_TRY(create(dataset, predict_by_dataset, &predictor, error));
+    weft_code code = weft_dataset_open(path, &predictor->other, error);
+    if (code == WEFT_OK && !same_images(predictor->layout, weft_dataset_get_layout(predictor->other)))
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' does not have the texels, images and quantity of '%s'", path,
+                         weft_dataset_path(dataset));
+    if (code != WEFT_OK)
+        weft_predictor_free(predictor);
+    else
+        *result = predictor;
+    return code;
+}
+
+weft_code weft_predictor_prepare_rows(weft_predictor *predictor, int y, int rows, weft_error *error)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    if (!predictor->other)
+        return WEFT_OK;
+    size_t count = (size_t)rows * (size_t)layout->width * (size_t)layout->image_count;
+    free(predictor->samples);
+    free(predictor->mask);
+    predictor->samples = malloc(3 * count * sizeof *predictor->samples);
+    predictor->mask = malloc(count);
+    if (!predictor->samples || !predictor->mask)
+        return weft_fail_memory(error, "rows of texels", 7 * count);
+    predictor->first_row = y;
+    return weft_dataset_read_block(predictor->other, 0, y, layout->width, rows, predictor->samples, predictor->mask,
+                                   error);
+}

@@ -1,0 +1,43 @@
+/* What a model says of the samples of a dataset: the same question to a material, a weave and another dataset. */
+#ifndef WEFT_STUDY_ERROR_PREDICTOR_H
+#define WEFT_STUDY_ERROR_PREDICTOR_H
+
+#include "btf/dataset/dataset.h"
+#include "btf/direction/triangulation.h"
+#include "btf/material/material.h"
+#include "reflectance/microcylinder/microcylinder.h"
+#include "reflectance/weave/weave.h"
+
+typedef struct weft_predictor weft_predictor;
+
+/* Predictions for one dataset, whose layout outlives the predictor. The caller frees with weft_predictor_free. */
+
+/* Level 0 of a material, which stays the caller's. Errors: WEFT_BAD_INPUT where its size is not that of the dataset. */
+weft_code weft_predictor_of_material(const weft_dataset *dataset, const weft_material *material,
+                                     weft_predictor **result, weft_error *error);
+
+/* A weave without its noise, laid on the material; a texel is the mean of 4 x 4 points. The weave stays the caller's.
+ */
+weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,
+                                  weft_predictor **result, weft_error *error);
+
+/* Microcylinder cloth, which is alike at all texels; threads count by area. */
+weft_code weft_predictor_of_threads(const weft_dataset *dataset, const weft_microcylinder_cloth *cloth,
+                                    weft_predictor **result, weft_error *error);
+
+/* The samples of another dataset, such as `weft bard` writes. Errors: WEFT_BAD_INPUT where it cannot be read, or its
+ * size, images or quantity are not those of the dataset. */
+weft_code weft_predictor_of_dataset(const weft_dataset *dataset, const char *path, weft_predictor **result,
+                                    weft_error *error);
+
+void weft_predictor_free(weft_predictor *predictor);
+
+/* To be called before predictions for rows [y, y + rows). Errors: those of reading. */
+weft_code weft_predictor_prepare_rows(weft_predictor *predictor, int y, int rows, weft_error *error);
+
+/* The predictions for texel (x, y) in images image [image_count], in the quantity of the dataset. Thread-safe between
+ * two calls of weft_predictor_prepare_rows. */
+void weft_predictor_predict(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                            weft_rgb *prediction);
+
+#endif

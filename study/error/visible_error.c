@@ -1,0 +1,55 @@
+#include "study/error/visible_error.h"
+
+#include <stdlib.h>
+
+bool weft_surface_is_lit(const weft_surface_sample *sample)
+{
+    return sample->covered > 0.5f && sample->light[2] > 0;
+}
+
+weft_code weft_visible_error_of(const weft_image *data, const weft_image *model, const weft_surface_sample *surface,
+                                weft_prediction_error *result, weft_error *error)
+{
+    size_t pixels = (size_t)data->width * (size_t)data->height;
+    weft_prediction *value = malloc(3 * pixels * sizeof *value);
+    if (!value)
+        return weft_fail_memory(error, "visible pixels", 3 * pixels * sizeof *value);
+    long count = 0;
+    for (size_t i = 0; i < 3 * pixels; i++) {
+        if (weft_surface_is_lit(&surface[i / 3]))
+            value[count++] = (weft_prediction){.prediction = model->pixels[i], .sample = data->pixels[i]};
+    }
+    weft_prediction_choice all = {WEFT_CHOOSE_ALL, 0};
+    weft_code code = weft_prediction_error_of(value, count, all, result, error);
+    free(value);
+    return code;
+}
+
+static weft_code draw_alone(weft_player *player, const weft_scene *scene, weft_mode mode, int width, int height,
+                            weft_image *image, weft_error *error)
+{
+    weft_scene alone = *scene;
+    alone.layout = WEFT_LAYOUT_PANES;
+    alone.pane_count = 1;
+    alone.pane[0] = mode;
+    alone.labels = alone.show_level = alone.show_extrapolation = false;
+    return weft_player_picture(player, &alone, width, height, 1, NULL, image, error);
+}
+
+weft_code weft_visible_error_measure(weft_player *player, const weft_scene *scene, weft_mode mode, int width,
+                                     int height, weft_prediction_error *result, weft_error *error)
+{
+    weft_image data = {0}, model = {0};
+    weft_surface_sample *surface = NULL;
+    weft_code code = draw_alone(player, scene, WEFT_MODE_RAW, width, height, &data, error);
+    if (code == WEFT_OK)
+        code = draw_alone(player, scene, mode, width, height, &model, error);
+    if (code == WEFT_OK)
+        code = weft_player_read_surface(player, scene, mode, width, height, &surface, error);
+    if (code == WEFT_OK)
+        code = weft_visible_error_of(&data, &model, surface, result, error);
+    weft_image_free(&data);
+    weft_image_free(&model);
+    free(surface);
+    return code;
+}

@@ -1,0 +1,40 @@
+/* Small least-squares problems with bounds: non-linear ones by Ceres Solver (trust region, Levenberg-Marquardt), linear
+ * ones by NLopt. Ceres stops early where a linear solution lies on a bound, NLopt does not. */
+#ifndef WEFT_STUDY_FIT_WEAVE_LEAST_SQUARES_H
+#define WEFT_STUDY_FIT_WEAVE_LEAST_SQUARES_H
+
+#include "base/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* residuals [residual_count] at parameters [parameter_count]; all finite. Called from one thread. */
+typedef void weft_residual_function(void *context, const double *parameters, double *residuals);
+
+typedef struct weft_least_squares {
+    int parameter_count, residual_count;
+    const double *low, *high; /* [parameter_count]; equal: the parameter is held there */
+    const double *least_step; /* [parameter_count] of a difference; NULL: none */
+    weft_residual_function *residuals;
+    void *context;
+} weft_least_squares;
+
+/* Minimises the sum of squares between the bounds from `parameters`, both start and result, with derivatives by
+ * differences over 0.3 % of a parameter, at least least_step. Errors: WEFT_SYSTEM where the solver fails. */
+weft_code weft_least_squares_solve(const weft_least_squares *problem, double *parameters, weft_error *error);
+
+/* The same differences: residuals [residual_count] at `parameters`, and their derivatives [residual_count]
+ * [parameter_count], 0 for what is held. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_least_squares_linearise(const weft_least_squares *problem, const double *parameters, double *residuals,
+                                       double *jacobian, weft_error *error);
+
+/* x >= 0 [columns] that minimises |A x - b|^2, A [rows][columns]. Errors: WEFT_SYSTEM. */
+weft_code weft_non_negative_least_squares(int rows, int columns, const double *a, const double *b, double *x,
+                                          weft_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,246 @@
+#include "study/inspect/inspect.h"
+
+#include "btf/dataset/dataset.h"
+#include "btf/direction/direction.h"
+#include "btf/file_kind.h"
+#include "btf/material/models.h"
+#include "btf/session/session.h"
+#include "geometry/yarn/tile_mesh.h"
+#include "reflectance/microcylinder/file.h"
+#include "reflectance/weave/weave.h"
+#include "study/inspect/verify.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <sys/stat.h>
+
+static const size_t longest_list = 16;
+
+static json_int_t file_size(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 ? (json_int_t)status.st_size : 0;
+}
+
+/* Replaces long lists (of photographs, of views) by how long they are: they are data, not a description. */
+static void shorten_lists(json_t *object)
+{
+    const char *name;
+    json_t *value;
+    void *next;
+    json_object_foreach_safe(object, next, name, value)
+    {
+        if (json_is_object(value))
+            shorten_lists(value);
+        else if (json_array_size(value) > longest_list)
+            json_object_set_new(object, name, json_sprintf("%zu entries", json_array_size(value)));
+    }
+}
+
+/* A JSON text that came with a file, as an object. */
+static json_t *parsed(const char *text)
+{
+    json_t *value = json_loads(text, JSON_DECODE_ANY, NULL);
+    shorten_lists(value);
+    return value ? value : json_string("not JSON");
+}
+
+/* ---- Material ---- */
+
+/* Texels of a level with each model, by its name; NULL without a map. */
+static json_t *describe_models(const weft_material *material, int k)
+{
+    long count[WEFT_MODEL_CODES];
+    json_t *models = material->has_models ? json_object() : NULL;
+    weft_material_count_models(material, k, count);
+    for (int code = 0; code < WEFT_MODEL_CODES; code++) {
+        char name[WEFT_MODEL_NAME];
+        weft_model_print(weft_model_decode((uint8_t)code), name);
+        if (count[code] > 0)
+            json_object_set_new(models, name, json_integer((json_int_t)count[code]));
+    }
+    return models;
+}
+
+/* NULL where tables are stored by themselves. */
+static json_t *describe_basis(const weft_table_basis *basis)
+{
+    return basis ? json_integer(basis->component_count) : NULL;
+}
+
+static json_t *describe_level(const weft_material *material, int k)
+{
+    const weft_material_level *level = &material->level[k];
+    const weft_material_error *e = &level->error;
+    return json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f, s:o*, s:o*, s:o*}", "texels", level->width, level->height,
+                     "median_relative_error", e->median_relative, "percentile80_relative_error",
+                     e->percentile80_relative, "rmse", e->rmse, "relative_rmse", e->relative_rmse, "psnr_db",
+                     isfinite(e->psnr_db) ? e->psnr_db : 0, "components_of_T", describe_basis(level->table_basis),
+                     "components_of_S", describe_basis(level->light_table_basis), "texels_by_model",
+                     describe_models(material, k));
+}
+
+static json_t *describe_material(const char *path, const weft_material *material)
+{
+    json_t *levels = json_array();
+    for (int i = 0; i < material->level_count; i++)
+        json_array_append_new(levels, describe_level(material, i));
+    return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
+                     file_size(path), "texels", material->level[0].width, material->level[0].height, "lobes",
+                     material->lobe_count, "views_in_table", material->view_count, "lights_in_table",
+                     material->light_count, "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata",
+                     parsed(material->metadata));
+}
+
+static weft_code inspect_material(const char *path, json_t **result, weft_error *error)
+{
+    weft_material material;
+    WEFT_TRY(weft_material_read(path, &material, error));
+    weft_code code = weft_verify_material(path, &material, error);
+    if (code == WEFT_OK)
+        *result = describe_material(path, &material);
+    weft_material_free(&material);
+    return code;
+}
+
+/* ---- Dataset ---- */
+
+static json_t *describe_dataset(const char *path, const weft_dataset *dataset)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    json_int_t raw =
+        (json_int_t)layout->width * layout->height * layout->image_count * 3 * (json_int_t)sizeof(weft_half);
+    return json_pack("{s:s, s:s, s:I, s:I, s:[ii], s:i, s:i, s:s, s:s, s:s, s:f, s:o}", "file", path, "kind", "dataset",
+                     "bytes", file_size(path), "half_float_bytes", raw, "texels", layout->width, layout->height,
+                     "images", layout->image_count, "views", layout->view_count, "values",
+                     layout->values == WEFT_REFLECTANCE ? "reflectance" : "reflectance times cosine",
+                     "lights_and_views", layout->distance == WEFT_NEAR ? "positions (near)" : "directions (far)",
+                     "frames", weft_dataset_has_frames(dataset) ? "given" : "of the surface", "texel_pitch_mm",
+                     layout->texel_pitch_mm, "provenance", parsed(layout->provenance));
+}
+
+static weft_code inspect_dataset(const char *path, const weft_progress *progress, bool all, json_t **result,
+                                 weft_error *error)
+{
+    weft_dataset *dataset;
+    WEFT_TRY(weft_dataset_open(path, &dataset, error));
+    *result = describe_dataset(path, dataset);
+    weft_code code = all ? weft_verify_dataset(dataset, progress, *result, error) : WEFT_OK;
+    weft_dataset_close(dataset);
+    return code;
+}
+
+/* ---- Session ---- */
+
+static json_t *describe_session(const weft_session *session)
+{
+    int taken = 0;
+    for (int i = 0; i < session->shot_count; i++)
+        taken += session->record[i].taken;
+    return json_pack("{s:s, s:s, s:s, s:s, s:[ii], s:i, s:i, s:i, s:f}", "folder", session->folder, "kind", "session",
+                     "rig", session->rig, "sample", session->sample, "photograph_size", session->camera.width,
+                     session->camera.height, "bits", session->bits, "planned", session->shot_count, "taken", taken,
+                     "opening_mm", session->target.opening_mm);
+}
+
+static weft_code inspect_session(const char *path, const weft_progress *progress, bool all, json_t **result,
+                                 weft_error *error)
+{
+    weft_session session;
+    WEFT_TRY(weft_session_open(path, &session, error));
+    *result = describe_session(&session);
+    weft_code code = all ? weft_verify_session(&session, progress, *result, error) : WEFT_OK;
+    weft_session_free(&session);
+    return code;
+}
+
+/* ---- Weave ---- */
+
+static weft_code inspect_weave(const char *path, json_t **result, weft_error *error)
+{
+    weft_weave weave;
+    char warning[WEFT_MESSAGE_SIZE] = "";
+    WEFT_TRY(weft_weave_read(path, NULL, 0, &weave, warning, error));
+    *result = json_pack("{s:s, s:s, s:s, s:[ii], s:i, s:f, s:s*}", "file", path, "kind", "weave", "name", weave.name,
+                        "tile_cells", weave.tile_width, weave.tile_height, "yarns", weave.yarn_count, "specular_scale",
+                        weave.specular_scale, "warning", warning[0] ? warning : NULL);
+    weft_weave_free(&weave);
+    return WEFT_OK;
+}
+
+/* ---- Stitch ---- */
+
+static weft_code inspect_stitch(const char *path, json_t **result, weft_error *error)
+{
+    weft_stitch stitch;
+    weft_tile_mesh mesh;
+    WEFT_TRY(weft_stitch_read(path, &stitch, error));
+    weft_code code = weft_tile_mesh_create(&stitch, 0, path, &mesh, error);
+    if (code == WEFT_OK) {
+        *result = json_pack("{s:s, s:s, s:s, s:[ff], s:i, s:i, s:f, s:i, s:i}", "file", path, "kind", "stitch", "name",
+                            stitch.name, "tile_mm", stitch.width, stitch.height, "yarns", stitch.yarn_count,
+                            "resolution", stitch.resolution, "thickness_mm", (double)mesh.top - (double)mesh.bottom,
+                            "vertices", mesh.vertex_count, "triangles", mesh.triangle_count);
+        weft_tile_mesh_free(&mesh);
+    }
+    weft_stitch_free(&stitch);
+    return code;
+}
+
+/* ---- Microcylinder cloth ---- */
+
+static weft_code inspect_microcylinder(const char *path, json_t **result, weft_error *error)
+{
+    weft_microcylinder_description description;
+    WEFT_TRY(weft_microcylinder_read(path, NULL, 0, &description, error));
+    const weft_cloth_thread *thread = description.cloth.thread;
+    *result = json_pack("{s:s, s:s, s:s, s:[ss], s:[ii], s:[ff], s:f}", "file", path, "kind", "microcylinder cloth",
+                        "name", description.name, "axes", thread[0].axis == WEFT_AXIS_X ? "x" : "y",
+                        thread[1].axis == WEFT_AXIS_X ? "x" : "y", "tangents", thread[0].sample_count,
+                        thread[1].sample_count, "areas", thread[0].area_share, thread[1].area_share, "sigma_deg",
+                        weft_deg_of_rad(description.cloth.sigma));
+    return WEFT_OK;
+}
+
+/* ---- Any ---- */
+
+static weft_code inspect_any(const char *path, const weft_progress *progress, bool all, json_t **result,
+                             weft_error *error)
+{
+    *result = NULL;
+    weft_file_kind kind;
+    WEFT_TRY(weft_file_kind_of(path, &kind, error));
+    weft_code code;
+    if (kind == WEFT_FILE_MATERIAL)
+        code = inspect_material(path, result, error);
+    else if (kind == WEFT_FILE_DATASET)
+        code = inspect_dataset(path, progress, all, result, error);
+    else if (kind == WEFT_FILE_SESSION)
+        code = inspect_session(path, progress, all, result, error);
+    else if (kind == WEFT_FILE_STITCH)
+        code = inspect_stitch(path, result, error);
+    else if (kind == WEFT_FILE_MICROCYLINDER)
+        code = inspect_microcylinder(path, result, error);
+    else if (kind == WEFT_FILE_WEAVE)
+        code = inspect_weave(path, result, error);
+    else
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is none of .btf.h5, .weft, .wv, .mc, .stitch or a session folder",
+                         path);
+    if (code == WEFT_OK && !*result)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' cannot be described: its texts are not UTF-8", path);
+    if (code != WEFT_OK) {
+        json_decref(*result);
+        *result = NULL;
+    }
+    return code;
+}
+
+weft_code weft_inspect(const char *path, json_t **result, weft_error *error)
+{
+    return inspect_any(path, NULL, false, result, error);
+}
+
+weft_code weft_verify(const char *path, const weft_progress *progress, json_t **result, weft_error *error)
+{
+    return inspect_any(path, progress, true, result, error);
+}

@@ -1,0 +1,23 @@
+/* Checks that need all the bytes of a file, beyond what its reader refuses. */
+#ifndef WEFT_STUDY_INSPECT_VERIFY_H
+#define WEFT_STUDY_INSPECT_VERIFY_H
+
+#include "base/progress.h"
+#include "btf/dataset/dataset.h"
+#include "btf/material/material.h"
+#include "btf/session/session.h"
+
+#include <jansson.h>
+
+/* All lobes and diffuse terms finite. Errors: WEFT_BAD_INPUT naming level and texel. */
+weft_code weft_verify_material(const char *path, const weft_material *material, weft_error *error);
+
+/* Every valid sample finite, every opacity in 0..1. Puts the counts into description["verified"]. */
+weft_code weft_verify_dataset(weft_dataset *dataset, const weft_progress *progress, json_t *description,
+                              weft_error *error);
+
+/* Every photograph of the journal there, of its recorded size and checksum, and readable. */
+weft_code weft_verify_session(const weft_session *session, const weft_progress *progress, json_t *description,
+                              weft_error *error);
+
+#endif

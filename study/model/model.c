@@ -1,0 +1,179 @@
+#include "study/model/model.h"
+
+#include "btf/file_kind.h"
+#include "reflectance/lafortune/lafortune.h"
+#include "reflectance/microcylinder/file.h"
+#include "study/model/raw_btf.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct weft_model {
+    weft_file_kind kind;
+    uint64_t noise_seed;
+    weft_material material;
+    weft_table_directions directions; /* of the material */
+    weft_dataset *dataset;
+    weft_raw_btf *raw;
+    weft_weave weave;
+    weft_prepared_cloth cloth; /* of microcylinders */
+    weft_cloth_weighting weighting;
+};
+
+/* ---- Opening ---- */
+
+static weft_code open_material(weft_model *model, const char *path, weft_error *error)
+{
+    WEFT_TRY(weft_material_read(path, &model->material, error));
+    return weft_table_directions_create(&model->material, &model->directions, error);
+}
+
+static weft_code open_dataset(weft_model *model, const char *path, weft_error *error)
+{
+    WEFT_TRY(weft_dataset_open(path, &model->dataset, error));
+    return weft_raw_btf_create(model->dataset, &model->raw, error);
+}
+
+static weft_code open_weave(weft_model *model, const char *path, const weft_model_options *options, weft_error *error)
+{
+    return weft_weave_read(path, options->parameter, options->parameter_count, &model->weave, NULL, error);
+}
+
+static weft_code open_microcylinder(weft_model *model, const char *path, const weft_model_options *options,
+                                    weft_error *error)
+{
+    weft_microcylinder_description description;
+    WEFT_TRY(weft_microcylinder_read(path, options->parameter, options->parameter_count, &description, error));
+    model->cloth = weft_microcylinder_prepare(&description.cloth);
+    return WEFT_OK;
+}
+
+weft_code weft_model_open(const char *path, const weft_model_options *options, weft_model **result, weft_error *error)
+{
+    weft_model *model = calloc(1, sizeof *model);
+    if (!model)
+        return weft_fail_memory(error, "model", sizeof *model);
+    model->noise_seed = options->noise_seed;
+    model->weighting = options->as_printed ? WEFT_CLOTH_AS_PRINTED : WEFT_CLOTH_BY_AREA;
+    weft_code code = weft_file_kind_of(path, &model->kind, error);
+    if (code == WEFT_OK && model->kind == WEFT_FILE_SESSION)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder, not a model (.weft, .btf.h5, .wv or .mc)", path);
+    else if (code == WEFT_OK && model->kind == WEFT_FILE_STITCH)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a stitch, not a model; weft simulate makes a .btf.h5 of it",
+                         path);
+    else if (code == WEFT_OK && model->kind == WEFT_FILE_MATERIAL)
+        code = open_material(model, path, error);
+    else if (code == WEFT_OK && model->kind == WEFT_FILE_DATASET)
+        code = open_dataset(model, path, error);
+    else if (code == WEFT_OK && model->kind == WEFT_FILE_MICROCYLINDER)
+        code = open_microcylinder(model, path, options, error);
+    else if (code == WEFT_OK && model->kind == WEFT_FILE_WEAVE)
+        code = open_weave(model, path, options, error);
+    else if (code == WEFT_OK)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is no model (.weft, .btf.h5, .wv or .mc)", path);
+    if (code != WEFT_OK)
+        weft_model_close(model);
+    else
+        *result = model;
+    return code;
+}
+
+void weft_model_close(weft_model *model)
+{
+    if (!model)
+        return;
+    weft_raw_btf_free(model->raw);
+    weft_dataset_close(model->dataset);
+    weft_table_directions_free(&model->directions);
+    weft_material_free(&model->material);
+    weft_weave_free(&model->weave);
+    free(model);
+}
+
+/* ---- Evaluating ---- */
+
+/* Sum over the texels of a row, BRDF x pi. */
+static void add_row(const weft_model *model, int level, int y, const weft_query *query, double sum[3])
+{
+    for (int x = 0; x < model->material.level[level].width; x++) {
+        weft_rgba value =
+            weft_material_texel(&model->material, &model->directions, level, x, y, query->light, query->view);
+        sum[0] += value.r;
+        sum[1] += value.g;
+        sum[2] += value.b;
+    }
+}
+
+/* So few are done sooner than other threads are woken. */
+enum { FEW_ROWS = 64 };
+
+/* BRDF x pi. */
+static weft_rgb level_mean(const weft_model *model, int level, const weft_query *query)
+{
+    const weft_material_level *at = &model->material.level[level];
+    double r = 0, g = 0, b = 0;
+#pragma omp parallel for reduction(+ : r, g, b) if (at->height > FEW_ROWS)
+    for (int y = 0; y < at->height; y++) {
+        double sum[3] = {0};
+        add_row(model, level, y, query, sum);
+        r += sum[0];
+        g += sum[1];
+        b += sum[2];
+    }
+    double texels = (double)at->width * at->height;
+    return (weft_rgb){r / texels, g / texels, b / texels};
+}
+
+static weft_rgb material_mean(const weft_model *model, const weft_query *query)
+{
+    int last = model->material.level_count - 1;
+    weft_real level = weft_clamp(query->level, 0, last);
+    int fine = (int)level;
+    weft_real share = level - fine;
+    weft_rgb mean = level_mean(model, fine, query);
+    if (!(share > 0))
+        return mean;
+    weft_rgb coarse = level_mean(model, fine + 1, query);
+    return (weft_rgb){mean.r + share * (coarse.r - mean.r), mean.g + share * (coarse.g - mean.g),
+                      mean.b + share * (coarse.b - mean.b)};
+}
+
+static weft_rgb material_brdf(const weft_model *model, const weft_query *query)
+{
+    weft_rgb value;
+    if (query->has_place) {
+        weft_rgba sample = weft_material_sample(&model->material, &model->directions, query->level, query->u, query->v,
+                                                query->light, query->view);
+        value = (weft_rgb){sample.r, sample.g, sample.b};
+    } else {
+        value = material_mean(model, query);
+    }
+    return (weft_rgb){value.r / WEFT_PI, value.g / WEFT_PI, value.b / WEFT_PI};
+}
+
+static weft_rgb weave_brdf(const weft_model *model, const weft_query *query)
+{
+    if (!query->has_place)
+        return weft_weave_mean_brdf(&model->weave, query->light, query->view);
+    weft_weave_point point = weft_weave_locate(&model->weave, query->u, query->v, model->noise_seed);
+    return weft_weave_brdf(&model->weave, &point, query->light, query->view);
+}
+
+weft_code weft_model_brdf(weft_model *model, const weft_query *query, weft_rgb *brdf, weft_error *error)
+{
+    if (!(query->level >= 0))
+        return weft_fail(error, WEFT_BAD_INPUT, "level %g is negative", query->level);
+    if (query->level > 0 && model->kind != WEFT_FILE_MATERIAL)
+        return weft_fail(error, WEFT_BAD_INPUT, "level %g: only a .weft has levels", query->level);
+    if (model->kind == WEFT_FILE_MATERIAL)
+        *brdf = material_brdf(model, query);
+    else if (model->kind == WEFT_FILE_WEAVE)
+        *brdf = weave_brdf(model, query);
+    else if (model->kind == WEFT_FILE_MICROCYLINDER)
+        *brdf = weft_microcylinder_brdf(&model->cloth, model->weighting, query->light, query->view);
+    else if (query->has_place)
+        return weft_raw_btf_sample(model->raw, query->u, query->v, query->light, query->view, brdf, error);
+    else
+        return weft_raw_btf_mean(model->raw, query->light, query->view, brdf, error);
+    return WEFT_OK;
+}

@@ -1,0 +1,242 @@
+#include "study/model/raw_btf.h"
+
+#include "btf/dataset/rows_at_once.h"
+#include "study/model/raw_directions.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+struct weft_raw_btf {
+    weft_dataset *dataset;
+    const weft_dataset_layout *layout;
+    weft_view_order order;
+    weft_raw_directions centre; /* everywhere in a far dataset */
+    weft_half *samples;         /* [image_count][3] of a texel */
+    uint8_t *mask;              /* [image_count] of a texel */
+    float *mean;                /* [image_count][3]; NULL until asked for */
+    uint8_t *mean_mask;         /* [image_count] */
+};
+
+/* ---- Life ---- */
+
+weft_code weft_raw_btf_create(weft_dataset *dataset, weft_raw_btf **result, weft_error *error)
+{
+    weft_raw_btf *raw = calloc(1, sizeof *raw);
+    if (!raw)
+        return weft_fail_memory(error, "dataset", sizeof *raw);
+    raw->dataset = dataset;
+    raw->layout = weft_dataset_get_layout(dataset);
+    size_t images = (size_t)raw->layout->image_count;
+    raw->samples = malloc(3 * images * sizeof *raw->samples);
+    raw->mask = malloc(images);
+    weft_code code = WEFT_OK;
+    if (!raw->samples || !raw->mask)
+        code = weft_fail_memory(error, "texel", images * 7);
+    if (code == WEFT_OK)
+        code = weft_view_order_create(raw->layout, &raw->order, error);
+    if (code == WEFT_OK)
+        code = weft_raw_directions_create(raw->layout, &raw->order, raw->layout->width / 2, raw->layout->height / 2,
+                                          &raw->centre, error);
+    if (code != WEFT_OK)
+        weft_raw_btf_free(raw);
+    else
+        *result = raw;
+    return code;
+}
+
+void weft_raw_btf_free(weft_raw_btf *raw)
+{
+    if (!raw)
+        return;
+    weft_raw_directions_free(&raw->centre);
+    weft_view_order_free(&raw->order);
+    free(raw->samples);
+    free(raw->mask);
+    free(raw->mean);
+    free(raw->mean_mask);
+    free(raw);
+}
+
+/* ---- Interpolation ---- */
+
+/* Weighted sum of valid samples: BRDF x pi in [0..2], the sum of the weights in [3]. */
+typedef struct blend {
+    double sum[4];
+} blend;
+
+static void blend_add(blend *b, double weight, const double value[3])
+{
+    for (int c = 0; c < 3; c++)
+        b->sum[c] += weight * value[c];
+    b->sum[3] += weight;
+}
+
+static weft_rgb blend_brdf(const blend *b)
+{
+    double scale = b->sum[3] > 0 ? 1 / (WEFT_PI * b->sum[3]) : NAN;
+    return (weft_rgb){b->sum[0] * scale, b->sum[1] * scale, b->sum[2] * scale};
+}
+
+/* The samples of one place: half floats of a texel, or the float means. */
+typedef struct place {
+    const weft_half *half;
+    const float *mean;
+    const uint8_t *mask;
+    int x, y;
+} place;
+
+static void add_image(const weft_raw_btf *raw, const place *at, int image, double weight, blend *b)
+{
+    double cosine = 1;
+    if (raw->layout->values == WEFT_REFLECTANCE_COSINE)
+        cosine = weft_dataset_light_direction(raw->layout, image, at->x, at->y).z;
+    if (at->mask[image] || !(cosine > 0) || !(weight > 0))
+        return;
+    double value[3];
+    for (int c = 0; c < 3; c++) {
+        size_t index = 3 * (size_t)image + (size_t)c;
+        value[c] = (double)(at->mean ? at->mean[index] : weft_float_of_half(at->half[index])) / cosine;
+    }
+    blend_add(b, weight, value);
+}
+
+static void interpolate(const weft_raw_btf *raw, const weft_raw_directions *d, const place *at, weft_vec3 light,
+                        weft_vec3 view, blend *b)
+{
+    weft_barycentric views = weft_triangulation_lookup(d->views, view);
+    for (int i = 0; i < 3; i++) {
+        if (views.index[i] < 0 || !d->lights[views.index[i]])
+            continue;
+        weft_barycentric lights = weft_triangulation_lookup(d->lights[views.index[i]], light);
+        const int *image = raw->order.image + raw->order.first[views.index[i]];
+        for (int k = 0; k < 3; k++) {
+            if (lights.index[k] >= 0)
+                add_image(raw, at, image[lights.index[k]], views.weight[i] * lights.weight[k], b);
+        }
+    }
+}
+
+static weft_code sample_texel(weft_raw_btf *raw, int x, int y, weft_vec3 light, weft_vec3 view, weft_rgb *brdf,
+                              weft_error *error)
+{
+    WEFT_TRY(weft_dataset_read_block(raw->dataset, x, y, 1, 1, raw->samples, raw->mask, error));
+    place at = {.half = raw->samples, .mask = raw->mask, .x = x, .y = y};
+    blend b = {0};
+    if (raw->layout->distance == WEFT_FAR) {
+        interpolate(raw, &raw->centre, &at, light, view, &b);
+    } else {
+        weft_raw_directions near;
+        WEFT_TRY(weft_raw_directions_create(raw->layout, &raw->order, x, y, &near, error));
+        interpolate(raw, &near, &at, light, view, &b);
+        weft_raw_directions_free(&near);
+    }
+    *brdf = blend_brdf(&b);
+    return WEFT_OK;
+}
+
+static bool below_horizon(weft_vec3 light, weft_vec3 view)
+{
+    return !(light.z > 0 && view.z > 0);
+}
+
+static int wrapped(int index, int count)
+{
+    return ((index % count) + count) % count;
+}
+
+weft_code weft_raw_btf_sample(weft_raw_btf *raw, weft_real u, weft_real v, weft_vec3 light, weft_vec3 view,
+                              weft_rgb *brdf, weft_error *error)
+{
+    *brdf = (weft_rgb){0, 0, 0};
+    if (below_horizon(light, view))
+        return WEFT_OK;
+    int width = raw->layout->width, height = raw->layout->height;
+    double x = (u - floor(u)) * width - 0.5, y = (1 - (v - floor(v))) * height - 0.5;
+    int x0 = (int)floor(x), y0 = (int)floor(y);
+    blend b = {0};
+    for (int corner = 0; corner < 4; corner++) {
+        int right = corner & 1, down = corner >> 1;
+        double weight = (right ? x - x0 : x0 + 1 - x) * (down ? y - y0 : y0 + 1 - y);
+        weft_rgb value;
+        if (!(weight > 0))
+            continue;
+        WEFT_TRY(sample_texel(raw, wrapped(x0 + right, width), wrapped(y0 + down, height), light, view, &value, error));
+        if (!isnan(value.r))
+            blend_add(&b, weight, (double[]){WEFT_PI * value.r, WEFT_PI * value.g, WEFT_PI * value.b});
+    }
+    *brdf = blend_brdf(&b);
+    return WEFT_OK;
+}
+
+/* ---- Mean of all texels ---- */
+
+static void add_texel(int image_count, const weft_half *samples, const uint8_t *mask, double *sum, long *count)
+{
+    for (int i = 0; i < image_count; i++) {
+        if (mask[i])
+            continue;
+        for (int c = 0; c < 3; c++)
+            sum[3 * i + c] += (double)weft_float_of_half(samples[3 * i + c]);
+        count[i]++;
+    }
+}
+
+static weft_code sum_texels(weft_raw_btf *raw, double *sum, long *count, weft_error *error)
+{
+    const weft_dataset_layout *layout = raw->layout;
+    int band = weft_band_height(layout);
+    size_t images = (size_t)layout->image_count, most = (size_t)band * (size_t)layout->width * images;
+    weft_half *samples = malloc(3 * most * sizeof *samples);
+    uint8_t *mask = malloc(most);
+    weft_code code = samples && mask ? WEFT_OK : weft_fail_memory(error, "rows of texels", 7 * most);
+    for (int y = 0; y < layout->height && code == WEFT_OK; y += band) {
+        int rows = band < layout->height - y ? band : layout->height - y;
+        code = weft_dataset_read_block(raw->dataset, 0, y, layout->width, rows, samples, mask, error);
+        for (size_t t = 0; code == WEFT_OK && t < (size_t)rows * (size_t)layout->width; t++)
+            add_texel(layout->image_count, samples + 3 * t * images, mask + t * images, sum, count);
+    }
+    free(samples);
+    free(mask);
+    return code;
+}
+
+static weft_code read_mean(weft_raw_btf *raw, weft_error *error)
+{
+    size_t images = (size_t)raw->layout->image_count;
+    double *sum = calloc(3 * images, sizeof *sum);
+    long *count = calloc(images, sizeof *count);
+    raw->mean = malloc(3 * images * sizeof *raw->mean);
+    raw->mean_mask = malloc(images);
+    weft_code code = WEFT_OK;
+    if (!sum || !count || !raw->mean || !raw->mean_mask)
+        code = weft_fail_memory(error, "mean", 3 * images * sizeof *sum);
+    else
+        code = sum_texels(raw, sum, count, error);
+    for (size_t i = 0; code == WEFT_OK && i < images; i++) {
+        raw->mean_mask[i] = count[i] == 0;
+        for (size_t c = 0; c < 3; c++)
+            raw->mean[3 * i + c] = count[i] ? (float)(sum[3 * i + c] / (double)count[i]) : 0;
+    }
+    free(sum);
+    free(count);
+    if (code != WEFT_OK) {
+        free(raw->mean);
+        raw->mean = NULL;
+    }
+    return code;
+}
+
+weft_code weft_raw_btf_mean(weft_raw_btf *raw, weft_vec3 light, weft_vec3 view, weft_rgb *brdf, weft_error *error)
+{
+    *brdf = (weft_rgb){0, 0, 0};
+    if (below_horizon(light, view))
+        return WEFT_OK;
+    if (!raw->mean)
+        WEFT_TRY(read_mean(raw, error));
+    place at = {.mean = raw->mean, .mask = raw->mean_mask, .x = raw->layout->width / 2, .y = raw->layout->height / 2};
+    blend b = {0};
+    interpolate(raw, &raw->centre, &at, light, view, &b);
+    *brdf = blend_brdf(&b);
+    return WEFT_OK;
+}

@@ -1,0 +1,90 @@
+#include "study/model/raw_directions.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Order ---- */
+
+static void sort_images(const weft_dataset_layout *layout, weft_view_order *order)
+{
+    for (int i = 0; i < layout->image_count; i++)
+        order->first[layout->view_of_image[i] + 1]++;
+    for (int v = 0; v < layout->view_count; v++)
+        order->first[v + 1] += order->first[v];
+    /* Filling backwards from the end of every view moves that end to its start, one place too far up in the array. */
+    for (int i = layout->image_count - 1; i >= 0; i--)
+        order->image[--order->first[layout->view_of_image[i] + 1]] = i;
+    memmove(order->first, order->first + 1, (size_t)layout->view_count * sizeof *order->first);
+    order->first[layout->view_count] = layout->image_count;
+}
+
+weft_code weft_view_order_create(const weft_dataset_layout *layout, weft_view_order *order, weft_error *error)
+{
+    size_t images = (size_t)layout->image_count, views = (size_t)layout->view_count;
+    *order = (weft_view_order){calloc(views + 1, sizeof *order->first), malloc(images * sizeof *order->image)};
+    if (!order->first || !order->image) {
+        weft_view_order_free(order);
+        return weft_fail_memory(error, "images", (images + views) * sizeof *order->image);
+    }
+    sort_images(layout, order);
+    return WEFT_OK;
+}
+
+void weft_view_order_free(weft_view_order *order)
+{
+    free(order->first);
+    free(order->image);
+    *order = (weft_view_order){0};
+}
+
+/* ---- Directions ---- */
+
+static weft_code triangulate_views(const weft_dataset_layout *layout, int x, int y, weft_vec3 *scratch,
+                                   weft_raw_directions *directions, weft_error *error)
+{
+    for (int v = 0; v < layout->view_count; v++)
+        scratch[v] = weft_dataset_view_direction(layout, v, x, y);
+    return weft_triangulation_build(scratch, layout->view_count, &directions->views, error);
+}
+
+static weft_code triangulate_lights(const weft_dataset_layout *layout, const weft_view_order *order, int x, int y,
+                                    weft_vec3 *scratch, weft_raw_directions *directions, weft_error *error)
+{
+    for (int v = 0; v < layout->view_count; v++) {
+        int count = order->first[v + 1] - order->first[v];
+        for (int i = 0; i < count; i++)
+            scratch[i] = weft_dataset_light_direction(layout, order->image[order->first[v] + i], x, y);
+        if (count > 0)
+            WEFT_TRY(weft_triangulation_build(scratch, count, &directions->lights[v], error));
+    }
+    return WEFT_OK;
+}
+
+weft_code weft_raw_directions_create(const weft_dataset_layout *layout, const weft_view_order *order, int x, int y,
+                                     weft_raw_directions *directions, weft_error *error)
+{
+    size_t most = (size_t)(layout->image_count > layout->view_count ? layout->image_count : layout->view_count);
+    *directions = (weft_raw_directions){.view_count = layout->view_count,
+                                        .lights = calloc((size_t)layout->view_count, sizeof *directions->lights)};
+    weft_vec3 *scratch = malloc(most * sizeof *scratch);
+    weft_code code = WEFT_OK;
+    if (!directions->lights || !scratch)
+        code = weft_fail_memory(error, "directions", most * sizeof *scratch);
+    if (code == WEFT_OK)
+        code = triangulate_views(layout, x, y, scratch, directions, error);
+    if (code == WEFT_OK)
+        code = triangulate_lights(layout, order, x, y, scratch, directions, error);
+    free(scratch);
+    if (code != WEFT_OK)
+        weft_raw_directions_free(directions);
+    return code;
+}
+
+void weft_raw_directions_free(weft_raw_directions *directions)
+{
+    weft_triangulation_free(directions->views);
+    for (int v = 0; directions->lights && v < directions->view_count; v++)
+        weft_triangulation_free(directions->lights[v]);
+    free(directions->lights);
+    *directions = (weft_raw_directions){0};
+}
