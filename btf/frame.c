@@ -1,4 +1,4 @@
-/* Codes of the frame of a texel (docs/weft-format.md, 3.3). */
+/* Codes of the frame of a texel (docs/reference/weft-format.md, 3.3). */
 #include "btf/material.h"
 
 static const weft_real code_scale = 32767;

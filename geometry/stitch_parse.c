@@ -1,4 +1,4 @@
-/* The grammar of a stitch file (docs/stitch-format.md). */
+/* The grammar of a stitch file (docs/reference/stitch-format.md). */
 #include "geometry/stitch_syntax.h"
 #include "reflectance/block_parser.h"
 

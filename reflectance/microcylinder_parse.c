@@ -1,4 +1,4 @@
-/* The grammar of a microcylinder file (docs/microcylinder-format.md), made of the blocks of weave files. */
+/* The grammar of a microcylinder file (docs/reference/microcylinder-format.md), made of the blocks of weave files. */
 #include "btf/direction.h"
 #include "reflectance/block_parser.h"
 #include "reflectance/microcylinder_file.h"
