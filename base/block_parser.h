@@ -1,5 +1,5 @@
-/* Blocks of key = value: the part of the grammar that weave files (docs/weave-format.md) and stitch files
- * (docs/stitch-format.md) share. Every function reports what it cannot read as weave_lexer_fail does. */
+/* Blocks of key = value: the part of the grammar that weave files (docs/reference/weave-format.md) and stitch files
+ * (docs/reference/stitch-format.md) share. Every function reports what it cannot read as weave_lexer_fail does. */
 #ifndef WEFT_BASE_BLOCK_PARSER_H
 #define WEFT_BASE_BLOCK_PARSER_H
 

@@ -1,5 +1,5 @@
-/* The whole job of `weft compress` on an invented dataset: reading, fitting all levels, writing (docs/benchmarks.md).
- */
+/* The whole job of `weft compress` on an invented dataset: reading, fitting all levels, writing
+ * (docs/notes/benchmarks.md). */
 #include "compress/compress.h"
 #include "btf/dataset/blocks.h"
 #include "tests/support/synthetic_texel.h"

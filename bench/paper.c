@@ -1,6 +1,6 @@
 /* The representation of Daubert et al. 2001 as they stored and fitted it (all floats, the average frame of the
  * geometry, alternation until T changes by less than 0.1) against the material that Weft makes of the same dataset:
- * error and size (docs/benchmarks.md). */
+ * error and size (docs/notes/benchmarks.md). */
 #include "base/processor.h"
 #include "compress/compress.h"
 #include "compress/fit/fit.h"

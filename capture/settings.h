@@ -1,5 +1,5 @@
 /* Settings of a rig: how it is set up and calibrated, how it exposes and, for the virtual rig, how it errs.
- * Read from a JSON object whose keys are the names of the fields; docs/session-format.md lists them. */
+ * Read from a JSON object whose keys are the names of the fields; docs/reference/session-format.md lists them. */
 #ifndef WEFT_CAPTURE_SETTINGS_H
 #define WEFT_CAPTURE_SETTINGS_H
 

@@ -1,4 +1,4 @@
-/* Import: collections of photographs that others made become a dataset (docs/import.md).
+/* Import: collections of photographs that others made become a dataset (docs/reference/import-layouts.md).
  *
  *   - a folder with positions: NN.png, camera_pos.txt, light_pos.txt, image_size.txt, light_power.txt
  *     (a near light and a near camera);

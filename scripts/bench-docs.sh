@@ -1,12 +1,13 @@
 #!/bin/sh
-# Measures the fit again and replaces its tables in docs/benchmarks.md: the text between <!-- bench_fit SECTION --> and <!-- end -->.
+# Measures the fit again and replaces its tables in docs/notes/benchmarks.md:
+# the text between <!-- bench_fit SECTION --> and <!-- end -->.
 # Usage: bench-docs.sh BUILD [TEXELS]; with the demo's dataset in demo-out/ also its speed
 set -eu
 
 build=$(cd "${1:?usage: bench-docs.sh BUILD [TEXELS]}" && pwd)
 texels=${2:-100}
 cd "$(dirname "$0")/.."
-page=docs/benchmarks.md
+page=docs/notes/benchmarks.md
 dataset=demo-out/gabardine.btf.h5
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT

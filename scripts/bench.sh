@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds and runs every bench, in turn (docs/benchmarks.md).
+# Builds and runs every bench, in turn (docs/notes/benchmarks.md).
 # Usage: bench.sh BUILD [TEXELS [SIZE]]    texels of each family in the bench of the fit (100), SIZE x SIZE texels for the whole job (64)
 set -eu
 

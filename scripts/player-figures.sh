@@ -1,6 +1,7 @@
 #!/bin/sh
-# The pictures of docs/player.md and of the README, from what `make demo` left, and from stitches that are simulated into WORK unless
-# their materials are there (plain_knit.weft, two_colour_loops.weft: about 15 minutes of processor time). The window needs Xvfb and xdotool.
+# The pictures of the player in docs/images, for the docs and the README: from what `make demo` left, and from stitches.
+# The stitches are simulated into WORK unless their materials are there (plain_knit.weft, two_colour_loops.weft: about 15
+# minutes of processor time). The window needs Xvfb and xdotool.
 # Usage: player-figures.sh WEFT DEMO-OUT WORK
 set -eu
 

@@ -1,5 +1,4 @@
-/* Speed and quality of the fit, against general solvers on the same texels (docs/benchmarks.md). */
-#include "base/processor.h"
+/* Speed and quality of the fit, against general solvers on the same texels (docs/notes/benchmarks.md). */
 #include "bench/fit/sections.h"
 
 #include <argp.h>
@@ -99,7 +98,7 @@ static const struct argp parser = {
     .parser = parse_option,
     .args_doc = "[NAME.btf.h5]",
     .doc = "Fits texels of a dataset, or of three invented families, with Weft and with general solvers.\v"
-           "Times are processor times of one thread. What the columns mean is written in docs/benchmarks.md.",
+           "Times are processor times of one thread. What the columns mean is written in docs/notes/benchmarks.md.",
 };
 
 /* One section after the other over all sources, so that a table may hold them all. */

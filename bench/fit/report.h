@@ -1,4 +1,4 @@
-/* Tables of results, printed as aligned text, as Markdown for docs/benchmarks.md, or kept as JSON. */
+/* Tables of results, printed as aligned text, as Markdown for docs/notes/benchmarks.md, or kept as JSON. */
 #ifndef WEFT_BENCH_FIT_REPORT_H
 #define WEFT_BENCH_FIT_REPORT_H
 

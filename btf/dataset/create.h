@@ -10,7 +10,7 @@ typedef struct weft_dataset_file {
     hid_t file, half, samples, mask;
 } weft_dataset_file;
 
-/* Width and height of a chunk, texels (docs/dataset-format.md, Storage). Pure. */
+/* Width and height of a chunk, texels (docs/reference/dataset-format.md, Storage). Pure. */
 void weft_dataset_chunk(const weft_dataset_layout *layout, int *width, int *height);
 
 /* Creates `temporary_path` with everything but samples, masks, provenance, opacity and frames, and reserves the disk

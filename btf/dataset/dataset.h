@@ -1,6 +1,6 @@
 /* The BTF dataset NAME.btf.h5: what registration and import write, and compress, player and study read.
  *
- * HDF5, readable with h5py (docs/dataset-format.md). Samples are half floats, texel-major: all images of a
+ * HDF5, readable with h5py (docs/reference/dataset-format.md). Samples are half floats, texel-major: all images of a
  * texel are contiguous and a chunk is a block of texels, so that a fit reads what it needs and no more. */
 #ifndef WEFT_BTF_DATASET_DATASET_H
 #define WEFT_BTF_DATASET_DATASET_H

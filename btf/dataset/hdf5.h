@@ -1,5 +1,5 @@
-/* What the reader and the writer of datasets share: names of docs/dataset-format.md and small helpers over the HDF5
- * library. Private to btf/. HDF5 is not thread-safe; neither is this. */
+/* What the reader and the writer of datasets share: names of docs/reference/dataset-format.md and small helpers over
+ * the HDF5 library. Private to btf/. HDF5 is not thread-safe; neither is this. */
 #ifndef WEFT_BTF_DATASET_HDF5_H
 #define WEFT_BTF_DATASET_HDF5_H
 

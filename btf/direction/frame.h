@@ -22,7 +22,7 @@ weft_frame weft_frame_of_vectors(weft_vec3 normal, weft_vec3 tangent);
 /* A direction in the coordinates of a frame. */
 weft_vec3 weft_frame_local(const weft_frame *frame, weft_vec3 direction);
 
-/* ---- The codes of a material file (docs/weft-format.md, 3.3) ---- */
+/* ---- The codes of a material file (docs/reference/weft-format.md, 3.3) ---- */
 
 weft_frame weft_frame_decode(const int16_t code[3]);
 void weft_frame_encode(const weft_frame *frame, int16_t code[3]);

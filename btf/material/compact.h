@@ -1,5 +1,5 @@
-/* LOBE, TABL and STAB without the texels that have no such part (docs/weft-format.md, 3.6): the map of models of the
- * level says which these are. Private to btf/. */
+/* LOBE, TABL and STAB without the texels that have no such part (docs/reference/weft-format.md, 3.6): the map of models
+ * of the level says which these are. Private to btf/. */
 #ifndef WEFT_BTF_MATERIAL_COMPACT_H
 #define WEFT_BTF_MATERIAL_COMPACT_H
 

@@ -1,4 +1,4 @@
-/* The layout of NAME.weft (docs/weft-format.md), shared by its reader and writer. Private to btf/. */
+/* The layout of NAME.weft (docs/reference/weft-format.md), shared by its reader and writer. Private to btf/. */
 #ifndef WEFT_BTF_MATERIAL_FORMAT_H
 #define WEFT_BTF_MATERIAL_FORMAT_H
 

@@ -1,5 +1,5 @@
 /* The material NAME.weft: what compress writes and the player and other renderers read.
- * The file format is docs/weft-format.md; this is its image in memory, laid out as it is uploaded to a GPU.
+ * The file format is docs/reference/weft-format.md; this is its image in memory, laid out as it is uploaded to a GPU.
  *
  * Value of a texel (Daubert et al. 2001, eq. 1 and 2), as BRDF x pi, with a table of lights beside the one of views:
  *     f(l, v) = T(v) S(l) (rho + sum_i max(0, l' . diag(Cx, Cy, Cz)_i . v')^N_i)

@@ -1,5 +1,5 @@
 /* Which model each texel of a material has: what it has of lobes, T and S. What it does not have is stored as what
- * changes nothing (docs/weft-format.md, 3.6). All functions are thread-safe. */
+ * changes nothing (docs/reference/weft-format.md, 3.6). All functions are thread-safe. */
 #ifndef WEFT_BTF_MATERIAL_MODELS_H
 #define WEFT_BTF_MATERIAL_MODELS_H
 

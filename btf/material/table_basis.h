@@ -1,5 +1,5 @@
-/* View or light tables of a level as a mean and a few components: the contents of TPCA and SPCA (docs/weft-format.md).
- * Integers throughout, so that every reader decodes the same codes:
+/* View or light tables of a level as a mean and a few components: the contents of TPCA and SPCA
+ * (docs/reference/weft-format.md). Integers throughout, so that every reader decodes the same codes:
  *     code(d) = (16 mean(d) + sum_k coefficient_k component_k(d) + 1024) >> 11, clamped to 0 .. 255 */
 #ifndef WEFT_BTF_MATERIAL_TABLE_BASIS_H
 #define WEFT_BTF_MATERIAL_TABLE_BASIS_H

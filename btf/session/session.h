@@ -1,5 +1,5 @@
 /* The session: what capture hands to registration. A folder with
- *   session.json   what was planned, with which rig and calibration (docs/session-format.md)
+ *   session.json   what was planned, with which rig and calibration (docs/reference/session-format.md)
  *   journal.jsonl  one line for every photograph taken, appended after the photograph is complete
  *   tvTTT_pvPPP/tlTTT_plPPP_tvTTT_pvPPP.tif  the photographs, raw linear camera values
  * A shot exists when its photograph lies under its final name and its journal line is complete. */

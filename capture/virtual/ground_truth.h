@@ -7,7 +7,7 @@
 #include "capture/virtual/world.h"
 
 typedef struct weft_truth_request {
-    const char *path; /* HDF5 file (docs/session-format.md); NULL = FOLDER.truth.h5 */
+    const char *path; /* HDF5 file (docs/reference/session-format.md); NULL = FOLDER.truth.h5 */
     int size;         /* texels along a side */
     int image_count;  /* shots whose reflectance is computed */
 } weft_truth_request;

@@ -1,5 +1,5 @@
-/* A stitch: one tile of cloth as yarns in space, and its file (docs/stitch-format.md). Lengths are in mm; frame as in
- * base/vector.h with the origin at the lower left corner of the tile. */
+/* A stitch: one tile of cloth as yarns in space, and its file (docs/reference/stitch-format.md). Lengths are in mm;
+ * frame as in base/vector.h with the origin at the lower left corner of the tile. */
 #ifndef WEFT_GEOMETRY_YARN_STITCH_H
 #define WEFT_GEOMETRY_YARN_STITCH_H
 

@@ -1,4 +1,4 @@
-/* The grammar of a stitch file (docs/stitch-format.md). */
+/* The grammar of a stitch file (docs/reference/stitch-format.md). */
 #include "base/block_parser.h"
 #include "geometry/yarn/stitch_syntax.h"
 

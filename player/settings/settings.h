@@ -1,5 +1,5 @@
 /* All that makes a picture: the scene, the files in it and the size. Written into every picture that Weft draws, so
- * that it can be drawn again (docs/render.md). */
+ * that it can be drawn again (docs/reference/scene.md). */
 #ifndef WEFT_PLAYER_SETTINGS_SETTINGS_H
 #define WEFT_PLAYER_SETTINGS_SETTINGS_H
 

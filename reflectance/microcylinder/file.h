@@ -1,4 +1,4 @@
-/* The text format of microcylinder cloth, `.mc` (docs/microcylinder-format.md). */
+/* The text format of microcylinder cloth, `.mc` (docs/reference/microcylinder-format.md). */
 #ifndef WEFT_REFLECTANCE_MICROCYLINDER_FILE_H
 #define WEFT_REFLECTANCE_MICROCYLINDER_FILE_H
 

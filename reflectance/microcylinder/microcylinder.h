@@ -1,6 +1,6 @@
 /* Cloth of microcylinder threads (Sadeghi, Bisker, De Deken and Jensen 2013, in the form of Iwasaki, Mizutani,
- * Dobashi and Nishita 2014), with the corrections of docs/models.md. Pure functions; directions are unit. GLSL twin:
- * reflectance/microcylinder/microcylinder.glsl.
+ * Dobashi and Nishita 2014), with the corrections of docs/reference/models.md. Pure functions; directions are unit.
+ * GLSL twin: reflectance/microcylinder/microcylinder.glsl.
  *
  * A thread runs along x (weft) or y (warp) of the cloth and is tilted out of its plane by tau: its tangent is
  * t = cos(tau) e + sin(tau) z. theta is the inclination of a direction to the plane across t, phi its azimuth in that

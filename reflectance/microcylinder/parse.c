@@ -1,4 +1,4 @@
-/* The grammar of a microcylinder file (docs/microcylinder-format.md), made of the blocks of weave files. */
+/* The grammar of a microcylinder file (docs/reference/microcylinder-format.md), made of the blocks of weave files. */
 #include "base/block_parser.h"
 #include "base/text_file.h"
 #include "btf/direction/direction.h"

@@ -53,8 +53,8 @@ static inline void weft_weave_batch_put(weft_weave_batch *batch, const weft_weav
 void weft_weave_specular_batch(const weft_woven_table *table, weft_weave_batch *batch);
 
 /* value[i] = weft_prepared_reflectance for light[i], view[i], within 1e-3 of it, ordinary segments within 1e-4
- * (docs/models.md): a 15-point Gauss-Kronrod rule in vectors, halved where it does not agree with its Gauss rule, and
- * the converged integral where that does not settle. */
+ * (docs/reference/models.md): a 15-point Gauss-Kronrod rule in vectors, halved where it does not agree with its Gauss
+ * rule, and the converged integral where that does not settle. */
 void weft_prepared_reflectance_batch(const weft_prepared_segment *prepared, int count, const weft_vec3 *light,
                                      const weft_vec3 *view, weft_real *value);
 

@@ -1,4 +1,4 @@
-/* The grammar of a weave file (docs/weave-format.md). Blocks do not nest, so neither does the parser. */
+/* The grammar of a weave file (docs/reference/weave-format.md). Blocks do not nest, so neither does the parser. */
 #include "base/block_parser.h"
 #include "reflectance/weave/syntax.h"
 

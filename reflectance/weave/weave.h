@@ -1,4 +1,5 @@
-/* A weave: a tile of yarn segments (Irawan and Marschner 2012, section 4) and its file (docs/weave-format.md). */
+/* A weave: a tile of yarn segments (Irawan and Marschner 2012, section 4) and its file
+ * (docs/reference/weave-format.md). */
 #ifndef WEFT_REFLECTANCE_WEAVE_WEAVE_H
 #define WEFT_REFLECTANCE_WEAVE_WEAVE_H
 

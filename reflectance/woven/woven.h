@@ -1,6 +1,6 @@
-/* One yarn segment of woven cloth (Irawan and Marschner 2012, with the corrections of docs/models.md). Pure functions.
- * Segment frame: y along the yarn, z the surface normal, x = y cross z. Directions are unit; every value is 0 where one
- * of them is below the horizon. GLSL twin: reflectance/woven/woven.glsl. */
+/* One yarn segment of woven cloth (Irawan and Marschner 2012, with the corrections of docs/reference/models.md). Pure
+ * functions. Segment frame: y along the yarn, z the surface normal, x = y cross z. Directions are unit; every value is
+ * 0 where one of them is below the horizon. GLSL twin: reflectance/woven/woven.glsl. */
 #ifndef WEFT_REFLECTANCE_WOVEN_WOVEN_H
 #define WEFT_REFLECTANCE_WOVEN_WOVEN_H
 

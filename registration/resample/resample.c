@@ -17,7 +17,7 @@ typedef struct box {
     int x0, y0, x1, y1;
 } box;
 
-/* A texel of which a view sees less than this share is not seen in it. Measured in docs/registration.md. */
+/* A texel of which a view sees less than this share is not seen in it. Measured in docs/notes/registration.md. */
 static const double least_share_seen = 0.25;
 
 /* How far along x and y, mm, the plate is seen within `reach_px` of a pixel at the plate point (x, y). */

@@ -1,4 +1,4 @@
-/* Dataset, material, analytic cloth and BARD side by side: one HTML page (docs/compare.md). */
+/* Dataset, material, analytic cloth and BARD side by side: one HTML page (docs/reference/compare-report.md). */
 #ifndef WEFT_STUDY_COMPARE_COMPARE_H
 #define WEFT_STUDY_COMPARE_COMPARE_H
 

@@ -1,5 +1,6 @@
-"""Reads a .weft file with nothing but docs/weft-format.md and Python's standard library: checks the container and decodes
-one texel of every section that is stored without a codec (codec 1 needs a Zstandard decoder; its checksum is checked)."""
+"""Reads a .weft file with nothing but docs/reference/weft-format.md and Python's standard library: checks the
+container and decodes one texel of every section that is stored without a codec
+(codec 1 needs a Zstandard decoder; its checksum is checked)."""
 
 import json
 import math

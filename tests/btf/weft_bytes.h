@@ -1,4 +1,4 @@
-/* The bytes of a .weft file, edited by hand: written from docs/weft-format.md, not from the writer. */
+/* The bytes of a .weft file, edited by hand: written from docs/reference/weft-format.md, not from the writer. */
 #ifndef WEFT_TESTS_WEFT_BYTES_H
 #define WEFT_TESTS_WEFT_BYTES_H
 

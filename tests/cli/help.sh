@@ -2,7 +2,7 @@
 # What the commands say of themselves. Usage: help.sh WEFT ASSETS PYTHON
 set -eu
 weft=$1
-docs="$2/../docs"
+page="$2/../docs/reference/commands.md"
 . "$(dirname "$0")/expect.sh"
 scratch=$(mktemp -d "$PWD/help-XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
@@ -12,7 +12,7 @@ expect_ok --help
 sed -n 's/^  \([a-z-]*\)  *\(.*\)$/\1|\2/p' out.log >commands
 [ "$(wc -l <commands)" -ge 14 ] || fail "weft --help lists too few commands"
 while IFS='|' read -r name summary; do
-    grep -qF "| $name | $summary" "$docs/commands.md" || fail "docs/commands.md lacks '$name', or says other words than '$summary'"
+    grep -qF "| $name | $summary" "$page" || fail "docs/reference/commands.md lacks '$name', or says other words than '$summary'"
     expect_ok "$name" --help
     grep -q "^Example: weft $name " out.log || fail "weft $name --help has no example"
     for option in --quiet --json --threads; do
@@ -20,7 +20,7 @@ while IFS='|' read -r name summary; do
     done
     expect_error 2 "unrecognized option" "$name" --no-such-option
 done <commands
-[ "$(grep -c '^| [a-z-]* | [a-z]' "$docs/commands.md")" = "$(wc -l <commands)" ] || fail "docs/commands.md lists a command that is none"
+[ "$(grep -c '^| [a-z-]* | [a-z]' "$page")" = "$(wc -l <commands)" ] || fail "docs/reference/commands.md lists a command that is none"
 
 # What is not given, given twice, or both read and written.
 expect_error 2 "needs NAME.btf.h5 and -o NAME.weft" compress cloth.btf.h5

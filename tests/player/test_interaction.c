@@ -297,12 +297,12 @@ static void arrows_turn_what_a_plain_drag_turns(void **state)
     assert_memory_equal(&i.scene, &before, sizeof before);
 }
 
-/* The table of docs/player.md is the table of the keys, line by line. */
+/* The table of docs/reference/keys.md is the table of the keys, line by line. */
 static void the_docs_list_every_key_in_order(void **state)
 {
     (void)state;
     static char page[65536];
-    FILE *file = fopen(WEFT_TEST_DOCS "/player.md", "rb");
+    FILE *file = fopen(WEFT_TEST_DOCS "/reference/keys.md", "rb");
     assert_non_null(file);
     page[fread(page, 1, sizeof page - 1, file)] = 0;
     fclose(file);
@@ -319,7 +319,7 @@ static void the_docs_list_every_key_in_order(void **state)
             snprintf(line, sizeof line, "\n| **%s** | |\n", key[k].name);
         const char *found = strstr(at, line);
         if (!found)
-            fail_msg("docs/player.md lacks, or has in another place:%s", line);
+            fail_msg("docs/reference/keys.md lacks, or has in another place:%s", line);
         at = found + strlen(line) - 1;
     }
 }

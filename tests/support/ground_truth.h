@@ -1,4 +1,5 @@
-/* The ground truth that the virtual rig leaves (docs/session-format.md), and how far a registration is from it. */
+/* The ground truth that the virtual rig leaves (docs/reference/session-format.md), and how far a
+ * registration is from it. */
 #ifndef WEFT_TESTS_SUPPORT_GROUND_TRUTH_H
 #define WEFT_TESTS_SUPPORT_GROUND_TRUTH_H
 
