@@ -8,8 +8,6 @@ WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
 
 #define LN2 0.693147180559945309
 
-enum { NORMAL_MAX = 1 + 4 * WEFT_GRAM_LOBES + 3 };
-
 /* The columns of a pass, with the light turned into the frame of the texel, l' = R l:
  *     k | h_i l'_x, h_i l'_y, h_i l'_z, q_i for every lobe | e
  * so that df/dc_ik = A_i N_i v'_k times one column, df/d ln N_i = A_i N_i ln 2 times another. */
@@ -149,7 +147,7 @@ WEFT_INLINE void rotation_weights(const shapes *at, const expansion *own, int lo
 
 /* Sums over the views for the columns themselves, the three of a lobe times v', and for the rotations after them. */
 typedef struct normal_lanes {
-    lanes h[NORMAL_MAX][NORMAL_MAX], g[NORMAL_MAX], scale;
+    lanes h[WEFT_NORMAL_MAX][WEFT_NORMAL_MAX], g[WEFT_NORMAL_MAX], scale;
 } normal_lanes;
 
 /* A column of the normal equations is T times one of the pass, times v'_k where that is the k-th of a lobe: the weight
@@ -192,7 +190,7 @@ WEFT_INLINE void expand_product(int lobes, const lanes *row, const expansion *ow
 }
 
 WEFT_INLINE void add_columns(int lobes, const local_gram *gram, const expansion *own, const view_state *state,
-                             const column_weights *weights, lanes s[NORMAL_MAX], normal_lanes *sums)
+                             const column_weights *weights, lanes s[WEFT_NORMAL_MAX], normal_lanes *sums)
 {
     const int n = 1 + 4 * lobes;
     UNROLL
@@ -212,7 +210,7 @@ WEFT_INLINE void add_columns(int lobes, const local_gram *gram, const expansion 
 }
 
 WEFT_INLINE void add_rotations(int lobes, const shapes *at, const local_gram *gram, const expansion *own,
-                               const view_state *state, const column_weights *weights, lanes s[NORMAL_MAX],
+                               const view_state *state, const column_weights *weights, lanes s[WEFT_NORMAL_MAX],
                                normal_lanes *sums)
 {
     const int n = 1 + 4 * lobes;
@@ -257,7 +255,7 @@ WEFT_INLINE void sum_views(int lobes, bool rotate, const weft_bundle *bundle, co
     const shapes at = shapes_of(&trial->fit);
     for (int view = 0; view < bundle->view_stride; view += LANES) {
         local_gram gram;
-        lanes s[NORMAL_MAX];
+        lanes s[WEFT_NORMAL_MAX];
         linear_lanes rows = load_linear(trial, lobes, bundle->view_stride, view);
         view_state state = state_of(&rows, &linear, lobes, with_table);
         expansion own = expand(bundle, &at, &linear, &state, lobes, view);
@@ -300,7 +298,7 @@ static int list_parameters(const weft_fit *fit, bool rotate, parameter *all)
     return n;
 }
 
-static double combine(const parameter *a, const parameter *b, double h[NORMAL_MAX][NORMAL_MAX])
+static double combine(const parameter *a, const parameter *b, double h[WEFT_NORMAL_MAX][WEFT_NORMAL_MAX])
 {
     double sum = 0;
     for (int i = 0; i < a->count; i++) {
@@ -312,8 +310,8 @@ static double combine(const parameter *a, const parameter *b, double h[NORMAL_MA
 
 static void to_parameters(const weft_fit *fit, bool rotate, const normal_lanes *sums, weft_normal *normal)
 {
-    parameter all[WEFT_SOLVE_MAX];
-    double h[NORMAL_MAX][NORMAL_MAX], g[NORMAL_MAX];
+    parameter all[WEFT_NORMAL_MAX];
+    double h[WEFT_NORMAL_MAX][WEFT_NORMAL_MAX], g[WEFT_NORMAL_MAX];
     int n = list_parameters(fit, rotate, all);
     for (int p = 0; p < n; p++) {
         g[p] = (double)lanes_sum(sums->g[p]);
