@@ -2,7 +2,7 @@
  * reflectance. Usage: bench_truth SESSION DATASET.btf.h5 SESSION.truth.h5 */
 #include "tests/support/truth.h"
 #include "btf/session.h"
-#include "registration/statistics.h"
+#include "btf/statistics.h"
 
 #include <jansson.h>
 #include <stdio.h>

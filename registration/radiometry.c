@@ -1,6 +1,6 @@
 #include "registration/radiometry.h"
 
-#include "registration/statistics.h"
+#include "btf/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "registration/white_estimate.h"
 
-#include "registration/statistics.h"
+#include "btf/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #ifndef WEFT_STUDY_COMPARE_PAGE_H
 #define WEFT_STUDY_COMPARE_PAGE_H
 
+#include "btf/page.h"
 #include "study/compare.h"
-#include "study/page.h"
 
 /* The few numbers that matter most, and what the dataset is. */
 void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison);

@@ -9,7 +9,7 @@
 typedef struct weft_left_out {
     weft_image_pair pair;
     char name[64];               /* of the photograph's file, else "image N" */
-    weft_prediction_error error; /* over all channels of its valid samples */
+    weft_error_summary error;    /* over all channels of its valid samples */
 } weft_left_out;
 
 /* Freed with weft_leave_one_out_free. */

@@ -1,9 +1,9 @@
 #include "study/model_report.h"
 
 #include "btf/material_models.h"
+#include "btf/page.h"
 #include "player/letters.h"
 #include "player/mip_layout.h"
-#include "study/page.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,11 +3,11 @@
 #define WEFT_STUDY_SCENES_H
 
 #include "btf/dataset.h"
+#include "btf/error_summary.h"
 #include "btf/image.h"
 #include "btf/material.h"
 #include "btf/progress.h"
 #include "player/player.h"
-#include "study/prediction_error.h"
 
 /* What is drawn: the modes of the player, and BARD as a dataset in mode raw. */
 enum { WEFT_SCENE_COUNT = 3, WEFT_SCENE_BARD = WEFT_MODE_COUNT, WEFT_SCENE_MODELS };
@@ -19,7 +19,7 @@ const char *weft_scenes_model_name(int model);
 typedef struct weft_scene_pictures {
     const char *caption;
     weft_image picture[WEFT_SCENE_MODELS];
-    weft_prediction_error error[WEFT_SCENE_MODELS]; /* against raw, over the lit pixels of the mesh */
+    weft_error_summary error[WEFT_SCENE_MODELS]; /* against raw, over the lit pixels of the mesh */
 } weft_scene_pictures;
 
 /* Freed with weft_scenes_free. */

@@ -102,7 +102,7 @@ static void mip_texels_are_fits_of_the_mean_of_their_children(void **state)
     weft_material children = compress_file("children.btf.h5", &options, NULL);
     weft_material parents = compress_file("parents.btf.h5", &options, NULL);
     for (int level = 1; level < 3; level++) {
-        const weft_material_error *child = &children.level[level].error, *parent = &parents.level[level - 1].error;
+        const weft_error_summary *child = &children.level[level].error, *parent = &parents.level[level - 1].error;
         assert_float_equal(child->relative_rmse / parent->relative_rmse, 1, 0.01);
         assert_float_equal(child->median_relative / parent->median_relative, 1, 0.05);
     }

@@ -92,3 +92,27 @@ void twin_run(weft_gl_profile profile, const char *const *sources, const twin_ta
     glDeleteProgram(program);
     weft_headless_free(headless);
 }
+
+static void (*compare_dialect)(weft_gl_profile profile);
+
+static void desktop_shader_equals_c(void **state)
+{
+    (void)state;
+    compare_dialect(WEFT_GL_CORE);
+}
+
+static void embedded_shader_equals_c(void **state)
+{
+    (void)state;
+    compare_dialect(WEFT_GL_ES);
+}
+
+int twin_main(const char *name, void (*compare)(weft_gl_profile profile))
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(desktop_shader_equals_c),
+        cmocka_unit_test(embedded_shader_equals_c),
+    };
+    compare_dialect = compare;
+    return cmocka_run_group_tests_name(name, tests, NULL, NULL);
+}

@@ -2,7 +2,7 @@
 #include "registration/registration.h"
 
 #include "btf/dataset.h"
-#include "registration/statistics.h"
+#include "btf/statistics.h"
 #include "tests/btf/cmocka_all.h"
 #include "tests/btf/scratch_folder.h"
 #include "tests/support/truth.h"

@@ -1,0 +1,25 @@
+/* Quantiles of values.
+ *
+ * There is one rule for the rank. Of n values in ascending order, x[0] to x[n - 1], the quantile of the share q is
+ *
+ *     x[round(q (n - 1))]
+ *
+ * where a half is rounded up. So a quantile is always one of the values, the share 0 gives the smallest and the share 1
+ * the largest, and the median of an even number of values is the upper of the two in the middle. A value that is not a
+ * number counts as larger than every number. */
+#ifndef WEFT_BTF_STATISTICS_H
+#define WEFT_BTF_STATISTICS_H
+
+#include <stddef.h>
+
+/* The rank, from 0, of the quantile of `share` (0 to 1) among `count` values, of which there is at least one. Pure. */
+size_t weft_quantile_rank(size_t count, double share);
+
+/* Sorts value [count] in ascending order and gives the quantile of `share` (0 to 1); 0 where there is no value.
+ * Thread-safe for different arrays. */
+double weft_quantile(double *value, size_t count, double share);
+
+/* The same of floats. */
+float weft_quantile_of_floats(float *value, size_t count, double share);
+
+#endif
