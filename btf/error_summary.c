@@ -61,7 +61,7 @@ static weft_error_summary summarise(const weft_compared *value, const uint8_t *g
             scratch[bright++] = fabsf(prediction - sample) / sample;
     }
     double median = (double)weft_quantile_of_floats(scratch, bright, 0.5);
-    double percentile80 = bright > 0 ? (double)scratch[weft_quantile_rank(bright, 0.8)] : 0;
+    double percentile80 = (double)weft_quantile_of_floats(scratch, bright, 0.8);
     for (size_t i = 0; i < count; i++) {
         if (!(group && group[i] != chosen) && value[i].sample > 0)
             scratch[lit++] = value[i].sample;

@@ -12,7 +12,8 @@
  * dim sample is mostly noise, and its relative error says nothing: it is left out of the median and of the percentile
  * (no other number takes its place). It counts in the two RMSEs, which it hardly changes. The rule for the rank of a
  * quantile is that of btf/statistics.h. Without values all numbers are 0. The median and the percentile are 0 where all
- * values are dim. The PSNR is infinite where the prediction is perfect, and 0 where no sample is above 0.
+ * values are dim. The PSNR is infinite where the prediction is perfect (JSON, which has no infinity,
+ * says 0), and 0 where no sample is above 0.
  *
  * docs/conventions.md says the same to users. */
 #ifndef WEFT_BTF_ERROR_SUMMARY_H

@@ -17,7 +17,7 @@ static const char *const style =
     "td:first-child,th:first-child,.text{text-align:left}th{font-weight:600;border-bottom:1px solid #ccc}\n"
     "table.long{width:100%;font-size:.8em}table.long th{position:sticky;top:0;background:#fcfcfb}\n"
     "tr.bad td{background:#fdecea}tr.weak td{background:#fff6df}\n"
-    ".tiles{display:flex;flex-wrap:wrap;gap:12px}\n"
+    ".tiles{display:grid;grid-template-columns:repeat(auto-fill,minmax(165px,1fr));gap:12px}\n"
     ".tiles div{border:1px solid #ccc;border-radius:6px;padding:.5em .9em;background:#fff;font-size:.85em;color:#555}\n"
     ".tiles b{display:block;font-size:1.7em;color:#1c1c1c}\n"
     ".row{display:flex;flex-wrap:wrap;gap:12px}figure{margin:0}\n"

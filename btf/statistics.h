@@ -12,14 +12,18 @@
 
 #include <stddef.h>
 
-/* The rank, from 0, of the quantile of `share` (0 to 1) among `count` values, of which there is at least one. Pure. */
-size_t weft_quantile_rank(size_t count, double share);
+#ifdef __cplusplus
+extern "C" {
+#endif
 
-/* Sorts value [count] in ascending order and gives the quantile of `share` (0 to 1); 0 where there is no value.
- * Thread-safe for different arrays. */
+/* The quantile of `share` (0 to 1) of value [count], which it reorders; 0 where there is no value. Takes time in
+ * proportion to the count. Thread-safe for different arrays. */
 double weft_quantile(double *value, size_t count, double share);
 
 /* The same of floats. */
 float weft_quantile_of_floats(float *value, size_t count, double share);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

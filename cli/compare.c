@@ -2,6 +2,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 
+#include <math.h>
 #include <stdio.h>
 
 typedef struct compare_command {
@@ -106,7 +107,8 @@ static void say_truth_error(const common_options *common, const weft_truth_scene
     snprintf(event, sizeof event,
              "{\"event\":\"truth\",\"scene\":\"%s\",\"light\":\"%s\",\"model\":\"%s\",\"relative_rmse\":%.6g,"
              "\"psnr_db\":%.6g,\"block_relative_rmse\":%.6g}",
-             scene->caption, name[light], what, e->error.relative_rmse, e->error.psnr_db, e->block_relative_rmse);
+             scene->caption, name[light], what, e->error.relative_rmse,
+             isfinite(e->error.psnr_db) ? e->error.psnr_db : 0, e->block_relative_rmse);
     command_event(common, event);
 }
 

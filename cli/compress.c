@@ -5,6 +5,7 @@
 #include "study/model_report.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -211,7 +212,7 @@ static void say_errors(const common_options *common, const weft_material *materi
                  "{\"event\":\"level\",\"level\":%d,\"width\":%d,\"height\":%d,\"median_relative\":%.6g,"
                  "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%.6g}",
                  k, level->width, level->height, error->median_relative, error->percentile80_relative, error->rmse,
-                 error->relative_rmse, error->psnr_db);
+                 error->relative_rmse, isfinite(error->psnr_db) ? error->psnr_db : 0);
         command_event(common, event);
     }
 }
