@@ -2,13 +2,10 @@
 #ifndef WEFT_TESTS_PLAYER_STAGE_H
 #define WEFT_TESTS_PLAYER_STAGE_H
 
-#include "../btf/cmocka_all.h"
 #include "player/context.h"
 #include "player/player.h"
 #include "reflectance/lafortune.h"
-
-/* Fails the test with the message of `error`. */
-void expect_ok(weft_code code, const weft_error *error);
+#include "tests/support/expect_ok.h"
 
 /* A context and a player with the drape on it; ends the program with 77 where there is no OpenGL. */
 typedef struct stage {

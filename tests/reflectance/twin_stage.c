@@ -2,7 +2,7 @@
 
 #include "player/gl.h"
 #include "player/shaders.h"
-#include "tests/btf/cmocka_all.h"
+#include "tests/support/expect_ok.h"
 #include "tests/support/keep_modules.h"
 
 #include <stdlib.h>
@@ -19,12 +19,6 @@ static const char fragment_main[] = "uniform sampler2D table;\n"
                                     "                  texelFetch(query, at + ivec2(0, 128), 0),\n"
                                     "                  texelFetch(query, at + ivec2(0, 256), 0));\n"
                                     "}\n";
-
-static void expect_ok(weft_code code, const weft_error *error)
-{
-    if (code != WEFT_OK)
-        fail_msg("%s", error->message);
-}
 
 static GLuint upload(const float *rgba, int width, int height)
 {
