@@ -101,6 +101,24 @@ static void print_surface(FILE *out, const weft_tile_mesh *mesh, int yarn)
     fprintf(out, "surface of yarn %d: %.3g mm2 round %.3g mm3\n", yarn + 1, area, volume);
 }
 
+/* Mean sine of the angle by which fibres lean round their yarn, seen from outside: what the twists make. */
+static double lean_of(const weft_stitch *stitch, const weft_tile_mesh *mesh, int yarn)
+{
+    const weft_stitch_yarn *y = &stitch->yarn[yarn];
+    weft_vec3 along = weft_unit(weft_vec3_of(y->tiles_x * stitch->width, y->tiles_y * stitch->height, 0));
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < mesh->vertex_count; i++) {
+        if (mesh->yarn[i] != yarn)
+            continue;
+        const float *n = mesh->normal[i], *f = mesh->tangent[i];
+        weft_vec3 fibre = weft_vec3_of(f[0], f[1], f[2]), round = weft_cross(weft_vec3_of(n[0], n[1], n[2]), along);
+        sum += weft_dot(fibre, along) < 0 ? -weft_dot(fibre, round) : weft_dot(fibre, round);
+        count++;
+    }
+    return sum / count;
+}
+
 static weft_code print_mesh(const weft_stitch *stitch, const char *path, FILE *out, weft_error *error)
 {
     weft_tile_mesh mesh;
@@ -108,6 +126,9 @@ static weft_code print_mesh(const weft_stitch *stitch, const char *path, FILE *o
     fprintf(out, "bottom and top: %.3g %.3g\n", mesh.bottom, mesh.top);
     for (int i = 0; i < stitch->yarn_count; i++)
         print_surface(out, &mesh, i);
+    for (int i = 0; i < stitch->yarn_count; i++)
+        if (stitch->yarn[i].tiles_x != 0 || stitch->yarn[i].tiles_y != 0)
+            fprintf(out, "lean of the fibres of yarn %d: %.3g\n", i + 1, lean_of(stitch, &mesh, i));
     weft_tile_mesh_free(&mesh);
     return WEFT_OK;
 }
