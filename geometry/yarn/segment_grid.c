@@ -15,13 +15,14 @@ static weft_real yarn_reach(const weft_stitch_yarn *yarn, weft_real margin)
     return fmax(yarn->radius_side, yarn->radius_up) + margin;
 }
 
-static void find_bounds(const yarn_skeleton *skeleton, weft_real margin, segment_grid *grid, weft_real *smallest_reach)
+static void find_bounds(const weft_yarn_skeleton *skeleton, weft_real margin, weft_segment_grid *grid,
+                        weft_real *smallest_reach)
 {
     *smallest_reach = INFINITY;
     grid->bottom = INFINITY;
     grid->top = -INFINITY;
     for (int i = 0; i < skeleton->strand_count; i++) {
-        const yarn_strand *strand = &skeleton->strand[i];
+        const weft_yarn_strand *strand = &skeleton->strand[i];
         weft_real reach = yarn_reach(&skeleton->stitch->yarn[strand->yarn], margin);
         *smallest_reach = fmin(*smallest_reach, reach);
         for (int k = 0; k < strand->station_count; k++) {
@@ -37,9 +38,10 @@ static int buckets_across(weft_real extent, weft_real wanted)
     return (int)weft_clamp(floor(extent / wanted), 1, MAX_BUCKETS_ACROSS);
 }
 
-static bucket_box box_of_segment(const segment_grid *grid, const yarn_strand *strand, int station, weft_real margin)
+static bucket_box box_of_segment(const weft_segment_grid *grid, const weft_yarn_strand *strand, int station,
+                                 weft_real margin)
 {
-    const yarn_station *a = &grid->skeleton->station[station], *b = a + 1;
+    const weft_yarn_station *a = &grid->skeleton->station[station], *b = a + 1;
     weft_real reach = yarn_reach(&grid->skeleton->stitch->yarn[strand->yarn], margin);
     const weft_real low[3] = {fmin(a->at.x, b->at.x), fmin(a->at.y, b->at.y), fmin(a->at.z, b->at.z) - grid->bottom};
     const weft_real high[3] = {fmax(a->at.x, b->at.x), fmax(a->at.y, b->at.y), fmax(a->at.z, b->at.z) - grid->bottom};
@@ -54,7 +56,7 @@ static bucket_box box_of_segment(const segment_grid *grid, const yarn_strand *st
     return box;
 }
 
-static size_t bucket_of(const segment_grid *grid, int x, int y, int z)
+static size_t bucket_of(const weft_segment_grid *grid, int x, int y, int z)
 {
     return ((size_t)z * (size_t)grid->count[1] + (size_t)y) * (size_t)grid->count[0] + (size_t)x;
 }
@@ -65,7 +67,7 @@ static int floor_divide(int a, int b)
 }
 
 /* Counts a segment in its buckets, or stores it there where `fill` is given. */
-static void list_segment(segment_grid *grid, const bucket_box *box, int strand, int station, size_t *fill)
+static void list_segment(weft_segment_grid *grid, const bucket_box *box, int strand, int station, size_t *fill)
 {
     for (int z = box->low[2]; z < box->high[2]; z++) {
         for (int y = box->low[1]; y < box->high[1]; y++) {
@@ -73,7 +75,7 @@ static void list_segment(segment_grid *grid, const bucket_box *box, int strand, 
                 int tiles_x = floor_divide(x, grid->count[0]), tiles_y = floor_divide(y, grid->count[1]);
                 size_t bucket = bucket_of(grid, x - tiles_x * grid->count[0], y - tiles_y * grid->count[1], z);
                 if (fill)
-                    grid->segment[fill[bucket]++] = (near_segment){strand, station, -tiles_x, -tiles_y};
+                    grid->segment[fill[bucket]++] = (weft_near_segment){strand, station, -tiles_x, -tiles_y};
                 else
                     grid->start[bucket + 1]++;
             }
@@ -81,11 +83,11 @@ static void list_segment(segment_grid *grid, const bucket_box *box, int strand, 
     }
 }
 
-static void list_all(segment_grid *grid, weft_real margin, size_t *fill)
+static void list_all(weft_segment_grid *grid, weft_real margin, size_t *fill)
 {
-    const yarn_skeleton *skeleton = grid->skeleton;
+    const weft_yarn_skeleton *skeleton = grid->skeleton;
     for (int i = 0; i < skeleton->strand_count; i++) {
-        const yarn_strand *strand = &skeleton->strand[i];
+        const weft_yarn_strand *strand = &skeleton->strand[i];
         for (int k = 0; k + 1 < strand->station_count; k++) {
             bucket_box box = box_of_segment(grid, strand, strand->first_station + k, margin);
             list_segment(grid, &box, i, strand->first_station + k, fill);
@@ -94,11 +96,11 @@ static void list_all(segment_grid *grid, weft_real margin, size_t *fill)
 }
 
 /* Entries of all lists, without making them. */
-static double entry_count(const segment_grid *grid, weft_real margin)
+static double entry_count(const weft_segment_grid *grid, weft_real margin)
 {
     double total = 0;
     for (int i = 0; i < grid->skeleton->strand_count; i++) {
-        const yarn_strand *strand = &grid->skeleton->strand[i];
+        const weft_yarn_strand *strand = &grid->skeleton->strand[i];
         for (int k = 0; k + 1 < strand->station_count; k++) {
             bucket_box box = box_of_segment(grid, strand, strand->first_station + k, margin);
             total += (double)(box.high[0] - box.low[0]) * (box.high[1] - box.low[1]) * (box.high[2] - box.low[2]);
@@ -107,7 +109,7 @@ static double entry_count(const segment_grid *grid, weft_real margin)
     return total;
 }
 
-static weft_code fill_lists(segment_grid *grid, weft_real margin, size_t buckets, weft_error *error)
+static weft_code fill_lists(weft_segment_grid *grid, weft_real margin, size_t buckets, weft_error *error)
 {
     list_all(grid, margin, NULL);
     for (size_t i = 0; i < buckets; i++)
@@ -124,12 +126,12 @@ static weft_code fill_lists(segment_grid *grid, weft_real margin, size_t buckets
     return WEFT_OK;
 }
 
-weft_code segment_grid_create(const yarn_skeleton *skeleton, weft_real margin, const char *path, segment_grid *grid,
-                              weft_error *error)
+weft_code weft_segment_grid_create(const weft_yarn_skeleton *skeleton, weft_real margin, const char *path,
+                                   weft_segment_grid *grid, weft_error *error)
 {
     const weft_stitch *stitch = skeleton->stitch;
     weft_real reach;
-    *grid = (segment_grid){.skeleton = skeleton};
+    *grid = (weft_segment_grid){.skeleton = skeleton};
     find_bounds(skeleton, margin, grid, &reach);
     weft_real wanted = reach / 2;
     grid->count[0] = buckets_across(stitch->width, wanted);
@@ -146,15 +148,15 @@ weft_code segment_grid_create(const yarn_skeleton *skeleton, weft_real margin, c
     weft_code code = grid->start ? fill_lists(grid, margin, buckets, error)
                                  : weft_fail_memory(error, "buckets", buckets * sizeof *grid->start);
     if (code != WEFT_OK)
-        segment_grid_free(grid);
+        weft_segment_grid_free(grid);
     return code;
 }
 
-void segment_grid_free(segment_grid *grid)
+void weft_segment_grid_free(weft_segment_grid *grid)
 {
     free(grid->start);
     free(grid->segment);
-    *grid = (segment_grid){0};
+    *grid = (weft_segment_grid){0};
 }
 
 static weft_real wrap(weft_real x, weft_real period)
@@ -163,7 +165,7 @@ static weft_real wrap(weft_real x, weft_real period)
     return wrapped < period ? wrapped : 0;
 }
 
-weft_vec3 place_in_tile(const weft_stitch *stitch, weft_vec3 place)
+weft_vec3 weft_place_in_tile(const weft_stitch *stitch, weft_vec3 place)
 {
     return weft_vec3_of(wrap(place.x, stitch->width), wrap(place.y, stitch->height), place.z);
 }
@@ -174,7 +176,7 @@ static int bucket_index(weft_real x, weft_real size, int count)
     return index < count ? index : count - 1;
 }
 
-const near_segment *segments_near(const segment_grid *grid, weft_vec3 place, size_t *count)
+const weft_near_segment *weft_segments_near(const weft_segment_grid *grid, weft_vec3 place, size_t *count)
 {
     *count = 0;
     if (!(place.z >= grid->bottom && place.z <= grid->top))

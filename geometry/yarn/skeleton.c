@@ -14,8 +14,8 @@ typedef struct bezier {
     weft_vec3 handle[4];
 } bezier;
 
-weft_code stitch_fail_at(const weft_stitch *stitch, const char *path, int yarn, int point, weft_error *error,
-                         const char *format, ...)
+weft_code weft_stitch_fail_at(const weft_stitch *stitch, const char *path, int yarn, int point, weft_error *error,
+                              const char *format, ...)
 {
     char what[WEFT_MESSAGE_SIZE];
     weft_text_place place = stitch->yarn[yarn].place[point];
@@ -91,7 +91,8 @@ static int piece_stations(const weft_stitch_yarn *yarn, const bezier *piece)
     return (int)fmin(ceil(bezier_length(piece) / radius * STATIONS_PER_RADIUS), MAX_STATIONS) + 1;
 }
 
-static weft_code count_stations(const weft_stitch *stitch, const char *path, yarn_skeleton *skeleton, weft_error *error)
+static weft_code count_stations(const weft_stitch *stitch, const char *path, weft_yarn_skeleton *skeleton,
+                                weft_error *error)
 {
     long long total = 0;
     for (int i = 0; i < stitch->yarn_count; i++) {
@@ -103,9 +104,9 @@ static weft_code count_stations(const weft_stitch *stitch, const char *path, yar
         }
         total += of_yarn * yarn->copy_count;
         if (total > MAX_STATIONS)
-            return stitch_fail_at(stitch, path, i, 0, error,
-                                  "yarns up to this one are too long for their radius: %lld stations, at most %d",
-                                  total, MAX_STATIONS);
+            return weft_stitch_fail_at(stitch, path, i, 0, error,
+                                       "yarns up to this one are too long for their radius: %lld stations, at most %d",
+                                       total, MAX_STATIONS);
         skeleton->strand_count += yarn->copy_count;
     }
     skeleton->station_count = (int)total;
@@ -113,13 +114,13 @@ static weft_code count_stations(const weft_stitch *stitch, const char *path, yar
 }
 
 static weft_code place_station(const weft_stitch *stitch, const char *path, int yarn, const bezier *piece, weft_real t,
-                               yarn_station *station, weft_error *error)
+                               weft_yarn_station *station, weft_error *error)
 {
     station->at = bezier_at(piece, t);
     station->tangent = weft_unit(bezier_velocity(piece, t));
     weft_vec3 across = weft_vec3_of(-station->tangent.y, station->tangent.x, 0);
     if (!(weft_length(across) >= MIN_ACROSS))
-        return stitch_fail_at(
+        return weft_stitch_fail_at(
             stitch, path, yarn, station->point, error,
             "after this point the yarn stands upright at (%.3g, %.3g, %.3g) mm, where its cross-section "
             "has no direction",
@@ -130,7 +131,7 @@ static weft_code place_station(const weft_stitch *stitch, const char *path, int 
 }
 
 /* The stations of one yarn, not displaced; *count of them. */
-static weft_code trace_yarn(const weft_stitch *stitch, const char *path, int yarn_index, yarn_station *station,
+static weft_code trace_yarn(const weft_stitch *stitch, const char *path, int yarn_index, weft_yarn_station *station,
                             int *count, weft_error *error)
 {
     const weft_stitch_yarn *yarn = &stitch->yarn[yarn_index];
@@ -149,7 +150,7 @@ static weft_code trace_yarn(const weft_stitch *stitch, const char *path, int yar
     return WEFT_OK;
 }
 
-static void copy_strand(yarn_station *to, const yarn_station *from, int count, weft_vec3 displacement)
+static void copy_strand(weft_yarn_station *to, const weft_yarn_station *from, int count, weft_vec3 displacement)
 {
     for (int i = 0; i < count; i++) {
         to[i] = from[i];
@@ -163,47 +164,49 @@ static weft_real periodic_twist(const weft_stitch_yarn *yarn, weft_real length)
     return round(yarn->twist * length * yarn->plies) / (yarn->plies * length);
 }
 
-static weft_code trace_strands(const char *path, yarn_skeleton *skeleton, weft_error *error)
+static weft_code trace_strands(const char *path, weft_yarn_skeleton *skeleton, weft_error *error)
 {
     const weft_stitch *stitch = skeleton->stitch;
-    yarn_station *next = skeleton->station;
-    yarn_strand *strand = skeleton->strand;
+    weft_yarn_station *next = skeleton->station;
+    weft_yarn_strand *strand = skeleton->strand;
     for (int i = 0; i < stitch->yarn_count; i++) {
         const weft_stitch_yarn *yarn = &stitch->yarn[i];
-        yarn_station *original = next;
+        weft_yarn_station *original = next;
         int count;
         WEFT_TRY(trace_yarn(stitch, path, i, original, &count, error));
         weft_real twist = periodic_twist(yarn, original[count - 1].arclength);
         for (int c = yarn->copy_count - 1; c >= 0; c--, strand++) {
             /* The original lies in the place of the last of its copies, which is made at the end. */
-            yarn_station *place = original + (ptrdiff_t)c * count;
+            weft_yarn_station *place = original + (ptrdiff_t)c * count;
             copy_strand(place, original, count, yarn->copy[c]);
-            *strand = (yarn_strand){i, (int)(place - skeleton->station), count, twist};
+            *strand = (weft_yarn_strand){i, (int)(place - skeleton->station), count, twist};
         }
         next = original + (ptrdiff_t)yarn->copy_count * count;
     }
     return WEFT_OK;
 }
 
-weft_code yarn_skeleton_create(const weft_stitch *stitch, const char *path, yarn_skeleton *skeleton, weft_error *error)
+weft_code weft_yarn_skeleton_create(const weft_stitch *stitch, const char *path, weft_yarn_skeleton *skeleton,
+                                    weft_error *error)
 {
-    *skeleton = (yarn_skeleton){.stitch = stitch};
+    *skeleton = (weft_yarn_skeleton){.stitch = stitch};
     WEFT_TRY(count_stations(stitch, path, skeleton, error));
     skeleton->station = calloc((size_t)skeleton->station_count, sizeof *skeleton->station);
     skeleton->strand = calloc((size_t)skeleton->strand_count, sizeof *skeleton->strand);
     weft_code code;
     if (!skeleton->station || !skeleton->strand)
-        code = weft_fail_memory(error, "stations of yarns", (size_t)skeleton->station_count * sizeof(yarn_station));
+        code =
+            weft_fail_memory(error, "stations of yarns", (size_t)skeleton->station_count * sizeof(weft_yarn_station));
     else
         code = trace_strands(path, skeleton, error);
     if (code != WEFT_OK)
-        yarn_skeleton_free(skeleton);
+        weft_yarn_skeleton_free(skeleton);
     return code;
 }
 
-void yarn_skeleton_free(yarn_skeleton *skeleton)
+void weft_yarn_skeleton_free(weft_yarn_skeleton *skeleton)
 {
     free(skeleton->station);
     free(skeleton->strand);
-    *skeleton = (yarn_skeleton){0};
+    *skeleton = (weft_yarn_skeleton){0};
 }

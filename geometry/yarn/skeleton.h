@@ -8,33 +8,34 @@
 
 #include "geometry/yarn/stitch.h"
 
-typedef struct yarn_station {
+typedef struct weft_yarn_station {
     weft_vec3 at, tangent, side, up;
     weft_real arclength; /* from the first station of the strand, mm */
     int point;           /* control point at or before it */
-} yarn_station;
+} weft_yarn_station;
 
 /* One copy of a yarn. Its last station is the first of its next repeat. */
-typedef struct yarn_strand {
+typedef struct weft_yarn_strand {
     int yarn, first_station, station_count;
     weft_real turns_per_mm; /* twist, rounded so that the plies repeat with the tile */
-} yarn_strand;
+} weft_yarn_strand;
 
-typedef struct yarn_skeleton {
+typedef struct weft_yarn_skeleton {
     const weft_stitch *stitch; /* not owned */
     int station_count, strand_count;
-    yarn_station *station;
-    yarn_strand *strand;
-} yarn_skeleton;
+    weft_yarn_station *station;
+    weft_yarn_strand *strand;
+} weft_yarn_skeleton;
 
-/* Places stations no further apart than a sixth of the smaller radius. The caller frees with yarn_skeleton_free.
+/* Places stations no further apart than a sixth of the smaller radius. The caller frees with weft_yarn_skeleton_free.
  * Errors: WEFT_BAD_INPUT for more yarn than a tile can hold, or yarn that stands upright, where side is undefined;
  * they name `path` and the control point. WEFT_SYSTEM. */
-weft_code yarn_skeleton_create(const weft_stitch *stitch, const char *path, yarn_skeleton *skeleton, weft_error *error);
-void yarn_skeleton_free(yarn_skeleton *skeleton);
+weft_code weft_yarn_skeleton_create(const weft_stitch *stitch, const char *path, weft_yarn_skeleton *skeleton,
+                                    weft_error *error);
+void weft_yarn_skeleton_free(weft_yarn_skeleton *skeleton);
 
 /* The failure "PATH:LINE:COLUMN: message" at a control point of a yarn. */
-weft_code stitch_fail_at(const weft_stitch *stitch, const char *path, int yarn, int point, weft_error *error,
-                         const char *format, ...) __attribute__((format(printf, 6, 7)));
+weft_code weft_stitch_fail_at(const weft_stitch *stitch, const char *path, int yarn, int point, weft_error *error,
+                              const char *format, ...) __attribute__((format(printf, 6, 7)));
 
 #endif

@@ -5,8 +5,8 @@
 
 weft_code weft_stitch_parse(const char *text, const char *path, weft_stitch *stitch, weft_error *error)
 {
-    WEFT_TRY(stitch_parse_text(text, path, stitch, error));
-    weft_code code = stitch_check(stitch, path, error);
+    WEFT_TRY(weft_stitch_parse_text(text, path, stitch, error));
+    weft_code code = weft_stitch_check(stitch, path, error);
     if (code != WEFT_OK)
         weft_stitch_free(stitch);
     return code;

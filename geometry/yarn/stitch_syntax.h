@@ -5,9 +5,9 @@
 #include "geometry/yarn/stitch.h"
 
 /* What the text says, every number in its range and every yarn periodic. Frees what it allocated on failure. */
-weft_code stitch_parse_text(const char *text, const char *path, weft_stitch *stitch, weft_error *error);
+weft_code weft_stitch_parse_text(const char *text, const char *path, weft_stitch *stitch, weft_error *error);
 
 /* Whether the yarns are solids: none bends tighter than its radius, stands upright or runs through another. */
-weft_code stitch_check(const weft_stitch *stitch, const char *path, weft_error *error);
+weft_code weft_stitch_check(const weft_stitch *stitch, const char *path, weft_error *error);
 
 #endif

@@ -11,7 +11,7 @@ enum { MAX_JOINED = 8 };
 /* Where a place lies in the slab of a segment. */
 typedef struct yarn_foot {
     const weft_stitch_yarn *yarn;
-    const yarn_strand *strand;
+    const weft_yarn_strand *strand;
     weft_vec3 tangent, side, up;
     weft_real q_side, q_up; /* in the cross-section, in radii */
     weft_real phase_rad;    /* by which the plies have turned */
@@ -23,9 +23,9 @@ static weft_vec3 mix(weft_vec3 a, weft_vec3 b, weft_real t)
 }
 
 /* Whether the place is in the slab of the segment. */
-static bool find_foot(const segment_grid *grid, const near_segment *near, weft_vec3 place, yarn_foot *foot)
+static bool find_foot(const weft_segment_grid *grid, const weft_near_segment *near, weft_vec3 place, yarn_foot *foot)
 {
-    const yarn_station *a = &grid->skeleton->station[near->station], *b = a + 1;
+    const weft_yarn_station *a = &grid->skeleton->station[near->station], *b = a + 1;
     weft_vec3 from_a = weft_subtract(place, station_place(grid, near, near->station));
     weft_real before = weft_dot(from_a, a->tangent);
     if (before < 0)
@@ -34,7 +34,7 @@ static bool find_foot(const segment_grid *grid, const near_segment *near, weft_v
     if (after >= 0)
         return false;
     weft_real t = before / (before - after);
-    const yarn_strand *strand = &grid->skeleton->strand[near->strand];
+    const weft_yarn_strand *strand = &grid->skeleton->strand[near->strand];
     const weft_stitch_yarn *yarn = &grid->skeleton->stitch->yarn[strand->yarn];
     weft_vec3 offset = weft_subtract(from_a, weft_scale(weft_subtract(b->at, a->at), t));
     *foot = (yarn_foot){.yarn = yarn,
@@ -96,11 +96,11 @@ static weft_real section_value(const yarn_foot *foot)
 /* The values of the yarns met so far, each joined over its own branches. */
 typedef struct joined_yarns {
     int count;
-    const yarn_strand *strand[MAX_JOINED];
+    const weft_yarn_strand *strand[MAX_JOINED];
     weft_real value[MAX_JOINED];
 } joined_yarns;
 
-static void join(joined_yarns *joined, const yarn_strand *strand, weft_real value, weft_real blend)
+static void join(joined_yarns *joined, const weft_yarn_strand *strand, weft_real value, weft_real blend)
 {
     int i = 0;
     while (i < joined->count && joined->strand[i] != strand)
@@ -116,28 +116,28 @@ static void join(joined_yarns *joined, const yarn_strand *strand, weft_real valu
     }
 }
 
-weft_real yarn_field_value(const segment_grid *grid, weft_vec3 place)
+weft_real weft_yarn_field_value(const weft_segment_grid *grid, weft_vec3 place)
 {
     size_t count;
-    const near_segment *near = segments_near(grid, place, &count);
+    const weft_near_segment *near = weft_segments_near(grid, place, &count);
     joined_yarns joined = {0};
     for (size_t i = 0; i < count; i++) {
         yarn_foot foot;
         if (find_foot(grid, &near[i], place, &foot))
             join(&joined, foot.strand, section_value(&foot), grid->skeleton->stitch->blend);
     }
-    weft_real value = YARN_FIELD_FAR;
+    weft_real value = WEFT_YARN_FIELD_FAR;
     for (int i = 0; i < joined.count; i++)
         value = fmin(value, joined.value[i]);
     return value;
 }
 
-static weft_real value_anywhere(const segment_grid *grid, weft_vec3 place)
+static weft_real value_anywhere(const weft_segment_grid *grid, weft_vec3 place)
 {
-    return yarn_field_value(grid, place_in_tile(grid->skeleton->stitch, place));
+    return weft_yarn_field_value(grid, weft_place_in_tile(grid->skeleton->stitch, place));
 }
 
-weft_vec3 yarn_field_normal(const segment_grid *grid, weft_vec3 at, weft_real step)
+weft_vec3 weft_yarn_field_normal(const weft_segment_grid *grid, weft_vec3 at, weft_real step)
 {
     weft_real x = value_anywhere(grid, weft_vec3_of(at.x + step, at.y, at.z)) -
                   value_anywhere(grid, weft_vec3_of(at.x - step, at.y, at.z));
@@ -168,10 +168,10 @@ static weft_vec3 fibre_direction(const yarn_foot *foot)
     return weft_unit(weft_add(foot->tangent, weft_add(of_plies, of_fibres)));
 }
 
-int yarn_field_fibre(const segment_grid *grid, weft_vec3 place, weft_vec3 *tangent)
+int weft_yarn_field_fibre(const weft_segment_grid *grid, weft_vec3 place, weft_vec3 *tangent)
 {
     size_t count;
-    const near_segment *near = segments_near(grid, place, &count);
+    const weft_near_segment *near = weft_segments_near(grid, place, &count);
     weft_real least = INFINITY;
     int yarn = -1;
     for (size_t i = 0; i < count; i++) {

@@ -12,16 +12,16 @@
 #include "geometry/yarn/segment_grid.h"
 
 /* Value of the field where no yarn is near. */
-#define YARN_FIELD_FAR 1e9
+#define WEFT_YARN_FIELD_FAR 1e9
 
 /* The field at a place in the tile, about mm near the surface. */
-weft_real yarn_field_value(const segment_grid *grid, weft_vec3 place_in_tile);
+weft_real weft_yarn_field_value(const weft_segment_grid *grid, weft_vec3 place_in_tile);
 
 /* Unit gradient by central differences over +-`step`; any place. */
-weft_vec3 yarn_field_normal(const segment_grid *grid, weft_vec3 place, weft_real step);
+weft_vec3 weft_yarn_field_normal(const weft_segment_grid *grid, weft_vec3 place, weft_real step);
 
 /* The yarn nearest to a place in the tile, and the direction of its fibres there: the velocity of the helix of plies
  * and, in the ply, of the helix of fibres. Index -1 where no yarn is near. */
-int yarn_field_fibre(const segment_grid *grid, weft_vec3 place_in_tile, weft_vec3 *tangent);
+int weft_yarn_field_fibre(const weft_segment_grid *grid, weft_vec3 place_in_tile, weft_vec3 *tangent);
 
 #endif

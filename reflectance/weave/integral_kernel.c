@@ -51,8 +51,8 @@ typedef struct piece {
 /* sin and cos of x, |x| <= pi. */
 WEFT_INLINE void turn(lanes x, lanes *sine, lanes *cosine)
 {
-    lane_bits far = lanes_abs(x) > LANE_HALF_PI;
-    lanes near = lanes_select(far, lanes_sign_of(x, LANE_PI - lanes_abs(x)), x);
+    lane_bits far = lanes_abs(x) > WEFT_LANE_HALF_PI;
+    lanes near = lanes_select(far, lanes_sign_of(x, WEFT_LANE_PI - lanes_abs(x)), x);
     *sine = lanes_sin(near);
     *cosine = lanes_select(far, -lanes_cos(near), lanes_cos(near));
 }
@@ -155,7 +155,7 @@ WEFT_INLINE float cut_of(const integral *q, const piece *p, panel of, const esti
 /* Adds the integral over a piece; false where it does not settle. */
 WEFT_INLINE bool add_piece(const integral *q, piece p, float *sum)
 {
-    panel stack[MAX_PANELS + 2] = {{0, LANE_HALF_PI}};
+    panel stack[MAX_PANELS + 2] = {{0, WEFT_LANE_HALF_PI}};
     int depth = 1;
     for (int panels = 0; depth > 0; panels++) {
         panel at = stack[--depth];
@@ -242,16 +242,16 @@ WEFT_INLINE void keep_visible(piece *p, double sin_u, double cos_u, weft_vec3 di
 WEFT_INLINE bool filament_integral(const weft_prepared_segment *prepared, integral *q, weft_vec3 half, weft_vec3 light,
                                    weft_vec3 view, float *result)
 {
-    mirror at;
+    weft_mirror at;
     double across = filament_mirror(half, &at), u = atan2(half.y, half.z), umax = prepared->spine.umax;
     *result = 0;
     if (!(across > 0 && fabs(u) < umax))
         return true;
-    double radius = filament_radius(prepared, &prepared->spine, u, at.sin_u, at.cos_u);
+    double radius = weft_filament_radius(prepared, &prepared->spine, u, at.sin_u, at.cos_u);
     q->sin_u = lanes_of((float)at.sin_u);
     q->cos_u = lanes_of((float)at.cos_u);
     q->radius = lanes_of((float)radius);
-    piece p = {-LANE_HALF_PI, LANE_HALF_PI};
+    piece p = {-WEFT_LANE_HALF_PI, WEFT_LANE_HALF_PI};
     keep_visible(&p, at.sin_u, at.cos_u, light);
     keep_visible(&p, at.sin_u, at.cos_u, view);
     if (!(p.low < p.high))

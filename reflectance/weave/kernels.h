@@ -6,29 +6,29 @@
 
 /* What the texture of a yarn depends on. Kinds are columns of one. */
 enum {
-    TABLE_STAPLE,   /* 1 or 0 */
-    TABLE_FILAMENT, /* 1 or 0; an inadmissible segment is neither */
-    TABLE_WARP,     /* 1 or 0 */
-    TABLE_AREA_WEIGHT,
-    TABLE_ALPHA,
-    TABLE_BETA,
-    TABLE_DELTA,
-    TABLE_UMAX,
-    TABLE_RADIUS_SHARE,
-    TABLE_KAPPA,
-    TABLE_WIDTH,
-    TABLE_LENGTH,
-    TABLE_HIGHLIGHT_WIDTH,
-    TABLE_COT_PSI,
-    TABLE_INVERSE_SIN_PSI,
-    TABLE_PHASE_SCALE,
-    TABLE_COLUMNS
+    WEFT_WOVEN_STAPLE,   /* 1 or 0 */
+    WEFT_WOVEN_FILAMENT, /* 1 or 0; an inadmissible segment is neither */
+    WEFT_WOVEN_WARP,     /* 1 or 0 */
+    WEFT_WOVEN_AREA_WEIGHT,
+    WEFT_WOVEN_ALPHA,
+    WEFT_WOVEN_BETA,
+    WEFT_WOVEN_DELTA,
+    WEFT_WOVEN_UMAX,
+    WEFT_WOVEN_RADIUS_SHARE,
+    WEFT_WOVEN_KAPPA,
+    WEFT_WOVEN_WIDTH,
+    WEFT_WOVEN_LENGTH,
+    WEFT_WOVEN_HIGHLIGHT_WIDTH,
+    WEFT_WOVEN_COT_PSI,
+    WEFT_WOVEN_INVERSE_SIN_PSI,
+    WEFT_WOVEN_PHASE_SCALE,
+    WEFT_WOVEN_COLUMNS
 };
 
 struct weft_woven_table {
     int yarn_count;
     bool any_staple, any_filament;
-    float *column[TABLE_COLUMNS]; /* [yarn_count] each, one block */
+    float *column[WEFT_WOVEN_COLUMNS]; /* [yarn_count] each, one block */
 };
 
 #define WEFT_DECLARE_WOVEN_KERNELS(set)                                                                                \

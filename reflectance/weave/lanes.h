@@ -5,14 +5,14 @@
 
 #include "base/lanes.h"
 
-#define LANE_PI 3.14159265f
-#define LANE_HALF_PI 1.57079637f
-#define LANE_HALF_PI_REST (-4.37113883e-8f) /* pi/2 minus that */
+#define WEFT_LANE_PI 3.14159265f
+#define WEFT_LANE_HALF_PI 1.57079637f
+#define WEFT_LANE_HALF_PI_REST (-4.37113883e-8f) /* pi/2 minus that */
 
 /* As in woven_mirror.h. */
-#define LANE_MIN_HALF_SQUARED 1e-12f
-#define LANE_MIN_ACROSS 1e-15f
-#define LANE_MIN_COSINE_SUM 1e-30f
+#define WEFT_LANE_MIN_HALF_SQUARED 1e-12f
+#define WEFT_LANE_MIN_ACROSS 1e-15f
+#define WEFT_LANE_MIN_COSINE_SUM 1e-30f
 
 WEFT_INLINE lanes lanes_abs(lanes x)
 {
@@ -37,7 +37,7 @@ WEFT_INLINE lanes lanes_sin(lanes x)
 /* cos x, |x| <= pi/2, to full relative precision also near the ends; 0 a little beyond them. */
 WEFT_INLINE lanes lanes_cos(lanes x)
 {
-    return lanes_sin(lanes_max(LANE_HALF_PI - lanes_abs(x) + LANE_HALF_PI_REST, lanes_of(0)));
+    return lanes_sin(lanes_max(WEFT_LANE_HALF_PI - lanes_abs(x) + WEFT_LANE_HALF_PI_REST, lanes_of(0)));
 }
 
 /* atan(y / x) for x > 0: on [0, 1] a polynomial from the Chebyshev series of atan(t) / t, relative error 1.6e-8. */
@@ -51,7 +51,7 @@ WEFT_INLINE lanes lanes_atan(lanes y, lanes x)
     p = -0.142025705f + s * (0.106367541f + s * p);
     p = -0.333330668f + s * (0.199924836f + s * p);
     p = t * (0.999999984f + s * p);
-    return lanes_sign_of(y, lanes_select(steep, LANE_HALF_PI - p, p));
+    return lanes_sign_of(y, lanes_select(steep, WEFT_LANE_HALF_PI - p, p));
 }
 
 typedef struct lane_vec3 {
@@ -82,7 +82,7 @@ WEFT_INLINE lane_bits lanes_faces_both(lane_mirror *at, lane_vec3 light, lane_ve
     inverse_sum = 1 / at->cosine_sum;
     at->light_share = c1 * inverse_sum;
     at->view_share = c2 * inverse_sum;
-    return (at->cos_v > 0.0f) & (c1 > 0.0f) & (c2 > 0.0f) & (at->cosine_sum > LANE_MIN_COSINE_SUM);
+    return (at->cos_v > 0.0f) & (c1 > 0.0f) & (c2 > 0.0f) & (at->cosine_sum > WEFT_LANE_MIN_COSINE_SUM);
 }
 
 /* Eq. 3: sine and cosine of v for D = cot(psi) along / hypot(H_x, across). */

@@ -28,23 +28,23 @@ static weft_real finite_coordinate(weft_real x)
 }
 
 /* Places along y count upward, tiles down. */
-static weave_segment_place place_of(const weft_weave *weave, const weft_yarn *yarn, weft_real tile_x, weft_real tile_y)
+static weft_segment_place place_of(const weft_weave *weave, const weft_yarn *yarn, weft_real tile_x, weft_real tile_y)
 {
     weft_real center_x = (tile_x + yarn->center_u) * (weft_real)weave->tile_width;
     weft_real center_y = (yarn->center_v - tile_y) * (weft_real)weave->tile_height;
-    return (weave_segment_place){llround(4 * center_x), llround(4 * center_y), yarn->warp};
+    return (weft_segment_place){llround(4 * center_x), llround(4 * center_y), yarn->warp};
 }
 
-static weft_real umax_offset(const weft_weave *weave, const weft_yarn *yarn, weave_segment_place place, uint64_t seed)
+static weft_real umax_offset(const weft_weave *weave, const weft_yarn *yarn, weft_segment_place place, uint64_t seed)
 {
     const weft_real *amplitude_deg = weave->inclination_noise_deg + (yarn->warp ? 0 : 2);
-    weft_real offset_deg = amplitude_deg[0] * weave_yarn_noise(seed, place, true, weave->period) +
-                           amplitude_deg[1] * weave_yarn_noise(seed, place, false, weave->period);
+    weft_real offset_deg = amplitude_deg[0] * weft_weave_yarn_noise(seed, place, true, weave->period) +
+                           amplitude_deg[1] * weft_weave_yarn_noise(seed, place, false, weave->period);
     weft_real umax = yarn->segment.umax;
     return weft_clamp(umax + weft_rad_of_deg(offset_deg), yarn->min_umax, yarn->max_umax) - umax;
 }
 
-static void add_noise(const weft_weave *weave, weave_segment_place place, uint64_t seed, weft_weave_point *point)
+static void add_noise(const weft_weave *weave, weft_segment_place place, uint64_t seed, weft_weave_point *point)
 {
     const weft_yarn *yarn = &weave->yarn[point->yarn];
     const weft_segment *segment = &yarn->segment;
@@ -52,8 +52,8 @@ static void add_noise(const weft_weave *weave, weave_segment_place place, uint64
         point->umax_offset_rad = umax_offset(weave, yarn, place, seed);
     if (weave->fineness > 0)
         point->intensity =
-            weave_intensity_noise(seed, place, weave->fineness, point->x / segment->width + (weft_real)0.5,
-                                  point->y / segment->length + (weft_real)0.5);
+            weft_weave_intensity_noise(seed, place, weave->fineness, point->x / segment->width + (weft_real)0.5,
+                                       point->y / segment->length + (weft_real)0.5);
 }
 
 weft_weave_point weft_weave_locate(const weft_weave *weave, weft_real U, weft_real V, uint64_t seed)

@@ -27,8 +27,8 @@ static weft_real unit_interval(uint32_t hash)
     return ((weft_real)(hash >> 8) + (weft_real)0.5) / (weft_real)16777216;
 }
 
-weft_real weave_intensity_noise(uint64_t seed, weave_segment_place place, weft_real fineness, weft_real across,
-                                weft_real along)
+weft_real weft_weave_intensity_noise(uint64_t seed, weft_segment_place place, weft_real fineness, weft_real across,
+                                     weft_real along)
 {
     uint32_t hash = start(seed, STREAM_INTENSITY);
     hash = fold(fold(hash, place.quarter_x), place.quarter_y);
@@ -43,7 +43,7 @@ static int64_t cell_of(int64_t quarters)
     return quarters >= 0 ? quarters / 4 : -((3 - quarters) / 4);
 }
 
-weft_real weave_yarn_noise(uint64_t seed, weave_segment_place place, bool along_warp, weft_real period)
+weft_real weft_weave_yarn_noise(uint64_t seed, weft_segment_place place, bool along_warp, weft_real period)
 {
     int64_t yarn = cell_of(along_warp ? place.quarter_x : place.quarter_y);
     weft_real position = (weft_real)(along_warp ? place.quarter_y : place.quarter_x) / 4 / period;
