@@ -3,7 +3,7 @@
 #ifndef WEFT_GEOMETRY_LIGHT_STITCH_SAMPLE_H
 #define WEFT_GEOMETRY_LIGHT_STITCH_SAMPLE_H
 
-#include "geometry/yarn/stitch.h"
+#include "geometry/stitch/stitch.h"
 
 #include <stdint.h>
 

@@ -1,7 +1,7 @@
 /* Marching cubes over a periodic grid (Lorensen and Cline 1987, cases as in geometry/yarn/cube_cases.h). */
 #include "geometry/yarn/cube_cases.h"
+#include "geometry/yarn/field.h"
 #include "geometry/yarn/tile_mesh.h"
-#include "geometry/yarn/yarn_field.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_GEOMETRY_YARN_TILE_MESH_H
 #define WEFT_GEOMETRY_YARN_TILE_MESH_H
 
-#include "geometry/yarn/stitch.h"
+#include "geometry/stitch/stitch.h"
 
 #include <stdint.h>
 

@@ -1,7 +1,7 @@
 #include "reflectance/weave/batch.h"
 
 #include "base/processor.h"
-#include "reflectance/weave/kernels.h"
+#include "reflectance/weave/batch_kernels.h"
 
 #include <stdlib.h>
 

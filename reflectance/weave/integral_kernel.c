@@ -1,8 +1,8 @@
 /* weft_prepared_reflectance within 1e-3: the places of a 15-point Gauss-Kronrod rule are the lanes. The integrals, cuts
  * and substitutions are those of woven_integral.c, but for the kinks where the yarn turns away from a direction, which
  * halving finds. */
-#include "reflectance/weave/kernels.h"
-#include "reflectance/weave/lanes.h"
+#include "reflectance/weave/batch_kernels.h"
+#include "reflectance/weave/mirror_lanes.h"
 #include "reflectance/woven/mirror.h"
 
 enum { NODES = 16, MAX_PANELS = 24, MAX_CUTS = 16 };

@@ -1,7 +1,7 @@
 /* weft_prepared_texture for a vector of points: both kinds of yarn are evaluated where the weave has them, and masked.
  */
-#include "reflectance/weave/kernels.h"
-#include "reflectance/weave/lanes.h"
+#include "reflectance/weave/batch_kernels.h"
+#include "reflectance/weave/mirror_lanes.h"
 
 /* One evaluation a lane, in the frame of its segment. */
 typedef struct lane_segment {

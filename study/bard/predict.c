@@ -2,7 +2,7 @@
 
 #include "btf/dataset/blocks.h"
 #include "btf/direction/direction.h"
-#include "study/bard/texel.h"
+#include "study/bard/texel_table.h"
 
 #include <jansson.h>
 #include <omp.h>

@@ -1,7 +1,7 @@
 #include "study/fit_weave/fit_weave.h"
 
 #include "btf/direction/direction.h"
-#include "study/fit_weave/model.h"
+#include "study/fit_weave/parametric_weave.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_STUDY_TILE_MEAN_H
 #define WEFT_STUDY_TILE_MEAN_H
 
-#include "study/tile/pictures.h"
+#include "study/tile/textured_pictures.h"
 #include "study/tile/tile.h"
 
 /* The two texels of the tile, along one axis, between whose centres a point of the material lies. */

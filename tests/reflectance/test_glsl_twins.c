@@ -4,7 +4,7 @@
 #include "player/gl/context.h"
 #include "player/gl/gl.h"
 #include "player/gl/shaders.h"
-#include "reflectance/weave/table.h"
+#include "reflectance/weave/shader_table.h"
 #include "tests/reflectance/random.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/keep_modules.h"
