@@ -1,6 +1,6 @@
 #include "geometry/drape/draped_scene.h"
 
-#include "reflectance/lafortune/lafortune.h"
+#include "btf/direction/frame.h"
 
 #include <embree3/rtcore.h>
 #include <stdlib.h>

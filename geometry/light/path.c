@@ -1,9 +1,8 @@
 #include "geometry/light/path.h"
 
-#include "btf/material/material.h"
+#include "btf/direction/frame.h"
 #include "geometry/light/path_step.h"
 #include "geometry/light/sample_sequence.h"
-#include "reflectance/lafortune/lafortune.h"
 
 static weft_vec3 vertex_vector(const float *from)
 {

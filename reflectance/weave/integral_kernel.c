@@ -1,9 +1,8 @@
 /* weft_prepared_reflectance within 1e-3: the places of a 15-point Gauss-Kronrod rule are the lanes. The integrals, cuts
- * and substitutions are those of woven_integral.c, but for the kinks where the yarn turns away from a direction, which
- * halving finds. */
+ * and substitutions are those of reflectance/woven/integral.c, but for the kinks where the yarn turns away from a
+ * direction, which halving finds. */
 #include "reflectance/weave/batch_kernels.h"
 #include "reflectance/weave/mirror_lanes.h"
-#include "reflectance/woven/mirror.h"
 
 enum { NODES = 16, MAX_PANELS = 24, MAX_CUTS = 16 };
 
@@ -188,7 +187,8 @@ WEFT_INLINE lane_vec3 broadcast(weft_vec3 d)
     return lane_vec3_of((float)d.x, (float)d.y, (float)d.z);
 }
 
-/* Where the integrand begins, ends, jumps or has a kink in the spine: see staple_breaks in woven_integral.c. */
+/* Where the integrand begins, ends, jumps or has a kink in the spine: see staple_breaks in
+ * reflectance/woven/integral.c. */
 WEFT_INLINE int staple_cuts(const weft_prepared_segment *prepared, double u0, double origin, double reach,
                             float cuts[MAX_CUTS])
 {

@@ -1,18 +1,14 @@
-/* The equations of woven_mirror.h and woven_segment.c in vectors of floats, for the kernels: same names, same order.
- * Private to the room. */
+/* The equations of reflectance/woven/mirror.h and segment.c in vectors of floats, for the kernels: same names, same
+ * order. Private to the room. */
 #ifndef WEFT_REFLECTANCE_WEAVE_MIRROR_LANES_H
 #define WEFT_REFLECTANCE_WEAVE_MIRROR_LANES_H
 
 #include "base/lanes.h"
+#include "reflectance/woven/mirror.h"
 
 #define WEFT_LANE_PI 3.14159265f
 #define WEFT_LANE_HALF_PI 1.57079637f
 #define WEFT_LANE_HALF_PI_REST (-4.37113883e-8f) /* pi/2 minus that */
-
-/* As in woven_mirror.h. */
-#define WEFT_LANE_MIN_HALF_SQUARED 1e-12f
-#define WEFT_LANE_MIN_ACROSS 1e-15f
-#define WEFT_LANE_MIN_COSINE_SUM 1e-30f
 
 WEFT_INLINE lanes lanes_abs(lanes x)
 {
@@ -82,7 +78,7 @@ WEFT_INLINE lane_bits lanes_faces_both(lane_mirror *at, lane_vec3 light, lane_ve
     inverse_sum = 1 / at->cosine_sum;
     at->light_share = c1 * inverse_sum;
     at->view_share = c2 * inverse_sum;
-    return (at->cos_v > 0.0f) & (c1 > 0.0f) & (c2 > 0.0f) & (at->cosine_sum > WEFT_LANE_MIN_COSINE_SUM);
+    return (at->cos_v > 0.0f) & (c1 > 0.0f) & (c2 > 0.0f) & (at->cosine_sum > (float)WEFT_MIN_COSINE_SUM);
 }
 
 /* Eq. 3: sine and cosine of v for D = cot(psi) along / hypot(H_x, across). */

@@ -52,7 +52,7 @@ WEFT_INLINE lanes fade(lanes delta, lanes umax, lanes u)
 }
 
 /* R of a spine that ends at radius_share umax, constant beyond. */
-WEFT_INLINE lanes weft_filament_radius(const lane_segment *s, lanes u)
+WEFT_INLINE lanes filament_radius(const lane_segment *s, lanes u)
 {
     lanes end = lanes_max(s->umax * s->radius_share, lanes_of((float)WEFT_SEGMENT_MIN_UMAX));
     lanes at = lanes_min(lanes_abs(u), end);
@@ -65,14 +65,14 @@ WEFT_INLINE lanes filament_texture(const lane_segment *s)
     lanes across = lanes_sqrt(s->half.y * s->half.y + s->half.z * s->half.z);
     lane_mirror at = {.sin_u = s->half.y / across, .cos_u = s->half.z / across};
     lanes u = lanes_atan(s->half.y, s->half.z);
-    lane_bits lit = (across > WEFT_LANE_MIN_ACROSS) & (lanes_abs(u) < s->umax);
+    lane_bits lit = (across > (float)WEFT_MIN_ACROSS) & (lanes_abs(u) < s->umax);
     lanes centre = s->length * (u / (2 * s->umax));
     lit &= inside_band(s->y, centre, s->highlight_width * s->length, s->length);
     lanes v = WEFT_LANE_PI * (s->x / s->width);
     at.sin_v = lanes_sin(v);
     at.cos_v = lanes_cos(v);
     lit &= lanes_faces_both(&at, s->light, s->view);
-    lanes radius = weft_filament_radius(s, u);
+    lanes radius = filament_radius(s, u);
     lanes attenuation = at.light_share * at.view_share * at.cosine_sum * fade(s->delta, s->umax, u);
     lanes integrand = lanes_yarn_area(s->width, radius, at.cos_v) / across * attenuation * phase(s);
     return lanes_where(lit, WEFT_LANE_PI * integrand / s->highlight_width);
@@ -112,7 +112,7 @@ WEFT_INLINE lane_segment gather(const weft_woven_table *table, const weft_weave_
 
 WEFT_INLINE lane_bits on_segment(const lane_segment *s)
 {
-    return (s->light.z > 0.0f) & (s->view.z > 0.0f) & (lanes_dot(s->half, s->half) >= WEFT_LANE_MIN_HALF_SQUARED) &
+    return (s->light.z > 0.0f) & (s->view.z > 0.0f) & (lanes_dot(s->half, s->half) >= (float)WEFT_MIN_HALF_SQUARED) &
            (lanes_abs(s->x) <= 0.5f * s->width) & (lanes_abs(s->y) <= 0.5f * s->length);
 }
 

@@ -1,5 +1,5 @@
 /* Where the fibres of a yarn mirror the light into the view: the equations shared by the point, texture and integral
- * evaluations of a segment. Private to the room.
+ * evaluations of a segment, also by the kernels of reflectance/weave.
  *
  * H = light + view is not normalised. Sines and cosines of u and v are carried instead of the angles, because the
  * normal n(u, v) = (sin v, sin u cos v, cos u cos v) and all conditions need only those. */

@@ -1,4 +1,4 @@
-/* Which photographs of a dataset make the table of BARD, and what every image takes from them. Private to study/. */
+/* Which photographs of a dataset make the table of BARD, and what every image takes from them. Private to the room. */
 #ifndef WEFT_STUDY_BARD_PHOTOGRAPHS_H
 #define WEFT_STUDY_BARD_PHOTOGRAPHS_H
 

@@ -1,5 +1,5 @@
 /* BARD in one texel: its table from the samples under the light along the normal, and its samples under all others.
- * Private to study/. */
+ * Private to the room. */
 #ifndef WEFT_STUDY_BARD_TEXEL_TABLE_H
 #define WEFT_STUDY_BARD_TEXEL_TABLE_H
 

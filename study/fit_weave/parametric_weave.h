@@ -2,7 +2,7 @@
  *     f(l, v) = d / pi + sum_g a_g fc(-l . v) sum_s F_s aw_s G_s(l, v)
  * over the groups g of yarns that share their fibres and the segments s in them. G, the reflectance of a segment with
  * fc = 1, depends on the shape of its group alone and is kept until that changes; alpha and beta only enter fc; d and
- * a_g >= 0 are solved for. Private to study/. */
+ * a_g >= 0 are solved for. Private to the room. */
 #ifndef WEFT_STUDY_FIT_WEAVE_PARAMETRIC_WEAVE_H
 #define WEFT_STUDY_FIT_WEAVE_PARAMETRIC_WEAVE_H
 

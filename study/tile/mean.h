@@ -1,4 +1,4 @@
-/* The mean of all tiles of a picture. Private to study/. */
+/* The mean of all tiles of a picture. Private to the room. */
 #ifndef WEFT_STUDY_TILE_MEAN_H
 #define WEFT_STUDY_TILE_MEAN_H
 

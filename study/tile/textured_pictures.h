@@ -1,4 +1,4 @@
-/* The photographs of a dataset in which a tile is looked for. Private to study/. */
+/* The photographs of a dataset in which a tile is looked for. Private to the room. */
 #ifndef WEFT_STUDY_TILE_TEXTURED_PICTURES_H
 #define WEFT_STUDY_TILE_TEXTURED_PICTURES_H
 
