@@ -55,11 +55,6 @@ int weft_stitch_sample_bounces(const weft_stitch_sample *sample)
     return sample->bounces;
 }
 
-weft_real weft_stitch_sample_thickness(const weft_stitch_sample *sample)
-{
-    return (weft_real)sample->mesh.top - (weft_real)sample->mesh.bottom;
-}
-
 static void put_vector(weft_vec3 from, float to[3])
 {
     to[0] = (float)from.x;

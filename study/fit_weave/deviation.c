@@ -1,8 +1,6 @@
 /* Standard errors of the parameters of a fitted weave. */
 #include "study/fit_weave/parametric_weave.h"
 
-#include "study/fit_weave/jackknife.h"
-
 #include <math.h>
 #include <stdlib.h>
 
