@@ -81,11 +81,13 @@ weft_code weft_block_parse_number(weft_block_parser *parser, const weft_block_fi
 
 static weft_code parse_list(weft_block_parser *parser, const weft_block_field *field, double *values)
 {
+    weft_block_field element = *field;
+    element.count = 1;
     WEFT_TRY(weft_block_expect_symbol(parser, '{'));
     for (int i = 0; i < field->count; i++) {
         if (i > 0)
             WEFT_TRY(weft_block_expect_symbol(parser, ','));
-        WEFT_TRY(weft_block_parse_number(parser, field, &values[i]));
+        WEFT_TRY(weft_block_parse_number(parser, &element, &values[i]));
     }
     return weft_block_expect_symbol(parser, '}');
 }

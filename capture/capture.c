@@ -1,5 +1,6 @@
 #include "capture/capture.h"
 
+#include "base/clock.h"
 #include "capture/photograph_writer.h"
 #include "capture/resume.h"
 #include "capture/shooting.h"
@@ -9,14 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/statvfs.h>
-#include <time.h>
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 /* ---- Before the first photograph ---- */
 
@@ -75,7 +68,7 @@ static weft_code take_shots(run *r, weft_error *error)
 static weft_code take_and_write(run *r, weft_error *error)
 {
     WEFT_TRY(weft_photograph_writer_start(r->session, &r->writer, error));
-    double start_s = now_s();
+    double start_s = weft_now_s();
     weft_code code = take_shots(r, error);
     weft_error last = {0};
     weft_code last_code = weft_photograph_writer_finish(r->writer, &last);
@@ -84,7 +77,7 @@ static weft_code take_and_write(run *r, weft_error *error)
         if (error)
             *error = last;
     }
-    r->summary->seconds = now_s() - start_s;
+    r->summary->seconds = weft_now_s() - start_s;
     r->summary->exposures = r->shooting.exposures;
     r->summary->timeouts = r->shooting.timeouts;
     return code;

@@ -1,3 +1,4 @@
+#include "base/clock.h"
 #include "capture/capture.h"
 
 #include "capture/shooting.h"
@@ -5,14 +6,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 static void count_plan(const weft_session *session, weft_capture_rehearsal *rehearsal)
 {
@@ -44,10 +37,10 @@ static weft_code time_photograph(const weft_capture_request *request, const weft
         weft_shot_record record;
         /* The first one prepares the view, which all its lights share. */
         code = weft_shooting_take(&shooting, 0, samples, &record, error);
-        double start_s = now_s();
+        double start_s = weft_now_s();
         if (code == WEFT_OK)
             code = weft_shooting_take(&shooting, 0, samples, &record, error);
-        rehearsal->seconds_per_photograph = now_s() - start_s;
+        rehearsal->seconds_per_photograph = weft_now_s() - start_s;
         weft_shooting_end(&shooting);
         rig.close(rig.back_end);
     }

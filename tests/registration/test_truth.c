@@ -1,8 +1,8 @@
 #include "capture/capture.h"
 #include "registration/registration.h"
 
+#include "base/statistics.h"
 #include "btf/dataset/dataset.h"
-#include "registration/radiometry/statistics.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/ground_truth.h"
 #include "tests/support/scratch_folder.h"
