@@ -63,6 +63,21 @@ weft_weave_layout weft_virtual_cloth_layout(const weft_virtual_cloth *cloth, dou
     return (weft_weave_layout){.tiles_u = cloth->tiles_x, .tiles_v = cloth->tiles_y};
 }
 
+weft_code weft_virtual_cloth_read_layout(const char *path, double tiles_u, double tiles_v, weft_weave *weave,
+                                         weft_weave_layout *layout, double *width_mm, char warning[WEFT_MESSAGE_SIZE],
+                                         weft_error *error)
+{
+    const weft_rig_settings rig = weft_rig_settings_default();
+    weft_virtual_cloth cloth;
+    WEFT_TRY(weft_virtual_cloth_read(path, &rig, 0, &cloth, warning, error));
+    *layout = weft_virtual_cloth_layout(&cloth, tiles_u, tiles_v);
+    *width_mm = cloth.opening_mm;
+    *weave = cloth.weave;
+    cloth.weave = (weft_weave){0};
+    weft_virtual_cloth_free(&cloth);
+    return WEFT_OK;
+}
+
 weft_weave_point weft_virtual_cloth_locate(const weft_virtual_cloth *cloth, double x_mm, double y_mm)
 {
     double u = (x_mm / cloth->opening_mm + 0.5) * cloth->tiles_x;

@@ -25,6 +25,12 @@ void weft_virtual_cloth_free(weft_virtual_cloth *cloth);
  * file of the weave says, else as the virtual rig lays it. Pure. */
 weft_weave_layout weft_virtual_cloth_layout(const weft_virtual_cloth *cloth, double tiles_u, double tiles_v);
 
+/* The weave of a file, and how it lies on a material of which nothing else is known: weft_virtual_cloth_layout on the
+ * opening of the default rig, which is width_mm wide. The caller frees *weave. Errors: those of weft_weave_read. */
+weft_code weft_virtual_cloth_read_layout(const char *path, double tiles_u, double tiles_v, weft_weave *weave,
+                                         weft_weave_layout *layout, double *width_mm, char warning[WEFT_MESSAGE_SIZE],
+                                         weft_error *error);
+
 /* The point of the weave at a point of the plate inside the opening, mm. Pure. */
 weft_weave_point weft_virtual_cloth_locate(const weft_virtual_cloth *cloth, double x_mm, double y_mm);
 
