@@ -1,91 +1,204 @@
 #include "cli/arguments.h"
 
-#include <ctype.h>
-#include <errno.h>
-#include <limits.h>
-#include <math.h>
+#include <argp.h>
+#include <omp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-double parse_number(const char *option, const char *text, double low, double high, struct argp_state *state)
+const char *argp_program_version = "weft " WEFT_VERSION;
+
+enum { MAX_ROWS = 64, FIRST_KEY = 0x1000, COMMON_GROUP = 9 };
+
+static const weft_option common_table[] = {
+    {"quiet", 'q', .help = "Print nothing but errors", .group = COMMON_GROUP, .kind = WEFT_OPTION_FLAG,
+     .offset = offsetof(weft_common_options, quiet)},
+    {"json", .help = "Print progress and results as JSON, one event a line", .group = COMMON_GROUP,
+     .kind = WEFT_OPTION_FLAG, .offset = offsetof(weft_common_options, json)},
+    {"threads", 't', "N", "Use N threads (default: all cores)", COMMON_GROUP, .kind = WEFT_OPTION_WHOLE,
+     .offset = offsetof(weft_common_options, threads), .low = 1, .high = 4096},
+    {0},
+};
+
+/* All options of a command, and what is being read into. */
+typedef struct arguments {
+    const weft_command *command;
+    void *values;
+    int row_count, place_count, option_count;
+    struct {
+        const weft_option *option;
+        const weft_setting *setting; /* of the scene, or NULL */
+    } row[MAX_ROWS];
+    struct argp_option option[MAX_ROWS + 8]; /* with headings and the end */
+} arguments;
+
+static weft_scene_request *scene_of(const arguments *a)
 {
-    char *end;
-    double number = strtod(text, &end);
-    if (end == text || *end || !(number >= low && number <= high))
-        argp_error(state, "--%s needs a number from %g to %g, not '%s'", option, low, high, text);
-    return number;
+    return &((weft_scene_values *)a->values)->scene;
 }
 
-void parse_numbers(const char *option, const char *text, int count, double *numbers, struct argp_state *state)
+/* ---- The table of argp ---- */
+
+static void add_heading(arguments *a, const char *title, int group)
 {
-    const char *at = text;
-    for (int i = 0; i < count; i++) {
-        char *end;
-        numbers[i] = strtod(at, &end);
-        if (end == at || !isfinite(numbers[i]) || *end != (i + 1 < count ? ',' : '\0'))
-            argp_error(state, "--%s needs %d numbers with commas, not '%s'", option, count, text);
-        at = end + 1;
+    a->option[a->option_count++] = (struct argp_option){.doc = title, .group = group};
+}
+
+static void add_row(arguments *a, const weft_option *option, const weft_setting *setting)
+{
+    int row = a->row_count++;
+    if (row == MAX_ROWS)
+        abort();
+    a->row[row].option = option;
+    a->row[row].setting = setting;
+    if (option->name)
+        a->option[a->option_count++] = (struct argp_option){
+            .name = option->name,
+            .key = option->letter ? option->letter : FIRST_KEY + row,
+            .arg = option->argument,
+            .flags = option->may_be_empty ? OPTION_ARG_OPTIONAL : 0,
+            .doc = option->help,
+            .group = option->group,
+        };
+}
+
+static bool is_row(const weft_option *option)
+{
+    return option->name || option->argument;
+}
+
+static void add_rows(arguments *a)
+{
+    for (const weft_option *option = a->command->options; is_row(option); option++)
+        add_row(a, option, NULL);
+    if (a->command->shows_scene) {
+        for (int group = 1; weft_settings_group(group); group++)
+            add_heading(a, weft_settings_group(group), group);
+        for (const weft_setting *setting = weft_settings_schema(); setting->key || setting->option.name; setting++)
+            if (is_row(&setting->option))
+                add_row(a, &setting->option, setting);
     }
+    add_heading(a, "Common options:", COMMON_GROUP);
+    for (const weft_option *option = common_table; is_row(option); option++)
+        add_row(a, option, NULL);
 }
 
-/* strtoull would skip blanks and take a minus sign. */
-static bool whole_from(const char *text, unsigned long long *number, char **end)
+/* ---- Reading ---- */
+
+/* Does not return unless all went well. */
+static void insist(weft_code code, const weft_error *error, struct argp_state *state)
 {
-    errno = 0;
-    *number = strtoull(text, end, 10);
-    return isdigit((unsigned char)*text) && errno == 0;
+    if (code == WEFT_BAD_USAGE)
+        argp_error(state, "%s", error->message);
+    else if (code != WEFT_OK)
+        argp_failure(state, (int)code, 0, "%s", error->message);
 }
 
-unsigned long long parse_whole(const char *option, const char *text, unsigned long long low, unsigned long long high,
-                               struct argp_state *state)
+static void set(arguments *a, int row, const char *text, struct argp_state *state)
 {
-    unsigned long long number;
-    char *end;
-    if (!whole_from(text, &number, &end) || *end || number < low || number > high)
-        argp_error(state, "--%s needs a whole number from %llu to %llu, not '%s'", option, low, high, text);
-    return number;
+    weft_error error = {0};
+    const weft_setting *setting = a->row[row].setting;
+    weft_code code = setting ? weft_scene_request_add(scene_of(a), setting, text, &error)
+                             : weft_option_set(a->row[row].option, text, a->values, &error);
+    insist(code, &error, state);
 }
 
-void parse_size(const char *option, const char *text, int limit, int *width, int *height, struct argp_state *state)
+/* Arguments that are known by their place take the rows without a name in turn; that of a scene is one. */
+static void set_next(arguments *a, const char *text, struct argp_state *state)
 {
-    unsigned long long w = 0, h = 0, most = (unsigned long long)limit;
-    char *end;
-    if (!whole_from(text, &w, &end) || *end != 'x' || !whole_from(end + 1, &h, &end) || *end || w < 1 || h < 1 ||
-        w > most || h > most)
-        argp_error(state, "--%s needs WxH up to %dx%d, not '%s'", option, limit, limit, text);
-    *width = (int)w;
-    *height = (int)h;
-}
-
-void parse_tiles(const char *option, const char *text, double *tiles_u, double *tiles_v, struct argp_state *state)
-{
-    double tiles[2];
-    parse_numbers(option, text, 2, tiles, state);
-    for (int i = 0; i < 2; i++) {
-        if (!(tiles[i] > 0 && tiles[i] <= 1e6))
-            argp_error(state, "--%s needs two numbers above 0, up to 1e6, not '%s'", option, text);
+    int place = 0;
+    for (int row = 0; row < a->row_count; row++) {
+        if (a->row[row].option->name || (place++ < a->place_count && !a->row[row].setting))
+            continue;
+        a->place_count++;
+        set(a, row, text, state);
+        return;
     }
-    *tiles_u = tiles[0];
-    *tiles_v = tiles[1];
+    argp_error(state, "%s: '%s' is one too many", a->command->surplus, text);
 }
 
-int parse_noise_seed(const char *option, const char *text, struct argp_state *state)
+static error_t set_by_key(arguments *a, int key, const char *text, struct argp_state *state)
 {
-    return strcmp(text, "off") == 0 ? 0 : (int)parse_whole(option, text, 1, INT_MAX, state);
+    for (int row = 0; row < a->row_count; row++) {
+        const weft_option *option = a->row[row].option;
+        if (option->name && key == (option->letter ? option->letter : FIRST_KEY + row)) {
+            set(a, row, text, state);
+            return 0;
+        }
+    }
+    return ARGP_ERR_UNKNOWN;
 }
 
-bool parse_switch(const char *option, const char *text, struct argp_state *state)
+/* ---- What they come to ---- */
+
+/* The text of a row of one of the kinds, or NULL. */
+static const char *text_of(const arguments *a, int row)
 {
-    if (strcmp(text, "on") != 0 && strcmp(text, "off") != 0)
-        argp_error(state, "--%s is on or off, not '%s'", option, text);
-    return strcmp(text, "on") == 0;
+    const weft_option *option = a->row[row].option;
+    bool is_text =
+        option->kind == WEFT_OPTION_TEXT || option->kind == WEFT_OPTION_INPUT || option->kind == WEFT_OPTION_OUTPUT;
+    return is_text && !a->row[row].setting ? *(const char **)((char *)a->values + option->offset) : NULL;
 }
 
-void refuse_same_file(const char *output, const char *input, struct argp_state *state)
+/* Refuses an output that is an input, by whatever path. */
+static void refuse_same_file(const char *output, const char *input, struct argp_state *state)
 {
     struct stat written, read;
     if (output && input && stat(output, &written) == 0 && stat(input, &read) == 0 && written.st_dev == read.st_dev &&
         written.st_ino == read.st_ino)
         argp_error(state, "'%s' would overwrite what it is made from", output);
+}
+
+static void refuse_overwriting(const arguments *a, struct argp_state *state)
+{
+    for (int output = 0; output < a->row_count; output++) {
+        if (a->row[output].option->kind != WEFT_OPTION_OUTPUT)
+            continue;
+        for (int input = 0; input < a->row_count; input++)
+            if (a->row[input].option->kind == WEFT_OPTION_INPUT)
+                refuse_same_file(text_of(a, output), text_of(a, input), state);
+        if (a->command->shows_scene)
+            refuse_same_file(text_of(a, output), scene_of(a)->settings.environment, state);
+    }
+}
+
+static void complete(arguments *a, struct argp_state *state)
+{
+    weft_error error = {0};
+    for (int row = 0; row < a->row_count; row++)
+        if (a->row[row].option->is_required && !text_of(a, row))
+            argp_error(state, "needs %s", a->command->needs);
+    if (a->command->shows_scene)
+        insist(weft_scene_request_complete(scene_of(a), &error), &error, state);
+    refuse_overwriting(a, state);
+    if (a->command->check)
+        insist(a->command->check(a->values, &error), &error, state);
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state)
+{
+    arguments *a = state->input;
+    switch (key) {
+    case ARGP_KEY_ARG:
+        set_next(a, text, state);
+        return 0;
+    case ARGP_KEY_END:
+        complete(a, state);
+        return 0;
+    default:
+        return set_by_key(a, key, text, state);
+    }
+}
+
+void weft_arguments_parse(const weft_command *command, int argc, char **argv, void *values)
+{
+    arguments a = {.command = command, .values = values};
+    const weft_common_options *common = values;
+    add_rows(&a);
+    const struct argp parser = {a.option, parse_option, command->usage, command->documentation, NULL, NULL, NULL};
+    argp_err_exit_status = WEFT_BAD_USAGE;
+    argp_parse(&parser, argc, argv, 0, NULL, &a);
+    if (common->threads > 0)
+        omp_set_num_threads(common->threads);
 }

@@ -1,98 +1,41 @@
 #include "capture/capture.h"
 #include "cli/arguments.h"
-#include "cli/command.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct capture_command {
-    common_options common;
+    weft_common_options common;
     weft_capture_request request;
     const char *rig;
     bool dry_run;
 } capture_command;
 
-enum { KEY_RIG = 0x2000, KEY_SAMPLE, KEY_PLAN, KEY_SEED, KEY_TRUTH, KEY_TRUTH_SIZE, KEY_TRUTH_IMAGES, KEY_DRY_RUN };
-
-static const struct argp_option option_table[] = {
-    {"output", 'o', "SESSION", 0, "The folder of the session", 0},
-    {"rig", KEY_RIG, "virtual|FILE.json", 0, "The rig, or a file with its settings (default: virtual)", 0},
-    {"sample", KEY_SAMPLE, "CLOTH.wv|.stitch", 0,
-     "What the virtual rig photographs: a weave, flat, or a stitch, which has depth", 0},
-    {"plan", KEY_PLAN, "ubo81|FILE.csv", 0,
-     "Which photographs: all pairs of 81 directions (default), or a table with the columns theta_light_deg, "
-     "phi_light_deg, "
-     "theta_view_deg, phi_view_deg",
-     0},
-    {"seed", KEY_SEED, "N", 0, "Start of the random numbers of the virtual rig (default: 1)", 0},
-    {"truth", KEY_TRUTH, "FILE.h5", 0, "Where the ground truth goes (default: SESSION.truth.h5)", 0},
-    {"truth-size", KEY_TRUTH_SIZE, "N", 0, "Texels along a side of the truth (default: 64)", 0},
-    {"truth-images", KEY_TRUTH_IMAGES, "N", 0, "Photographs of which the truth is computed (default: 81)", 0},
-    {"dry-run", KEY_DRY_RUN, 0, 0, "Say what would be done and what it needs; write nothing", 0},
+static const weft_option option_table[] = {
+    {"output", 'o', "SESSION", "The folder of the session", .is_required = true, .kind = WEFT_OPTION_TEXT,
+     .offset = offsetof(capture_command, request.folder)},
+    {"rig", .argument = "virtual|FILE.json", .help = "The rig, or a file with its settings (default: virtual)",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig)},
+    {"sample", .argument = "CLOTH.wv|.stitch",
+     .help = "What the virtual rig photographs: a weave, flat, or a stitch, which has depth", .is_required = true,
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, request.sample)},
+    {"plan", .argument = "ubo81|FILE.csv",
+     .help = "Which photographs: all pairs of 81 directions (default), or a table with the columns theta_light_deg, "
+             "phi_light_deg, theta_view_deg, phi_view_deg",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, request.plan)},
+    {"seed", .argument = "N", .help = "Start of the random numbers of the virtual rig (default: 1)",
+     .kind = WEFT_OPTION_SEED, .offset = offsetof(capture_command, request.seed)},
+    {"truth", .argument = "FILE.h5", .help = "Where the ground truth goes (default: SESSION.truth.h5)",
+     .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(capture_command, request.truth)},
+    {"truth-size", .argument = "N", .help = "Texels along a side of the truth (default: 64)", .kind = WEFT_OPTION_WHOLE,
+     .offset = offsetof(capture_command, request.truth_size), .low = 1, .high = 4096},
+    {"truth-images", .argument = "N", .help = "Photographs of which the truth is computed (default: 81)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, request.truth_images), .low = 1, .high = 1000000},
+    {"dry-run", .help = "Say what would be done and what it needs; write nothing", .kind = WEFT_OPTION_FLAG,
+     .offset = offsetof(capture_command, dry_run)},
     {0},
 };
-
-static error_t parse_option(int key, char *argument, struct argp_state *state)
-{
-    capture_command *command = state->input;
-    weft_capture_request *request = &command->request;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &command->common;
-        return 0;
-    case 'o':
-        request->folder = argument;
-        return 0;
-    case KEY_RIG:
-        command->rig = argument;
-        return 0;
-    case KEY_SAMPLE:
-        request->sample = argument;
-        return 0;
-    case KEY_PLAN:
-        request->plan = argument;
-        return 0;
-    case KEY_SEED:
-        request->seed = parse_whole("seed", argument, 0, INT64_MAX, state);
-        return 0;
-    case KEY_TRUTH:
-        request->truth = argument;
-        return 0;
-    case KEY_TRUTH_SIZE:
-        request->truth_size = (int)parse_whole("truth-size", argument, 1, 4096, state);
-        return 0;
-    case KEY_TRUTH_IMAGES:
-        request->truth_images = (int)parse_whole("truth-images", argument, 1, 1000000, state);
-        return 0;
-    case KEY_DRY_RUN:
-        command->dry_run = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        argp_error(state, "what is '%s'? The session is named by -o", argument);
-        return 0;
-    case ARGP_KEY_END:
-        if (!request->folder || !request->sample)
-            argp_error(state, "needs --sample CLOTH.wv or CLOTH.stitch, and -o SESSION");
-        refuse_same_file(request->truth, request->sample, state);
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
-
-static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
-
-static const struct argp parser = {
-    option_table,
-    parse_option,
-    "-o SESSION",
-    "Example: weft capture --rig virtual --sample assets/weaves/silk_charmeuse.wv -o silk/\n\n"
-    "Takes the photographs of a session: every pair of view and light of the plan. Run the same command again after an "
-    "interruption of any kind, and it goes on where it was.",
-    children,
-    NULL,
-    NULL};
 
 /* ---- Stopping ---- */
 
@@ -121,45 +64,45 @@ static weft_code read_rig(capture_command *command, weft_error *error)
     return weft_rig_settings_read(command->rig, &command->request.settings, error);
 }
 
-static void say_warning(const common_options *common, const char *warning)
+static void say_warning(const weft_common_options *common, const char *warning)
 {
     if (warning[0])
-        command_say(common, "%s", warning);
+        weft_command_say(common, "%s", warning);
 }
 
 static weft_code rehearse(const capture_command *command, weft_error *error)
 {
-    const common_options *common = &command->common;
+    const weft_common_options *common = &command->common;
     weft_capture_rehearsal rehearsal;
     WEFT_TRY(weft_capture_rehearse(&command->request, &rehearsal, error));
     say_warning(common, rehearsal.warning);
-    command_say(common, "%d photographs: %d views, each with all its lights before the camera moves on",
-                rehearsal.shot_count, rehearsal.view_count);
-    command_say(common, "%d lights step aside for the camera", rehearsal.driven_aside);
-    command_say(common, "disk: %.2f GB; time: about %.0f s, at the %.1f ms that one photograph took",
-                (double)rehearsal.bytes * 1e-9, rehearsal.seconds_per_photograph * rehearsal.shot_count,
-                rehearsal.seconds_per_photograph * 1e3);
+    weft_command_say(common, "%d photographs: %d views, each with all its lights before the camera moves on",
+                     rehearsal.shot_count, rehearsal.view_count);
+    weft_command_say(common, "%d lights step aside for the camera", rehearsal.driven_aside);
+    weft_command_say(common, "disk: %.2f GB; time: about %.0f s, at the %.1f ms that one photograph took",
+                     (double)rehearsal.bytes * 1e-9, rehearsal.seconds_per_photograph * rehearsal.shot_count,
+                     rehearsal.seconds_per_photograph * 1e3);
     return WEFT_OK;
 }
 
 static void say_summary(const capture_command *command, const weft_capture_summary *summary)
 {
-    const common_options *common = &command->common;
+    const weft_common_options *common = &command->common;
     say_warning(common, summary->warning);
     if (summary->found > 0)
-        command_say(common, "%d photographs were there already", summary->found);
+        weft_command_say(common, "%d photographs were there already", summary->found);
     if (summary->damaged > 0)
-        command_say(common, "%d photographs did not match the journal and were taken again", summary->damaged);
+        weft_command_say(common, "%d photographs did not match the journal and were taken again", summary->damaged);
     if (summary->timeouts > 0)
-        command_say(common, "%d exposures that the camera did not deliver were repeated", summary->timeouts);
-    command_say(common, "%s: %d photographs, of which %d taken now, in %.1f s with %d exposures",
-                command->request.folder, summary->found + summary->taken, summary->taken, summary->seconds,
-                summary->exposures);
+        weft_command_say(common, "%d exposures that the camera did not deliver were repeated", summary->timeouts);
+    weft_command_say(common, "%s: %d photographs, of which %d taken now, in %.1f s with %d exposures",
+                     command->request.folder, summary->found + summary->taken, summary->taken, summary->seconds,
+                     summary->exposures);
 }
 
 static weft_code capture(const capture_command *command, weft_error *error)
 {
-    weft_progress progress = command_progress(&command->common);
+    weft_progress progress = weft_command_progress(&command->common);
     weft_capture_summary summary;
     listen_for_stop();
     WEFT_TRY(weft_capture_run(&command->request, &stop_asked, &progress, &summary, error));
@@ -167,13 +110,27 @@ static weft_code capture(const capture_command *command, weft_error *error)
     return WEFT_OK;
 }
 
-int command_capture(int argc, char **argv)
+static int run(int argc, char **argv)
 {
     capture_command command = {.request = weft_capture_request_default()};
-    command_parse(&parser, argc, argv, &command, &command.common);
+    weft_arguments_parse(&weft_command_capture, argc, argv, &command);
     weft_error error = {0};
     weft_code code = read_rig(&command, &error);
     if (code == WEFT_OK)
         code = command.dry_run ? rehearse(&command, &error) : capture(&command, &error);
-    return command_exit("capture", &command.common, code, &error);
+    return weft_command_exit("capture", &command.common, code, &error);
 }
+
+const weft_command weft_command_capture = {
+    .name = "capture",
+    .summary = "photograph a sample under all views and lights",
+    .usage = "-o SESSION",
+    .documentation = "Example: weft capture --rig virtual --sample assets/weaves/silk_charmeuse.wv -o silk/\n\n"
+                     "Takes the photographs of a session: every pair of view and light of the plan. Run the same "
+                     "command again after an "
+                     "interruption of any kind, and it goes on where it was.",
+    .options = option_table,
+    .needs = "--sample CLOTH.wv or CLOTH.stitch, and -o SESSION",
+    .surplus = "the session is named by -o",
+    .run = run,
+};

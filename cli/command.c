@@ -1,84 +1,12 @@
 #include "cli/command.h"
 #include "base/clock.h"
 #include "base/json_text.h"
-#include "cli/arguments.h"
 
-#include <limits.h>
-#include <omp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-const char *argp_program_version = "weft " WEFT_VERSION;
-
-/* ---- Common options ---- */
-
-enum { KEY_JSON = 0x1000 };
-
-static const struct argp_option common_table[] = {
-    {"quiet", 'q', 0, 0, "Print nothing but errors", 0},
-    {"json", KEY_JSON, 0, 0, "Print progress and results as JSON, one event a line", 0},
-    {"threads", 't', "N", 0, "Use N threads (default: all cores)", 0},
-    {0},
-};
-
-static error_t parse_common(int key, char *argument, struct argp_state *state)
-{
-    common_options *options = state->input;
-    switch (key) {
-    case 'q':
-        options->quiet = true;
-        return 0;
-    case KEY_JSON:
-        options->json = true;
-        return 0;
-    case 't':
-        options->threads = (int)parse_whole("threads", argument, 1, 4096, state);
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
-
-const struct argp common_argp = {common_table, parse_common, NULL, NULL, NULL, NULL, NULL};
-
-void command_parse(const struct argp *parser, int argc, char **argv, void *input, common_options *common)
-{
-    argp_err_exit_status = WEFT_BAD_USAGE;
-    argp_parse(parser, argc, argv, 0, NULL, input);
-    if (common->threads > 0)
-        omp_set_num_threads(common->threads);
-}
-
-/* ---- One file of another ---- */
-
-error_t parse_conversion(int key, char *argument, struct argp_state *state, conversion *files)
-{
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &files->common;
-        return 0;
-    case 'o':
-        files->output = argument;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (files->input)
-            argp_error(state, "one %s at a time: '%s' is one too many", files->noun, argument);
-        files->input = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (files->needed && (!files->input || !files->output))
-            argp_error(state, "needs %s", files->needed);
-        refuse_same_file(files->output, files->input, state);
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
-
-/* ---- Speaking ---- */
 
 /* What the reporter remembers between calls; one command runs per process. */
 static struct {
@@ -94,7 +22,7 @@ static void close_line(void)
     shown.line_open = false;
 }
 
-void command_event(const common_options *common, const char *json_object)
+void weft_command_event(const weft_common_options *common, const char *json_object)
 {
     if (common->json && !common->quiet) {
         puts(json_object);
@@ -123,7 +51,7 @@ static void show_line(const char *stage, long done, long total, double elapsed_s
 
 static void report_progress(void *context, const char *stage, long done, long total)
 {
-    const common_options *common = context;
+    const weft_common_options *common = context;
     if (common->quiet)
         return;
     bool terminal = !common->json && isatty(STDERR_FILENO);
@@ -143,7 +71,7 @@ static void report_progress(void *context, const char *stage, long done, long to
         show_line(stage, done, total, now - shown.started_s, terminal);
 }
 
-weft_progress command_progress(const common_options *common)
+weft_progress weft_command_progress(const weft_common_options *common)
 {
     return (weft_progress){report_progress, (void *)common};
 }
@@ -158,7 +86,7 @@ static void print_event(json_t *event)
     json_decref(event);
 }
 
-void command_say(const common_options *common, const char *format, ...)
+void weft_command_say(const weft_common_options *common, const char *format, ...)
 {
     if (common->quiet)
         return;
@@ -175,7 +103,17 @@ void command_say(const common_options *common, const char *format, ...)
     fflush(stdout);
 }
 
-int command_exit(const char *command, const common_options *common, weft_code code, const weft_error *error)
+static void say_line(void *context, const char *text)
+{
+    weft_command_say(context, "%s", text);
+}
+
+weft_log weft_command_log(const weft_common_options *common)
+{
+    return (weft_log){say_line, (void *)common};
+}
+
+int weft_command_exit(const char *command, const weft_common_options *common, weft_code code, const weft_error *error)
 {
     close_line();
     if (code == WEFT_OK)

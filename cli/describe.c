@@ -26,26 +26,26 @@ static bool is_list_of_objects(const json_t *value)
     return json_is_array(value) && json_is_object(json_array_get(value, 0));
 }
 
-static void say_object(const common_options *common, json_t *object, int indent);
+static void say_object(const weft_common_options *common, json_t *object, int indent);
 
-static void say_member(const common_options *common, const char *name, json_t *value, int indent)
+static void say_member(const weft_common_options *common, const char *name, json_t *value, int indent)
 {
     if (json_is_object(value)) {
-        command_say(common, "%*s%s:", indent, "", name);
+        weft_command_say(common, "%*s%s:", indent, "", name);
         say_object(common, value, indent + 2);
     } else if (is_list_of_objects(value)) {
         for (size_t i = 0; i < json_array_size(value); i++) {
-            command_say(common, "%*s%s %zu:", indent, "", name, i);
+            weft_command_say(common, "%*s%s %zu:", indent, "", name, i);
             say_object(common, json_array_get(value, i), indent + 2);
         }
     } else {
         char text[LINE_SIZE] = "";
         format_value(value, text, sizeof text);
-        command_say(common, "%*s%s: %s", indent, "", name, text);
+        weft_command_say(common, "%*s%s: %s", indent, "", name, text);
     }
 }
 
-static void say_object(const common_options *common, json_t *object, int indent)
+static void say_object(const weft_common_options *common, json_t *object, int indent)
 {
     const char *name;
     json_t *value;
@@ -53,7 +53,7 @@ static void say_object(const common_options *common, json_t *object, int indent)
         say_member(common, name, value, indent);
 }
 
-void describe(const common_options *common, const char *event, json_t *object)
+void weft_command_describe(const weft_common_options *common, const char *event, json_t *object)
 {
     if (!common->json) {
         say_object(common, object, 0);
@@ -63,42 +63,7 @@ void describe(const common_options *common, const char *event, json_t *object)
     json_object_update(whole, object);
     char *line = json_dumps(whole, JSON_COMPACT);
     if (line)
-        command_event(common, line);
+        weft_command_event(common, line);
     free(line);
     json_decref(whole);
-}
-
-typedef struct one_file {
-    common_options *common;
-    const char *path;
-} one_file;
-
-static error_t parse_option(int key, char *argument, struct argp_state *state)
-{
-    one_file *file = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = file->common;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (file->path)
-            argp_error(state, "one file at a time: '%s' is one too many", argument);
-        file->path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!file->path)
-            argp_error(state, "needs a file");
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
-
-const char *parse_one_file(int argc, char **argv, const char *documentation, common_options *common)
-{
-    static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
-    const struct argp parser = {NULL, parse_option, "FILE", documentation, children, NULL, NULL};
-    one_file file = {common, NULL};
-    command_parse(&parser, argc, argv, &file, common);
-    return file.path;
 }

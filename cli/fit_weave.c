@@ -1,62 +1,34 @@
 #include "study/fit_weave/fit_weave.h"
 #include "cli/arguments.h"
-#include "cli/command.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 typedef struct fit_weave_command {
-    conversion files;
-    const char *weave;
+    weft_common_options common;
+    const char *input, *output, *weave;
 } fit_weave_command;
 
-enum { KEY_WEAVE = 0x2000 };
-
-static const struct argp_option option_table[] = {
-    {"weave", KEY_WEAVE, "START.wv", 0, "Pattern, kinds and sizes of the yarns, and where the search begins", 0},
-    {"output", 'o', "FITTED.wv", 0, "The weave to write", 0},
+static const weft_option option_table[] = {
+    {.argument = "NAME.btf.h5",
+     .is_required = true,
+     .kind = WEFT_OPTION_INPUT,
+     .offset = offsetof(fit_weave_command, input)},
+    {"output", 'o', "FITTED.wv", "The weave to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
+     .offset = offsetof(fit_weave_command, output)},
+    {"weave", .argument = "START.wv", .help = "Pattern, kinds and sizes of the yarns, and where the search begins",
+     .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(fit_weave_command, weave)},
     {0},
 };
 
-static error_t parse_option(int key, char *argument, struct argp_state *state)
-{
-    fit_weave_command *command = state->input;
-    switch (key) {
-    case KEY_WEAVE:
-        command->weave = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!command->weave)
-            argp_error(state, "needs %s", command->files.needed);
-        refuse_same_file(command->files.output, command->weave, state);
-        return parse_conversion(key, argument, state, &command->files);
-    default:
-        return parse_conversion(key, argument, state, &command->files);
-    }
-}
-
-static const struct argp_child children[] = {{&common_argp, 0, "Common options:", 9}, {0}};
-
-static const struct argp parser = {option_table,
-                                   parse_option,
-                                   "NAME.btf.h5 --weave START.wv -o FITTED.wv",
-                                   "Example: weft fit-weave denim.btf.h5 --weave twill.wv -o denim.wv\n\n"
-                                   "Finds twist, inclination, curvature and width of the yarns, scattering of the "
-                                   "fibres and colours so that the weave reflects like the mean tile in "
-                                   "the dataset. "
-                                   "Pattern and lengths stay as they are in START.wv.",
-                                   children,
-                                   NULL,
-                                   NULL};
-
 static void say_errors(const fit_weave_command *command, const weft_fit_weave_report *report)
 {
-    command_say(&command->files.common,
-                "relative error of the mean BRDF, median / 80th percentile: %.1f %% / %.1f %% before, "
-                "%.1f %% / %.1f %% after",
-                100 * report->before.median_relative, 100 * report->before.percentile80_relative,
-                100 * report->after.median_relative, 100 * report->after.percentile80_relative);
+    weft_command_say(&command->common,
+                     "relative error of the mean BRDF, median / 80th percentile: %.1f %% / %.1f %% before, "
+                     "%.1f %% / %.1f %% after",
+                     100 * report->before.median_relative, 100 * report->before.percentile80_relative,
+                     100 * report->after.median_relative, 100 * report->after.percentile80_relative);
     char event[400];
     snprintf(event, sizeof event,
              "{\"event\":\"fit\",\"images\":%d,\"median_relative_before\":%.6g,\"percentile80_relative_before\":%.6g,"
@@ -64,7 +36,7 @@ static void say_errors(const fit_weave_command *command, const weft_fit_weave_re
              report->image_count, report->before.median_relative, report->before.percentile80_relative,
              report->after.median_relative, report->after.percentile80_relative, report->alpha, report->beta,
              report->seconds);
-    command_event(&command->files.common, event);
+    weft_command_event(&command->common, event);
 }
 
 /* "30.12 +- 0.04", or that the data do not say. */
@@ -88,50 +60,51 @@ static void say_group(const fit_weave_command *command, const weft_fit_weave_gro
         print_value(width, sizeof width, group->width, group->width_deviation);
     else
         snprintf(width, sizeof width, "%.4g (as given: the data tell it no better)", group->width);
-    command_say(&command->files.common, "%s (yarn %d): psi %s, umax %s degrees, kappa %s, width %s, ks %.4g %.4g %.4g",
-                group->warp ? "warp" : "weft", group->yarn + 1, psi, umax, kappa, width, (double)ks.r, (double)ks.g,
-                (double)ks.b);
+    weft_command_say(&command->common, "%s (yarn %d): psi %s, umax %s degrees, kappa %s, width %s, ks %.4g %.4g %.4g",
+                     group->warp ? "warp" : "weft", group->yarn + 1, psi, umax, kappa, width, (double)ks.r,
+                     (double)ks.g, (double)ks.b);
     char event[320];
     snprintf(event, sizeof event,
              "{\"event\":\"yarn\",\"type\":\"%s\",\"yarn\":%d,\"psi_deg\":%.9g,\"umax_deg\":%.9g,\"kappa\":%.9g,"
              "\"width\":%.9g,\"width_fitted\":%s}",
              group->warp ? "warp" : "weft", group->yarn + 1, group->psi_deg, group->umax_deg, group->kappa,
              group->width, group->width_fitted ? "true" : "false");
-    command_event(&command->files.common, event);
+    weft_command_event(&command->common, event);
 }
 
 static void say_source(const fit_weave_command *command, const weft_fit_weave_source *source)
 {
     const weft_tile *tile = &source->tile.tile;
     if (!source->tiled) {
-        command_say(&command->files.common, "mean of the whole material: %s", source->why_whole);
+        weft_command_say(&command->common, "mean of the whole material: %s", source->why_whole);
         return;
     }
-    command_say(&command->files.common,
-                "mean tile of %d x %d, %.2f x %.2f texels each, corner at %.2f, %.2f (likeness to the start: %.2f)",
-                source->tiles_x, source->tiles_y, tile->width, tile->height, tile->left, tile->top,
-                source->tile.likeness);
+    weft_command_say(
+        &command->common,
+        "mean tile of %d x %d, %.2f x %.2f texels each, corner at %.2f, %.2f (likeness to the start: %.2f)",
+        source->tiles_x, source->tiles_y, tile->width, tile->height, tile->left, tile->top, source->tile.likeness);
     char event[256];
     snprintf(event, sizeof event,
              "{\"event\":\"tile\",\"size_texels\":[%.6g,%.6g],\"corner_texels\":[%.6g,%.6g],\"likeness\":%.4g,"
              "\"averaged\":[%d,%d]}",
              tile->width, tile->height, tile->left, tile->top, source->tile.likeness, source->tiles_x, source->tiles_y);
-    command_event(&command->files.common, event);
+    weft_command_event(&command->common, event);
 }
 
 static void say_askew(const fit_weave_command *command, const weft_fit_weave_report *report)
 {
     static const char *const turn[] = {"fitted", "vague", "at bound"};
-    const common_options *common = &command->files.common;
+    const weft_common_options *common = &command->common;
     const double *askew = report->askew_deg, *deviation = report->askew_deviation;
     char deviations[96] = "null", event[256];
     if (report->turn == WEFT_TURN_VAGUE)
-        command_say(common, "sample: taken as lying straight, the data do not tell");
+        weft_command_say(common, "sample: taken as lying straight, the data do not tell");
     if (report->turn == WEFT_TURN_AT_BOUND)
-        command_say(common, "sample: taken as lying straight, its turn runs to the bound of a degree: something else "
-                            "is amiss");
+        weft_command_say(common,
+                         "sample: taken as lying straight, its turn runs to the bound of a degree: something else "
+                         "is amiss");
     if (report->turn == WEFT_TURN_FITTED) {
-        command_say(
+        weft_command_say(
             common,
             "sample: lies askew by %.2f +- %.2g, %.2f +- %.2g, %.2f +- %.2g degrees about weft, warp and normal",
             askew[0], deviation[0], askew[1], deviation[1], askew[2], deviation[2]);
@@ -139,7 +112,7 @@ static void say_askew(const fit_weave_command *command, const weft_fit_weave_rep
     }
     snprintf(event, sizeof event, "{\"event\":\"askew\",\"turn\":\"%s\",\"degrees\":[%.6g,%.6g,%.6g],\"deviation\":%s}",
              turn[report->turn], askew[0], askew[1], askew[2], deviations);
-    command_event(common, event);
+    weft_command_event(common, event);
 }
 
 static void say_report(const fit_weave_command *command, const weft_weave *weave, const weft_fit_weave_report *report)
@@ -147,44 +120,58 @@ static void say_report(const fit_weave_command *command, const weft_weave *weave
     char alpha[64], beta[64];
     print_value(alpha, sizeof alpha, report->alpha, report->alpha_deviation);
     print_value(beta, sizeof beta, report->beta, report->beta_deviation);
-    command_say(&command->files.common, "%s: fitted to the mean of %d images in %.1f s", command->files.output,
-                report->image_count, report->seconds);
+    weft_command_say(&command->common, "%s: fitted to the mean of %d images in %.1f s", command->output,
+                     report->image_count, report->seconds);
     for (int group = 0; group < report->group_count; group++)
         say_group(command, &report->group[group], weave);
-    command_say(&command->files.common, "fibres: alpha %s, beta %s", alpha, beta);
+    weft_command_say(&command->common, "fibres: alpha %s, beta %s", alpha, beta);
     say_askew(command, report);
     say_errors(command, report);
 }
 
 static weft_code fit(const fit_weave_command *command, weft_weave *weave, weft_dataset *dataset, weft_error *error)
 {
-    weft_progress progress = command_progress(&command->files.common);
+    weft_progress progress = weft_command_progress(&command->common);
     weft_fit_weave_source source;
     weft_fit_weave_report report;
     WEFT_TRY(weft_fit_weave_to_dataset(dataset, weave, &progress, &source, &report, error));
-    WEFT_TRY(weft_fit_weave_write(command->files.output, weave, dataset, &report, error));
+    WEFT_TRY(weft_fit_weave_write(command->output, weave, dataset, &report, error));
     say_source(command, &source);
     say_report(command, weave, &report);
     return WEFT_OK;
 }
 
-int command_fit_weave(int argc, char **argv)
+static int run(int argc, char **argv)
 {
-    fit_weave_command command = {
-        .files = {.noun = "dataset", .needed = "NAME.btf.h5, --weave START.wv and -o FITTED.wv"}};
-    command_parse(&parser, argc, argv, &command, &command.files.common);
+    fit_weave_command command = {0};
+    weft_arguments_parse(&weft_command_fit_weave, argc, argv, &command);
     weft_error error = {0};
     weft_dataset *dataset = NULL;
     weft_weave weave = {0};
     char warning[WEFT_MESSAGE_SIZE];
     weft_code code = weft_weave_read(command.weave, NULL, 0, &weave, warning, &error);
     if (code == WEFT_OK && warning[0])
-        command_say(&command.files.common, "%s", warning);
+        weft_command_say(&command.common, "%s", warning);
     if (code == WEFT_OK)
-        code = weft_dataset_open(command.files.input, &dataset, &error);
+        code = weft_dataset_open(command.input, &dataset, &error);
     if (code == WEFT_OK)
         code = fit(&command, &weave, dataset, &error);
     weft_dataset_close(dataset);
     weft_weave_free(&weave);
-    return command_exit("fit-weave", &command.files.common, code, &error);
+    return weft_command_exit("fit-weave", &command.common, code, &error);
 }
+
+const weft_command weft_command_fit_weave = {
+    .name = "fit-weave",
+    .summary = "fit a weave to a dataset",
+    .usage = "NAME.btf.h5 --weave START.wv -o FITTED.wv",
+    .documentation = "Example: weft fit-weave denim.btf.h5 --weave twill.wv -o denim.wv\n\n"
+                     "Finds twist, inclination, curvature and width of the yarns, scattering of the "
+                     "fibres and colours so that the weave reflects like the mean tile in "
+                     "the dataset. "
+                     "Pattern and lengths stay as they are in START.wv.",
+    .options = option_table,
+    .needs = "NAME.btf.h5, --weave START.wv and -o FITTED.wv",
+    .surplus = "one dataset at a time",
+    .run = run,
+};

@@ -1,19 +1,39 @@
+#include "cli/arguments.h"
 #include "cli/describe.h"
 #include "study/inspect/inspect.h"
 
-int command_info(int argc, char **argv)
+typedef struct info_command {
+    weft_common_options common;
+    const char *path;
+} info_command;
+
+static const weft_option option_table[] = {
+    {.argument = "FILE", .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(info_command, path)},
+    {0},
+};
+
+static int run(int argc, char **argv)
 {
-    common_options common = {0};
-    const char *path = parse_one_file(argc, argv,
-                                      "Example: weft info silk.weft\n\n"
-                                      "Says what a material (.weft), a dataset (.btf.h5), a weave (.wv), a cloth of "
-                                      "microcylinders (.mc), a stitch (.stitch) or a session folder holds.",
-                                      &common);
+    info_command values = {0};
+    weft_arguments_parse(&weft_command_info, argc, argv, &values);
     weft_error error = {0};
     json_t *description;
-    weft_code code = weft_inspect(path, &description, &error);
+    weft_code code = weft_inspect(values.path, &description, &error);
     if (code == WEFT_OK)
-        describe(&common, "info", description);
+        weft_command_describe(&values.common, "info", description);
     json_decref(description);
-    return command_exit("info", &common, code, &error);
+    return weft_command_exit("info", &values.common, code, &error);
 }
+
+const weft_command weft_command_info = {
+    .name = "info",
+    .summary = "say what a file holds",
+    .usage = "FILE",
+    .documentation = "Example: weft info silk.weft\n\n"
+                     "Says what a material (.weft), a dataset (.btf.h5), a weave (.wv), a cloth of "
+                     "microcylinders (.mc), a stitch (.stitch) or a session folder holds.",
+    .options = option_table,
+    .needs = "a file",
+    .surplus = "one file at a time",
+    .run = run,
+};

@@ -5,29 +5,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct command {
-    const char *heading; /* before it, or NULL */
-    const char *name;
-    int (*run)(int argc, char **argv);
-    const char *summary;
-} command;
-
-static const command commands[] = {
-    {"Photographs and geometry to a dataset:", "capture", command_capture,
-     "photograph a sample under all views and lights"},
-    {NULL, "simulate", command_simulate, "make a dataset of cloth from the geometry of its yarns"},
-    {NULL, "register", command_register, "turn the photographs of a session into a dataset"},
-    {NULL, "import", command_import, "turn foreign photographs into a dataset"},
-    {NULL, "tile", command_tile, "average the repeats of a dataset into one tile"},
-    {NULL, "bard", command_bard, "predict a dataset from the photographs under one light"},
-    {"A dataset to a model:", "compress", command_compress, "fit lobes and a view table to a dataset"},
-    {NULL, "fit-weave", command_fit_weave, "fit a weave to a dataset"},
-    {"Look and measure:", "render", command_render, "draw a material to an image file"},
-    {NULL, "play", command_play, "draw a material in a window"},
-    {NULL, "compare", command_compare, "put dataset, material and analytic cloth side by side"},
-    {NULL, "eval", command_eval, "evaluate any model at listed directions"},
-    {NULL, "info", command_info, "say what a file holds"},
-    {NULL, "verify", command_verify, "check a file from end to end"},
+/* Commands with the heading before them, or NULL. */
+static const struct {
+    const char *heading;
+    const weft_command *command;
+} commands[] = {
+    {"Photographs and geometry to a dataset:", &weft_command_capture},
+    {NULL, &weft_command_simulate},
+    {NULL, &weft_command_register},
+    {NULL, &weft_command_import},
+    {NULL, &weft_command_tile},
+    {NULL, &weft_command_bard},
+    {"A dataset to a model:", &weft_command_compress},
+    {NULL, &weft_command_fit_weave},
+    {"Look and measure:", &weft_command_render},
+    {NULL, &weft_command_play},
+    {NULL, &weft_command_compare},
+    {NULL, &weft_command_eval},
+    {NULL, &weft_command_info},
+    {NULL, &weft_command_verify},
 };
 
 static void print_usage(FILE *stream)
@@ -39,14 +35,14 @@ static void print_usage(FILE *stream)
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
         if (commands[i].heading)
             fprintf(stream, "%s%s\n", i > 0 ? "\n" : "", commands[i].heading);
-        fprintf(stream, "  %-10s %s\n", commands[i].name, commands[i].summary);
+        fprintf(stream, "  %-10s %s\n", commands[i].command->name, commands[i].command->summary);
     }
     fputs("\n'weft COMMAND --help' explains a command. 'weft --version' prints the version.\n"
           "Exit codes: 0 done, 1 bad input, 2 bad usage, 3 device or system failure.\n",
           stream);
 }
 
-static int run_command(const command *chosen, int argc, char **argv)
+static int run_command(const weft_command *chosen, int argc, char **argv)
 {
     /* argp names the program by argv[0] in its messages: "weft NAME". */
     char name[64];
@@ -73,8 +69,8 @@ int main(int argc, char **argv)
         return EXIT_SUCCESS;
     }
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
-        if (strcmp(argv[1], commands[i].name) == 0)
-            return run_command(&commands[i], argc - 1, argv + 1);
+        if (strcmp(argv[1], commands[i].command->name) == 0)
+            return run_command(commands[i].command, argc - 1, argv + 1);
     }
     fprintf(stderr, "weft: there is no command '%s'; 'weft --help' lists them\n", argv[1]);
     return WEFT_BAD_USAGE;

@@ -1,24 +1,44 @@
+#include "cli/arguments.h"
 #include "cli/describe.h"
 #include "study/inspect/inspect.h"
 
-int command_verify(int argc, char **argv)
+typedef struct verify_command {
+    weft_common_options common;
+    const char *path;
+} verify_command;
+
+static const weft_option option_table[] = {
+    {.argument = "FILE", .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(verify_command, path)},
+    {0},
+};
+
+static int run(int argc, char **argv)
 {
-    common_options common = {0};
-    const char *path = parse_one_file(argc, argv,
-                                      "Example: weft verify silk.btf.h5\n\n"
-                                      "Reads all of a material (.weft), a dataset (.btf.h5), a weave (.wv), a cloth of "
-                                      "microcylinders (.mc), a stitch "
-                                      "(.stitch) or a session folder and checks it: sizes, checksums, every number, "
-                                      "every photograph. Exit code 1 and one line where something is wrong.",
-                                      &common);
-    weft_progress progress = command_progress(&common);
+    verify_command values = {0};
+    weft_arguments_parse(&weft_command_verify, argc, argv, &values);
+    weft_progress progress = weft_command_progress(&values.common);
     weft_error error = {0};
     json_t *description;
-    weft_code code = weft_verify(path, &progress, &description, &error);
+    weft_code code = weft_verify(values.path, &progress, &description, &error);
     if (code == WEFT_OK) {
-        describe(&common, "verify", description);
-        command_say(&common, "sound");
+        weft_command_describe(&values.common, "verify", description);
+        weft_command_say(&values.common, "sound");
     }
     json_decref(description);
-    return command_exit("verify", &common, code, &error);
+    return weft_command_exit("verify", &values.common, code, &error);
 }
+
+const weft_command weft_command_verify = {
+    .name = "verify",
+    .summary = "check a file from end to end",
+    .usage = "FILE",
+    .documentation = "Example: weft verify silk.btf.h5\n\n"
+                     "Reads all of a material (.weft), a dataset (.btf.h5), a weave (.wv), a cloth of "
+                     "microcylinders (.mc), a stitch "
+                     "(.stitch) or a session folder and checks it: sizes, checksums, every number, "
+                     "every photograph. Exit code 1 and one line where something is wrong.",
+    .options = option_table,
+    .needs = "a file",
+    .surplus = "one file at a time",
+    .run = run,
+};

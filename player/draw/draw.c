@@ -1,6 +1,5 @@
 #include "player/draw/player.h"
 
-#include "player/draw/legend.h"
 #include "player/draw/lighting.h"
 #include "player/draw/player_parts.h"
 #include "player/scene/false_colour.h"

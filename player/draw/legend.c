@@ -1,4 +1,4 @@
-#include "player/draw/legend.h"
+#include "player/draw/player_parts.h"
 
 #include <stdio.h>
 

@@ -84,6 +84,11 @@ void weft_player_take_raw(weft_player *player, weft_raw_texture *texture, const 
 /* The smallest z of directions, 1 without any. Pure. */
 double weft_player_last_ring_z(const weft_vec3 *direction, int count);
 
+/* Draws the scale of a signed difference into it as differences: in the lower left corner of a picture of width x
+ * height pixels that holds differences (the framebuffer in use), colours from -WEFT_SCENE_FULL_DIFFERENCE to it, and in
+ * words what they say of `second`. Nothing where the picture is too small. Errors: WEFT_SYSTEM. */
+weft_code weft_legend_draw(weft_labels *labels, int width, int height, weft_mode second, weft_error *error);
+
 /* Errors: WEFT_BAD_USAGE unless a mesh and the mode are there. */
 weft_code weft_player_check_mode(const weft_player *player, weft_mode mode, weft_error *error);
 

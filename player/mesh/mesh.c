@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 weft_code weft_mesh_allocate(int vertex_count, int triangle_count, weft_mesh *mesh, weft_error *error)
 {
@@ -205,4 +206,27 @@ void weft_mesh_measure(weft_mesh *mesh)
     mesh->size = 0;
     for (int axis = 0; axis < 3; axis++)
         mesh->size = fmax(mesh->size, (double)high[axis] - low[axis]);
+}
+
+/* ---- Triangles of a grid ---- */
+
+/* Two triangles for each square of stride x stride cells. Returns the end of them. */
+static uint32_t (*index_squares(uint32_t (*index)[3], int columns, int rows, int stride))[3]
+{
+    for (int row = 0; row + stride < rows; row += stride) {
+        for (int column = 0; column + stride < columns; column += stride) {
+            uint32_t a = (uint32_t)(row * columns + column), b = a + (uint32_t)stride;
+            uint32_t c = a + (uint32_t)(stride * columns), d = c + (uint32_t)stride;
+            memcpy(*index++, (uint32_t[3]){a, b, d}, sizeof *index);
+            memcpy(*index++, (uint32_t[3]){a, d, c}, sizeof *index);
+        }
+    }
+    return index;
+}
+
+void weft_mesh_index_grid(weft_mesh *mesh, int columns, int rows)
+{
+    uint32_t(*fine_end)[3] = index_squares(mesh->index, columns, rows, 1);
+    if (columns % 2 == 1 && rows % 2 == 1)
+        mesh->coarse_count = (int)(index_squares(fine_end, columns, rows, 2) - fine_end);
 }

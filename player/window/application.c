@@ -1,5 +1,5 @@
 #include "base/clock.h"
-#include "player/window/application_parts.h"
+#include "player/window/panel.h"
 
 #include "player/window/keys.h"
 #include "player/window/ui_bridge.h"
@@ -16,29 +16,14 @@ static const double settle_s = 0.12; /* after the last change the mean of a pict
 static const double hurry_ms = 15;   /* exact frames longer than this are drawn stochastically while things move */
 static const double poll_s = 0.1;
 static const double turn_rad_per_s = 0.5;
-static const double note_s = 8, short_note_s = 1.5;
+static const double short_note_s = 1.5;
 static const double poll_of_loading_s = 0.01; /* frames that show nothing new would take from the thread that reads */
-
-void weft_application_tell(weft_application *a, bool is_error, const char *text)
-{
-    if (!text[0])
-        return;
-    snprintf(a->note, sizeof a->note, "%s", text);
-    a->note_is_error = is_error;
-    a->note_ends_s = weft_now_s() + note_s;
-}
-
-/* What the host could not do is told and the window stays. */
-static void tell_outcome(weft_application *a, weft_code code, const weft_error *error, const char *note)
-{
-    weft_application_tell(a, code != WEFT_OK, code == WEFT_OK ? note : error->message);
-}
 
 /* ---- Events ---- */
 
 static double picture_x(const weft_application *a, double x)
 {
-    return x - weft_application_panel_width(a);
+    return x - weft_panel_width(a);
 }
 
 /* Where the pointer is now: what the widgets know of it is as old as the last frame. */
@@ -64,7 +49,7 @@ static void on_scroll(void *context, double steps)
 {
     weft_application *a = context;
     bool scrolls_list = a->interaction.shows_help;
-    if (!scrolls_list && is_on_picture(a, a->interaction.x + weft_application_panel_width(a)))
+    if (!scrolls_list && is_on_picture(a, a->interaction.x + weft_panel_width(a)))
         weft_interaction_scroll(&a->interaction, steps);
 }
 
@@ -84,17 +69,6 @@ static void on_key(void *context, int key, int action, int modifiers)
     }
 }
 
-void weft_application_open(weft_application *a, const char *path)
-{
-    const weft_application_host *host = &a->setup.host;
-    char note[WEFT_NOTE_SIZE] = "";
-    weft_error error = {0};
-    if (!host->open)
-        return;
-    tell_outcome(a, host->open(host->context, path, &a->interaction.scene, note, &error), &error, note);
-    a->interaction.changed = true;
-}
-
 static void on_drop(void *context, const char *path)
 {
     weft_application_open(context, path);
@@ -105,13 +79,26 @@ static void on_drop(void *context, const char *path)
 static weft_code open_window(weft_application *a, weft_error *error)
 {
     const weft_window_events events = {on_press, on_move, on_scroll, on_key, on_drop, a};
-    char title[256];
-    snprintf(title, sizeof title, "Weft - %s", a->setup.title);
-    WEFT_TRY(weft_window_create(title, a->setup.width, a->setup.height, &events, &a->window, error));
+    const weft_settings *settings = &a->setup.request->settings;
+    char title[sizeof a->title + 8];
+    snprintf(title, sizeof title, "Weft - %s", a->title);
+    WEFT_TRY(weft_window_create(title, settings->width, settings->height, &events, &a->window, error));
     a->scale = weft_window_scale(a->window);
     WEFT_TRY(weft_ui_create(weft_window_handle(a->window), a->scale, error));
     WEFT_TRY(weft_probe_plots_create((int)(PLOT_SIZE * a->scale), &a->plots, error));
-    return weft_player_create(&a->player, error);
+    WEFT_TRY(weft_player_create(&a->player, error));
+    return weft_scene_loader_attach(a->loader, a->player, error);
+}
+
+/* The name stays as other files are dropped. */
+static void name_after_first_file(weft_application *a)
+{
+    const weft_settings *settings = &a->setup.request->settings;
+    const char *first = settings->material  ? settings->material
+                        : settings->dataset ? settings->dataset
+                                            : settings->weave;
+    const char *slash = strrchr(first, '/');
+    snprintf(a->title, sizeof a->title, "%s", slash ? slash + 1 : first);
 }
 
 weft_code weft_application_create(const weft_application_setup *setup, weft_application **result, weft_error *error)
@@ -122,7 +109,10 @@ weft_code weft_application_create(const weft_application_setup *setup, weft_appl
         return weft_fail_memory(error, "application", sizeof *a);
     a->setup = *setup;
     a->progress = -1;
-    weft_code code = open_window(a, error);
+    name_after_first_file(a);
+    weft_code code = weft_application_open_files(a, error);
+    if (code == WEFT_OK)
+        code = open_window(a, error);
     if (code == WEFT_OK)
         *result = a;
     else
@@ -134,6 +124,7 @@ void weft_application_free(weft_application *a)
 {
     if (!a)
         return;
+    weft_application_close_files(a);
     if (a->window) {
         weft_canvas_free(&a->canvas);
         weft_probe_plots_free(&a->plots);
@@ -143,21 +134,6 @@ void weft_application_free(weft_application *a)
     weft_player_free(a->player);
     weft_window_free(a->window);
     free(a);
-}
-
-weft_player *weft_application_player(weft_application *a)
-{
-    return a->player;
-}
-
-void weft_application_set_file(weft_application *a, weft_mode mode, const char *path)
-{
-    a->setup.file[mode] = path;
-}
-
-void weft_application_set_mesh(weft_application *a, const char *name)
-{
-    a->mesh = name;
 }
 
 void weft_application_speed(const weft_application *a, long *frames, double *frame_ms)
@@ -252,10 +228,9 @@ static bool is_finished(const weft_application *a)
 
 static void measure(weft_application *a)
 {
-    const weft_application_host *host = &a->setup.host;
     weft_error error = {0};
-    if (host->measure && host->measure(host->context, &a->interaction.scene, a->canvas.width, a->canvas.height,
-                                       a->errors, &error) != WEFT_OK)
+    if (a->setup.measure(a->player, &a->interaction.scene, a->canvas.width, a->canvas.height, a->errors, &error) !=
+        WEFT_OK)
         weft_application_tell(a, true, error.message);
 }
 
@@ -274,51 +249,18 @@ static weft_code advance(weft_application *a, weft_error *error)
 
 /* ---- Wishes ---- */
 
-/* A picture names the file of its weave; what was changed since is not in that. */
-static void warn_of_changes(const weft_application *a, char note[WEFT_NOTE_SIZE])
-{
-    size_t used = strlen(note);
-    bool shows_changed = a->weave.is_changed && a->weave.revision == weft_player_weave_revision(a->player);
-    if (shows_changed)
-        snprintf(note + used, WEFT_NOTE_SIZE - used, "; it names the weave's file, without your changes");
-}
-
-static void save_picture(weft_application *a)
-{
-    const weft_application_host *host = &a->setup.host;
-    char note[WEFT_NOTE_SIZE] = "";
-    weft_error error = {0};
-    weft_code code = WEFT_OK;
-    if (host->save)
-        code = host->save(host->context, &a->interaction.scene, a->canvas.width, a->canvas.height, note, &error);
-    warn_of_changes(a, note);
-    tell_outcome(a, code, &error, note);
-}
-
-static void change_mesh(weft_application *a)
-{
-    const weft_application_host *host = &a->setup.host;
-    weft_error error = {0};
-    weft_code code = WEFT_OK;
-    if (host->mesh)
-        code = host->mesh(host->context, a->interaction.wants_mesh, &a->interaction.scene, &error);
-    tell_outcome(a, code, &error, "");
-    a->interaction.wants_mesh = NULL;
-    a->interaction.changed = true;
-}
-
 static void grant_wishes(weft_application *a)
 {
     weft_interaction *i = &a->interaction;
     if (i->wants_mesh)
-        change_mesh(a);
+        weft_application_change_mesh(a);
     if (i->wants_reload) {
         i->wants_reload = false;
         weft_application_open(a, NULL);
     }
     if (i->wants_screenshot) {
         i->wants_screenshot = false;
-        save_picture(a);
+        weft_application_save_picture(a);
     }
     weft_window_set_full_screen(a->window, i->full_screen);
     if (i->wants_quit)
@@ -333,28 +275,13 @@ static void turn_by_itself(weft_application *a)
     a->stepped_s = now;
 }
 
-static void poll_host(weft_application *a)
-{
-    const weft_application_host *host = &a->setup.host;
-    char note[WEFT_NOTE_SIZE] = "";
-    weft_error error = {0};
-    bool changed = false;
-    if (!host->poll)
-        return;
-    weft_code code = host->poll(host->context, &a->interaction.scene, &a->progress, &changed, note, &error);
-    tell_outcome(a, code, &error, note);
-    if (code != WEFT_OK)
-        a->failure = error;
-    a->interaction.changed |= changed;
-}
-
 /* ---- The loop ---- */
 
 /* While the picture moves the numbers would be of one frame's choices. */
 static weft_code probe(weft_application *a, weft_error *error)
 {
     const weft_interaction *i = &a->interaction;
-    if (!a->rests || weft_application_panel_width(a) == 0 || i->drag != WEFT_DRAG_NONE)
+    if (!a->rests || weft_panel_width(a) == 0 || i->drag != WEFT_DRAG_NONE)
         return WEFT_OK;
     weft_probe probe;
     WEFT_TRY(weft_probe_read(a->player, &i->scene, &a->canvas, (int)i->x, (int)i->y, &probe, error));
@@ -374,9 +301,9 @@ static void show(weft_application *a, int width, int height)
     glClearColor(0.02f, 0.02f, 0.02f, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     if (a->canvas.frame_count > 0)
-        weft_canvas_present(&a->canvas, &a->interaction.scene, weft_application_panel_width(a));
+        weft_canvas_present(&a->canvas, &a->interaction.scene, weft_panel_width(a));
     weft_ui_begin();
-    weft_application_show_panel(a, width, height);
+    weft_panel_show(a, width, height);
     weft_ui_end();
     weft_window_show(a->window);
 }
@@ -414,14 +341,14 @@ static weft_code step(weft_application *a, weft_error *error)
     int width, height;
     grant_wishes(a);
     turn_by_itself(a);
-    poll_host(a);
-    weft_application_follow_weave(a);
+    weft_application_poll_files(a);
+    weft_panel_follow_weave(a);
     find_modes(a);
     /* A window that would stay empty closes, and says why. */
     if (!has_something(a) && a->progress < 0 && a->failure.code != WEFT_OK)
         return weft_fail(error, a->failure.code, "%s", a->failure.message);
     weft_window_size(a->window, &width, &height);
-    int left = weft_application_panel_width(a);
+    int left = weft_panel_width(a);
     if (width <= left || height == 0)
         return WEFT_OK;
     WEFT_TRY(prepare_canvas(a, width - left, height, error));
@@ -433,8 +360,9 @@ static weft_code step(weft_application *a, weft_error *error)
     return weft_gl_check("showing the window", error);
 }
 
-weft_code weft_application_run(weft_application *a, const weft_scene *scene, weft_error *error)
+weft_code weft_application_run(weft_application *a, weft_error *error)
 {
+    const weft_scene *scene = &a->setup.request->settings.scene;
     a->interaction = (weft_interaction){.scene = *scene, .start = *scene, .changed = true, .shows_panel = true};
     a->interaction.before = scene->pane[0];
     a->stepped_s = weft_now_s();

@@ -1,4 +1,4 @@
-#include "player/window/application_parts.h"
+#include "player/window/panel.h"
 
 #include "player/window/ui_bridge.h"
 
@@ -10,7 +10,7 @@ enum { WIDTH = 330, NARROWEST_PICTURE = 420 };
 
 static const uint32_t ink = 0xe6e6e3ff, faint = 0xffffff40, ground = 0xffffff10, accent = 0xdb784dff;
 
-int weft_application_panel_width(const weft_application *a)
+int weft_panel_width(const weft_application *a)
 {
     int width, height;
     weft_window_size(a->window, &width, &height);
@@ -62,7 +62,7 @@ static void view_section(weft_interaction *i)
 
 /* ---- Light ---- */
 
-void weft_application_place(weft_vec3 direction, double x, double y, double radius, double *at_x, double *at_y)
+void weft_panel_place(weft_vec3 direction, double x, double y, double radius, double *at_x, double *at_y)
 {
     double across = hypot((double)direction.x, (double)direction.y);
     double r = radius * sqrt(fmax(0, 1 - fabs((double)direction.z))), scale = across > 0 ? r / across : 0;
@@ -98,10 +98,10 @@ static void direction_map(weft_application *a)
         draw_ring(&area, radius, weft_rad_of_deg(15 * ring), 0xffffff18, a->scale);
     draw_ring(&area, radius, light_rad, accent & 0xffffff90, a->scale);
     weft_ui_ring(area.x + radius, area.y + radius, radius, a->scale, faint);
-    weft_application_place(weft_orbit_axes_of(&i->scene.orbit).backward, area.x, area.y, radius, &x, &y);
+    weft_panel_place(weft_orbit_axes_of(&i->scene.orbit).backward, area.x, area.y, radius, &x, &y);
     weft_ui_ring(x, y, 4 * a->scale, 1.5 * a->scale, ink);
     for (int l = 0; l < i->scene.light_count; l++) {
-        weft_application_place(weft_direction_of_angles(i->scene.light[l].direction), area.x, area.y, radius, &x, &y);
+        weft_panel_place(weft_direction_of_angles(i->scene.light[l].direction), area.x, area.y, radius, &x, &y);
         weft_ui_disc(x, y, (l == 0 ? 5 : 3.5) * a->scale, 0xffd27fff);
     }
 }
@@ -221,8 +221,8 @@ static void mesh_row(weft_application *a)
 {
     static const char *const name[] = {"Drape", "Ball", "Plane"}, *const wish[] = {"drape", "sphere", "plane"};
     int chosen = -1;
-    for (int mesh = 0; a->mesh && mesh < 3; mesh++)
-        chosen = strcmp(a->mesh, wish[mesh]) == 0 ? mesh : chosen;
+    for (int mesh = 0; mesh < 3; mesh++)
+        chosen = strcmp(a->setup.request->settings.mesh, wish[mesh]) == 0 ? mesh : chosen;
     if (weft_ui_choice("Mesh", &chosen, name, NULL, 3))
         a->interaction.wants_mesh = wish[chosen];
 }
@@ -263,11 +263,13 @@ static void size_rows(const weft_application *a)
     static const char *const name[] = {"Raw", "Compressed", "Analytic"};
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
         size_t bytes = weft_player_bytes(a->player, (weft_mode)mode);
-        const char *path = a->setup.file[mode] ? a->setup.file[mode] : "";
-        const char *slash = strrchr(path, '/');
+        const char *path = weft_application_file(a, (weft_mode)mode), *slash = path ? strrchr(path, '/') : NULL;
         char text[160];
         snprintf(text, sizeof text, "%.3g MB %s  %s", 1e-6 * (double)bytes,
-                 mode == WEFT_MODE_RAW ? weft_player_raw_format(a->player) : "", slash ? slash + 1 : path);
+                 mode == WEFT_MODE_RAW ? weft_player_raw_format(a->player) : "",
+                 slash  ? slash + 1
+                 : path ? path
+                        : "");
         if (bytes > 0)
             weft_ui_value(name[mode], text);
     }
@@ -276,7 +278,7 @@ static void size_rows(const weft_application *a)
 static void title(const weft_application *a)
 {
     char text[96];
-    weft_ui_heading(a->setup.title);
+    weft_ui_heading(a->title);
     snprintf(text, sizeof text, "%.1f ms a frame, %.0f frames/s", a->frame_ms,
              a->frame_ms > 0 ? 1000 / a->frame_ms : 0);
     weft_ui_dim_text(text);
@@ -293,10 +295,10 @@ static void facts_section(const weft_application *a)
     weft_ui_dim_text(a->errors[0] ? a->errors : "The errors of what is visible are measured once the picture rests.");
 }
 
-void weft_application_show_panel(weft_application *a, int width, int height)
+void weft_panel_show(weft_application *a, int width, int height)
 {
     weft_interaction *i = &a->interaction;
-    int panel = weft_application_panel_width(a);
+    int panel = weft_panel_width(a);
     if (panel > 0) {
         weft_ui_panel_begin("panel", 0, 0, panel, height);
         title(a);
@@ -304,11 +306,11 @@ void weft_application_show_panel(weft_application *a, int width, int height)
         if (weft_ui_section("Light", true))
             light_section(a);
         if (weft_ui_section("Under the pointer", true))
-            weft_application_show_probe(a);
+            weft_panel_show_probe(a);
         if (i->available[WEFT_MODE_COMPRESSED] && weft_ui_section("Compressed material", true))
             material_section(a);
         if (i->available[WEFT_MODE_ANALYTIC] && weft_ui_section("Weave", false))
-            weft_application_show_weave(a);
+            weft_panel_show_weave(a);
         if (weft_ui_section("Picture", true))
             picture_section(a);
         if (weft_ui_section("Size and error", true))
@@ -317,5 +319,5 @@ void weft_application_show_panel(weft_application *a, int width, int height)
         weft_ui_dim_text("H: mouse and keys");
         weft_ui_panel_end();
     }
-    weft_application_show_notes(a, width, height);
+    weft_panel_show_notes(a, width, height);
 }

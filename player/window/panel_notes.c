@@ -1,5 +1,5 @@
 #include "base/clock.h"
-#include "player/window/application_parts.h"
+#include "player/window/panel.h"
 
 #include "player/scene/false_colour.h"
 #include "player/window/keys.h"
@@ -104,9 +104,9 @@ static void show_help(const weft_ui_box *room)
     weft_ui_list("help", line, count, middle_heading(line, count), room);
 }
 
-void weft_application_show_notes(const weft_application *a, int width, int height)
+void weft_panel_show_notes(const weft_application *a, int width, int height)
 {
-    double left = weft_application_panel_width(a), middle = (left + width) / 2, bottom = height - MARGIN * a->scale;
+    double left = weft_panel_width(a), middle = (left + width) / 2, bottom = height - MARGIN * a->scale;
     show_colours(&a->interaction.scene, left, height, a->scale);
     show_errors(a, width, height);
     const weft_ui_box room = {left, 0, width - left, height};

@@ -1,4 +1,4 @@
-#include "player/window/application_parts.h"
+#include "player/window/panel.h"
 
 #include "player/window/ui_bridge.h"
 
@@ -35,7 +35,7 @@ typedef struct plot_disc {
 static void mark_direction(const plot_disc *disc, weft_vec3 direction)
 {
     double x, y;
-    weft_application_place(direction, disc->x, disc->y, disc->radius, &x, &y);
+    weft_panel_place(direction, disc->x, disc->y, disc->radius, &x, &y);
     weft_ui_ring(x, y, 3.5 * disc->scale, 1.5 * disc->scale, ink);
 }
 
@@ -47,7 +47,7 @@ static void mark_lobes(const plot_disc *disc, const weft_texel *texel)
         double x, y;
         if (!((double)texel->shape[i].direction.z > 0))
             continue;
-        weft_application_place(texel->shape[i].direction, disc->x, disc->y, disc->radius, &x, &y);
+        weft_panel_place(texel->shape[i].direction, disc->x, disc->y, disc->radius, &x, &y);
         weft_ui_disc(x, y, 7 * disc->scale, 0x000000a0);
         weft_ui_label(x - 4 * disc->scale, y - 8 * disc->scale, ink, number);
     }
@@ -128,7 +128,7 @@ static void parameter_rows(const weft_texel *texel)
     weft_ui_dim_text("Cx, Cy, Cz, N in the axes of the texel");
 }
 
-void weft_application_show_probe(const weft_application *a)
+void weft_panel_show_probe(const weft_application *a)
 {
     if (!a->probe.on_mesh) {
         weft_ui_dim_text("Point at the cloth.");

@@ -1,4 +1,4 @@
-#include "player/window/application_parts.h"
+#include "player/window/panel.h"
 
 #include "player/window/ui_bridge.h"
 
@@ -103,7 +103,7 @@ static void save(weft_application *a)
     weft_application_tell(a, false, note);
 }
 
-void weft_application_follow_weave(weft_application *a)
+void weft_panel_follow_weave(weft_application *a)
 {
     bool shown;
     weft_error error = {0};
@@ -111,7 +111,7 @@ void weft_application_follow_weave(weft_application *a)
     a->interaction.changed |= shown;
 }
 
-void weft_application_show_weave(weft_application *a)
+void weft_panel_show_weave(weft_application *a)
 {
     weft_weave_edit *edit = &a->weave;
     weft_error error = {0};
@@ -119,7 +119,7 @@ void weft_application_show_weave(weft_application *a)
         weft_ui_dim_text("Microcylinder cloth: change its file.");
         return;
     }
-    tell(a, weft_weave_edit_follow(edit, a->player, a->setup.file[WEFT_MODE_ANALYTIC], &error), &error);
+    tell(a, weft_weave_edit_follow(edit, a->player, weft_application_file(a, WEFT_MODE_ANALYTIC), &error), &error);
     if (edit->weave.yarn_count == 0)
         return;
     choose_yarn(edit);

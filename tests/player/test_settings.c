@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "player/settings/relative_path.h"
+#include "player/settings/request.h"
 #include "settings_text.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
@@ -140,6 +141,8 @@ static void faults_are_named(void **state)
     expect_refusal("[1]", "not a JSON object");
     expect_refusal("{\"version\": 2}", "'version' must be a whole number from 1 to 1");
     expect_refusal("{\"lamp\": 1}", "'lamp' is not known");
+    expect_refusal("{\"camera.distance\": 3}", "'camera.distance' is not known");
+    expect_refusal("{\"camera\": {\"\": 3}}", "'camera.' is not known");
     expect_refusal("{\"light\": {\"lights\": [{\"theta_deg\": 1, \"colour\": 3}]}}", "'light.lights[0].colour' is not");
     expect_refusal("{\"light\": {\"lights\": [{}, {}, {}, {}, {}]}}", "'light.lights' must be a list of 0 to 4");
     expect_refusal("{\"light\": {\"lights\": []}}", "gives light");
@@ -156,6 +159,42 @@ static void faults_are_named(void **state)
     expect_refusal("{\"files\": {\"mesh\": null}}", "'files.mesh'");
     expect_refusal("{\"files\": {\"mesh\": 3}}", "'files.mesh' must be a string or null");
     expect_refusal("{\"camera\": {}, \"camera\": {}}", "duplicate");
+}
+
+/* The settings that one option makes of the default ones, as text; NULL where it cannot be understood. */
+static char *text_with(const weft_setting *setting, const char *text)
+{
+    weft_scene_request request = {0};
+    weft_error error = none;
+    char *result = NULL;
+    assert_int_equal(weft_settings_init(&request.settings, &error), WEFT_OK);
+    if (!setting || weft_option_set(&setting->option, text, &request, &error) == WEFT_OK)
+        result = formatted(&request.settings, "x");
+    weft_scene_request_free(&request);
+    return result;
+}
+
+/* But for the size of the mesh, which says 0 for what it is by default. */
+static void what_the_help_calls_the_default_is_it(void **state)
+{
+    (void)state;
+    int checked = 0;
+    char *expected = text_with(NULL, NULL);
+    for (const weft_setting *s = weft_settings_schema(); s->key || s->option.name; s++) {
+        const char *stated = s->option.help ? strstr(s->option.help, "(default: ") : NULL;
+        if (!stated || strcmp(s->option.name, "mesh-size") == 0)
+            continue;
+        char value[64];
+        stated += strlen("(default: ");
+        snprintf(value, sizeof value, "%.*s", (int)strcspn(stated, ");"), stated);
+        char *text = text_with(s, value);
+        if (text)
+            assert_string_equal(text, expected);
+        checked += text != NULL;
+        free(text);
+    }
+    assert_int_equal(checked, 7); /* camera, light, size, samples, strength, divider, noise */
+    free(expected);
 }
 
 static void a_number_that_is_not_finite_is_not_written(void **state)
@@ -249,6 +288,7 @@ int main(void)
         cmocka_unit_test(whole_degrees_come_back_as_they_were),
         cmocka_unit_test(what_is_left_out_is_the_default),
         cmocka_unit_test(faults_are_named),
+        cmocka_unit_test(what_the_help_calls_the_default_is_it),
         cmocka_unit_test(a_number_that_is_not_finite_is_not_written),
         cmocka_unit_test(names_are_those_seen_from_the_folder_of_the_picture),
         cmocka_unit_test(a_mesh_in_a_file_called_drape_is_not_the_drape),

@@ -1,7 +1,6 @@
-#include "cli/scene_load.h"
+#include "player/window/scene_loader.h"
 
 #include "btf/file_kind.h"
-#include "cli/scene_part.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -9,8 +8,8 @@
 
 static const double slice_s = 0.006; /* of each frame, for uploads */
 
-struct scene_loader {
-    scene_stage stage;
+struct weft_scene_loader {
+    weft_scene_stage stage;
     weft_loader *loader;
     char *waiting_dataset; /* until there is a player */
     bool starting;         /* what the command line named is not all there yet */
@@ -21,74 +20,76 @@ struct scene_loader {
 /* ---- Life ---- */
 
 /* From here on the settings name what is shown: nothing yet. The mesh keeps its name, as the default has one. */
-static weft_code start_all(scene_loader *l, weft_error *error)
+static weft_code start_all(weft_scene_loader *l, weft_error *error)
 {
-    static const scene_slot order[] = {SCENE_MATERIAL, SCENE_MESH, SCENE_WEAVE, SCENE_ENVIRONMENT};
+    static const weft_scene_slot order[] = {WEFT_SLOT_MATERIAL, WEFT_SLOT_MESH, WEFT_SLOT_WEAVE, WEFT_SLOT_ENVIRONMENT};
     for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
-        char **path = scene_stage_path(&l->stage, order[i]), *named = *path;
+        char **path = weft_scene_stage_path(&l->stage, order[i]), *named = *path;
         if (!named)
             continue;
-        WEFT_TRY(scene_part_start(&l->stage, l->loader, order[i], named, false, error));
-        if (order[i] != SCENE_MESH) {
+        WEFT_TRY(weft_scene_part_start(&l->stage, l->loader, order[i], named, false, error));
+        if (order[i] != WEFT_SLOT_MESH) {
             free(named);
             *path = NULL;
         }
     }
-    char **dataset = scene_stage_path(&l->stage, SCENE_DATASET);
+    char **dataset = weft_scene_stage_path(&l->stage, WEFT_SLOT_DATASET);
     free(l->waiting_dataset);
     l->waiting_dataset = *dataset;
     *dataset = NULL;
     l->starting = true;
-    l->wanted = l->chosen = l->stage.options->settings.scene;
+    l->wanted = l->chosen = l->stage.request->settings.scene;
     return WEFT_OK;
 }
 
-static void look_down_on_a_plane(scene_options *o)
+static void look_down_on_a_plane(weft_scene_request *o)
 {
     if (strcmp(o->settings.mesh, "plane") == 0 && !o->has_camera && !o->source)
         o->settings.scene.orbit =
             (weft_orbit){.azimuth_rad = weft_rad_of_deg(-90), .elevation_rad = weft_rad_of_deg(75), .distance = 3};
 }
 
-weft_code scene_loader_create(scene_options *options, scene_loader **result, weft_error *error)
+weft_code weft_scene_loader_create(weft_scene_request *request, double cloth_width_mm, weft_scene_loader **result,
+                                   weft_error *error)
 {
     *result = NULL;
-    scene_loader *l = calloc(1, sizeof *l);
+    weft_scene_loader *l = calloc(1, sizeof *l);
     if (!l)
         return weft_fail_memory(error, "loader", sizeof *l);
-    l->stage.options = options;
-    look_down_on_a_plane(options);
+    l->stage.request = request;
+    l->stage.cloth_width_mm = cloth_width_mm;
+    look_down_on_a_plane(request);
     weft_code code = weft_loader_create(&l->loader, error);
     if (code == WEFT_OK)
         code = start_all(l, error);
     if (code == WEFT_OK)
         *result = l;
     else
-        scene_loader_free(l);
+        weft_scene_loader_free(l);
     return code;
 }
 
-void scene_loader_free(scene_loader *l)
+void weft_scene_loader_free(weft_scene_loader *l)
 {
     if (!l)
         return;
     weft_loader_free(l->loader);
-    scene_stage_free(&l->stage);
+    weft_scene_stage_free(&l->stage);
     free(l->waiting_dataset);
     free(l);
 }
 
-static weft_code start_dataset(scene_loader *l, weft_error *error)
+static weft_code start_dataset(weft_scene_loader *l, weft_error *error)
 {
     if (!l->waiting_dataset)
         return WEFT_OK;
-    weft_code code = scene_part_start(&l->stage, l->loader, SCENE_DATASET, l->waiting_dataset, false, error);
+    weft_code code = weft_scene_part_start(&l->stage, l->loader, WEFT_SLOT_DATASET, l->waiting_dataset, false, error);
     free(l->waiting_dataset);
     l->waiting_dataset = NULL;
     return code;
 }
 
-weft_code scene_loader_attach(scene_loader *l, weft_player *player, weft_error *error)
+weft_code weft_scene_loader_attach(weft_scene_loader *l, weft_player *player, weft_error *error)
 {
     l->stage.player = player;
     return start_dataset(l, error);
@@ -106,10 +107,10 @@ static bool panes_are_there(const weft_scene *scene, const weft_player *player)
 
 /* What was asked for, or stood in the picture; else all that is there for a split or a comparison of two, and the
  * compressed material or what else there is by itself. False while a comparison lacks one. */
-static bool choose_panes(scene_loader *l)
+static bool choose_panes(weft_scene_loader *l)
 {
     static const weft_mode preference[WEFT_MODE_COUNT] = {WEFT_MODE_COMPRESSED, WEFT_MODE_RAW, WEFT_MODE_ANALYTIC};
-    scene_options *o = l->stage.options;
+    weft_scene_request *o = l->stage.request;
     weft_scene *scene = &o->settings.scene;
     scene->layout = l->wanted.layout;
     scene->pane_count = l->wanted.pane_count;
@@ -132,9 +133,9 @@ static bool choose_panes(scene_loader *l)
 }
 
 /* While files arrive one after the other, panes are added, until the user chooses others. */
-static void add_panes(scene_loader *l)
+static void add_panes(weft_scene_loader *l)
 {
-    const weft_scene *scene = &l->stage.options->settings.scene, *chosen = &l->chosen;
+    const weft_scene *scene = &l->stage.request->settings.scene, *chosen = &l->chosen;
     bool is_mine = scene->layout == chosen->layout && scene->pane_count == chosen->pane_count &&
                    memcmp(scene->pane, chosen->pane, sizeof scene->pane) == 0;
     if (!is_mine)
@@ -144,22 +145,22 @@ static void add_panes(scene_loader *l)
 }
 
 /* What the user dropped is shown, unless several modes are. */
-static void show_dropped(scene_loader *l)
+static void show_dropped(weft_scene_loader *l)
 {
-    weft_scene *scene = &l->stage.options->settings.scene;
+    weft_scene *scene = &l->stage.request->settings.scene;
     if (scene->layout != WEFT_LAYOUT_PANES || scene->pane_count > 1)
         return;
-    if (l->stage.slot == SCENE_DATASET)
+    if (l->stage.slot == WEFT_SLOT_DATASET)
         scene->pane[0] = WEFT_MODE_RAW;
-    else if (l->stage.slot == SCENE_MATERIAL)
+    else if (l->stage.slot == WEFT_SLOT_MATERIAL)
         scene->pane[0] = WEFT_MODE_COMPRESSED;
-    else if (l->stage.slot == SCENE_WEAVE)
+    else if (l->stage.slot == WEFT_SLOT_WEAVE)
         scene->pane[0] = WEFT_MODE_ANALYTIC;
 }
 
 /* ---- Progress ---- */
 
-weft_code scene_loader_poll(scene_loader *l, bool *shown, char note[WEFT_MESSAGE_SIZE], weft_error *error)
+weft_code weft_scene_loader_poll(weft_scene_loader *l, bool *shown, char note[WEFT_MESSAGE_SIZE], weft_error *error)
 {
     l->stage.note[0] = 0;
     weft_code code = weft_loader_poll(l->loader, slice_s, shown, error);
@@ -172,16 +173,15 @@ weft_code scene_loader_poll(scene_loader *l, bool *shown, char note[WEFT_MESSAGE
     return code;
 }
 
-weft_code scene_loader_finish(scene_loader *l, weft_error *error)
+weft_code weft_scene_loader_finish(weft_scene_loader *l, const weft_progress *progress, const weft_log *log,
+                                   weft_error *error)
 {
-    const common_options *common = &l->stage.options->common;
-    weft_progress progress = command_progress(common);
     bool some = true;
     while (some) {
         l->stage.note[0] = 0;
-        WEFT_TRY(weft_loader_wait(l->loader, &progress, &some, error));
+        WEFT_TRY(weft_loader_wait(l->loader, progress, &some, error));
         if (l->stage.note[0])
-            command_say(common, "%s", l->stage.note);
+            weft_log_line(log, l->stage.note);
     }
     l->starting = false;
     if (!choose_panes(l))
@@ -190,18 +190,19 @@ weft_code scene_loader_finish(scene_loader *l, weft_error *error)
     return WEFT_OK;
 }
 
-weft_code scene_load(scene_options *options, weft_player *player, weft_error *error)
+weft_code weft_scene_load(weft_scene_request *request, double cloth_width_mm, weft_player *player,
+                          const weft_progress *progress, const weft_log *log, weft_error *error)
 {
-    scene_loader *loader = NULL;
-    WEFT_TRY(scene_loader_create(options, &loader, error));
-    weft_code code = scene_loader_attach(loader, player, error);
+    weft_scene_loader *loader = NULL;
+    WEFT_TRY(weft_scene_loader_create(request, cloth_width_mm, &loader, error));
+    weft_code code = weft_scene_loader_attach(loader, player, error);
     if (code == WEFT_OK)
-        code = scene_loader_finish(loader, error);
-    scene_loader_free(loader);
+        code = weft_scene_loader_finish(loader, progress, log, error);
+    weft_scene_loader_free(loader);
     return code;
 }
 
-double scene_loader_progress(scene_loader *l)
+double weft_scene_loader_progress(weft_scene_loader *l)
 {
     return weft_loader_progress(l->loader);
 }
@@ -209,11 +210,11 @@ double scene_loader_progress(scene_loader *l)
 /* ---- Files that replace others ---- */
 
 /* What the player shows is what the settings name. */
-static weft_code clear_what_is_not_named(scene_loader *l, weft_error *error)
+static weft_code clear_what_is_not_named(weft_scene_loader *l, weft_error *error)
 {
-    const weft_settings *s = &l->stage.options->settings;
+    const weft_settings *s = &l->stage.request->settings;
     const char *const named[WEFT_MODE_COUNT] = {s->dataset, s->material, s->weave};
-    static const scene_slot slot[WEFT_MODE_COUNT] = {SCENE_DATASET, SCENE_MATERIAL, SCENE_WEAVE};
+    static const weft_scene_slot slot[WEFT_MODE_COUNT] = {WEFT_SLOT_DATASET, WEFT_SLOT_MATERIAL, WEFT_SLOT_WEAVE};
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
         if (named[mode])
             continue;
@@ -223,11 +224,11 @@ static weft_code clear_what_is_not_named(scene_loader *l, weft_error *error)
     }
     if (s->environment)
         return WEFT_OK;
-    weft_loader_cancel(l->loader, SCENE_ENVIRONMENT);
+    weft_loader_cancel(l->loader, WEFT_SLOT_ENVIRONMENT);
     return weft_player_set_environment(l->stage.player, NULL, error);
 }
 
-static weft_code open_picture(scene_loader *l, const char *path, weft_error *error)
+static weft_code open_picture(weft_scene_loader *l, const char *path, weft_error *error)
 {
     weft_settings settings = {0};
     weft_code code = weft_settings_read(path, &settings, error);
@@ -237,7 +238,7 @@ static weft_code open_picture(scene_loader *l, const char *path, weft_error *err
         weft_settings_free(&settings);
         return code;
     }
-    scene_options *o = l->stage.options;
+    weft_scene_request *o = l->stage.request;
     weft_settings_free(&o->settings);
     o->settings = settings;
     o->source = "";
@@ -247,27 +248,27 @@ static weft_code open_picture(scene_loader *l, const char *path, weft_error *err
     return start_dataset(l, error);
 }
 
-static weft_code start_by_user(scene_loader *l, scene_slot slot, const char *path, weft_error *error)
+static weft_code start_by_user(weft_scene_loader *l, weft_scene_slot slot, const char *path, weft_error *error)
 {
-    return scene_part_start(&l->stage, l->loader, slot, path, true, error);
+    return weft_scene_part_start(&l->stage, l->loader, slot, path, true, error);
 }
 
-weft_code scene_loader_open(scene_loader *l, const char *path, weft_error *error)
+weft_code weft_scene_loader_open(weft_scene_loader *l, const char *path, weft_error *error)
 {
     weft_file_kind kind;
     WEFT_TRY(weft_file_kind_of(path, &kind, error));
     switch (kind) {
     case WEFT_FILE_MATERIAL:
-        return start_by_user(l, SCENE_MATERIAL, path, error);
+        return start_by_user(l, WEFT_SLOT_MATERIAL, path, error);
     case WEFT_FILE_DATASET:
-        return start_by_user(l, SCENE_DATASET, path, error);
+        return start_by_user(l, WEFT_SLOT_DATASET, path, error);
     case WEFT_FILE_WEAVE:
     case WEFT_FILE_MICROCYLINDER:
-        return start_by_user(l, SCENE_WEAVE, path, error);
+        return start_by_user(l, WEFT_SLOT_WEAVE, path, error);
     case WEFT_FILE_MESH:
-        return start_by_user(l, SCENE_MESH, path, error);
+        return start_by_user(l, WEFT_SLOT_MESH, path, error);
     case WEFT_FILE_RADIANCE:
-        return start_by_user(l, SCENE_ENVIRONMENT, path, error);
+        return start_by_user(l, WEFT_SLOT_ENVIRONMENT, path, error);
     case WEFT_FILE_PICTURE:
         return open_picture(l, path, error);
     default:
@@ -277,21 +278,21 @@ weft_code scene_loader_open(scene_loader *l, const char *path, weft_error *error
     }
 }
 
-weft_code scene_loader_open_mesh(scene_loader *l, const char *name, weft_error *error)
+weft_code weft_scene_loader_open_mesh(weft_scene_loader *l, const char *name, weft_error *error)
 {
-    return start_by_user(l, SCENE_MESH, name, error);
+    return start_by_user(l, WEFT_SLOT_MESH, name, error);
 }
 
-weft_code scene_loader_reload_slot(scene_loader *l, int slot, weft_error *error)
+weft_code weft_scene_loader_reload_slot(weft_scene_loader *l, int slot, weft_error *error)
 {
-    const char *path = *scene_stage_path(&l->stage, (scene_slot)slot);
+    const char *path = *weft_scene_stage_path(&l->stage, (weft_scene_slot)slot);
     bool is_file = path && access(path, F_OK) == 0;
-    return is_file ? scene_part_start(&l->stage, l->loader, (scene_slot)slot, path, false, error) : WEFT_OK;
+    return is_file ? weft_scene_part_start(&l->stage, l->loader, (weft_scene_slot)slot, path, false, error) : WEFT_OK;
 }
 
-weft_code scene_loader_reload(scene_loader *l, weft_error *error)
+weft_code weft_scene_loader_reload(weft_scene_loader *l, weft_error *error)
 {
-    for (int slot = 0; slot < SCENE_SLOT_COUNT; slot++)
-        WEFT_TRY(scene_loader_reload_slot(l, slot, error));
+    for (int slot = 0; slot < WEFT_SLOT_COUNT; slot++)
+        WEFT_TRY(weft_scene_loader_reload_slot(l, slot, error));
     return WEFT_OK;
 }

@@ -1,4 +1,4 @@
-#include "cli/scene_errors.h"
+#include "study/error/scene_error.h"
 
 #include "study/error/visible_error.h"
 
@@ -6,16 +6,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void append(char text[SCENE_ERRORS_SIZE], weft_mode mode, const weft_error_summary *e)
+static void append(char text[WEFT_SCENE_ERROR_SIZE], weft_mode mode, const weft_error_summary *e)
 {
     size_t used = strlen(text);
-    snprintf(text + used, SCENE_ERRORS_SIZE - used, "%s%s %.1f %% (median %.1f, 80th percentile %.1f; PSNR %.1f dB)",
+    snprintf(text + used, WEFT_SCENE_ERROR_SIZE - used,
+             "%s%s %.1f %% (median %.1f, 80th percentile %.1f; PSNR %.1f dB)",
              used > 0 ? ", " : "from raw: ", weft_mode_name(mode), 100 * e->relative_rmse, 100 * e->median_relative,
              100 * e->percentile80_relative, e->psnr_db);
 }
 
-weft_code scene_errors_print(weft_player *player, const weft_scene *scene, int width, int height,
-                             char text[SCENE_ERRORS_SIZE], weft_error *error)
+weft_code weft_scene_error_describe(weft_player *player, const weft_scene *scene, int width, int height,
+                                    char text[WEFT_SCENE_ERROR_SIZE], weft_error *error)
 {
     text[0] = 0;
     int panes = weft_scene_panes(scene), pane_width = scene->layout == WEFT_LAYOUT_PANES ? width / panes : width;
@@ -43,8 +44,8 @@ static double relative_rmse(const weft_image *image, const weft_image *reference
     return weft_error_sums_relative_rmse(&sums);
 }
 
-weft_code environment_error_print(weft_player *player, const weft_settings *settings, char text[SCENE_ERRORS_SIZE],
-                                  weft_error *error)
+weft_code weft_environment_error_describe(weft_player *player, const weft_settings *settings,
+                                          char text[WEFT_SCENE_ERROR_SIZE], weft_error *error)
 {
     const weft_scene *scene = &settings->scene;
     int width = (settings->width + 3) / 4, height = (settings->height + 3) / 4;
@@ -64,7 +65,7 @@ weft_code environment_error_print(weft_player *player, const weft_settings *sett
     if (code == WEFT_OK)
         code = weft_player_read_surface(player, &alone, alone.pane[0], width, height, &surface, error);
     if (code == WEFT_OK)
-        snprintf(text, SCENE_ERRORS_SIZE, "without --environment-reference: relative RMSE %.2f %%",
+        snprintf(text, WEFT_SCENE_ERROR_SIZE, "without --environment-reference: relative RMSE %.2f %%",
                  100 * relative_rmse(&fast, &exact, surface));
     weft_image_free(&exact);
     weft_image_free(&fast);

@@ -1,6 +1,8 @@
 /* Files of a scene that arrive, are dropped, are broken, and change while a player shows them. */
-#include "cli/scene_load.h"
+#include "capture/settings.h"
+
 #include "player/gl/gl.h"
+#include "player/window/scene_loader.h"
 #include "stage.h"
 
 #include <math.h>
@@ -13,8 +15,8 @@ enum { WIDTH = 64, HEIGHT = 48 };
 
 typedef struct fixture {
     stage *stage;
-    scene_options options;
-    scene_loader *loader;
+    weft_scene_request request;
+    weft_scene_loader *loader;
 } fixture;
 
 static fixture the_fixture;
@@ -62,13 +64,14 @@ static fixture *open_scene_as(const char *material, const char *dataset, weft_ra
 {
     fixture *f = &the_fixture;
     weft_error error = {0};
-    f->options = (scene_options){.common.quiet = true};
-    expect_ok(weft_settings_init(&f->options.settings, &error), &error);
-    f->options.settings.raw_format = format;
-    f->options.settings.material = material ? strdup(material) : NULL;
-    f->options.settings.dataset = dataset ? strdup(dataset) : NULL;
-    expect_ok(scene_loader_create(&f->options, &f->loader, &error), &error);
-    expect_ok(scene_loader_attach(f->loader, f->stage->player, &error), &error);
+    f->request = (weft_scene_request){0};
+    expect_ok(weft_settings_init(&f->request.settings, &error), &error);
+    f->request.settings.raw_format = format;
+    f->request.settings.material = material ? strdup(material) : NULL;
+    f->request.settings.dataset = dataset ? strdup(dataset) : NULL;
+    expect_ok(weft_scene_loader_create(&f->request, weft_rig_settings_default().opening_mm, &f->loader, &error),
+              &error);
+    expect_ok(weft_scene_loader_attach(f->loader, f->stage->player, &error), &error);
     return f;
 }
 
@@ -80,8 +83,8 @@ static fixture *open_scene(const char *material, const char *dataset)
 
 static void close_scene(fixture *f)
 {
-    scene_loader_free(f->loader);
-    scene_options_free(&f->options);
+    weft_scene_loader_free(f->loader);
+    weft_scene_request_free(&f->request);
 }
 
 static int texels_shown(const fixture *f)
@@ -93,16 +96,22 @@ static void expect_picture(const fixture *f)
 {
     weft_error error = {0};
     weft_image image = {0};
-    expect_ok(weft_player_picture(f->stage->player, &f->options.settings.scene, WIDTH, HEIGHT, 1, NULL, &image, &error),
+    expect_ok(weft_player_picture(f->stage->player, &f->request.settings.scene, WIDTH, HEIGHT, 1, NULL, &image, &error),
               &error);
     weft_image_free(&image);
+}
+
+static weft_code finish(const fixture *f, weft_error *error)
+{
+    const weft_log silence = {0};
+    return weft_scene_loader_finish(f->loader, NULL, &silence, error);
 }
 
 /* Drops a file and waits for what comes of it. */
 static weft_code drop(fixture *f, const char *path, weft_error *error)
 {
-    WEFT_TRY(scene_loader_open(f->loader, path, error));
-    return scene_loader_finish(f->loader, error);
+    WEFT_TRY(weft_scene_loader_open(f->loader, path, error));
+    return finish(f, error);
 }
 
 static void everything_named_is_shown_and_named(void **state)
@@ -110,12 +119,12 @@ static void everything_named_is_shown_and_named(void **state)
     (void)state;
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", "scene_load/a.btf.h5");
-    assert_null(f->options.settings.material);
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
-    assert_string_equal(f->options.settings.material, "scene_load/a.weft");
-    assert_string_equal(f->options.settings.dataset, "scene_load/a.btf.h5");
+    assert_null(f->request.settings.material);
+    expect_ok(finish(f, &error), &error);
+    assert_string_equal(f->request.settings.material, "scene_load/a.weft");
+    assert_string_equal(f->request.settings.dataset, "scene_load/a.btf.h5");
     assert_true(weft_player_has(f->stage->player, WEFT_MODE_RAW));
-    assert_float_equal(scene_loader_progress(f->loader), -1, 0);
+    assert_float_equal(weft_scene_loader_progress(f->loader), -1, 0);
     expect_picture(f);
     close_scene(f);
 }
@@ -126,10 +135,10 @@ static void weaves_and_microcylinders_replace_each_other(void **state)
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", NULL);
     weft_player *player = f->stage->player;
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(finish(f, &error), &error);
     expect_ok(drop(f, WEFT_ASSETS "/microcylinder/satin_face.mc", &error), &error);
     assert_true(weft_player_has(player, WEFT_MODE_ANALYTIC) && weft_player_has_threads(player));
-    f->options.settings.scene.pane[0] = WEFT_MODE_ANALYTIC;
+    f->request.settings.scene.pane[0] = WEFT_MODE_ANALYTIC;
     expect_picture(f);
     write_text("scene_load/bad.mc", "microcylinder {\n  sigmb = 1\n}\n");
     assert_int_equal(drop(f, "scene_load/bad.mc", &error), WEFT_BAD_INPUT);
@@ -157,11 +166,11 @@ static void a_fitted_weave_is_laid_as_its_file_says(void **state)
     expect_ok(drop(f, "scene_load/fitted.wv", &error), &error);
     weft_weave_layout layout = weft_player_weave_layout(f->stage->player);
     assert_memory_equal(&layout, &fitted, sizeof fitted);
-    f->options.settings.tiles[0] = f->options.settings.tiles[1] = 4;
+    f->request.settings.tiles[0] = f->request.settings.tiles[1] = 4;
     expect_ok(drop(f, "scene_load/fitted.wv", &error), &error);
     layout = weft_player_weave_layout(f->stage->player);
     assert_true(layout.tiles_u == 4 && layout.tiles_v == 4 && layout.corner_u == 0 && layout.corner_v == 0);
-    f->options.settings.tiles[0] = f->options.settings.tiles[1] = 0;
+    f->request.settings.tiles[0] = f->request.settings.tiles[1] = 0;
     expect_ok(drop(f, WEFT_ASSETS "/weaves/cotton_twill.wv", &error), &error);
     layout = weft_player_weave_layout(f->stage->player);
     assert_true(layout.tiles_u == floor(layout.tiles_u) && layout.corner_u == 0 && layout.corner_v == 0);
@@ -178,9 +187,9 @@ static void samples_are_kept_in_the_format_that_the_settings_name(void **state)
         weft_error error = {0};
         fixture *f = open_scene_as(NULL, "scene_load/a.btf.h5", (weft_raw_format)format);
         bool shown, said = false;
-        while (scene_loader_progress(f->loader) >= 0) {
+        while (weft_scene_loader_progress(f->loader) >= 0) {
             char note[WEFT_MESSAGE_SIZE];
-            expect_ok(scene_loader_poll(f->loader, &shown, note, &error), &error);
+            expect_ok(weft_scene_loader_poll(f->loader, &shown, note, &error), &error);
             said |= strstr(note, name[format]) != NULL;
         }
         assert_string_equal(weft_player_raw_format(f->stage->player), name[format]);
@@ -196,7 +205,7 @@ static void panes_that_were_chosen_while_files_arrive_stay(void **state)
     weft_error error = {0};
     for (int chooses = 0; chooses < 2; chooses++) {
         fixture *f = open_scene("scene_load/a.weft", "scene_load/a.btf.h5");
-        weft_scene *scene = &f->options.settings.scene;
+        weft_scene *scene = &f->request.settings.scene;
         weft_player_clear(f->stage->player, WEFT_MODE_COMPRESSED);
         weft_player_clear(f->stage->player, WEFT_MODE_RAW);
         if (chooses)
@@ -205,7 +214,7 @@ static void panes_that_were_chosen_while_files_arrive_stay(void **state)
                !weft_player_has(f->stage->player, WEFT_MODE_RAW)) {
             bool shown;
             char note[WEFT_MESSAGE_SIZE];
-            expect_ok(scene_loader_poll(f->loader, &shown, note, &error), &error);
+            expect_ok(weft_scene_loader_poll(f->loader, &shown, note, &error), &error);
             usleep(1000);
         }
         assert_int_equal(scene->pane[0], chooses ? WEFT_MODE_ANALYTIC : WEFT_MODE_COMPRESSED);
@@ -218,11 +227,11 @@ static void a_dropped_material_replaces_the_one_shown(void **state)
     (void)state;
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", NULL);
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(finish(f, &error), &error);
     int before = texels_shown(f);
     expect_ok(drop(f, "scene_load/b.weft", &error), &error);
     assert_true(texels_shown(f) < before);
-    assert_string_equal(f->options.settings.material, "scene_load/b.weft");
+    assert_string_equal(f->request.settings.material, "scene_load/b.weft");
     close_scene(f);
 }
 
@@ -231,7 +240,7 @@ static void a_corrupt_file_leaves_what_was_shown(void **state)
     (void)state;
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", NULL);
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(finish(f, &error), &error);
     int before = texels_shown(f);
     static const char *const bad[] = {"scene_load/corrupt.weft", "scene_load/bad.obj", "scene_load/none.weft"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -239,8 +248,8 @@ static void a_corrupt_file_leaves_what_was_shown(void **state)
         assert_non_null(strstr(error.message, bad[i]));
     }
     assert_int_equal(texels_shown(f), before);
-    assert_string_equal(f->options.settings.material, "scene_load/a.weft");
-    assert_string_equal(f->options.settings.mesh, "drape");
+    assert_string_equal(f->request.settings.material, "scene_load/a.weft");
+    assert_string_equal(f->request.settings.mesh, "drape");
     expect_picture(f);
     close_scene(f);
 }
@@ -251,22 +260,22 @@ static void a_file_may_arrive_while_another_fails(void **state)
     (void)state;
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", NULL);
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(finish(f, &error), &error);
     bool both = false;
     for (int attempt = 0; attempt < 50 && !both; attempt++) {
         char note[WEFT_MESSAGE_SIZE];
-        expect_ok(scene_loader_open(f->loader, "scene_load/quad.obj", &error), &error);
-        expect_ok(scene_loader_open(f->loader, "scene_load/corrupt.weft", &error), &error);
-        while (scene_loader_progress(f->loader) >= 0) {
+        expect_ok(weft_scene_loader_open(f->loader, "scene_load/quad.obj", &error), &error);
+        expect_ok(weft_scene_loader_open(f->loader, "scene_load/corrupt.weft", &error), &error);
+        while (weft_scene_loader_progress(f->loader) >= 0) {
             bool shown;
             usleep(20000);
-            weft_code code = scene_loader_poll(f->loader, &shown, note, &error);
+            weft_code code = weft_scene_loader_poll(f->loader, &shown, note, &error);
             both |= shown && code == WEFT_BAD_INPUT;
         }
     }
     assert_true(both);
-    assert_string_equal(f->options.settings.mesh, "scene_load/quad.obj");
-    assert_string_equal(f->options.settings.material, "scene_load/a.weft");
+    assert_string_equal(f->request.settings.mesh, "scene_load/quad.obj");
+    assert_string_equal(f->request.settings.material, "scene_load/a.weft");
     close_scene(f);
 }
 
@@ -275,7 +284,7 @@ static void files_that_cannot_be_shown_are_refused(void **state)
     (void)state;
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", NULL);
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(finish(f, &error), &error);
     assert_int_equal(drop(f, WEFT_ASSETS "/stitches/plain_knit.stitch", &error), WEFT_BAD_INPUT);
     assert_int_equal(drop(f, "scene_load", &error), WEFT_BAD_INPUT);
     close_scene(f);
@@ -286,9 +295,9 @@ static void a_dropped_mesh_and_weave_are_shown(void **state)
     (void)state;
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", NULL);
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(finish(f, &error), &error);
     expect_ok(drop(f, "scene_load/quad.obj", &error), &error);
-    assert_string_equal(f->options.settings.mesh, "scene_load/quad.obj");
+    assert_string_equal(f->request.settings.mesh, "scene_load/quad.obj");
     expect_ok(drop(f, WEFT_ASSETS "/weaves/polyester_lining.wv", &error), &error);
     assert_true(weft_player_has(f->stage->player, WEFT_MODE_ANALYTIC));
     expect_picture(f);
@@ -300,18 +309,18 @@ static void a_picture_brings_its_settings_and_files_back(void **state)
     (void)state;
     weft_error error = {0};
     fixture *f = open_scene("scene_load/a.weft", NULL);
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
-    f->options.settings.scene.exposure = 2.5;
-    f->options.settings.width = WIDTH;
-    f->options.settings.height = HEIGHT;
-    f->options.settings.samples = 1;
-    expect_ok(weft_settings_draw("scene_load/shot.png", f->stage->player, &f->options.settings, NULL, &error), &error);
+    expect_ok(finish(f, &error), &error);
+    f->request.settings.scene.exposure = 2.5;
+    f->request.settings.width = WIDTH;
+    f->request.settings.height = HEIGHT;
+    f->request.settings.samples = 1;
+    expect_ok(weft_settings_draw("scene_load/shot.png", f->stage->player, &f->request.settings, NULL, &error), &error);
     expect_ok(drop(f, "scene_load/b.weft", &error), &error);
     expect_ok(drop(f, "scene_load/a.btf.h5", &error), &error);
-    f->options.settings.scene.exposure = 1;
+    f->request.settings.scene.exposure = 1;
     int small = texels_shown(f);
     expect_ok(drop(f, "scene_load/shot.png", &error), &error);
-    assert_float_equal(f->options.settings.scene.exposure, 2.5, 1e-9);
+    assert_float_equal(f->request.settings.scene.exposure, 2.5, 1e-9);
     assert_true(texels_shown(f) > small);
     assert_false(weft_player_has(f->stage->player, WEFT_MODE_RAW)); /* the picture knows of none */
     expect_picture(f);
@@ -324,11 +333,11 @@ static void a_file_that_was_written_again_is_read_again(void **state)
     weft_error error = {0};
     write_material("scene_load/c.weft", 16);
     fixture *f = open_scene("scene_load/c.weft", NULL);
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(finish(f, &error), &error);
     int before = texels_shown(f);
     write_material("scene_load/c.weft", 4);
-    expect_ok(scene_loader_reload(f->loader, &error), &error);
-    expect_ok(scene_loader_finish(f->loader, &error), &error);
+    expect_ok(weft_scene_loader_reload(f->loader, &error), &error);
+    expect_ok(finish(f, &error), &error);
     assert_true(texels_shown(f) < before);
     close_scene(f);
 }
@@ -342,7 +351,7 @@ static void a_scene_may_be_closed_while_it_is_read(void **state)
         char note[WEFT_MESSAGE_SIZE];
         fixture *f = open_scene("scene_load/a.weft", "scene_load/a.btf.h5");
         usleep((unsigned)pause_us);
-        scene_loader_poll(f->loader, &shown, note, &error);
+        weft_scene_loader_poll(f->loader, &shown, note, &error);
         close_scene(f);
     }
 }

@@ -1,8 +1,7 @@
-#include "cli/scene_part.h"
+#include "player/window/scene_part.h"
 
 #include "btf/dataset/fingerprint.h"
 #include "btf/file_kind.h"
-#include "capture/settings.h"
 #include "player/window/dataset_load.h"
 #include "reflectance/microcylinder/file.h"
 
@@ -11,33 +10,33 @@
 #include <string.h>
 
 typedef struct part {
-    scene_stage *stage;
-    scene_slot slot;
+    weft_scene_stage *stage;
+    weft_scene_slot slot;
     bool by_user;
     bool is_threads; /* a weave that is microcylinder cloth */
     char *path;
-    double width_mm;
+    double width_mm, tiles[2];
+    weft_weave_layout layout;
     char note[WEFT_MESSAGE_SIZE];
     /* One of these */
     weft_material material;
     weft_mesh mesh;
-    weft_weave weave;
     weft_weave_texels texels;
     weft_microcylinder_description threads;
     weft_image image;
     weft_dataset_load *dataset;
 } part;
 
-void scene_stage_free(scene_stage *stage)
+void weft_scene_stage_free(weft_scene_stage *stage)
 {
     free(stage->metadata);
 }
 
-char **scene_stage_path(scene_stage *stage, scene_slot slot)
+char **weft_scene_stage_path(weft_scene_stage *stage, weft_scene_slot slot)
 {
-    weft_settings *settings = &stage->options->settings;
-    char **const path[SCENE_SLOT_COUNT] = {&settings->material, &settings->mesh, &settings->weave,
-                                           &settings->environment, &settings->dataset};
+    weft_settings *settings = &stage->request->settings;
+    char **const path[WEFT_SLOT_COUNT] = {&settings->material, &settings->mesh, &settings->weave,
+                                          &settings->environment, &settings->dataset};
     return path[slot];
 }
 
@@ -60,9 +59,13 @@ static weft_code read_weave(part *p, weft_error *error)
     p->is_threads = kind == WEFT_FILE_MICROCYLINDER;
     if (p->is_threads)
         return weft_microcylinder_read(p->path, NULL, 0, &p->threads, error);
-    WEFT_TRY(weft_weave_read(p->path, NULL, 0, &p->weave, p->note, error));
-    p->width_mm = weft_rig_settings_default().opening_mm;
-    return weft_weave_texels_of(&p->weave, &p->texels, error);
+    weft_weave weave = {0};
+    WEFT_TRY(weft_weave_read(p->path, NULL, 0, &weave, p->note, error));
+    p->layout = weft_weave_lay_out(&weave, p->tiles[0], p->tiles[1]);
+    p->width_mm = p->stage->cloth_width_mm;
+    weft_code code = weft_weave_texels_of(&weave, &p->texels, error);
+    weft_weave_free(&weave);
+    return code;
 }
 
 static weft_code read_samples(part *p, weft_dataset *dataset, weft_load *load, weft_error *error)
@@ -91,13 +94,13 @@ static weft_code read_part(void *data, weft_load *load, weft_error *error)
 {
     part *p = data;
     switch (p->slot) {
-    case SCENE_MATERIAL:
+    case WEFT_SLOT_MATERIAL:
         return read_material(p, error);
-    case SCENE_MESH:
+    case WEFT_SLOT_MESH:
         return weft_mesh_open(p->path, &p->mesh, error);
-    case SCENE_WEAVE:
+    case WEFT_SLOT_WEAVE:
         return read_weave(p, error);
-    case SCENE_ENVIRONMENT:
+    case WEFT_SLOT_ENVIRONMENT:
         return weft_image_read(p->path, &p->image, NULL, error);
     default:
         return read_dataset(p, load, error);
@@ -110,9 +113,7 @@ static weft_code show_weave(part *p, weft_error *error)
 {
     if (p->is_threads)
         return weft_player_set_threads(p->stage->player, &p->threads.cloth, error);
-    const double *tiles = p->stage->options->settings.tiles;
-    const weft_weave_layout layout = weft_weave_lay_out(&p->weave, tiles[0], tiles[1]);
-    return weft_player_set_weave_texels(p->stage->player, &p->texels, &layout, error);
+    return weft_player_set_weave_texels(p->stage->player, &p->texels, &p->layout, error);
 }
 
 static weft_code show_environment(part *p, weft_error *error)
@@ -122,7 +123,7 @@ static weft_code show_environment(part *p, weft_error *error)
     if (code != WEFT_OK)
         return weft_fail(error, code, "'%s': %s", p->path, cause.message);
     if (p->by_user)
-        p->stage->options->settings.scene.environment = true;
+        p->stage->request->settings.scene.environment = true;
     return WEFT_OK;
 }
 
@@ -156,13 +157,13 @@ static weft_code show_dataset(part *p)
 static weft_code show_in_player(part *p, weft_error *error)
 {
     switch (p->slot) {
-    case SCENE_MATERIAL:
+    case WEFT_SLOT_MATERIAL:
         return weft_player_set_material(p->stage->player, &p->material, error);
-    case SCENE_MESH:
+    case WEFT_SLOT_MESH:
         return show_mesh(p, error);
-    case SCENE_WEAVE:
+    case WEFT_SLOT_WEAVE:
         return show_weave(p, error);
-    case SCENE_ENVIRONMENT:
+    case WEFT_SLOT_ENVIRONMENT:
         return show_environment(p, error);
     default:
         return show_dataset(p);
@@ -170,10 +171,10 @@ static weft_code show_in_player(part *p, weft_error *error)
 }
 
 /* The first model that says how wide it is says so for all. */
-static void lay_out(scene_stage *stage)
+static void lay_out(weft_scene_stage *stage)
 {
-    static const scene_slot order[] = {SCENE_MATERIAL, SCENE_DATASET, SCENE_WEAVE};
-    weft_settings *settings = &stage->options->settings;
+    static const weft_scene_slot order[] = {WEFT_SLOT_MATERIAL, WEFT_SLOT_DATASET, WEFT_SLOT_WEAVE};
+    weft_settings *settings = &stage->request->settings;
     double width_mm = 0;
     for (size_t i = 0; i < sizeof order / sizeof *order && width_mm == 0; i++)
         width_mm = stage->width_mm[order[i]];
@@ -183,9 +184,9 @@ static void lay_out(scene_stage *stage)
 static weft_code show_part(void *data, weft_error *error)
 {
     part *p = data;
-    scene_stage *stage = p->stage;
+    weft_scene_stage *stage = p->stage;
     WEFT_TRY(show_in_player(p, error));
-    char **path = scene_stage_path(stage, p->slot);
+    char **path = weft_scene_stage_path(stage, p->slot);
     free(*path);
     *path = p->path;
     p->path = NULL;
@@ -202,7 +203,6 @@ static void release_part(void *data)
     part *p = data;
     weft_material_free(&p->material);
     weft_mesh_free(&p->mesh);
-    weft_weave_free(&p->weave);
     weft_weave_texels_free(&p->texels);
     weft_image_free(&p->image);
     weft_dataset_load_free(p->dataset);
@@ -210,17 +210,18 @@ static void release_part(void *data)
     free(p);
 }
 
-weft_code scene_part_start(scene_stage *stage, weft_loader *loader, scene_slot slot, const char *path, bool by_user,
-                           weft_error *error)
+weft_code weft_scene_part_start(weft_scene_stage *stage, weft_loader *loader, weft_scene_slot slot, const char *path,
+                                bool by_user, weft_error *error)
 {
     static const weft_load_steps steps = {read_part, show_part, release_part};
     part *p = calloc(1, sizeof *p);
     if (!p)
         return weft_fail_memory(error, "load", sizeof *p);
-    *p = (part){.stage = stage, .slot = slot, .by_user = by_user, .path = strdup(path)};
+    const double *tiles = stage->request->settings.tiles;
+    *p = (part){.stage = stage, .slot = slot, .by_user = by_user, .path = strdup(path), .tiles = {tiles[0], tiles[1]}};
     weft_code code = p->path ? WEFT_OK : weft_fail_memory(error, "name", strlen(path));
-    if (code == WEFT_OK && slot == SCENE_DATASET)
-        code = weft_dataset_load_create(stage->player, stage->options->settings.raw_format, &p->dataset, error);
+    if (code == WEFT_OK && slot == WEFT_SLOT_DATASET)
+        code = weft_dataset_load_create(stage->player, stage->request->settings.raw_format, &p->dataset, error);
     if (code == WEFT_OK)
         return weft_loader_start(loader, (int)slot, &steps, p, error);
     release_part(p);

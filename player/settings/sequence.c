@@ -1,4 +1,4 @@
-#include "cli/sequence.h"
+#include "player/settings/sequence.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -27,7 +27,7 @@ static bool find_place(const char *pattern, place *found)
     return *at == 'd';
 }
 
-bool sequence_is_pattern(const char *pattern)
+bool weft_sequence_is_pattern(const char *pattern)
 {
     place found;
     return find_place(pattern, &found);
@@ -44,23 +44,23 @@ static char *frame_name(const char *pattern, int number)
     return length < 0 ? NULL : name;
 }
 
-weft_code sequence_draw(const char *pattern, const weft_path *path, double frames_per_second,
-                        const scene_options *options, weft_player *player, weft_error *error)
+weft_code weft_sequence_draw(const char *pattern, const weft_path *path, double frames_per_second,
+                             const weft_settings *settings, weft_player *player, const weft_progress *progress,
+                             weft_error *error)
 {
     int count;
-    weft_progress progress = command_progress(&options->common);
-    weft_settings settings = options->settings;
+    weft_settings at_frame = *settings;
     WEFT_TRY(weft_path_count_frames(path, frames_per_second, &count, error));
     for (int i = 0; i < count; i++) {
-        weft_progress_report(&progress, "drawing frames", i, count);
-        weft_path_apply(path, path->time_s[0] + i / frames_per_second, &settings.scene);
+        weft_progress_report(progress, "drawing frames", i, count);
+        weft_path_apply(path, path->time_s[0] + i / frames_per_second, &at_frame.scene);
         char *name = frame_name(pattern, i);
         if (!name)
             return weft_fail_memory(error, pattern, strlen(pattern));
-        weft_code code = weft_settings_draw(name, player, &settings, NULL, error);
+        weft_code code = weft_settings_draw(name, player, &at_frame, NULL, error);
         free(name);
         WEFT_TRY(code);
     }
-    weft_progress_report(&progress, "drawing frames", count, count);
+    weft_progress_report(progress, "drawing frames", count, count);
     return WEFT_OK;
 }

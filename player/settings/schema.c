@@ -1,0 +1,207 @@
+#include "player/settings/schema.h"
+
+#include "player/settings/choices.h"
+#include "player/settings/request.h"
+
+_Static_assert(sizeof(weft_mode) == sizeof(int) && sizeof(weft_layout) == sizeof(int) &&
+                   sizeof(weft_level_choice) == sizeof(int) && sizeof(weft_filter) == sizeof(int) &&
+                   sizeof(weft_tone) == sizeof(int) && sizeof(weft_raw_format) == sizeof(int),
+               "choices are read and written as int");
+
+enum { SHOWN = 1, MESH_AND_CAMERA, LIGHT, EVALUATION };
+
+static const char *const mode_words[] = {"raw", "compressed", "analytic", NULL};
+static const char *const layout_words[] = {"panes", "wipe", "difference", NULL};
+static const char *const level_words[] = {"trilinear", "nearest", "none", "fixed", NULL};
+static const char *const filter_words[] = {"auto", "exact", "stochastic", NULL};
+static const char *const raw_format_words[] = {"auto", "half", "rgb9e5", "bc6h", NULL};
+static const char *const tone_words[] = {"clip", "soft", NULL};
+
+#define SETTING(name, ...)                                                                                             \
+    {                                                                                                                  \
+        .key = (name), .option = { __VA_ARGS__ }                                                                       \
+    }
+#define ARRAY(size, name, ...)                                                                                         \
+    {                                                                                                                  \
+        .key = (name), .option = {__VA_ARGS__}, .count = (size)                                                        \
+    }
+#define OPTION(word, value, titled, text) .name = (word), .argument = (value), .group = (titled), .help = (text)
+#define AT(value) .offset = offsetof(weft_settings, value)
+#define NAME(value) .kind = WEFT_OPTION_NAME, AT(value)
+#define SWITCH(value) .kind = WEFT_OPTION_SWITCH, AT(value)
+#define CHOICE(value, list) .kind = WEFT_OPTION_CHOICE, AT(value), .words = (list)
+#define WHOLE(value, least, most) .kind = WEFT_OPTION_WHOLE, AT(value), .low = (least), .high = (most)
+#define NUMBER(value, least, most) .kind = WEFT_OPTION_NUMBER, AT(value), .low = (least), .high = (most)
+#define ANGLE(value) .kind = WEFT_OPTION_ANGLE, AT(value)
+
+/* As far as a camera or a light may have been turned, degrees. */
+#define TURNED .low = -3.6e6, .high = 3.6e6
+
+#define LIGHT_ANGLE(value) .kind = WEFT_OPTION_ANGLE, .offset = offsetof(weft_light, value), TURNED
+
+static const weft_setting light[] = {
+    {.key = "theta_deg", .option = {LIGHT_ANGLE(direction.theta_rad)}},
+    {.key = "phi_deg", .option = {LIGHT_ANGLE(direction.phi_rad)}},
+    {.key = "irradiance",
+     .option = {.kind = WEFT_OPTION_NUMBER, .offset = offsetof(weft_light, irradiance), .low = 0, .high = 1e9},
+     .count = 3},
+    {0},
+};
+
+/* In the order of the text. */
+static const weft_setting schema[] = {
+    SETTING("files.material", .argument = "NAME.weft", NAME(material)),
+    SETTING("files.dataset", OPTION("raw", "NAME.btf.h5", SHOWN, "Show this dataset in mode raw"), NAME(dataset)),
+    SETTING("files.weave",
+            OPTION("weave", "CLOTH.wv|CLOTH.mc", SHOWN, "Show this weave or microcylinder cloth in mode analytic"),
+            NAME(weave)),
+    SETTING(
+        "files.environment",
+        OPTION(
+            "environment", "MAP.hdr|MAP.exr", LIGHT,
+            "Light from a map of the sphere, twice as wide as high; without --light it is the only light. off: none"),
+        NAME(environment), .read = weft_choose_environment),
+    SETTING("files.mesh",
+            OPTION("mesh", "MESH", MESH_AND_CAMERA,
+                   "drape (default), sphere, plane, or an OBJ file with texture coordinates"),
+            NAME(mesh)),
+
+    SETTING("picture.width", WHOLE(width, 1, WEFT_SETTINGS_MAX_SIDE)),
+    SETTING("picture.height", WHOLE(height, 1, WEFT_SETTINGS_MAX_SIDE)),
+    SETTING(NULL,
+            OPTION("size", "WxH", MESH_AND_CAMERA,
+                   "Size of the picture in pixels (default: 960x540), or of the window (default: 1280x800)"),
+            .kind = WEFT_OPTION_SIZE, AT(width), .high = WEFT_SETTINGS_MAX_SIDE),
+    SETTING("picture.samples",
+            OPTION("samples", "N", MESH_AND_CAMERA,
+                   "Draw N x N frames within each pixel of a written picture (default: 3)"),
+            WHOLE(samples, 1, WEFT_SETTINGS_MAX_SAMPLES)),
+
+    SETTING("size.real", SWITCH(real_size)),
+    SETTING(
+        "size.repeat",
+        OPTION("repeat", "N", MESH_AND_CAMERA,
+               "Materials across one unit of texture coordinates (default: so many that the cloth has its real size)"),
+        NUMBER(scene.repeat, 1e-9, 1e9), .read = weft_choose_repeat),
+    SETTING("size.mesh_mm",
+            OPTION("mesh-size", "MM", MESH_AND_CAMERA,
+                   "Side of the plane or of the draped cloth, diameter of the sphere, longest side of an OBJ file "
+                   "(default: 300; the plane: as large as the material)"),
+            NUMBER(mesh_size_mm, 0, 1e9), .read = weft_choose_mesh_size),
+    SETTING("size.mesh_unit_mm",
+            OPTION("mesh-unit", "mm|cm|m", MESH_AND_CAMERA, "Unit of an OBJ file, instead of --mesh-size"),
+            NUMBER(mesh_unit_mm, 0, 1e9), .read = weft_choose_mesh_unit),
+    ARRAY(2, "size.weave_tiles",
+          OPTION("tiles", "X,Y", SHOWN,
+                 "Tiles of a .wv across the material (default: as its file says, else as the virtual rig lays it)"),
+          .kind = WEFT_OPTION_PAIR, AT(tiles), .high = 1e6),
+
+    SETTING("camera.azimuth_deg", ANGLE(scene.orbit.azimuth_rad), TURNED),
+    SETTING("camera.elevation_deg", ANGLE(scene.orbit.elevation_rad), .low = -90, .high = 90),
+    SETTING("camera.distance", NUMBER(scene.orbit.distance, 1 + 1e-9, 1e9)),
+    SETTING("camera.pan_right", NUMBER(scene.orbit.pan_right, -1e6, 1e6)),
+    SETTING("camera.pan_up", NUMBER(scene.orbit.pan_up, -1e6, 1e6)),
+    SETTING(NULL,
+            OPTION("camera", "AZIMUTH,ELEVATION,DISTANCE", MESH_AND_CAMERA,
+                   "Place of the camera in degrees and radii of the mesh (default: -70,28,3.6; plane: -90,75,3)"),
+            .read = weft_choose_camera),
+
+    {.key = "light.lights",
+     .option = {OPTION("light", "THETA,PHI[,...]", LIGHT,
+                       "A light: degrees from up and around it, and its irradiance over pi (default: 45,-110,1). Up to "
+                       "four; the first is the key light. none: no light but the environment"),
+                AT(scene.light), .read = weft_choose_light},
+     .part = light,
+     .most = WEFT_SCENE_MAX_LIGHTS,
+     .stride = sizeof(weft_light),
+     .count_offset = offsetof(weft_settings, scene.light_count)},
+    SETTING("light.shadows", OPTION("shadows", "on|off", LIGHT, "Shadows of the key light"), .may_be_empty = true,
+            SWITCH(scene.shadows)),
+    SETTING("light.environment.lit", SWITCH(scene.environment)),
+    SETTING("light.environment.turn_deg", OPTION("environment-turn", "DEG", LIGHT, "Turn the map about the vertical"),
+            ANGLE(scene.environment_turn_rad), TURNED),
+    SETTING("light.environment.strength",
+            OPTION("environment-strength", "X", LIGHT, "Multiply its radiance (default: 1)"),
+            NUMBER(scene.environment_strength, 0, 1e9)),
+    SETTING("light.environment.reference",
+            OPTION("environment-reference", "on|off", LIGHT, "Sum every light of the map: slow"), .may_be_empty = true,
+            SWITCH(scene.environment_reference)),
+    SETTING("light.exposure", OPTION("exposure", "X", LIGHT, "Brightness; 1 shows reflectance"),
+            NUMBER(scene.exposure, 1e-9, 1e9)),
+    SETTING("light.tone",
+            OPTION("tone", "clip|soft", LIGHT, "Cut radiance off at 1 (default), or bend it to 1 from 1/2 on"),
+            CHOICE(scene.tone, tone_words)),
+
+    SETTING(
+        "mip.level",
+        OPTION(
+            "level", "auto|nearest|none|N", EVALUATION,
+            "Mip level: between the two that fit the pixel's footprint, the nearer of them, the finest, or this one"),
+        CHOICE(scene.level_choice, level_words), .read = weft_choose_level),
+    SETTING("mip.fixed_level", NUMBER(scene.level, 0, WEFT_MATERIAL_MAX_LEVELS)),
+    SETTING(
+        "mip.filter",
+        OPTION(
+            "filter", "auto|exact|stochastic", EVALUATION,
+            "Interpolate every neighbour in every frame, or one drawn at random: noisy at once, the same in the mean"),
+        CHOICE(scene.filter, filter_words)),
+
+    SETTING("model.raw_format",
+            OPTION("raw-format", "auto|half|rgb9e5|bc6h", SHOWN,
+                   "Keep its samples as half floats (8 bytes), with a shared exponent (4) or in compressed blocks (1); "
+                   "auto: the best that fits"),
+            CHOICE(raw_format, raw_format_words)),
+    ARRAY(WEFT_SCENE_MAX_LOBES, "model.lobes",
+          OPTION("lobes-on", "N[,N...]|none", EVALUATION, "Only these lobes of the material, counted from 1"),
+          SWITCH(scene.lobe), .read = weft_choose_lobes),
+    SETTING("model.view_table", SWITCH(scene.view_table)),
+    SETTING("model.light_table", SWITCH(scene.light_table)),
+    SETTING(NULL, OPTION("tables", "both|view|light|none", EVALUATION, "Only these tables of the material"),
+            .read = weft_choose_tables),
+    SETTING("model.table_bits", OPTION("table-bits", "N", EVALUATION, "Tables as if coded with N bits, 1 to 8"),
+            WHOLE(scene.table_bits, 1, 8)),
+    SETTING("model.noise_seed",
+            OPTION("noise", "SEED|off", EVALUATION,
+                   "Irregularities of the weave, as its file gives them, from this number on (default: off)"),
+            .kind = WEFT_OPTION_NOISE, AT(scene.noise_seed)),
+
+    SETTING("view.layout",
+            OPTION("layout", "LAYOUT", SHOWN,
+                   "panes (default): side by side; wipe: first mode left of the divider, second right; difference: "
+                   "second - first"),
+            CHOICE(scene.layout, layout_words)),
+    ARRAY(
+        WEFT_MODE_COUNT, "view.modes",
+        OPTION("mode", "MODE[,MODE...]", SHOWN, "raw, compressed, analytic: one pane each; split: all that are given"),
+        CHOICE(scene.pane, mode_words), .read = weft_choose_modes),
+    SETTING("view.panes", WHOLE(scene.pane_count, 1, WEFT_MODE_COUNT)),
+    SETTING("view.divider", OPTION("divider", "X", SHOWN, "Where a wipe changes, 0 (left) to 1 (default: 0.5)"),
+            NUMBER(scene.divider, 0, 1)),
+    SETTING("view.show_level", SWITCH(scene.show_level)),
+    SETTING("view.show_extrapolation", SWITCH(scene.show_extrapolation)),
+    SETTING("view.labels", SWITCH(scene.labels)),
+    SETTING(NULL,
+            OPTION("show", "level|extrapolation|none", EVALUATION,
+                   "The mip level in false colour; a tint where view or light lies beyond what was measured"),
+            .read = weft_choose_overlays),
+    SETTING(NULL,
+            OPTION("no-labels", NULL, EVALUATION, "Leave out the names of the modes and the scale of a difference"),
+            .read = weft_choose_no_labels),
+
+    SETTING(NULL,
+            OPTION("settings", "PICTURE", SHOWN,
+                   "Start from the settings in a picture of Weft's, or in a .json file; other options change them"),
+            .kind = WEFT_OPTION_TEXT, .offset = offsetof(weft_scene_request, source)),
+    {0},
+};
+
+const weft_setting *weft_settings_schema(void)
+{
+    return schema;
+}
+
+const char *weft_settings_group(int group)
+{
+    static const char *const title[] = {"", "What is shown:", "Mesh and camera:", "Light:", "Evaluation:"};
+    return (size_t)group < sizeof title / sizeof *title ? title[group] : NULL;
+}

@@ -1,0 +1,72 @@
+/* The inside of weft_application: what the loop (application.c), the panel and the files share. */
+#ifndef WEFT_PLAYER_WINDOW_APPLICATION_STATE_H
+#define WEFT_PLAYER_WINDOW_APPLICATION_STATE_H
+
+#include "player/draw/lobe_probe.h"
+#include "player/draw/probe.h"
+#include "player/gl/context.h"
+#include "player/window/application.h"
+#include "player/window/interaction.h"
+#include "player/window/space_mouse/space_mouse.h"
+#include "player/window/watch.h"
+#include "player/window/weave_edit.h"
+
+struct weft_application {
+    weft_application_setup setup;
+    char title[256];
+    /* What arrives while the window is open */
+    weft_scene_loader *loader;
+    weft_space_mouse *mouse;
+    weft_watch *watch; /* NULL where the system has none */
+    double polled_s;
+    char mouse_message[WEFT_MESSAGE_SIZE]; /* told last */
+    /* The picture */
+    weft_window *window;
+    weft_player *player;
+    weft_canvas canvas;
+    weft_interaction interaction;
+    double scale;              /* of text and widgets */
+    double frame_ms, exact_ms; /* smoothed: of all frames, and of those that evaluate every neighbour */
+    double moved_s, stepped_s; /* when the picture changed last, and when the last frame began */
+    double total_ms;
+    long frame_count;
+    bool rests;       /* the mean of the frames so far is of a picture that no longer changes */
+    weft_probe probe; /* of the pixel of the mesh that the pointer was over last */
+    weft_texel texel; /* of it, where that is compressed */
+    weft_probe_plots plots;
+    weft_weave_edit weave; /* what the sliders change */
+    int noise_seed;        /* of the noise that was on last; 0: none yet */
+    double progress;
+    weft_error failure;          /* of reading, last */
+    char errors[WEFT_NOTE_SIZE]; /* of what is shown, "" until it rests */
+    char note[WEFT_NOTE_SIZE];   /* told to the user */
+    bool note_is_error;
+    double note_ends_s;
+};
+
+/* Tells the user; `is_error` in red. */
+void weft_application_tell(weft_application *application, bool is_error, const char *text);
+
+/* ---- Files and devices ---- */
+
+/* Begins to read what the request names and looks for devices; before there is a window. Errors: WEFT_SYSTEM. */
+weft_code weft_application_open_files(weft_application *application, weft_error *error);
+void weft_application_close_files(weft_application *application);
+
+/* The file that a mode shows; NULL: none. */
+const char *weft_application_file(const weft_application *application, weft_mode mode);
+
+/* Begins to read a file, or all again (NULL), and tells the outcome. */
+void weft_application_open(weft_application *application, const char *path);
+
+/* Begins to read the mesh that was wished for. */
+void weft_application_change_mesh(weft_application *application);
+
+/* Takes in what has been read, what has changed on disk, and the SpaceMouse. */
+void weft_application_poll_files(weft_application *application);
+
+/* Saves the picture with its settings as weft-001.png, weft-002.png, ..., the first that is free in the current folder,
+ * and tells so. */
+void weft_application_save_picture(weft_application *application);
+
+#endif
