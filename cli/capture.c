@@ -1,4 +1,5 @@
 #include "capture/capture.h"
+#include "capture/virtual/ground_truth.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
 
@@ -9,7 +10,9 @@
 typedef struct capture_command {
     common_options common;
     weft_capture_request request;
-    const char *rig;
+    weft_virtual_request rig;
+    weft_truth_request truth;
+    const char *rig_file; /* NULL: the virtual rig as it stands */
     bool dry_run;
 } capture_command;
 
@@ -45,25 +48,25 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         request->folder = argument;
         return 0;
     case KEY_RIG:
-        command->rig = argument;
+        command->rig_file = strcmp(argument, "virtual") == 0 ? NULL : argument;
         return 0;
     case KEY_SAMPLE:
-        request->sample = argument;
+        command->rig.sample = argument;
         return 0;
     case KEY_PLAN:
         request->plan = argument;
         return 0;
     case KEY_SEED:
-        request->seed = parse_whole("seed", argument, 0, INT64_MAX, state);
+        command->rig.seed = parse_whole("seed", argument, 0, INT64_MAX, state);
         return 0;
     case KEY_TRUTH:
-        request->truth = argument;
+        command->truth.path = argument;
         return 0;
     case KEY_TRUTH_SIZE:
-        request->truth_size = (int)parse_whole("truth-size", argument, 1, 4096, state);
+        command->truth.size = (int)parse_whole("truth-size", argument, 1, 4096, state);
         return 0;
     case KEY_TRUTH_IMAGES:
-        request->truth_images = (int)parse_whole("truth-images", argument, 1, 1000000, state);
+        command->truth.image_count = (int)parse_whole("truth-images", argument, 1, 1000000, state);
         return 0;
     case KEY_DRY_RUN:
         command->dry_run = true;
@@ -72,9 +75,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         argp_error(state, "what is '%s'? The session is named by -o", argument);
         return 0;
     case ARGP_KEY_END:
-        if (!request->folder || !request->sample)
+        if (!request->folder || !command->rig.sample)
             argp_error(state, "needs --sample CLOTH.wv or CLOTH.stitch, and -o SESSION");
-        refuse_same_file(request->truth, request->sample, state);
+        refuse_same_file(command->truth.path, command->rig.sample, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -114,25 +117,18 @@ static void listen_for_stop(void)
 
 /* ---- Running ---- */
 
-static weft_code read_rig(capture_command *command, weft_error *error)
-{
-    if (!command->rig || strcmp(command->rig, "virtual") == 0)
-        return WEFT_OK;
-    return weft_rig_settings_read(command->rig, &command->request.settings, error);
-}
-
 static void say_warning(const common_options *common, const char *warning)
 {
     if (warning[0])
         command_say(common, "%s", warning);
 }
 
-static weft_code rehearse(const capture_command *command, weft_error *error)
+static weft_code rehearse(const capture_command *command, weft_virtual_rig *rig, weft_error *error)
 {
     const common_options *common = &command->common;
     weft_capture_rehearsal rehearsal;
-    WEFT_TRY(weft_capture_rehearse(&command->request, &rehearsal, error));
-    say_warning(common, rehearsal.warning);
+    WEFT_TRY(weft_capture_rehearse(&command->request, &rig->rig, &rehearsal, error));
+    say_warning(common, rig->warning);
     command_say(common, "%d photographs: %d views, each with all its lights before the camera moves on",
                 rehearsal.shot_count, rehearsal.view_count);
     command_say(common, "%d lights step aside for the camera", rehearsal.driven_aside);
@@ -145,7 +141,6 @@ static weft_code rehearse(const capture_command *command, weft_error *error)
 static void say_summary(const capture_command *command, const weft_capture_summary *summary)
 {
     const common_options *common = &command->common;
-    say_warning(common, summary->warning);
     if (summary->found > 0)
         command_say(common, "%d photographs were there already", summary->found);
     if (summary->damaged > 0)
@@ -157,23 +152,49 @@ static void say_summary(const capture_command *command, const weft_capture_summa
                 summary->exposures);
 }
 
-static weft_code capture(const capture_command *command, weft_error *error)
+/* The photographs, then the truth that they are to be measured against. */
+static weft_code photograph(const capture_command *command, const weft_virtual_rig *rig, weft_capture *capture,
+                            const weft_progress *progress, weft_error *error)
+{
+    const weft_session *session = &capture->held.session;
+    WEFT_TRY(weft_truth_check_path(&command->truth, session, error));
+    WEFT_TRY(weft_capture_take(capture, &stop_asked, progress, error));
+    return weft_truth_write(&command->truth, session, rig, progress, error);
+}
+
+static weft_code take_session(const capture_command *command, weft_virtual_rig *rig, weft_error *error)
 {
     weft_progress progress = command_progress(&command->common);
-    weft_capture_summary summary;
+    weft_capture capture;
     listen_for_stop();
-    WEFT_TRY(weft_capture_run(&command->request, &stop_asked, &progress, &summary, error));
-    say_summary(command, &summary);
-    return WEFT_OK;
+    WEFT_TRY(weft_capture_begin(&command->request, &rig->rig, &progress, &capture, error));
+    weft_code code = photograph(command, rig, &capture, &progress, error);
+    weft_capture_end(&capture);
+    if (code == WEFT_OK) {
+        say_warning(&command->common, rig->warning);
+        say_summary(command, &capture.summary);
+    }
+    return code;
+}
+
+static weft_code open_rig_and_capture(capture_command *command, weft_error *error)
+{
+    weft_virtual_rig rig;
+    if (command->rig_file)
+        WEFT_TRY(weft_virtual_settings_read(command->rig_file, &command->rig.settings, error));
+    WEFT_TRY(weft_virtual_rig_open(&command->rig, &rig, error));
+    weft_code code = command->dry_run ? rehearse(command, &rig, error) : take_session(command, &rig, error);
+    weft_virtual_rig_close(&rig);
+    return code;
 }
 
 int command_capture(int argc, char **argv)
 {
-    capture_command command = {.request = weft_capture_request_default()};
+    capture_command command = {.request = {.plan = "ubo81"},
+                               .rig = {.seed = 1, .settings = weft_virtual_settings_default()},
+                               .truth = {.size = 64, .image_count = WEFT_UBO81_COUNT}};
     command_parse(&parser, argc, argv, &command, &command.common);
     weft_error error = {0};
-    weft_code code = read_rig(&command, &error);
-    if (code == WEFT_OK)
-        code = command.dry_run ? rehearse(&command, &error) : capture(&command, &error);
+    weft_code code = open_rig_and_capture(&command, &error);
     return command_exit("capture", &command.common, code, &error);
 }

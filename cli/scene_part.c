@@ -60,7 +60,7 @@ static weft_code read_weave(part *p, weft_error *error)
     p->is_threads = kind == WEFT_FILE_MICROCYLINDER;
     if (p->is_threads)
         return weft_microcylinder_read(p->path, NULL, 0, &p->threads, error);
-    weft_rig_settings rig = weft_rig_settings_default();
+    weft_virtual_settings rig = weft_virtual_settings_default();
     WEFT_TRY(weft_virtual_cloth_read(p->path, &rig, 0, &p->cloth, p->note, error));
     p->width_mm = p->cloth.opening_mm;
     return weft_weave_texels_of(&p->cloth.weave, &p->texels, error);

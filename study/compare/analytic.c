@@ -49,7 +49,7 @@ static weft_code open_threads(const weft_compare_options *options, weft_compared
 static weft_code open_weave(const weft_compare_options *options, weft_dataset *dataset, const weft_progress *progress,
                             weft_compared_weave *weave, weft_comparison *comparison, weft_error *error)
 {
-    weft_rig_settings rig = weft_rig_settings_default();
+    weft_virtual_settings rig = weft_virtual_settings_default();
     if (options->fit)
         WEFT_TRY(fit_and_write(options, dataset, weave->path, progress, &comparison->fit, error));
     WEFT_TRY(weft_fit_weave_origin(weave->path, dataset, comparison->weave_origin, error));
