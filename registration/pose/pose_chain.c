@@ -51,17 +51,17 @@ static void accept_drawing(const weft_refinement *refinement, weft_view_pose *po
 {
     pose->source = WEFT_POSE_DRAWING;
     pose->homography = refinement->homography;
-    pose->smear = refinement->smear;
+    pose->point_spread = refinement->point_spread;
     pose->uncertainty_mm = refinement->uncertainty_mm;
     pose->remark[0] = 0;
 }
 
 /* Tries to refine from one start. */
 static weft_code try_start(const weft_sight *sight, const float *photograph, const weft_homography *start,
-                           bool from_markers, const weft_homography *promised, weft_smear smear,
+                           bool from_markers, const weft_homography *promised, weft_point_spread point_spread,
                            const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error)
 {
-    weft_refinement refinement = {.homography = *start, .smear = smear};
+    weft_refinement refinement = {.homography = *start, .point_spread = point_spread};
     const double *blur = from_markers ? blur_from_markers : blur_from_promise;
     int blur_count = from_markers ? 1 : (int)(sizeof blur_from_promise / sizeof *blur_from_promise);
     WEFT_TRY(refine_through(sight, photograph, blur, blur_count, &refinement, fitted, error));
@@ -88,8 +88,8 @@ static void fall_back(const weft_sight *sight, const weft_marker_start *markers,
 }
 
 weft_code weft_find_pose(const weft_sight *sight, const weft_target *target, const float *photograph,
-                         const weft_homography *promised, weft_smear smear, const weft_pose_limits *limits,
-                         weft_view_pose *pose, float *fitted, weft_error *error)
+                         const weft_homography *promised, weft_point_spread point_spread,
+                         const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error)
 {
     enum { trusted_corners = 8 };
     weft_marker_start markers;
@@ -101,10 +101,24 @@ weft_code weft_find_pose(const weft_sight *sight, const weft_target *target, con
         markers.corners >= trusted_corners &&
         weft_homography_distance_mm(&markers.homography, promised, sight->opening_mm) <= limits->tolerance_mm;
     if (trusted)
-        WEFT_TRY(try_start(sight, photograph, &markers.homography, true, promised, smear, limits, pose, fitted, error));
+        WEFT_TRY(try_start(sight, photograph, &markers.homography, true, promised, point_spread, limits, pose, fitted,
+                           error));
     if (pose->source == WEFT_POSE_FAILED)
-        WEFT_TRY(try_start(sight, photograph, promised, false, promised, smear, limits, pose, fitted, error));
+        WEFT_TRY(try_start(sight, photograph, promised, false, promised, point_spread, limits, pose, fitted, error));
     if (pose->source == WEFT_POSE_FAILED && trusted)
         fall_back(sight, &markers, promised, pose);
     return WEFT_OK;
+}
+
+const char *weft_pose_source_name(const weft_view_pose *pose)
+{
+    switch (pose->source) {
+    case WEFT_POSE_DRAWING:
+        return pose->from_markers ? "rig, markers, drawing" : "rig, drawing";
+    case WEFT_POSE_MARKERS:
+        return "rig, markers";
+    case WEFT_POSE_FAILED:
+        break;
+    }
+    return "nothing";
 }

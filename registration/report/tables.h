@@ -2,7 +2,7 @@
 #ifndef WEFT_REGISTRATION_REPORT_TABLES_H
 #define WEFT_REGISTRATION_REPORT_TABLES_H
 
-#include "registration/registration.h"
+#include "registration/outcome/outcome.h"
 
 #include <stdio.h>
 
@@ -19,9 +19,6 @@ enum { WEFT_RING_COUNT = 6 };
 
 /* ring in [0, WEFT_RING_COUNT), or -1 for all. Pure. */
 weft_ring_summary weft_ring_summarise(const weft_session *session, const weft_registration *registration, int ring);
-
-/* "markers + drawing" and the like. Static text. */
-const char *weft_pose_source_name(const weft_view_pose *pose);
 
 /* Text with the characters that mean something to HTML replaced. */
 void weft_write_escaped(FILE *page, const char *text);
