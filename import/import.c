@@ -1,10 +1,9 @@
 #include "import/import.h"
 
 #include "base/image.h"
-#include "import/collection.h"
+#include "import/dataset_description.h"
 #include "import/decode.h"
-#include "import/import_provenance.h"
-#include "import/layout.h"
+#include "import/readers.h"
 
 #include <stdlib.h>
 

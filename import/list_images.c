@@ -1,4 +1,4 @@
-#include "import/collection.h"
+#include "import/readers.h"
 
 #include <fts.h>
 #include <stdbool.h>

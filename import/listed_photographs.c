@@ -1,4 +1,5 @@
 #include "import/far_photograph.h"
+#include "import/readers.h"
 
 #include "base/csv.h"
 

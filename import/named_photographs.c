@@ -1,4 +1,5 @@
 #include "import/far_photograph.h"
+#include "import/readers.h"
 
 static weft_code add_named(const char *folder, const weft_lines *names, weft_collection *collection, weft_error *error)
 {
