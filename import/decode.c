@@ -160,7 +160,7 @@ static weft_code convert(const weft_decoding *decoding, const char *path, const 
     return code;
 }
 
-weft_code weft_decode_photograph(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
+weft_code weft_photograph_decode(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
                                  weft_half *samples, uint8_t *mask, size_t *saturated, weft_error *error)
 {
     weft_image image;

@@ -21,6 +21,6 @@ weft_code weft_collection_of_names(const char *folder, weft_collection *collecti
 /* ---- Shared by them ---- */
 
 /* Names (relative, sorted) of the image files in a folder and the folders in it. Freed with weft_lines_free. */
-weft_code weft_list_images(const char *folder, weft_lines *names, weft_error *error);
+weft_code weft_images_list(const char *folder, weft_lines *names, weft_error *error);
 
 #endif

@@ -104,7 +104,7 @@ static weft_code find_and_rectify(work *w, int stay, const weft_photographs *pho
     weft_pose promised_pose =
         weft_pose_of_view(registration->survey.view[registration->survey.stay[stay].view], session->camera_distance_mm);
     weft_homography promised = weft_homography_of_pose(&session->camera, &promised_pose);
-    WEFT_TRY(weft_find_pose(&w->sight, &session->target, photographs->average, &promised, w->point_spread,
+    WEFT_TRY(weft_pose_find(&w->sight, &session->target, photographs->average, &promised, w->point_spread,
                             &registration->settings.limits, pose, w->fitted, error));
     if (pose->source == WEFT_POSE_FAILED)
         return WEFT_OK;

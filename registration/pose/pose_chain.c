@@ -26,7 +26,8 @@ static weft_code refine_through(const weft_sight *sight, const float *photograph
                                 weft_refinement *refinement, float *fitted, weft_error *error)
 {
     for (int i = 0; i < blur_count; i++)
-        WEFT_TRY(weft_refine(sight, photograph, blur[i], refinement, i + 1 < blur_count ? NULL : fitted, error));
+        WEFT_TRY(
+            weft_refinement_run(sight, photograph, blur[i], refinement, i + 1 < blur_count ? NULL : fitted, error));
     return WEFT_OK;
 }
 
@@ -87,7 +88,7 @@ static void fall_back(const weft_sight *sight, const weft_marker_start *markers,
     pose->uncertainty_mm = px_per_mm > 0 ? markers->rms_px / px_per_mm : 0;
 }
 
-weft_code weft_find_pose(const weft_sight *sight, const weft_target *target, const float *photograph,
+weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, const float *photograph,
                          const weft_homography *promised, weft_point_spread point_spread,
                          const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error)
 {

@@ -32,7 +32,7 @@ typedef struct weft_view_pose {
 /* Finds the pose in `photograph` ([height][width], linear, vignetting removed, NaN where unknown). `point_spread` is
  * the guess the refinement starts from. `fitted` [height][width] may be NULL: the prediction under the fitted lighting,
  * where the source is the drawing. A pose that cannot be found is a result, not an error. Errors: WEFT_SYSTEM. */
-weft_code weft_find_pose(const weft_sight *sight, const weft_target *target, const float *photograph,
+weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, const float *photograph,
                          const weft_homography *promised, weft_point_spread point_spread,
                          const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error);
 

@@ -180,8 +180,8 @@ static void predict_pixel(const weft_sight *sight, const footprint *print, const
                                       : average_over(&sight->drawing, print, (float)deviation, pattern);
 }
 
-void weft_predict(const weft_sight *sight, const weft_homography *homography, weft_point_spread point_spread,
-                  weft_prediction *prediction)
+void weft_prediction_draw(const weft_sight *sight, const weft_homography *homography, weft_point_spread point_spread,
+                          weft_prediction *prediction)
 {
     sample_pattern pattern = place_samples();
     weft_homography inverse = weft_homography_inverse(homography);

@@ -39,7 +39,7 @@ void weft_prediction_free(weft_prediction *prediction);
 
 /* Draws what the camera sees of the target under `homography` (plate mm to undistorted pixels, any scale), in focus at
  * the origin of the plate. Pure; uses OpenMP. */
-void weft_predict(const weft_sight *sight, const weft_homography *homography, weft_point_spread point_spread,
-                  weft_prediction *prediction);
+void weft_prediction_draw(const weft_sight *sight, const weft_homography *homography, weft_point_spread point_spread,
+                          weft_prediction *prediction);
 
 #endif

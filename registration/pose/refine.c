@@ -73,9 +73,9 @@ static weft_code blur_both(comparison *c, weft_error *error)
         c->photograph[i] = c->prediction.compared[i] ? c->photograph[i] : 0;
         c->prediction.reflectance[i] *= c->weight[i];
     }
-    WEFT_TRY(weft_bridge_blur(c->weight, width, height, c->blur_px, error));
-    WEFT_TRY(weft_bridge_blur(c->photograph, width, height, c->blur_px, error));
-    WEFT_TRY(weft_bridge_blur(c->prediction.reflectance, width, height, c->blur_px, error));
+    WEFT_TRY(weft_opencv_blur(c->weight, width, height, c->blur_px, error));
+    WEFT_TRY(weft_opencv_blur(c->photograph, width, height, c->blur_px, error));
+    WEFT_TRY(weft_opencv_blur(c->prediction.reflectance, width, height, c->blur_px, error));
     for (size_t i = 0; i < pixels; i++) {
         float inverse = c->weight[i] > 1e-6f ? 1 / c->weight[i] : 0;
         c->photograph[i] *= inverse;
@@ -87,7 +87,7 @@ static weft_code blur_both(comparison *c, weft_error *error)
 static weft_code look(comparison *c, const float *photograph, const weft_refinement *estimate, weft_error *error)
 {
     size_t pixels = pixel_count(c->sight);
-    weft_predict(c->sight, &estimate->homography, estimate->point_spread, &c->prediction);
+    weft_prediction_draw(c->sight, &estimate->homography, estimate->point_spread, &c->prediction);
     memcpy(c->photograph, photograph, pixels * sizeof(float));
     c->focus_limit = 0;
     for (size_t i = 0; i < pixels; i++) {
@@ -421,8 +421,8 @@ static weft_code iterate(comparison *c, const float *photograph, weft_refinement
     return WEFT_OK;
 }
 
-weft_code weft_refine(const weft_sight *sight, const float *photograph, double blur_px, weft_refinement *refinement,
-                      float *fitted, weft_error *error)
+weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, double blur_px,
+                              weft_refinement *refinement, float *fitted, weft_error *error)
 {
     comparison c;
     WEFT_TRY(comparison_create(sight, blur_px, &c, error));

@@ -26,7 +26,7 @@ typedef struct weft_refinement {
  * blurred by a Gaussian of that deviation, which widens the reach to about two of it. `fitted` [height][width] may be
  * NULL; it receives the prediction under the fitted lighting. A failure to converge is no error. Errors: WEFT_SYSTEM
  * for memory. Uses OpenMP. */
-weft_code weft_refine(const weft_sight *sight, const float *photograph, double blur_px, weft_refinement *refinement,
-                      float *fitted, weft_error *error);
+weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, double blur_px,
+                              weft_refinement *refinement, float *fitted, weft_error *error);
 
 #endif
