@@ -29,7 +29,8 @@ static weft_pose pose_of_vectors(weft_vec3 vector, weft_vec3 translation)
                        translation};
 }
 
-weft_pose weft_pose_compose(const weft_pose *outer, const weft_pose *inner)
+/* outer o inner: what `inner` maps first. */
+static weft_pose compose(const weft_pose *outer, const weft_pose *inner)
 {
     weft_pose result;
     for (int row = 0; row < 3; row++) {
@@ -70,8 +71,8 @@ weft_pose weft_virtual_world_pose(const weft_virtual_world *world, weft_angles v
     weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->stay_rotation_deg)),
                                       weft_scale(shift, s->stay_translation_mm));
     weft_pose nominal = weft_pose_of_view(view, s->rig.camera_distance_mm);
-    weft_pose in_rig = weft_pose_compose(&nominal, &error);
-    return weft_pose_compose(&in_rig, &world->mounting);
+    weft_pose in_rig = compose(&nominal, &error);
+    return compose(&in_rig, &world->mounting);
 }
 
 /* A number for a stay and a commanded direction, insensitive to the last digits of a stored angle. */

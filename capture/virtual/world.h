@@ -27,7 +27,4 @@ weft_vec3 weft_virtual_world_light(const weft_virtual_world *world, weft_angles 
  * keep free. Pure. */
 bool weft_virtual_world_shadowed(const weft_virtual_world *world, const weft_pose *pose, weft_vec3 light);
 
-/* outer o inner: what `inner` maps first. Pure. */
-weft_pose weft_pose_compose(const weft_pose *outer, const weft_pose *inner);
-
 #endif

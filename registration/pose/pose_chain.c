@@ -5,7 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
-double weft_homography_distance_mm(const weft_homography *a, const weft_homography *b, double opening_mm)
+/* Distance on the plate between where two homographies put the same pixels, mm, RMS over the opening. */
+static double homography_distance_mm(const weft_homography *a, const weft_homography *b, double opening_mm)
 {
     enum { grid = 5 };
     weft_homography inverse = weft_homography_inverse(b);
@@ -68,7 +69,7 @@ static weft_code try_start(const weft_sight *sight, const float *photograph, con
     WEFT_TRY(refine_through(sight, photograph, blur, blur_count, &refinement, fitted, error));
     pose->from_markers = from_markers;
     pose->correlation = refinement.correlation;
-    pose->shift_mm = weft_homography_distance_mm(&refinement.homography, promised, sight->opening_mm);
+    pose->shift_mm = homography_distance_mm(&refinement.homography, promised, sight->opening_mm);
     if (acceptable(&refinement, pose->shift_mm, limits, pose->remark, sizeof pose->remark))
         accept_drawing(&refinement, pose);
     return WEFT_OK;
@@ -81,7 +82,7 @@ static void fall_back(const weft_sight *sight, const weft_marker_start *markers,
     pose->source = WEFT_POSE_MARKERS;
     pose->from_markers = true;
     pose->homography = markers->homography;
-    pose->shift_mm = weft_homography_distance_mm(&markers->homography, promised, sight->opening_mm);
+    pose->shift_mm = homography_distance_mm(&markers->homography, promised, sight->opening_mm);
     double px_per_mm = sqrt(fabs(markers->homography.m[0][0] * markers->homography.m[1][1] -
                                  markers->homography.m[0][1] * markers->homography.m[1][0])) /
                        fabs(markers->homography.m[2][2]);
@@ -98,9 +99,8 @@ weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, con
     WEFT_TRY(weft_markers_locate(sight, target, photograph, promised, &markers, error));
     pose->marker_count = markers.found;
     pose->marker_rms_px = markers.rms_px;
-    bool trusted =
-        markers.corners >= trusted_corners &&
-        weft_homography_distance_mm(&markers.homography, promised, sight->opening_mm) <= limits->tolerance_mm;
+    bool trusted = markers.corners >= trusted_corners &&
+                   homography_distance_mm(&markers.homography, promised, sight->opening_mm) <= limits->tolerance_mm;
     if (trusted)
         WEFT_TRY(try_start(sight, photograph, &markers.homography, true, promised, point_spread, limits, pose, fitted,
                            error));

@@ -39,7 +39,4 @@ weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, con
 /* What it rests on in words, "rig, markers, drawing" and the like. Static text. */
 const char *weft_pose_source_name(const weft_view_pose *pose);
 
-/* Distance on the plate between where two homographies put the same pixels, mm, RMS over the opening. Pure. */
-double weft_homography_distance_mm(const weft_homography *a, const weft_homography *b, double opening_mm);
-
 #endif
