@@ -125,8 +125,7 @@ WEFT_INLINE void lanes_log2_each(int count, const lanes *x, lanes *result)
     static const float coefficient[] = {0.125837043f,  -0.207269818f, 0.215715632f,  -0.238944814f, 0.287916243f,
                                         -0.360703677f, 0.480910629f,  -0.721347332f, 1.44269502f};
     lanes t[WEFT_EACH_MAX], p[WEFT_EACH_MAX], whole[WEFT_EACH_MAX];
-    WEFT_EACH(count)
-    {
+    WEFT_EACH (count) {
         lane_bits bits = (lane_bits)x[i], exponent = (bits - 0x3f3504f3) >> 23;
         t[i] = (lanes)(bits - (exponent << 23)) - 1;
         whole[i] = __builtin_convertvector(exponent, lanes);
@@ -134,8 +133,10 @@ WEFT_INLINE void lanes_log2_each(int count, const lanes *x, lanes *result)
     }
 #pragma GCC unroll 8
     for (int k = 1; k < 9; k++)
-        WEFT_EACH(count) p[i] = coefficient[k] + t[i] * p[i];
-    WEFT_EACH(count) result[i] = whole[i] + t[i] * p[i];
+        WEFT_EACH (count)
+            p[i] = coefficient[k] + t[i] * p[i];
+    WEFT_EACH (count)
+        result[i] = whole[i] + t[i] * p[i];
 }
 
 /* 2^x for x <= 127; below x = -126 a number of at most 2^-126. An integer power and, for the rest in [-1/2, 1/2], the
@@ -145,8 +146,7 @@ WEFT_INLINE void lanes_exp2_each(int count, const lanes *x, lanes *result)
     static const float coefficient[] = {0.00132764725f, 0.00967554189f, 0.0555071309f,
                                         0.240221202f,   0.693146944f,   1.00000012f};
     lanes n[WEFT_EACH_MAX], f[WEFT_EACH_MAX], p[WEFT_EACH_MAX];
-    WEFT_EACH(count)
-    {
+    WEFT_EACH (count) {
 #if defined(__AVX512F__)
         n[i] = (lanes)_mm512_roundscale_ps((__m512)x[i], _MM_FROUND_TO_NEAREST_INT);
         f[i] = x[i] - n[i];
@@ -160,11 +160,14 @@ WEFT_INLINE void lanes_exp2_each(int count, const lanes *x, lanes *result)
     }
 #pragma GCC unroll 8
     for (int k = 1; k < 6; k++)
-        WEFT_EACH(count) p[i] = coefficient[k] + f[i] * p[i];
+        WEFT_EACH (count)
+            p[i] = coefficient[k] + f[i] * p[i];
 #if defined(__AVX512F__)
-    WEFT_EACH(count) result[i] = (lanes)_mm512_scalef_ps((__m512)p[i], (__m512)n[i]);
+    WEFT_EACH (count)
+        result[i] = (lanes)_mm512_scalef_ps((__m512)p[i], (__m512)n[i]);
 #else
-    WEFT_EACH(count) result[i] = (lanes)((lane_bits)p[i] + ((lane_bits)n[i] << 23));
+    WEFT_EACH (count)
+        result[i] = (lanes)((lane_bits)p[i] + ((lane_bits)n[i] << 23));
 #endif
 }
 

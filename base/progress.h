@@ -16,4 +16,17 @@ static inline void weft_progress_report(const weft_progress *progress, const cha
         progress->report(progress->context, stage, done, total);
 }
 
+/* How a long computation tells its caller something that is no error and cannot wait for the end. `line` may be NULL;
+ * `text` is one line without a newline, the caller's, to be read during the call alone. */
+typedef struct weft_log {
+    void (*line)(void *context, const char *text);
+    void *context;
+} weft_log;
+
+static inline void weft_log_line(const weft_log *log, const char *text)
+{
+    if (log->line)
+        log->line(log->context, text);
+}
+
 #endif

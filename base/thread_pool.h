@@ -5,18 +5,18 @@
 
 #include "base/status.h"
 
-typedef struct weft_crew weft_crew;
+typedef struct weft_thread_pool weft_thread_pool;
 
 /* One item; `thread` is 0 to thread_count - 1. */
-typedef void weft_crew_task(void *context, long item, int thread);
+typedef void weft_thread_pool_task(void *context, long item, int thread);
 
-/* thread_count >= 1, the caller of weft_crew_run among them. Errors: WEFT_SYSTEM. */
-weft_code weft_crew_create(int thread_count, weft_crew **result, weft_error *error);
+/* thread_count >= 1, the caller of weft_thread_pool_run among them. Errors: WEFT_SYSTEM. */
+weft_code weft_thread_pool_create(int thread_count, weft_thread_pool **result, weft_error *error);
 
 /* Does items 0 to count - 1, each once, in any order, and returns when all are done. One caller at a time. */
-void weft_crew_run(weft_crew *crew, weft_crew_task *task, void *context, long count);
+void weft_thread_pool_run(weft_thread_pool *pool, weft_thread_pool_task *task, void *context, long count);
 
 /* NULL is fine. */
-void weft_crew_free(weft_crew *crew);
+void weft_thread_pool_free(weft_thread_pool *pool);
 
 #endif

@@ -86,8 +86,7 @@ static bool find_difference(json_t *a, json_t *b, char *name, size_t size)
 {
     const char *key;
     json_t *value;
-    json_object_foreach(a, key, value)
-    {
+    json_object_foreach (a, key, value) {
         json_t *other = json_object_get(b, key);
         bool same = json_is_number(value) && json_is_number(other)
                         ? nearly(json_number_value(value), json_number_value(other))

@@ -118,8 +118,7 @@ static weft_code read_settings(const char *path, json_t *root, const char *rig, 
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a JSON object with a key 'rig'", path);
     if (strcmp(found, rig) != 0)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': this build has no rig '%s', only '%s'", path, found, rig);
-    json_object_foreach(root, name, value)
-    {
+    json_object_foreach (root, name, value) {
         if (strcmp(name, "rig") != 0)
             WEFT_TRY(read_setting(path, name, value, groups, group_count, error));
     }

@@ -41,9 +41,10 @@ typedef struct weft_setting {
 } weft_setting;
 
 /* The setting of a field of `structure`. */
-#define WEFT_SETTING(structure, name, value, low, high, whole)                                                         \
+#define WEFT_SETTING(structure, field, default_value, least, most, is_whole)                                           \
     {                                                                                                                  \
-#name, offsetof(structure, name), value, low, high, whole                                                      \
+        .name = #field, .offset = offsetof(structure, field), .value = default_value, .low = least, .high = most,      \
+        .whole = is_whole                                                                                              \
     }
 
 /* Settings, and the structure that holds their values (borrowed). A rig has the group below and those that its back

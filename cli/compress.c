@@ -258,7 +258,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     weft_progress progress = command_progress(&command->files.common);
     weft_compress_options options = command->options;
     options.checkpoint_path = partial_path;
-    options.note = (weft_note){say_note, (void *)&command->files.common};
+    options.log = (weft_log){say_note, (void *)&command->files.common};
     weft_dataset *dataset = NULL;
     weft_material material = {0};
     weft_compress_report report;

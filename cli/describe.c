@@ -49,7 +49,8 @@ static void say_object(const common_options *common, json_t *object, int indent)
 {
     const char *name;
     json_t *value;
-    json_object_foreach(object, name, value) say_member(common, name, value, indent);
+    json_object_foreach (object, name, value)
+        say_member(common, name, value, indent);
 }
 
 void describe(const common_options *common, const char *event, json_t *object)

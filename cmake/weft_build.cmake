@@ -36,7 +36,6 @@ pkg_check_modules(HIDAPI REQUIRED IMPORTED_TARGET hidapi-hidraw)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 find_package(embree 3 REQUIRED)
 find_package(Ceres REQUIRED)
-pkg_check_modules(NLOPT REQUIRED IMPORTED_TARGET nlopt)
 find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video aruco)
 
 # ---- Rooms ----

@@ -2,35 +2,8 @@
 #ifndef WEFT_COMPRESS_COMPRESS_H
 #define WEFT_COMPRESS_COMPRESS_H
 
-#include "base/progress.h"
-#include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
-#include "compress/fit/bundle.h"
-#include "compress/run/note.h"
-#include "compress/texel/frame_choice.h"
-
-#include <stdbool.h>
-
-typedef struct weft_compress_options {
-    int lobe_count;              /* at most; 0..3 */
-    bool table;                  /* T(v), where the samples can carry it */
-    bool light_table;            /* S(l) beside T, where lights repeat and the samples can carry it */
-    weft_sample_weights weights; /* of a dense model */
-    bool levels;                 /* mip levels, each fitted to the mean samples of its groups of texels */
-    weft_frame_choice frames;
-    double max_exponent;   /* N <= this */
-    double target_error;   /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
-    uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
-    int table_components;  /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
-    const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
-    /* These change nothing in the result: */
-    uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */
-    const char *checkpoint_path; /* keeps what is done of a dense model until the caller removes it; NULL: none */
-    weft_note note;              /* hears of checkpoints that are used or discarded */
-} weft_compress_options;
-
-/* 2 lobes, table, levels, fitted frames, N <= 8192, nothing held out, a quarter of the memory, no checkpoint. */
-weft_compress_options weft_compress_default_options(void);
+#include "compress/options/options.h"
 
 /* What the number of samples a texel allows: at least four for every free parameter. */
 typedef enum weft_compress_model {

@@ -9,8 +9,8 @@ typedef struct weft_photograph {
     char *name; /* of the file, relative to the folder; where it is missing, what it should be called */
     int missing;
     weft_vec3 light, view; /* directions, or positions in mm */
-    weft_rgb
-        intensity; /* of a near light: the pixel value of a surface with BRDF x cosine = 1 / sr at a distance of 1 mm */
+    /* Of a near light: the pixel value of a surface with BRDF x cosine = 1 / sr at a distance of 1 mm. */
+    weft_rgb intensity;
 } weft_photograph;
 
 /* Freed with weft_collection_free. */

@@ -16,10 +16,10 @@
 typedef struct weft_import_options {
     int width;             /* of the dataset, texels; 0 = as photographed */
     double texel_pitch_mm; /* of the dataset; 0 = what the collection says, else 1 mm */
-    double
-        saturated_at; /* encoded value in 0..1 from which a sample of an integer image counts as clipped; > 1 = never */
-    weft_values
-        values; /* what photographs of a far light hold; those of a near light always give reflectance times cosine */
+    /* Encoded value in 0..1 from which a sample of an integer image counts as clipped; > 1 = never. */
+    double saturated_at;
+    /* What photographs of a far light hold; those of a near light always give reflectance times cosine. */
+    weft_values values;
     bool skip_bad; /* mask photographs that cannot be used, instead of failing */
 } weft_import_options;
 

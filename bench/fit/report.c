@@ -53,8 +53,7 @@ static void print_header(const report *from, json_t *row)
     const char *name;
     json_t *cell;
     print_name(from, "");
-    json_object_foreach(row, name, cell)
-    {
+    json_object_foreach (row, name, cell) {
         if (strcmp(name, "name") != 0)
             print_cell(from, name, name);
     }
@@ -69,8 +68,7 @@ static void print_row(const report *from, json_t *row)
     json_t *cell;
     int column = 0;
     print_name(from, json_string_value(json_object_get(row, "name")));
-    json_object_foreach(row, name, cell)
-    {
+    json_object_foreach (row, name, cell) {
         char text[64] = "-";
         if (!strcmp(name, "name"))
             continue;
@@ -92,8 +90,9 @@ static void print_table(const report *from)
            from->form == REPORT_MARKDOWN ? "\n" : "");
     if (json_array_size(rows))
         print_header(from, json_array_get(rows, 0));
-    json_array_foreach(rows, index, element) print_row(from, element);
-    json_array_foreach(json_object_get(from->table, "notes"), index, element)
+    json_array_foreach (rows, index, element)
+        print_row(from, element);
+    json_array_foreach (json_object_get(from->table, "notes"), index, element)
         printf("%s\n", json_string_value(element));
     fflush(stdout);
 }

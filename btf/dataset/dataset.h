@@ -125,4 +125,8 @@ weft_code weft_dataset_writer_finish(weft_dataset_writer *writer, const char *pr
 /* Frees the writer and removes what it wrote. NULL is fine. */
 void weft_dataset_writer_abandon(weft_dataset_writer *writer);
 
+/* As many rows as hold about 64 MiB of samples: chunks span several rows, and each should be read once. At least 1.
+ * Pure. */
+int weft_dataset_rows_at_once(const weft_dataset_layout *layout);
+
 #endif

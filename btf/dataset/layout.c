@@ -45,3 +45,10 @@ weft_vec3 weft_dataset_view_direction(const weft_dataset_layout *layout, int vie
 {
     return direction_from_texel(layout, layout->view[view], x, y);
 }
+
+int weft_dataset_rows_at_once(const weft_dataset_layout *layout)
+{
+    size_t row = (size_t)layout->width * (size_t)layout->image_count * 3 * sizeof(weft_half);
+    size_t rows = ((size_t)64 << 20) / row;
+    return rows < 1 ? 1 : rows > (size_t)layout->height ? layout->height : (int)rows;
+}

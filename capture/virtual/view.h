@@ -21,8 +21,8 @@ typedef struct weft_virtual_view {
     int *row;                /* [height + 1] first cloth pixel of every row */
     weft_cloth_pixel *cloth;
     weft_weave_point *point; /* of a flat sample; NULL otherwise */
-    weft_seen_vertex
-        *vertex;           /* of a sample with depth: [point][path_vertices], of which the first vertex_count[point] */
+    /* Of a sample with depth: [point][path_vertices], of which the first vertex_count[point]. */
+    weft_seen_vertex *vertex;
     uint8_t *vertex_count; /* 0 where the point looks through a hole */
     int path_vertices;
 } weft_virtual_view;

@@ -106,7 +106,7 @@ static void normal_equations(const problem *given, const weft_fit *fit, const do
     normal->n = n;
     for (int i = 0; i < given->count; i++) {
         const observation *at = &given->observations[i];
-        double by[WEFT_SOLVE_MAX], t = table[at->bundle];
+        double by[WEFT_NORMAL_MAX], t = table[at->bundle];
         derivatives(fit, at, by);
         double difference = at->value - t * model_without_table(fit, at);
         for (int p = 0; p < n; p++) {
@@ -143,7 +143,7 @@ static void fit_lobes(const problem *given, const weft_fit_options *options, con
     for (int round = 0; round < 100 && damping < 1e6 && residual > 0; round++) {
         weft_normal normal;
         normal_equations(given, fit, table, &normal);
-        double low[WEFT_SOLVE_MAX], high[WEFT_SOLVE_MAX], d[WEFT_SOLVE_MAX] = {0};
+        double low[WEFT_NORMAL_MAX], high[WEFT_NORMAL_MAX], d[WEFT_NORMAL_MAX] = {0};
         int n = normal.n;
         for (int p = 0; p < n; p++) {
             normal.h[p * n + p] *= 1 + damping;
@@ -161,7 +161,7 @@ static void fit_lobes(const problem *given, const weft_fit_options *options, con
         }
         weft_fit trial = *fit;
         double next = INFINITY;
-        if (weft_solve_box(n, normal.h, normal.g, low, high, d)) {
+        if (weft_quadratic_program_solve(n, normal.h, normal.g, low, high, d)) {
             step_from(fit, d, &trial);
             next = residual_of(given, &trial, table);
         }

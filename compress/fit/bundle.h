@@ -55,12 +55,6 @@ void weft_bundle_place(const weft_dataset_layout *layout, int x0, int y0, int x1
 
 enum { WEFT_CHANNELS = 3, WEFT_GREY = 3 };
 
-/* What an error of a sample counts for. */
-typedef enum weft_sample_weights {
-    WEFT_WEIGHTS_EVEN,  /* alike, as in least squares */
-    WEFT_WEIGHTS_SCREEN /* less the brighter the sample, about as little as a screen shows of it */
-} weft_sample_weights;
-
 /* The samples of one texel in the order of a bundle, scaled by the root of their weights and by one factor for the
  * whole texel that brings their mean square to 1. Arrays are [sample_count]; samples of zero weight are 0. */
 typedef struct weft_samples {

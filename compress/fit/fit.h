@@ -48,8 +48,9 @@ void weft_fit_workspace_free(weft_fit_workspace *workspace);
  * free parameter, the entries of T among them. */
 int weft_fit_affordable_lobes(const weft_bundle *bundle, const weft_samples *samples, int wanted, bool table);
 
-/* ---- Joint fit: T eliminated (variable projection, Golub and Pereyra 1973), Gauss-Newton with damping on the rest
- * ---- */
+/* ---- Joint fit ----
+ *
+ * T is eliminated (variable projection, Golub and Pereyra 1973); the rest is found by Gauss-Newton with damping. */
 
 /* Improves `fit` and `table` [view_count], both a start and the result, until they converge. The start may come from
  * another texel or channel: rho, the amplitudes and T are solved for at once. All results are finite. */

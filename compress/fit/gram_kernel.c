@@ -49,13 +49,15 @@ WEFT_INLINE lobe_lanes lobes_at(const lanes l[3], lanes k, const weft_gram_point
 {
     lobe_lanes at;
     lanes dot[WEFT_GRAM_LOBES], base[WEFT_GRAM_LOBES], power[WEFT_GRAM_LOBES];
-    WEFT_EACH(lobe_count) dot[i] = l[0] * own->m[i][0] + l[1] * own->m[i][1] + l[2] * own->m[i][2];
-    WEFT_EACH(lobe_count) base[i] = lanes_select(dot[i] > LEAST_BASE, dot[i], lanes_of(LEAST_BASE));
+    WEFT_EACH (lobe_count)
+        dot[i] = l[0] * own->m[i][0] + l[1] * own->m[i][1] + l[2] * own->m[i][2];
+    WEFT_EACH (lobe_count)
+        base[i] = lanes_select(dot[i] > LEAST_BASE, dot[i], lanes_of(LEAST_BASE));
     lanes_log2_each(lobe_count, base, at.log2_b);
-    WEFT_EACH(lobe_count) power[i] = (point->exponent[i] - 1) * at.log2_b[i];
+    WEFT_EACH (lobe_count)
+        power[i] = (point->exponent[i] - 1) * at.log2_b[i];
     lanes_exp2_each(lobe_count, power, power);
-    WEFT_EACH(lobe_count)
-    {
+    WEFT_EACH (lobe_count) {
         at.b[i] = lanes_where(dot[i] > LEAST_BASE, dot[i]);
         at.h[i] = lanes_where(dot[i] > LEAST_BASE, k * power[i]);
     }
@@ -72,8 +74,7 @@ WEFT_INLINE void write_columns(const weft_bundle *bundle, const float *cosine, c
     lanes k = lanes_load(cosine + sample), f = k * point->diffuse;
     columns[0][slot] = k;
     const lobe_lanes at = lobes_at(l, k, point, lobe_count, own);
-    WEFT_EACH(lobe_count)
-    {
+    WEFT_EACH (lobe_count) {
         lanes g = at.h[i] * at.b[i];
         f += point->amplitude[i] * g;
         for (int axis = 0; axis < 3; axis++)

@@ -102,7 +102,7 @@ static bool make_step(const weft_normal *normal, double damping, const weft_fit_
                       double *gain)
 {
     int n = normal->n;
-    double h[WEFT_SOLVE_MAX * WEFT_SOLVE_MAX], low[WEFT_SOLVE_MAX], high[WEFT_SOLVE_MAX], d[WEFT_SOLVE_MAX] = {0};
+    double h[WEFT_NORMAL_MAX * WEFT_NORMAL_MAX], low[WEFT_NORMAL_MAX], high[WEFT_NORMAL_MAX], d[WEFT_NORMAL_MAX] = {0};
     double trace = 0;
     memcpy(h, normal->h, sizeof h);
     for (int p = 0; p < n; p++)
@@ -110,12 +110,8 @@ static bool make_step(const weft_normal *normal, double damping, const weft_fit_
     for (int p = 0; p < n; p++)
         h[p * n + p] += damping * h[p * n + p] + 1e-10 * trace + 1e-300;
     step_bounds(fit, options, n, low, high);
-    if (!weft_solve_box(n, h, normal->g, low, high, d))
+    if (!weft_quadratic_program_solve(n, h, normal->g, low, high, d))
         return false;
-    for (int p = 0; p < n; p++) {
-        if (!isfinite(d[p]))
-            return false;
-    }
     apply_step(d, n, fit);
     *gain = predicted_gain(normal, d);
     return fit->frame.normal.z >= LEAST_TILT_COSINE;

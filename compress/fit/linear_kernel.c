@@ -38,23 +38,27 @@ WEFT_INLINE double digest_of(int lobes, const weft_bundle *bundle, weft_trial *t
     const linear_point at = linear_point_of(trial, trial->at.x);
     for (int view = 0; view < stride; view += LANES) {
         combination column[WEFT_LINEAR_MAX];
-        UNROLL for (int j = 0; j < n; j++) column[j] = linear_column(bundle, &trial->point, j, view);
-        UNROLL for (int j = 0; j < n; j++)
-        {
+        UNROLL
+        for (int j = 0; j < n; j++)
+            column[j] = linear_column(bundle, &trial->point, j, view);
+        UNROLL
+        for (int j = 0; j < n; j++) {
             const combination a = column[j];
             lanes error = {0};
-            UNROLL for (int i = 0; i < a.count; i++) error +=
-                a.weight[i] * product(trial, columns, stride, view, a.column[i], e);
+            UNROLL
+            for (int i = 0; i < a.count; i++)
+                error += a.weight[i] * product(trial, columns, stride, view, a.column[i], e);
             lanes_store(trial->linear + (WEFT_LINEAR_ERROR + j) * stride + view, error);
-            UNROLL for (int k = 0; k <= j; k++)
-            {
+            UNROLL
+            for (int k = 0; k <= j; k++) {
                 const combination b = column[k];
                 lanes sum = {0};
-                UNROLL for (int i = 0; i < a.count; i++)
-                {
+                UNROLL
+                for (int i = 0; i < a.count; i++) {
                     lanes row = {0};
-                    UNROLL for (int l = 0; l < b.count; l++) row +=
-                        b.weight[l] * product(trial, columns, stride, view, a.column[i], b.column[l]);
+                    UNROLL
+                    for (int l = 0; l < b.count; l++)
+                        row += b.weight[l] * product(trial, columns, stride, view, a.column[i], b.column[l]);
                     sum += a.weight[i] * row;
                 }
                 lanes_store(trial->linear + weft_linear_gram(j, k) * stride + view, sum);
@@ -66,7 +70,9 @@ WEFT_INLINE double digest_of(int lobes, const weft_bundle *bundle, weft_trial *t
         lanes_store(trial->linear + WEFT_LINEAR_SQUARE * stride + view, square);
         energy += square;
     }
-    UNROLL for (int j = 0; j < n; j++) trial->strength[j] = (double)lanes_sum(strength[j]);
+    UNROLL
+    for (int j = 0; j < n; j++)
+        trial->strength[j] = (double)lanes_sum(strength[j]);
     trial->energy = (double)lanes_sum(energy);
     return (double)lanes_sum(model_energy);
 }
@@ -108,16 +114,18 @@ WEFT_INLINE double normal_of(int lobes, const weft_bundle *bundle, const weft_tr
         linear_lanes own = load_linear(trial, lobes, bundle->view_stride, view);
         view_state state = state_of(&own, &at, lobes, with_table);
         lanes s[WEFT_LINEAR_MAX] = {{0}}, t2 = state.t * state.t;
-        UNROLL for (int j = 0; j < n; j++)
-        {
+        UNROLL
+        for (int j = 0; j < n; j++) {
             lanes error = own.error[j];
-            UNROLL for (int k = 0; k < n; k++)
-            {
+            UNROLL
+            for (int k = 0; k < n; k++) {
                 s[j] += own.gram[j][k] * at.x[k];
                 error += own.gram[j][k] * state.delta[k];
             }
             g_sum[j] += state.t * error;
-            UNROLL for (int k = 0; k <= j; k++) h_sum[j][k] += t2 * (own.gram[j][k] - s[j] * s[k] * state.shrink);
+            UNROLL
+            for (int k = 0; k <= j; k++)
+                h_sum[j][k] += t2 * (own.gram[j][k] - s[j] * s[k] * state.shrink);
         }
         scale += state.eliminated * t2 * state.ff;
         residual += state.residual;

@@ -90,7 +90,7 @@ static bool linear_step(const linear_state *now, int n, const double *least, dou
     }
     for (int j = 0; j < n; j++)
         h[j * n + j] += 1e-7 * h[j * n + j] + 1e-12 * trace + 1e-300;
-    if (!weft_solve_box(n, h, now->g, low, high, d))
+    if (!weft_quadratic_program_solve(n, h, now->g, low, high, d))
         return false;
     double gain = 0;
     for (int j = 0; j < n; j++) {
@@ -179,14 +179,14 @@ void weft_trial_solve_given_table(const weft_bundle *bundle, const weft_trial *t
     for (int j = 0; j < n; j++)
         h[j * n + j] += 1e-9 * h[j * n + j] + 1e-14 * trace + 1e-300;
     weft_linear solution = weft_linear_of_fit(fit);
-    if (weft_solve_box(n, h, g, low, high, solution.x))
+    if (weft_quadratic_program_solve(n, h, g, low, high, solution.x))
         linear_to_fit(&solution, fit);
 }
 
 /* T leaves the overall scale of rho and A free: give that direction the curvature it would have with T fixed. */
 static void fix_scale(const weft_fit *fit, double scale, weft_normal *normal)
 {
-    double x[WEFT_SOLVE_MAX] = {fit->diffuse}, length = fit->diffuse * fit->diffuse;
+    double x[WEFT_NORMAL_MAX] = {fit->diffuse}, length = fit->diffuse * fit->diffuse;
     for (int i = 0; i < fit->lobe_count; i++) {
         x[1 + 4 * i] = fit->lobe[i].amplitude;
         length += x[1 + 4 * i] * x[1 + 4 * i];

@@ -5,13 +5,17 @@
 #ifndef WEFT_COMPRESS_FIT_NORMAL_H
 #define WEFT_COMPRESS_FIT_NORMAL_H
 
+#include "base/quadratic_program.h"
 #include "compress/fit/fit.h"
 #include "compress/fit/gram.h"
-#include "compress/fit/solve.h"
 
 typedef struct weft_fit_kernels weft_fit_kernels; /* compress/fit/kernels.h */
 
-enum { WEFT_LINEAR_MAX = 1 + WEFT_GRAM_LOBES };
+enum {
+    WEFT_LINEAR_MAX = 1 + WEFT_GRAM_LOBES,
+    WEFT_NORMAL_MAX = 1 + 4 * WEFT_GRAM_LOBES + 3 /* parameters of a step */
+};
+_Static_assert((int)WEFT_NORMAL_MAX <= (int)WEFT_QUADRATIC_PROGRAM_MAX, "a step is a quadratic program");
 
 /* Largest rho or A, times the root mean square of the samples: more belongs to a lobe that no sample sees. */
 #define WEFT_LARGEST_AMPLITUDE 1e5
@@ -54,8 +58,8 @@ typedef struct weft_trial {
 
 typedef struct weft_normal {
     int n;
-    double h[WEFT_SOLVE_MAX * WEFT_SOLVE_MAX];
-    double g[WEFT_SOLVE_MAX];
+    double h[WEFT_NORMAL_MAX * WEFT_NORMAL_MAX];
+    double g[WEFT_NORMAL_MAX];
 } weft_normal;
 
 /* The matrix M_i = R^T diag(c) R of every lobe in floats, as the pass wants it. */

@@ -8,8 +8,6 @@ WEFT_DECLARE_FIT_KERNELS(WEFT_INSTRUCTION_SET);
 
 #define LN2 0.693147180559945309
 
-enum { NORMAL_MAX = 1 + 4 * WEFT_GRAM_LOBES + 3 };
-
 /* The columns of a pass, with the light turned into the frame of the texel, l' = R l:
  *     k | h_i l'_x, h_i l'_y, h_i l'_z, q_i for every lobe | e
  * so that df/dc_ik = A_i N_i v'_k times one column, df/d ln N_i = A_i N_i ln 2 times another. */
@@ -42,10 +40,11 @@ static shapes shapes_of(const weft_fit *fit)
 
 WEFT_INLINE void load_gram(const float *sums, int columns, int stride, int view, local_gram *gram)
 {
-    UNROLL for (int a = 0; a < columns; a++)
-    {
-        UNROLL for (int b = a; b < columns; b++) gram->of[a][b] =
-            lanes_load(sums + (size_t)weft_gram_product(a, b, columns) * (size_t)stride + view);
+    UNROLL
+    for (int a = 0; a < columns; a++) {
+        UNROLL
+        for (int b = a; b < columns; b++)
+            gram->of[a][b] = lanes_load(sums + (size_t)weft_gram_product(a, b, columns) * (size_t)stride + view);
     }
 }
 
@@ -65,20 +64,26 @@ WEFT_INLINE void turn(const float rows[3][3], lanes *x, lanes *y, lanes *z)
 /* Turns the three columns of a lobe from l to l' = R l in their products with all others, and with each other. */
 WEFT_INLINE void turn_lobe(const float rows[3][3], int first, int columns, local_gram *gram)
 {
-    UNROLL for (int c = 0; c < first; c++)
+    UNROLL
+    for (int c = 0; c < first; c++)
         turn(rows, &gram->of[c][first], &gram->of[c][first + 1], &gram->of[c][first + 2]);
-    UNROLL for (int c = first + 3; c < columns; c++)
+    UNROLL
+    for (int c = first + 3; c < columns; c++)
         turn(rows, &gram->of[first][c], &gram->of[first + 1][c], &gram->of[first + 2][c]);
     lanes own[3][3];
-    UNROLL for (int i = 0; i < 3; i++)
-    {
-        UNROLL for (int k = 0; k < 3; k++) own[i][k] = product(gram, first + i, first + k);
+    UNROLL
+    for (int i = 0; i < 3; i++) {
+        UNROLL
+        for (int k = 0; k < 3; k++)
+            own[i][k] = product(gram, first + i, first + k);
         turn(rows, &own[i][0], &own[i][1], &own[i][2]);
     }
-    UNROLL for (int k = 0; k < 3; k++)
-    {
+    UNROLL
+    for (int k = 0; k < 3; k++) {
         turn(rows, &own[0][k], &own[1][k], &own[2][k]);
-        UNROLL for (int i = 0; i <= k; i++) gram->of[first + i][first + k] = own[i][k];
+        UNROLL
+        for (int i = 0; i <= k; i++)
+            gram->of[first + i][first + k] = own[i][k];
     }
 }
 
@@ -92,17 +97,19 @@ WEFT_INLINE expansion expand(const weft_bundle *bundle, const shapes *at, const 
                              const view_state *state, int lobes, int view)
 {
     expansion own;
-    UNROLL for (int k = 0; k < 3; k++)
-    {
+    UNROLL
+    for (int k = 0; k < 3; k++) {
         own.local[k] = lanes_of(0);
-        UNROLL for (int i = 0; i < 3; i++) own.local[k] += at->rows[k][i] * lanes_load(bundle->view_xyz[i] + view);
+        UNROLL
+        for (int i = 0; i < 3; i++)
+            own.local[k] += at->rows[k][i] * lanes_load(bundle->view_xyz[i] + view);
     }
     own.f[0] = lanes_of(linear->x[0]);
     own.error[0] = state->delta[0];
-    UNROLL for (int i = 0; i < lobes; i++)
-    {
-        UNROLL for (int k = 0; k < 3; k++)
-        {
+    UNROLL
+    for (int i = 0; i < lobes; i++) {
+        UNROLL
+        for (int k = 0; k < 3; k++) {
             lanes p = at->c[i][k] * own.local[k];
             own.f[1 + 4 * i + k] = linear->x[1 + i] * p;
             own.error[1 + 4 * i + k] = state->delta[1 + i] * p;
@@ -125,18 +132,22 @@ WEFT_INLINE void rotation_weights(const shapes *at, const expansion *own, int lo
 {
     lanes moved[3];
     cross_axis(own->local, k, moved); /* v' x w, the negative of what is wanted */
-    UNROLL for (int i = 0; i < lobes; i++)
-    {
+    UNROLL
+    for (int i = 0; i < lobes; i++) {
         lanes p[3], turned[3];
-        UNROLL for (int a = 0; a < 3; a++) p[a] = at->c[i][a] * own->local[a];
+        UNROLL
+        for (int a = 0; a < 3; a++)
+            p[a] = at->c[i][a] * own->local[a];
         cross_axis(p, k, turned);
-        UNROLL for (int a = 0; a < 3; a++) weight[3 * i + a] = at->factor[i] * (turned[a] - at->c[i][a] * moved[a]);
+        UNROLL
+        for (int a = 0; a < 3; a++)
+            weight[3 * i + a] = at->factor[i] * (turned[a] - at->c[i][a] * moved[a]);
     }
 }
 
 /* Sums over the views for the columns themselves, the three of a lobe times v', and for the rotations after them. */
 typedef struct normal_lanes {
-    lanes h[NORMAL_MAX][NORMAL_MAX], g[NORMAL_MAX], scale;
+    lanes h[WEFT_NORMAL_MAX][WEFT_NORMAL_MAX], g[WEFT_NORMAL_MAX], scale;
 } normal_lanes;
 
 /* A column of the normal equations is T times one of the pass, times v'_k where that is the k-th of a lobe: the weight
@@ -153,11 +164,14 @@ WEFT_INLINE int weight_of(int column)
 WEFT_INLINE column_weights weights_at(const expansion *own, const view_state *state)
 {
     column_weights weights;
-    WEFT_EACH(3) weights.of[i] = state->t * own->local[i];
+    WEFT_EACH (3)
+        weights.of[i] = state->t * own->local[i];
     weights.of[3] = state->t;
-    UNROLL for (int i = 0; i < 4; i++)
-    {
-        UNROLL for (int k = 0; k < 4; k++) weights.product[i][k] = weights.of[i] * weights.of[k];
+    UNROLL
+    for (int i = 0; i < 4; i++) {
+        UNROLL
+        for (int k = 0; k < 4; k++)
+            weights.product[i][k] = weights.of[i] * weights.of[k];
     }
     return weights;
 }
@@ -167,8 +181,8 @@ WEFT_INLINE void expand_product(int lobes, const lanes *row, const expansion *ow
 {
     *along = row[0] * own->f[0];
     *against = row[1 + 4 * lobes] + row[0] * own->error[0];
-    UNROLL for (int i = 0; i < 3 * lobes; i++)
-    {
+    UNROLL
+    for (int i = 0; i < 3 * lobes; i++) {
         int c = 1 + i / 3 * 4 + i % 3;
         *along += row[c] * own->f[c];
         *against += row[c] * own->error[c];
@@ -176,24 +190,27 @@ WEFT_INLINE void expand_product(int lobes, const lanes *row, const expansion *ow
 }
 
 WEFT_INLINE void add_columns(int lobes, const local_gram *gram, const expansion *own, const view_state *state,
-                             const column_weights *weights, lanes s[NORMAL_MAX], normal_lanes *sums)
+                             const column_weights *weights, lanes s[WEFT_NORMAL_MAX], normal_lanes *sums)
 {
     const int n = 1 + 4 * lobes;
-    UNROLL for (int p = 0; p < n; p++)
-    {
+    UNROLL
+    for (int p = 0; p < n; p++) {
         lanes row[WEFT_GRAM_COLUMNS], along, against;
-        UNROLL for (int c = 0; c <= n; c++) row[c] = product(gram, p, c);
+        UNROLL
+        for (int c = 0; c <= n; c++)
+            row[c] = product(gram, p, c);
         expand_product(lobes, row, own, &along, &against);
         s[p] = weights->of[weight_of(p)] * along;
         lanes shrunk = s[p] * state->shrink;
         sums->g[p] += weights->of[weight_of(p)] * against;
-        UNROLL for (int q = 0; q <= p; q++) sums->h[p][q] +=
-            weights->product[weight_of(p)][weight_of(q)] * row[q] - shrunk * s[q];
+        UNROLL
+        for (int q = 0; q <= p; q++)
+            sums->h[p][q] += weights->product[weight_of(p)][weight_of(q)] * row[q] - shrunk * s[q];
     }
 }
 
 WEFT_INLINE void add_rotations(int lobes, const shapes *at, const local_gram *gram, const expansion *own,
-                               const view_state *state, const column_weights *weights, lanes s[NORMAL_MAX],
+                               const view_state *state, const column_weights *weights, lanes s[WEFT_NORMAL_MAX],
                                normal_lanes *sums)
 {
     const int n = 1 + 4 * lobes;
@@ -201,19 +218,27 @@ WEFT_INLINE void add_rotations(int lobes, const shapes *at, const local_gram *gr
     for (int k = 0; k < 3; k++) {
         lanes row[WEFT_GRAM_COLUMNS], against;
         rotation_weights(at, own, lobes, k, weight[k]);
-        UNROLL for (int i = 0; i < 3 * lobes; i++) weight[k][i] *= state->t;
-        UNROLL for (int c = 0; c <= n; c++)
-        {
+        UNROLL
+        for (int i = 0; i < 3 * lobes; i++)
+            weight[k][i] *= state->t;
+        UNROLL
+        for (int c = 0; c <= n; c++) {
             row[c] = lanes_of(0);
-            UNROLL for (int i = 0; i < 3 * lobes; i++) row[c] += weight[k][i] * product(gram, 1 + i / 3 * 4 + i % 3, c);
+            UNROLL
+            for (int i = 0; i < 3 * lobes; i++)
+                row[c] += weight[k][i] * product(gram, 1 + i / 3 * 4 + i % 3, c);
         }
         expand_product(lobes, row, own, &s[n + k], &against);
         lanes shrunk = s[n + k] * state->shrink;
         sums->g[n + k] += against;
-        UNROLL for (int q = 0; q < n; q++) sums->h[n + k][q] += weights->of[weight_of(q)] * row[q] - shrunk * s[q];
+        UNROLL
+        for (int q = 0; q < n; q++)
+            sums->h[n + k][q] += weights->of[weight_of(q)] * row[q] - shrunk * s[q];
         for (int q = 0; q <= k; q++) {
             lanes sum = -shrunk * s[n + q];
-            UNROLL for (int i = 0; i < 3 * lobes; i++) sum += weight[q][i] * row[1 + i / 3 * 4 + i % 3];
+            UNROLL
+            for (int i = 0; i < 3 * lobes; i++)
+                sum += weight[q][i] * row[1 + i / 3 * 4 + i % 3];
             sums->h[n + k][n + q] += sum;
         }
     }
@@ -230,12 +255,14 @@ WEFT_INLINE void sum_views(int lobes, bool rotate, const weft_bundle *bundle, co
     const shapes at = shapes_of(&trial->fit);
     for (int view = 0; view < bundle->view_stride; view += LANES) {
         local_gram gram;
-        lanes s[NORMAL_MAX];
+        lanes s[WEFT_NORMAL_MAX];
         linear_lanes rows = load_linear(trial, lobes, bundle->view_stride, view);
         view_state state = state_of(&rows, &linear, lobes, with_table);
         expansion own = expand(bundle, &at, &linear, &state, lobes, view);
         load_gram(trial->sums, columns, bundle->view_stride, view, &gram);
-        UNROLL for (int i = 0; i < lobes; i++) turn_lobe(at.rows, 1 + 4 * i, columns, &gram);
+        UNROLL
+        for (int i = 0; i < lobes; i++)
+            turn_lobe(at.rows, 1 + 4 * i, columns, &gram);
         const column_weights weights = weights_at(&own, &state);
         add_columns(lobes, &gram, &own, &state, &weights, s, sums);
         if (rotate)
@@ -271,7 +298,7 @@ static int list_parameters(const weft_fit *fit, bool rotate, parameter *all)
     return n;
 }
 
-static double combine(const parameter *a, const parameter *b, double h[NORMAL_MAX][NORMAL_MAX])
+static double combine(const parameter *a, const parameter *b, double h[WEFT_NORMAL_MAX][WEFT_NORMAL_MAX])
 {
     double sum = 0;
     for (int i = 0; i < a->count; i++) {
@@ -283,8 +310,8 @@ static double combine(const parameter *a, const parameter *b, double h[NORMAL_MA
 
 static void to_parameters(const weft_fit *fit, bool rotate, const normal_lanes *sums, weft_normal *normal)
 {
-    parameter all[WEFT_SOLVE_MAX];
-    double h[NORMAL_MAX][NORMAL_MAX], g[NORMAL_MAX];
+    parameter all[WEFT_NORMAL_MAX];
+    double h[WEFT_NORMAL_MAX][WEFT_NORMAL_MAX], g[WEFT_NORMAL_MAX];
     int n = list_parameters(fit, rotate, all);
     for (int p = 0; p < n; p++) {
         g[p] = (double)lanes_sum(sums->g[p]);

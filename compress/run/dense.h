@@ -6,7 +6,6 @@
 #include "compress/run/block_reader.h"
 #include "compress/run/checkpoint.h"
 #include "compress/run/memory.h"
-#include "compress/run/note.h"
 #include "compress/texel/texel.h"
 
 /* How to go about it; no part of it changes a bit of the result. */
@@ -14,7 +13,7 @@ typedef struct weft_dense_job {
     weft_memory_budget budget;
     const char *checkpoint_path;       /* NULL: none */
     weft_checkpoint_identity identity; /* of the dataset and of all options that change the result */
-    weft_note note;
+    weft_log log;
     const weft_progress *progress;
 } weft_dense_job;
 

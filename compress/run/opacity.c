@@ -49,7 +49,7 @@ static void fill_opacity_level(weft_material *material, int k)
     }
 }
 
-weft_code opacity_fill(weft_dataset *dataset, weft_material *material, weft_error *error)
+weft_code weft_opacity_fill(weft_dataset *dataset, weft_material *material, weft_error *error)
 {
     if (material->view_count == 0)
         return WEFT_OK;

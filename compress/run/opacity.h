@@ -8,6 +8,6 @@
 /* Codes the opacity of every texel and view in level->table; that of a level is the mean over all texels of level 0
  * that its texels cover, as the samples are that they are fitted to, so that colour and opacity of a level belong
  * together. Nothing where the material has no view table. Errors: those of reading; WEFT_SYSTEM. */
-weft_code opacity_fill(weft_dataset *dataset, weft_material *material, weft_error *error);
+weft_code weft_opacity_fill(weft_dataset *dataset, weft_material *material, weft_error *error);
 
 #endif

@@ -80,24 +80,24 @@ typedef struct level_sums {
 /* A group from the four (or fewer) below it. */
 static void sum_group(void *context, long item, int thread)
 {
-    const level_sums *of = context;
-    const weft_pyramid *pyramid = of->pyramid;
+    const level_sums *sums = context;
+    const weft_pyramid *pyramid = sums->pyramid;
     size_t floats = 4 * pyramid->image_count;
-    int x = (int)(item % of->own.width), y = (int)(item / of->own.width);
-    float *group = pyramid->level[of->level] + (size_t)item * floats;
+    int x = (int)(item % sums->own.width), y = (int)(item / sums->own.width);
+    float *group = pyramid->level[sums->level] + (size_t)item * floats;
     memset(group, 0, floats * sizeof *group);
-    for (int row = 2 * y; row < 2 * y + 2 && row < of->below.height; row++) {
-        for (int column = 2 * x; column < 2 * x + 2 && column < of->below.width; column++) {
-            size_t child = (size_t)row * (size_t)of->below.width + (size_t)column;
-            if (of->level == 1)
-                add_texel(pyramid, of->block, column, row, thread, group);
+    for (int row = 2 * y; row < 2 * y + 2 && row < sums->below.height; row++) {
+        for (int column = 2 * x; column < 2 * x + 2 && column < sums->below.width; column++) {
+            size_t child = (size_t)row * (size_t)sums->below.width + (size_t)column;
+            if (sums->level == 1)
+                add_texel(pyramid, sums->block, column, row, thread, group);
             else
-                weft_group_add(pyramid->level[of->level - 1] + child * floats, pyramid->image_count, group);
+                weft_group_add(pyramid->level[sums->level - 1] + child * floats, pyramid->image_count, group);
         }
     }
 }
 
-void weft_pyramid_sum_block(weft_pyramid *pyramid, weft_crew *crew, const weft_texel_block *block)
+void weft_pyramid_sum_block(weft_pyramid *pyramid, weft_thread_pool *pool, const weft_texel_block *block)
 {
     const weft_block_plan *plan = pyramid->plan;
     if (plan->last_level == 0)
@@ -109,7 +109,7 @@ void weft_pyramid_sum_block(weft_pyramid *pyramid, weft_crew *crew, const weft_t
     for (int level = 1; level <= plan->side_level; level++) {
         level_sums sums = {pyramid, block, level, weft_block_place_at(&block->place, level),
                            weft_block_place_at(&block->place, level - 1)};
-        weft_crew_run(crew, sum_group, &sums, (long)sums.own.width * sums.own.height);
+        weft_thread_pool_run(pool, sum_group, &sums, (long)sums.own.width * sums.own.height);
     }
 }
 

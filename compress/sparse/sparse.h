@@ -12,8 +12,8 @@
 /* The freedom of the fit. */
 typedef struct weft_sparse_setting {
     double largest_exponent; /* 0: diffuse only */
-    double
-        stiffness; /* a slope s must lower the neighbourhood's squared error by 1 + stiffness s^2; infinite: upright */
+    /* A slope s must lower the neighbourhood's squared error by 1 + stiffness s^2; infinite: upright. */
+    double stiffness;
 } weft_sparse_setting;
 
 /* One texel: rho + A max(0, l'.diag(-1, -1, 1).v')^N, the normal being (slope_x, slope_y, 1) normalised. */

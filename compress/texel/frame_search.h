@@ -4,7 +4,7 @@
 #define WEFT_COMPRESS_TEXEL_FRAME_SEARCH_H
 
 #include "compress/fit/fit.h"
-#include "compress/texel/frame_choice.h"
+#include "compress/options/options.h"
 
 /* A fit of the grey samples and its T. */
 typedef struct weft_grey_fit {

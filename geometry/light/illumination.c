@@ -11,8 +11,8 @@ struct weft_illumination {
     weft_illumination_options options;
     int light_count;
     weft_vec3 *light;
-    uint8_t
-        *lit; /* [triangle_count][light_count] 1 where the middle of a triangle sees a light; NULL when not needed */
+    /* [triangle_count][light_count] 1 where the middle of a triangle sees a light; NULL when not needed. */
+    uint8_t *lit;
 };
 
 /* Which lights lie on the outer side of a surface. */

@@ -22,8 +22,8 @@ typedef struct polygoniser {
     weft_vec3 cell;
     weft_real bottom;
     float *value; /* [cells z + 1][cells y][cells x] of the field at the nodes */
-    int32_t
-        *vertex_of; /* [cells z + 1][cells y + 1][cells x + 1][3] vertex on the edge from a node along an axis; -1 */
+    /* [cells z + 1][cells y + 1][cells x + 1][3] vertex on the edge from a node along an axis; -1. */
+    int32_t *vertex_of;
     int vertex_capacity, triangle_capacity;
 } polygoniser;
 

@@ -196,8 +196,7 @@ static weft_code read_object(reader *r, const weft_json_field *table, const json
     size_t length = strlen(r->path);
     const char *key;
     json_t *value;
-    json_object_foreach((json_t *)object, key, value)
-    {
+    json_object_foreach ((json_t *)object, key, value) {
         const weft_json_field *field = find_field(table, key);
         snprintf(r->path + length, sizeof r->path - length, "%s%s", length > 0 ? "." : "", key);
         if (!field)

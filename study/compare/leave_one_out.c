@@ -1,6 +1,6 @@
 #include "study/compare/leave_one_out.h"
 
-#include "btf/dataset/rows_at_once.h"
+#include "btf/dataset/dataset.h"
 #include "compress/compress.h"
 
 #include <jansson.h>
@@ -25,7 +25,7 @@ static void name_photograph(const json_t *provenance, int image, char name[64])
 static weft_code read_pair(weft_dataset *dataset, weft_predictor *predictor, weft_image_pair *pair, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    int band = weft_band_height(layout);
+    int band = weft_dataset_rows_at_once(layout);
     size_t most = (size_t)band * (size_t)layout->width * (size_t)layout->image_count;
     weft_half *samples = malloc(3 * most * sizeof *samples);
     uint8_t *mask = malloc(most);

@@ -1,6 +1,6 @@
 #include "study/error/measurement.h"
 
-#include "btf/dataset/rows_at_once.h"
+#include "btf/dataset/dataset.h"
 #include "btf/direction/direction.h"
 
 #include <stdlib.h>
@@ -152,7 +152,7 @@ static long choose_stride(const weft_dataset_layout *layout)
 static weft_code allocate(measuring *pass, weft_error *error)
 {
     const weft_dataset_layout *layout = pass->layout;
-    pass->band_height = weft_band_height(layout);
+    pass->band_height = weft_dataset_rows_at_once(layout);
     pass->stride = choose_stride(layout);
     size_t band = (size_t)pass->band_height * (size_t)layout->width * (size_t)layout->image_count;
     pass->measurement->texel_count = ((long)layout->width * layout->height + pass->stride - 1) / pass->stride;

@@ -1,5 +1,5 @@
 /* Small least-squares problems with bounds: non-linear ones by Ceres Solver (trust region, Levenberg-Marquardt), linear
- * ones by NLopt. Ceres stops early where a linear solution lies on a bound, NLopt does not. */
+ * ones by base/quadratic_program.h. Ceres stops early where a linear solution lies on a bound. */
 #ifndef WEFT_STUDY_FIT_WEAVE_LEAST_SQUARES_H
 #define WEFT_STUDY_FIT_WEAVE_LEAST_SQUARES_H
 
@@ -29,7 +29,8 @@ weft_code weft_least_squares_solve(const weft_least_squares *problem, double *pa
 weft_code weft_least_squares_linearise(const weft_least_squares *problem, const double *parameters, double *residuals,
                                        double *jacobian, weft_error *error);
 
-/* x >= 0 [columns] that minimises |A x - b|^2, A [rows][columns]. Errors: WEFT_SYSTEM. */
+/* x >= 0 [columns] that minimises |A x - b|^2, A [rows][columns], at most WEFT_QUADRATIC_PROGRAM_MAX columns. The x of
+ * a zero column is 0. Pure. Errors: WEFT_SYSTEM where a number is not finite or overflows. */
 weft_code weft_non_negative_least_squares(int rows, int columns, const double *a, const double *b, double *x,
                                           weft_error *error);
 

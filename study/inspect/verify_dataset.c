@@ -1,6 +1,6 @@
 #include "study/inspect/verify.h"
 
-#include "btf/dataset/rows_at_once.h"
+#include "btf/dataset/dataset.h"
 
 #include <stdlib.h>
 
@@ -47,7 +47,7 @@ weft_code weft_verify_dataset(weft_dataset *dataset, const weft_progress *progre
                               weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    band b = {.height = weft_band_height(layout)};
+    band b = {.height = weft_dataset_rows_at_once(layout)};
     size_t texels = (size_t)b.height * (size_t)layout->width, images = (size_t)layout->image_count;
     b.samples = malloc(3 * texels * images * sizeof *b.samples);
     b.mask = malloc(texels * images);

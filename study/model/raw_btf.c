@@ -1,6 +1,6 @@
 #include "study/model/raw_btf.h"
 
-#include "btf/dataset/rows_at_once.h"
+#include "btf/dataset/dataset.h"
 #include "study/model/raw_directions.h"
 
 #include <math.h>
@@ -185,7 +185,7 @@ static void add_texel(int image_count, const weft_half *samples, const uint8_t *
 static weft_code sum_texels(weft_raw_btf *raw, double *sum, long *count, weft_error *error)
 {
     const weft_dataset_layout *layout = raw->layout;
-    int band = weft_band_height(layout);
+    int band = weft_dataset_rows_at_once(layout);
     size_t images = (size_t)layout->image_count, most = (size_t)band * (size_t)layout->width * images;
     weft_half *samples = malloc(3 * most * sizeof *samples);
     uint8_t *mask = malloc(most);

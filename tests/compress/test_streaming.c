@@ -99,15 +99,15 @@ static void collect_level(int side_level, int level, float *result)
     static uint8_t mask[WIDE * HIGH * IMAGES];
     weft_block_plan plan;
     weft_pyramid pyramid;
-    weft_crew *crew;
+    weft_thread_pool *pool;
     int level_width = (WIDE + (1 << level) - 1) >> level;
     assert_int_equal(weft_block_plan_create(WIDE, HIGH, side_level, chain_top(WIDE, HIGH), &plan, NULL), WEFT_OK);
     assert_int_equal(weft_pyramid_create(&plan, held_out, IMAGES, 2, &pyramid, NULL), WEFT_OK);
-    assert_int_equal(weft_crew_create(2, &crew, NULL), WEFT_OK);
+    assert_int_equal(weft_thread_pool_create(2, &pool, NULL), WEFT_OK);
     for (size_t i = 0; i < plan.count; i++) {
         const weft_texel_block block = {plan.place[i], samples, mask};
         copy_block(&block.place, samples, mask);
-        weft_pyramid_sum_block(&pyramid, crew, &block);
+        weft_pyramid_sum_block(&pyramid, pool, &block);
         weft_pyramid_pass_up(&pyramid, plan.finished[i]);
         weft_block_place own = weft_block_place_at(&block.place, level);
         for (int n = 0; level <= plan.finished[i] && n < own.width * own.height; n++) {
@@ -117,7 +117,7 @@ static void collect_level(int side_level, int level, float *result)
         }
         weft_pyramid_clear_finished(&pyramid, plan.finished[i]);
     }
-    weft_crew_free(crew);
+    weft_thread_pool_free(pool);
     weft_pyramid_free(&pyramid);
     weft_block_plan_free(&plan);
 }
@@ -181,15 +181,15 @@ static void a_crew_does_every_item_once(void **state)
 {
     (void)state;
     for (int threads = 1; threads <= 9; threads += 4) {
-        weft_crew *crew;
-        assert_int_equal(weft_crew_create(threads, &crew, NULL), WEFT_OK);
+        weft_thread_pool *pool;
+        assert_int_equal(weft_thread_pool_create(threads, &pool, NULL), WEFT_OK);
         for (long count = 0; count <= 1000; count = 10 * count + 1 > 1000 ? count + 889 : 10 * count + 1) {
             memset(done, 0, sizeof done);
-            weft_crew_run(crew, count_item, &threads, count);
+            weft_thread_pool_run(pool, count_item, &threads, count);
             for (long i = 0; i < 1000; i++)
                 assert_int_equal(done[i], i < count);
         }
-        weft_crew_free(crew);
+        weft_thread_pool_free(pool);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "btf/direction/direction.h"
 #include "study/fit_weave/fit_weave.h"
 #include "study/fit_weave/least_squares.h"
+#include "tests/reflectance/random.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -298,6 +299,51 @@ static void non_negative_solutions_are_exact_and_stop_at_zero(void **state)
     assert_true(fabs(x[0]) < 1e-9 && fabs(x[1] - product / square) < 1e-6);
 }
 
+/* The conditions of Karush, Kuhn and Tucker, for random columns; every third program has a column twice, or one of
+ * zeros. */
+static void non_negative_solutions_have_no_slope_downwards(void **state)
+{
+    (void)state;
+    uint64_t random = 1;
+    for (int trial = 0; trial < 300; trial++) {
+        enum { rows = 40, most = 9 };
+        int n = 2 + trial % (most - 1);
+        double a[rows * most], b[rows], x[most], left[rows];
+        weft_error error;
+        for (int row = 0; row < rows; row++) {
+            b[row] = left[row] = (double)random_between(&random, -1, 2);
+            for (int i = 0; i < n; i++)
+                a[row * n + i] = (double)random_between(&random, 0, 1) * pow(10, i - 4);
+            if (trial % 3 == 2)
+                a[row * n] = trial % 2 ? 0 : a[row * n + 1];
+        }
+        assert_int_equal(weft_non_negative_least_squares(rows, n, a, b, x, &error), WEFT_OK);
+        for (int row = 0; row < rows; row++) {
+            for (int i = 0; i < n; i++)
+                left[row] -= a[row * n + i] * x[i];
+        }
+        for (int i = 0; i < n; i++) {
+            double slope = 0, size = 0;
+            for (int row = 0; row < rows; row++) {
+                slope += a[row * n + i] * left[row];
+                size += fabs(a[row * n + i] * b[row]);
+            }
+            assert_true(x[i] >= 0);
+            assert_true(x[i] > 0 ? fabs(slope) <= 1e-10 * size : slope <= 1e-10 * size);
+        }
+    }
+}
+
+static void least_squares_of_numbers_that_are_not_finite_are_refused(void **state)
+{
+    (void)state;
+    const double a[2] = {1, NAN}, b[2] = {1, 1};
+    double x;
+    weft_error error;
+    assert_int_equal(weft_non_negative_least_squares(2, 1, a, b, &x, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "not finite"));
+}
+
 static void a_written_weave_reads_back_to_the_same_numbers(void **state)
 {
     (void)state;
@@ -352,6 +398,8 @@ int main(void)
         cmocka_unit_test(a_sample_that_lies_askew_is_not_taken_for_twisted),
         cmocka_unit_test(a_sample_held_straight_is_reported_with_the_reason),
         cmocka_unit_test(non_negative_solutions_are_exact_and_stop_at_zero),
+        cmocka_unit_test(non_negative_solutions_have_no_slope_downwards),
+        cmocka_unit_test(least_squares_of_numbers_that_are_not_finite_are_refused),
         cmocka_unit_test(a_written_weave_reads_back_to_the_same_numbers),
         cmocka_unit_test(a_weave_without_highlights_or_too_few_images_are_refused),
     };

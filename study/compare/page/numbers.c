@@ -169,8 +169,7 @@ static void print_fit(weft_page *page, const weft_material *material)
     fputs("<h2>Fit</h2>\n<table>\n", page->html);
     weft_page_fact(page, "lobes", "%d", material->lobe_count);
     weft_page_fact(page, "views in the table", "%d", material->view_count);
-    json_object_foreach(json_object_get(metadata, "fit"), name, value)
-    {
+    json_object_foreach (json_object_get(metadata, "fit"), name, value) {
         if (strcmp(name, "lobes") == 0)
             continue;
         char *text = json_is_string(value) ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(4));

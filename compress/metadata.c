@@ -1,0 +1,66 @@
+#include "compress/metadata.h"
+
+#include <jansson.h>
+#include <stdlib.h>
+
+enum { FIT_BYTES = 2048 /* of metadata besides the provenance */ };
+
+const char *weft_compress_model_name(weft_compress_model model)
+{
+    static const char *const name[] = {"lobes and view table", "lobes", "sparse"};
+    return name[model];
+}
+
+uint64_t weft_compress_metadata_bytes(const weft_dataset_layout *layout)
+{
+    json_t *provenance = json_loads(layout->provenance, 0, NULL);
+    uint64_t bytes = FIT_BYTES + (provenance ? json_dumpb(provenance, NULL, 0, JSON_COMPACT) : 0);
+    json_decref(provenance);
+    return bytes;
+}
+
+static json_t *describe_fit(const weft_compress_options *options, const weft_compress_report *report,
+                            const weft_sparse_setting *setting)
+{
+    double texels = (double)(report->texel_count > 0 ? report->texel_count : 1);
+    json_t *fit = json_pack(
+        "{s:s, s:i, s:f, s:I, s:I, s:I, s:I, s:f, s:f}", "model", weft_compress_model_name(report->model), "lobes",
+        report->lobe_count, "largest_exponent", options->max_exponent, "samples", (json_int_t)report->sample_count,
+        "masked_samples", (json_int_t)report->masked_count, "texels", (json_int_t)report->texel_count, "empty_texels",
+        (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,
+        "retro_reflective_starts", (double)report->second_start_count / texels);
+    if (fit && options->weights == WEFT_WEIGHTS_SCREEN && report->model != WEFT_COMPRESS_SPARSE)
+        json_object_set_new(fit, "weights", json_string("screen"));
+    if (fit && options->target_error > 0) {
+        json_object_set_new(fit, "target_error", json_real(options->target_error));
+        json_object_set_new(fit, "texels_above_target", json_integer((json_int_t)report->missed_texel_count));
+    }
+    if (fit && options->budget_bytes > 0)
+        json_object_set_new(fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
+    if (fit && report->table_components > 0)
+        json_object_set_new(fit, "table_components", json_integer(report->table_components));
+    if (fit && report->model == WEFT_COMPRESS_SPARSE) {
+        json_object_set_new(fit, "largest_exponent", json_real(setting->largest_exponent));
+        json_object_set_new(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
+    }
+    return fit;
+}
+
+weft_code weft_compress_describe(const weft_dataset_layout *layout, const weft_compress_options *options,
+                                 const weft_compress_report *report, const weft_dataset_fingerprint *fingerprint,
+                                 const weft_sparse_setting *setting, weft_material *material, weft_error *error)
+{
+    char layout_text[WEFT_CHECKSUM_TEXT], samples_text[WEFT_CHECKSUM_TEXT];
+    weft_checksum_print(fingerprint->layout, layout_text);
+    weft_checksum_print(fingerprint->samples, samples_text);
+    json_t *provenance = json_loads(layout->provenance, 0, NULL);
+    json_t *object = json_pack("{s:o*, s:{s:s, s:s}, s:o*}", "provenance", provenance, "dataset", "layout", layout_text,
+                               "samples", samples_text, "fit", describe_fit(options, report, setting));
+    char *text = object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
+    json_decref(object);
+    if (!text)
+        return weft_fail_memory(error, "metadata of the material", 0);
+    free(material->metadata);
+    material->metadata = text;
+    return WEFT_OK;
+}

@@ -1,0 +1,52 @@
+/* What a compression is asked to do. */
+#ifndef WEFT_COMPRESS_OPTIONS_OPTIONS_H
+#define WEFT_COMPRESS_OPTIONS_OPTIONS_H
+
+#include "base/progress.h"
+#include "btf/dataset/dataset.h"
+
+#include <stdbool.h>
+
+/* What an error of a sample counts for. */
+typedef enum weft_sample_weights {
+    WEFT_WEIGHTS_EVEN,  /* alike, as in least squares */
+    WEFT_WEIGHTS_SCREEN /* less the brighter the sample, about as little as a screen shows of it */
+} weft_sample_weights;
+
+/* Which frame the texels of a material have. */
+typedef enum weft_frame_choice {
+    WEFT_FRAMES_SURFACE, /* that of the surface */
+    WEFT_FRAMES_GIVEN,   /* what the dataset says, which may be that of the surface */
+    WEFT_FRAMES_FITTED   /* the better of the two, or turned from there, where that helps */
+} weft_frame_choice;
+
+typedef struct weft_compress_options {
+    int lobe_count;              /* at most; 0..3 */
+    bool table;                  /* T(v), where the samples can carry it */
+    bool light_table;            /* S(l) beside T, where lights repeat and the samples can carry it */
+    weft_sample_weights weights; /* of a dense model */
+    bool levels;                 /* mip levels, each fitted to the mean samples of its groups of texels */
+    weft_frame_choice frames;
+    double max_exponent;   /* N <= this */
+    double target_error;   /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
+    uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
+    int table_components;  /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
+    const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
+    /* These change nothing in the result: */
+    uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */
+    const char *checkpoint_path; /* keeps what is done of a dense model until the caller removes it; NULL: none */
+    weft_log log;                /* hears of checkpoints that are used or discarded */
+} weft_compress_options;
+
+/* 2 lobes, table, levels, fitted frames, N <= 8192, nothing held out, a quarter of the memory, no checkpoint. */
+weft_compress_options weft_compress_default_options(void);
+
+/* Images that are not held out. Pure. */
+int weft_compress_options_count_images(const weft_compress_options *options, const weft_dataset_layout *layout);
+
+/* Errors: WEFT_BAD_USAGE for options out of range, a target and a budget together, components with either, or where
+ * every image is held out. */
+weft_code weft_compress_options_check(const weft_compress_options *options, const weft_dataset *dataset,
+                                      weft_error *error);
+
+#endif
