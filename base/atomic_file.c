@@ -212,6 +212,18 @@ weft_code weft_read_file(const char *path, size_t limit, char **bytes, size_t *s
     return code;
 }
 
+uint64_t weft_file_bytes(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 ? (uint64_t)status.st_size : 0;
+}
+
+bool weft_is_same_file(const char *a, const char *b)
+{
+    struct stat one, other;
+    return stat(a, &one) == 0 && stat(b, &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
 weft_code weft_make_folder(const char *path, weft_error *error)
 {
     char partial[PATH_MAX];

@@ -5,7 +5,9 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -38,6 +40,12 @@ weft_code weft_write_new_file(const char *path, const void *bytes, size_t size, 
 /* Reads a whole file. *bytes is NUL-terminated beyond *size, owned by the caller (free). Errors:
  * WEFT_BAD_INPUT where the file is missing, a folder, or larger than `limit` bytes. */
 weft_code weft_read_file(const char *path, size_t limit, char **bytes, size_t *size, weft_error *error);
+
+/* The size of a file; 0 where there is none. */
+uint64_t weft_file_bytes(const char *path);
+
+/* Whether both paths lead to one and the same file that exists. */
+bool weft_is_same_file(const char *a, const char *b);
 
 /* Creates a folder and its parents; an existing folder is fine. */
 weft_code weft_make_folder(const char *path, weft_error *error);

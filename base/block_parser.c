@@ -81,11 +81,13 @@ weft_code block_parse_number(block_parser *parser, const block_field *field, dou
 
 static weft_code parse_list(block_parser *parser, const block_field *field, double *values)
 {
+    block_field element = *field;
+    element.count = 1;
     WEFT_TRY(block_expect_symbol(parser, '{'));
     for (int i = 0; i < field->count; i++) {
         if (i > 0)
             WEFT_TRY(block_expect_symbol(parser, ','));
-        WEFT_TRY(block_parse_number(parser, field, &values[i]));
+        WEFT_TRY(block_parse_number(parser, &element, &values[i]));
     }
     return block_expect_symbol(parser, '}');
 }

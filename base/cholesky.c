@@ -5,23 +5,22 @@
 
 static const double least_pivot = 1e-14; /* of the diagonal element: a smaller one is rounding error */
 
+/* Column by column: the rows below a pivot do not wait for each other. */
 bool weft_cholesky_factor(int n, int stride, double *a)
 {
-    for (int i = 0; i < n; i++) {
-        double *row = a + (ptrdiff_t)i * stride;
-        for (int j = 0; j < i; j++) {
-            const double *other = a + (ptrdiff_t)j * stride;
-            double sum = row[j];
-            for (int k = 0; k < j; k++)
-                sum -= row[k] * other[k];
-            row[j] = sum / other[j];
-        }
-        double pivot = row[i];
-        for (int k = 0; k < i; k++)
-            pivot -= row[k] * row[k];
-        if (!(pivot > least_pivot * row[i]))
+    for (int j = 0; j < n; j++) {
+        double *pivot_row = a + (ptrdiff_t)j * stride, pivot = pivot_row[j];
+        for (int k = 0; k < j; k++)
+            pivot -= pivot_row[k] * pivot_row[k];
+        if (!(pivot > least_pivot * pivot_row[j]))
             return false;
-        row[i] = sqrt(pivot);
+        pivot_row[j] = sqrt(pivot);
+        for (int i = j + 1; i < n; i++) {
+            double *row = a + (ptrdiff_t)i * stride, sum = row[j];
+            for (int k = 0; k < j; k++)
+                sum -= row[k] * pivot_row[k];
+            row[j] = sum / pivot_row[j];
+        }
     }
     return true;
 }

@@ -26,7 +26,9 @@ std::string first_line(const std::string &text)
 
 weft_code unreadable(weft_error *error, const char *path, const std::string &why)
 {
-    return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path, first_line(why).c_str());
+    std::string line = first_line(why);
+    return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path,
+                     line.empty() ? "damaged, or of no known format" : line.c_str());
 }
 
 std::unique_ptr<OIIO::ImageInput> open_input(const char *path, weft_code *code, weft_error *error)
@@ -156,6 +158,11 @@ weft_code read_photograph(const char *path, int width, int height, int bits, uin
     if (spec.width != width || spec.height != height || spec.nchannels != 3)
         return weft_fail(error, WEFT_BAD_INPUT, "photograph '%s' is %d x %d with %d channels, not %d x %d with 3", path,
                          spec.width, spec.height, spec.nchannels, width, height);
+    /* Depths that TIFF does not pack are stored in 16 bits. */
+    int stored_bits = spec.get_int_attribute("oiio:BitsPerSample", int(8 * spec.format.basesize()));
+    if (stored_bits != bits && stored_bits != 16)
+        return weft_fail(error, WEFT_BAD_INPUT, "photograph '%s' has %d bits a sample, not %d", path, stored_bits,
+                         bits);
     if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT16, samples))
         return unreadable(error, path, input->geterror());
     size_t count = size_t(width) * size_t(height) * 3;

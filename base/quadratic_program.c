@@ -20,15 +20,12 @@ typedef struct face {
     bool bound[MAX];
 } face;
 
-static bool is_valid(const program *p)
+static bool bounds_are_ordered(const program *p)
 {
-    bool valid = true;
-    for (int i = 0; i < p->n; i++) {
-        valid &= p->low[i] <= p->high[i] && isfinite(p->g[i]);
-        for (int j = 0; j < p->n; j++)
-            valid &= isfinite(p->h[i * p->n + j]) != 0;
-    }
-    return valid;
+    bool ordered = true;
+    for (int i = 0; i < p->n; i++)
+        ordered &= p->low[i] <= p->high[i];
+    return ordered;
 }
 
 /* The minimiser over the free variables alone, wherever their bounds are; the others stay as in `at` and are not
@@ -37,6 +34,7 @@ static bool minimise_free(const program *p, const face *at, double *minimiser)
 {
     double a[MAX * MAX], x[MAX];
     int index[MAX], m = 0, n = p->n;
+    bool finite = true;
     for (int i = 0; i < n; i++) {
         if (!at->bound[i])
             index[m++] = i;
@@ -48,8 +46,9 @@ static bool minimise_free(const program *p, const face *at, double *minimiser)
             x[i] -= at->bound[j] ? row[j] * at->d[j] : 0;
         for (int j = 0; j <= i; j++)
             a[i * MAX + j] = row[index[j]];
+        finite &= isfinite(x[i]) != 0;
     }
-    if (!weft_cholesky_factor(m, MAX, a))
+    if (!finite || !weft_cholesky_factor(m, MAX, a))
         return false;
     weft_cholesky_solve(m, MAX, a, x);
     for (int i = 0; i < m; i++)
@@ -155,7 +154,7 @@ bool weft_quadratic_program_solve(int n, const double *h, const double *g, const
 {
     const program p = {n, h, g, low, high};
     face at = {.d = d};
-    if (!is_valid(&p) || !guess_face(&p, &at))
+    if (!bounds_are_ordered(&p) || !guess_face(&p, &at))
         return false;
     for (int releases = 0; releases <= MOST_RELEASES; releases++) {
         int i = find_release(&p, &at);

@@ -1,6 +1,7 @@
 /* The whole job of `weft compress` on an invented dataset: reading, fitting all levels, writing
  * (docs/notes/benchmarks.md). */
 #include "compress/compress.h"
+#include "base/clock.h"
 #include "btf/dataset/blocks.h"
 #include "tests/support/synthetic_texel.h"
 
@@ -10,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 #include <unistd.h>
 
 typedef struct job {
@@ -18,13 +18,6 @@ typedef struct job {
     const char *dataset;
     char material[512];
 } job;
-
-static double seconds_of(clockid_t clock)
-{
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* Every block once, thrown away: what reading alone costs. */
 static weft_code read_all(const job *given, double *seconds, weft_error *error)
@@ -38,7 +31,7 @@ static weft_code read_all(const job *given, double *seconds, weft_error *error)
     weft_half *values = malloc(3 * samples * sizeof *values);
     uint8_t *mask = malloc(samples);
     weft_code code = values && mask ? WEFT_OK : weft_fail_memory(error, "a block", 7 * samples);
-    double began = seconds_of(CLOCK_MONOTONIC);
+    double began = weft_clock_seconds(CLOCK_MONOTONIC);
     for (int y = 0; code == WEFT_OK && y < layout->height; y += height) {
         for (int x = 0; code == WEFT_OK && x < layout->width; x += width) {
             int w = width < layout->width - x ? width : layout->width - x;
@@ -46,7 +39,7 @@ static weft_code read_all(const job *given, double *seconds, weft_error *error)
             code = weft_dataset_read_block(dataset, x, y, w, h, values, mask, error);
         }
     }
-    *seconds = seconds_of(CLOCK_MONOTONIC) - began;
+    *seconds = weft_clock_seconds(CLOCK_MONOTONIC) - began;
     free(values);
     free(mask);
     weft_dataset_close(dataset);
@@ -74,10 +67,10 @@ static weft_code run(const job *given, weft_error *error)
     weft_compress_report report = {0};
     double reading = 0;
     WEFT_TRY(read_all(given, &reading, error));
-    double wall = seconds_of(CLOCK_MONOTONIC), processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    double wall = weft_clock_seconds(CLOCK_MONOTONIC), processor = weft_clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     WEFT_TRY(compress(given, &report, error));
-    wall = seconds_of(CLOCK_MONOTONIC) - wall;
-    processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor;
+    wall = weft_clock_seconds(CLOCK_MONOTONIC) - wall;
+    processor = weft_clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - processor;
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     double megabytes = 6e-6 * (double)report.sample_count;

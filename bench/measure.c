@@ -1,6 +1,8 @@
 #include "bench/measure.h"
 
-#include <math.h>
+#include "base/clock.h"
+#include "base/error_summary.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -14,19 +16,15 @@ void bench_stop_on(const char *program, weft_code code, const weft_error *error)
 
 double bench_now_ms(clockid_t clock)
 {
-    struct timespec time;
-    clock_gettime(clock, &time);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+    return 1e3 * weft_clock_seconds(clock);
 }
 
 double bench_relative_rmse(const weft_image *image, const weft_image *reference, const weft_image *background)
 {
-    double square = 0, norm = 0;
+    weft_error_sums sums = {0};
     for (size_t i = 0; i < 3 * (size_t)reference->width * (size_t)reference->height; i++) {
-        if (reference->pixels[i] == background->pixels[i])
-            continue;
-        square += pow((double)(image->pixels[i] - reference->pixels[i]), 2);
-        norm += pow((double)reference->pixels[i], 2);
+        if (reference->pixels[i] != background->pixels[i])
+            weft_error_sums_add_value(&sums, (double)reference->pixels[i], (double)image->pixels[i]);
     }
-    return sqrt(square / norm);
+    return weft_error_sums_relative_rmse(&sums);
 }

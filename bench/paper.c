@@ -1,6 +1,7 @@
 /* The representation of Daubert et al. 2001 as they stored and fitted it (all floats, the average frame of the
  * geometry, alternation until T changes by less than 0.1) against the material that Weft makes of the same dataset:
  * error and size (docs/notes/benchmarks.md). */
+#include "base/clock.h"
 #include "base/processor.h"
 #include "compress/compress.h"
 #include "compress/fit/fit.h"
@@ -13,7 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define PAPER_THRESHOLD 0.1
 enum { PAPER_ROUNDS = 50 };
@@ -29,15 +29,9 @@ typedef struct level_groups {
     float *group; /* [height][width][4 image_count] */
 } level_groups;
 
-typedef struct level_result {
-    double square, square_error; /* of the paper's fit */
-} level_result;
-
 static double processor_seconds(void)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    return weft_clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 static weft_code read_groups(weft_dataset *dataset, level_groups *groups, weft_error *error)
@@ -82,7 +76,7 @@ static weft_code halve_groups(level_groups *groups, size_t images, weft_error *e
 }
 
 static weft_code fit_texel(const weft_bundle *bundle, const weft_samples *samples, int lobe_count,
-                           const weft_frame *frame, double *table, level_result *result, weft_error *error)
+                           const weft_frame *frame, double *table, weft_error_sums *result, weft_error *error)
 {
     weft_fit_options options = weft_fit_default_options();
     options.lobe_count = lobe_count;
@@ -99,7 +93,7 @@ static weft_code fit_texel(const weft_bundle *bundle, const weft_samples *sample
 
 /* The tangent is that of the paper: perpendicular to the normal and to what is perpendicular to normal and x. */
 static weft_code fit_level(const weft_dataset_layout *layout, const weft_bundle *bundle, const level_groups *groups,
-                           int level, int lobe_count, const weft_material_level *frames, level_result *result,
+                           int level, int lobe_count, const weft_material_level *frames, weft_error_sums *result,
                            weft_error *error)
 {
     size_t images = (size_t)layout->image_count;
@@ -120,10 +114,10 @@ static weft_code fit_level(const weft_dataset_layout *layout, const weft_bundle 
     return code;
 }
 
-static void print_level(int level, const level_groups *groups, const level_result *paper,
-                        const weft_material_error *ours, double seconds)
+static void print_level(int level, const level_groups *groups, const weft_error_sums *paper,
+                        const weft_error_summary *ours, double seconds)
 {
-    double relative = paper->square > 0 ? sqrt(paper->square_error / paper->square) : 0;
+    double relative = weft_error_sums_relative_rmse(paper);
     printf("%5d  %4d x %-4d  %8.4f  %8.4f  %8.3f  %10.2f\n", level, groups->width, groups->height, relative,
            ours->relative_rmse, relative > 0 ? ours->relative_rmse / relative : 1, seconds);
 }
@@ -146,7 +140,7 @@ static weft_code compare_levels(weft_dataset *dataset, const arguments *given, c
     weft_code code = read_groups(dataset, &groups, error);
     printf("level       texels  paper      Weft      Weft/paper  paper's s\n");
     for (int k = 0; code == WEFT_OK && k < ours->level_count; k++) {
-        level_result paper = {0};
+        weft_error_sums paper = {0};
         double began = processor_seconds();
         if (k > 0)
             code = halve_groups(&groups, (size_t)layout->image_count, error);

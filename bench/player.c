@@ -2,6 +2,7 @@
  * frames by the wall and by the GPU's own timestamps, and the mean processor time. Usage: bench_player [NAME.weft]
  * [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
 #include "player/draw/player.h"
+#include "base/statistics.h"
 #include "bench/measure.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
@@ -17,18 +18,6 @@ enum { WIDTH = 730, HEIGHT = 400, FRAMES = 41, WARM_UP = 5 };
 static void stop_on(weft_code code, const weft_error *error)
 {
     bench_stop_on("bench_player", code, error);
-}
-
-static int compare_times(const void *a, const void *b)
-{
-    double difference = *(const double *)a - *(const double *)b;
-    return difference < 0 ? -1 : difference > 0;
-}
-
-static double median(double *times)
-{
-    qsort(times, FRAMES, sizeof *times, compare_times);
-    return times[FRAMES / 2];
 }
 
 /* What stands for the window. */
@@ -80,9 +69,9 @@ static void time_scene(weft_player *player, weft_scene scene, const char *what, 
     glDeleteQueries(2, query);
     glDeleteFramebuffers(1, &screen);
     glDeleteTextures(1, &screen_texture);
-    double wall_ms = median(wall);
-    printf("%-28s %8.2f ms wall %8.2f ms timestamps %8.2f ms processor %7.1f frames/s\n", what, wall_ms, median(gpu),
-           cpu_ms, 1000 / wall_ms);
+    double wall_ms = weft_quantile(wall, FRAMES, 0.5);
+    printf("%-28s %8.2f ms wall %8.2f ms timestamps %8.2f ms processor %7.1f frames/s\n", what, wall_ms,
+           weft_quantile(gpu, FRAMES, 0.5), cpu_ms, 1000 / wall_ms);
 }
 
 /* What a frame costs that shows nothing. */

@@ -1,5 +1,6 @@
 /* Evaluations per second on one core of the functions that the stages call most. Usage: bench_reflectance [WEAVE.wv
  * ...] */
+#include "base/clock.h"
 #include "base/processor.h"
 #include "btf/direction/direction.h"
 #include "reflectance/lafortune/lafortune.h"
@@ -8,7 +9,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { SAMPLES = 1 << 14, ROUNDS = 64 };
 
@@ -21,9 +21,7 @@ typedef struct sample {
 /* Of this thread, so that a busy machine does not count. */
 static double now_s(void)
 {
-    struct timespec time;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+    return weft_clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
 /* Linear congruential, upper bits (Knuth's MMIX constants): enough to spread samples. */

@@ -1,19 +1,12 @@
 #include "capture/capture.h"
 
+#include "base/clock.h"
 #include "capture/photograph_writer.h"
 #include "capture/planned_session.h"
 #include "capture/shooting.h"
 
 #include <stdlib.h>
 #include <sys/statvfs.h>
-#include <time.h>
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 /* ---- Before the first photograph ---- */
 
@@ -96,7 +89,7 @@ static weft_code take_shots(run *r, weft_error *error)
 static weft_code take_and_write(run *r, weft_error *error)
 {
     WEFT_TRY(weft_photograph_writer_start(&r->capture->held.session, &r->writer, error));
-    double start_s = now_s();
+    double start_s = weft_now_s();
     weft_code code = take_shots(r, error);
     weft_error last = {0};
     weft_code last_code = weft_photograph_writer_finish(r->writer, &last);
@@ -106,7 +99,7 @@ static weft_code take_and_write(run *r, weft_error *error)
             *error = last;
     }
     weft_capture_summary *summary = &r->capture->summary;
-    summary->seconds = now_s() - start_s;
+    summary->seconds = weft_now_s() - start_s;
     summary->exposures = r->shooting.exposures;
     summary->timeouts = r->shooting.timeouts;
     return code;

@@ -1,17 +1,10 @@
 #include "capture/capture.h"
 
+#include "base/clock.h"
 #include "capture/planned_session.h"
 #include "capture/shooting.h"
 
 #include <stdlib.h>
-#include <time.h>
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 static void count_plan(const weft_session *session, weft_capture_rehearsal *rehearsal)
 {
@@ -37,10 +30,10 @@ static weft_code time_photograph(weft_rig *rig, const weft_session *session, uin
     /* The first one prepares the view, which all its lights share. */
     if (code == WEFT_OK)
         code = weft_shooting_take(&shooting, 0, samples, &record, error);
-    double start_s = now_s();
+    double start_s = weft_now_s();
     if (code == WEFT_OK)
         code = weft_shooting_take(&shooting, 0, samples, &record, error);
-    *seconds = now_s() - start_s;
+    *seconds = weft_now_s() - start_s;
     weft_shooting_end(&shooting);
     return code;
 }

@@ -58,7 +58,7 @@ static const struct argp parser = {option_table,
                                    NULL,
                                    NULL};
 
-static void say_ring(const common_options *common, const char *name, const weft_prediction_error *error)
+static void say_ring(const common_options *common, const char *name, const weft_error_summary *error)
 {
     command_say(common, "%-12s  %12ld  %13.4f  %15.4f", name, error->count, error->relative_rmse,
                 error->median_relative);

@@ -1,4 +1,5 @@
 #include "cli/command.h"
+#include "base/clock.h"
 #include "base/json_text.h"
 #include "cli/arguments.h"
 
@@ -8,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 const char *argp_program_version = "weft " WEFT_VERSION;
@@ -80,13 +80,6 @@ error_t parse_conversion(int key, char *argument, struct argp_state *state, conv
 
 /* ---- Speaking ---- */
 
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 /* What the reporter remembers between calls; one command runs per process. */
 static struct {
     char stage[64];
@@ -134,7 +127,7 @@ static void report_progress(void *context, const char *stage, long done, long to
     if (common->quiet)
         return;
     bool terminal = !common->json && isatty(STDERR_FILENO);
-    double now = now_s(), interval_s = terminal ? 0.1 : 5;
+    double now = weft_now_s(), interval_s = terminal ? 0.1 : 5;
     bool new_stage = strncmp(stage, shown.stage, sizeof shown.stage - 1) != 0;
     if (new_stage) {
         close_line();

@@ -2,6 +2,7 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 
+#include <math.h>
 #include <stdio.h>
 
 typedef struct compare_command {
@@ -83,7 +84,7 @@ static const struct argp parser = {
     NULL,
     NULL};
 
-static void say_error(const common_options *common, const char *model, const char *what, const weft_prediction_error *e)
+static void say_error(const common_options *common, const char *model, const char *what, const weft_error_summary *e)
 {
     command_say(common, "%s, %s: relative RMSE %.4f, median relative error %.2f %%, 80th percentile %.2f %%", model,
                 what, e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
@@ -101,12 +102,13 @@ static void say_truth_error(const common_options *common, const weft_truth_scene
     const weft_truth_error *e = &scene->under[light].error[model];
     const char *what = weft_truth_model_name((weft_truth_model)model);
     command_say(common, "%s, %s light, %s against truth: relative RMSE %.4f, PSNR %.2f dB, of blocks %.4f",
-                scene->caption, name[light], what, e->error.relative_rmse, e->psnr_db, e->block_relative_rmse);
+                scene->caption, name[light], what, e->error.relative_rmse, e->error.psnr_db, e->block_relative_rmse);
     char event[384];
     snprintf(event, sizeof event,
              "{\"event\":\"truth\",\"scene\":\"%s\",\"light\":\"%s\",\"model\":\"%s\",\"relative_rmse\":%.6g,"
              "\"psnr_db\":%.6g,\"block_relative_rmse\":%.6g}",
-             scene->caption, name[light], what, e->error.relative_rmse, e->psnr_db, e->block_relative_rmse);
+             scene->caption, name[light], what, e->error.relative_rmse,
+             isfinite(e->error.psnr_db) ? e->error.psnr_db : 0, e->block_relative_rmse);
     command_event(common, event);
 }
 

@@ -5,10 +5,10 @@
 #include "study/inspect/model_report.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 typedef struct compress_command {
@@ -203,7 +203,7 @@ static void say_errors(const common_options *common, const weft_material *materi
     command_say(common, "level       texels   median rel.  80 %% rel.  RMSE       rel. RMSE  PSNR dB");
     for (int k = 0; k < material->level_count; k++) {
         const weft_material_level *level = &material->level[k];
-        const weft_material_error *error = &level->error;
+        const weft_error_summary *error = &level->error;
         command_say(common, "%5d  %5d x %-5d  %10.4f  %9.4f  %9.3e  %9.4f  %7.2f", k, level->width, level->height,
                     error->median_relative, error->percentile80_relative, error->rmse, error->relative_rmse,
                     error->psnr_db);
@@ -212,26 +212,20 @@ static void say_errors(const common_options *common, const weft_material *materi
                  "{\"event\":\"level\",\"level\":%d,\"width\":%d,\"height\":%d,\"median_relative\":%.6g,"
                  "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%.6g}",
                  k, level->width, level->height, error->median_relative, error->percentile80_relative, error->rmse,
-                 error->relative_rmse, error->psnr_db);
+                 error->relative_rmse, isfinite(error->psnr_db) ? error->psnr_db : 0);
         command_event(common, event);
     }
-}
-
-static double file_bytes(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 ? (double)status.st_size : 0;
 }
 
 static void say_sizes(const compress_command *command, const weft_dataset_layout *layout,
                       const weft_compress_report *report)
 {
     double samples = 6.0 * layout->width * layout->height * layout->image_count;
-    double material = file_bytes(command->files.output);
+    double material = (double)weft_file_bytes(command->files.output);
     command_say(&command->files.common,
                 "%s: %.2f MB, 1:%.0f of the samples as half floats (%.1f MB; the file has %.1f MB)",
                 command->files.output, material * 1e-6, material > 0 ? samples / material : 0, samples * 1e-6,
-                file_bytes(command->files.input) * 1e-6);
+                (double)weft_file_bytes(command->files.input) * 1e-6);
     if (report->read_seconds > 0)
         command_say(&command->files.common, "read %.1f MB in %ld blocks at %.0f MB/s; the fit waited for it %.1f s",
                     report->read_bytes * 1e-6, report->block_count - report->resumed_block_count,

@@ -1,11 +1,11 @@
 #include "cli/play_host.h"
 
+#include "base/clock.h"
 #include "cli/scene_errors.h"
 #include "cli/scene_part.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 weft_code play_host_create(scene_options *scene, play_host *host, weft_error *error)
@@ -136,18 +136,11 @@ static bool follow_mouse(play_host *host, weft_scene *scene, double now_s, char 
     return weft_space_mouse_move(&scene->orbit, &motion, now_s - host->polled_s);
 }
 
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 static weft_code poll_host(void *context, weft_scene *scene, double *progress, bool *changed, char note[WEFT_NOTE_SIZE],
                            weft_error *error)
 {
     play_host *host = context;
-    double now = now_s();
+    double now = weft_now_s();
     *changed = follow_mouse(host, scene, now, note);
     host->polled_s = now;
     weft_code code = reload_changed(host, now, error);

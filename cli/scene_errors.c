@@ -2,24 +2,16 @@
 
 #include "study/error/visible_error.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The peak is the radiance that the screen shows as white. */
-static double psnr_db(const weft_prediction_error *e)
-{
-    const double least = 1e-10;
-    return -20 * log10(fmax(e->rmse, least));
-}
-
-static void append(char text[SCENE_ERRORS_SIZE], weft_mode mode, const weft_prediction_error *e)
+static void append(char text[SCENE_ERRORS_SIZE], weft_mode mode, const weft_error_summary *e)
 {
     size_t used = strlen(text);
     snprintf(text + used, SCENE_ERRORS_SIZE - used, "%s%s %.1f %% (median %.1f, 80th percentile %.1f; PSNR %.1f dB)",
              used > 0 ? ", " : "from raw: ", weft_mode_name(mode), 100 * e->relative_rmse, 100 * e->median_relative,
-             100 * e->percentile80_relative, psnr_db(e));
+             100 * e->percentile80_relative, e->psnr_db);
 }
 
 weft_code scene_errors_print(weft_player *player, const weft_scene *scene, int width, int height,
@@ -30,7 +22,7 @@ weft_code scene_errors_print(weft_player *player, const weft_scene *scene, int w
     if (!weft_player_has(player, WEFT_MODE_RAW) || pane_width < 1)
         return WEFT_OK;
     for (int i = 0; i < panes; i++) {
-        weft_prediction_error e;
+        weft_error_summary e;
         if (scene->pane[i] == WEFT_MODE_RAW)
             continue;
         WEFT_TRY(weft_visible_error_measure(player, scene, scene->pane[i], pane_width, height, &e, error));
@@ -43,15 +35,12 @@ weft_code scene_errors_print(weft_player *player, const weft_scene *scene, int w
 
 static double relative_rmse(const weft_image *image, const weft_image *reference, const weft_surface_sample *surface)
 {
-    double squares = 0, norm = 0;
+    weft_error_sums sums = {0};
     for (size_t i = 0; i < 3 * (size_t)image->width * (size_t)image->height; i++) {
-        if (!(surface[i / 3].covered > 0.5f))
-            continue;
-        double exact = (double)reference->pixels[i], difference = (double)image->pixels[i] - exact;
-        squares += difference * difference;
-        norm += exact * exact;
+        if (surface[i / 3].covered > 0.5f)
+            weft_error_sums_add_value(&sums, (double)reference->pixels[i], (double)image->pixels[i]);
     }
-    return norm > 0 ? sqrt(squares / norm) : 0;
+    return weft_error_sums_relative_rmse(&sums);
 }
 
 weft_code environment_error_print(weft_player *player, const weft_settings *settings, char text[SCENE_ERRORS_SIZE],

@@ -6,8 +6,8 @@
 
 enum { SCENE_ERRORS_SIZE = 256 };
 
-/* A line such as "from raw: compressed 4.2 % (median 3.1, 80th percentile 8.0)" with the relative RMSE, median and 80th
- * percentile of the relative error of every model that is shown, over the lit pixels of the mesh; "" where the player
+/* A line such as "from raw: compressed 4.2 % (median 3.1, 80th percentile 8.0; PSNR 33.1 dB)" with the error
+ * (base/error_summary.h) of every model that is shown, over the lit pixels of the mesh; "" where the player
  * has no dataset or shows no model. width x height: of the whole picture. Errors: those of drawing. */
 weft_code scene_errors_print(weft_player *player, const weft_scene *scene, int width, int height,
                              char text[SCENE_ERRORS_SIZE], weft_error *error);

@@ -1,5 +1,6 @@
 #include "compress/compress.h"
 
+#include "base/clock.h"
 #include "base/processor.h"
 #include "btf/dataset/fingerprint.h"
 #include "btf/material/models.h"
@@ -18,7 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <zlib.h>
 
 enum { SAMPLES_PER_PARAMETER = 4 };
@@ -240,18 +240,11 @@ static weft_code fit_material(fitting *work, weft_material *material, weft_compr
     return weft_compress_describe(layout, work->options, report, &work->fingerprint, &work->setting, material, error);
 }
 
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *options, const weft_progress *progress,
                         weft_material *material, weft_compress_report *report, weft_error *error)
 {
     weft_compress_report own = {0};
-    double began = seconds_now();
+    double began = weft_now_s();
     WEFT_TRY(weft_compress_options_check(options, dataset, error));
     plan(weft_dataset_get_layout(dataset), options, &own);
     fitting work = {.dataset = dataset,
@@ -262,7 +255,7 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
     weft_code code = fit_material(&work, material, &own, error);
     if (code != WEFT_OK)
         weft_material_free(material);
-    own.seconds = seconds_now() - began;
+    own.seconds = weft_now_s() - began;
     if (report)
         *report = own;
     return code;

@@ -1,5 +1,6 @@
 #include "registration/registration.h"
 
+#include "base/clock.h"
 #include "registration/rectify.h"
 #include "registration/report/report.h"
 #include "registration/white_estimate.h"
@@ -7,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static const size_t kept_bytes = (size_t)512 << 20;
 
@@ -234,8 +234,7 @@ static weft_code produce(const weft_session *session, const char *output, const 
     work w = {.rectifier = {session, &w.sight, NULL, registration}, .progress = progress};
     weft_dataset_layout layout = {0};
     char *provenance = NULL;
-    struct timespec start, end;
-    clock_gettime(CLOCK_MONOTONIC, &start);
+    double began_s = weft_now_s();
     weft_code code = weft_sight_create(&session->camera, &session->target, frontal_scale(session), &w.sight, error);
     if (code == WEFT_OK)
         code = describe_dataset(session, registration, &layout, error);
@@ -251,8 +250,7 @@ static weft_code produce(const weft_session *session, const char *output, const 
         w.rectifier.writer = NULL;
         code = weft_dataset_writer_finish(writer, provenance, error);
     }
-    clock_gettime(CLOCK_MONOTONIC, &end);
-    registration->seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    registration->seconds = weft_now_s() - began_s;
     if (code == WEFT_OK && registration->settings.report_folder)
         code = weft_report_write_page(session, registration, output, error);
     free(provenance);

@@ -1,4 +1,5 @@
 #include "base/processor.h"
+#include "base/statistics.h"
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"
 
@@ -69,11 +70,11 @@ static void add_table(const bench_plan *plan, const texel_source *source, const 
                  plan->lobe_count);
     for (int set = (int)weft_processor_best(); set >= WEFT_BASELINE; set--) {
         report_row(plan->report, "%s, %s", source->name, weft_instruction_set_name((weft_instruction_set)set));
-        report_number(plan->report, "us median", 0, quantile_of(all[set].microseconds, count, 0.5));
-        report_number(plan->report, "times the first", 2, quantile_of(all[set].ratio, count, 0.5));
+        report_number(plan->report, "us median", 0, weft_quantile(all[set].microseconds, count, 0.5));
+        report_number(plan->report, "times the first", 2, weft_quantile(all[set].ratio, count, 0.5));
         report_number(plan->report, "rel. RMSE", 6, mean_of(all[set].rmse, count));
         report_number(plan->report, "mean difference", 7, mean_of(all[set].difference, count));
-        report_number(plan->report, "largest", 7, quantile_of(all[set].difference, count, 1));
+        report_number(plan->report, "largest", 7, weft_quantile(all[set].difference, count, 1));
     }
 }
 

@@ -1,3 +1,4 @@
+#include "base/statistics.h"
 #include "bench/fit/arithmetic_floor.h"
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"
@@ -35,7 +36,7 @@ static double pass_microseconds(weft_instruction_set set, const texel_source *so
                             WEFT_PART_ALL, memory->sums);
         microseconds[i] = thread_microseconds() - began;
     }
-    return quantile_of(microseconds, REPEATS, 0.5);
+    return weft_quantile(microseconds, REPEATS, 0.5);
 }
 
 static double floor_microseconds(weft_instruction_set set, double multiply_adds)
@@ -47,7 +48,7 @@ static double floor_microseconds(weft_instruction_set set, double multiply_adds)
         sink = sink + execute_multiply_adds(set, multiply_adds);
         microseconds[i] = thread_microseconds() - began;
     }
-    return quantile_of(microseconds, REPEATS, 0.5);
+    return weft_quantile(microseconds, REPEATS, 0.5);
 }
 
 static void add_row(const bench_plan *plan, weft_instruction_set set, const texel_source *source,

@@ -1,4 +1,5 @@
 #include "base/processor.h"
+#include "base/statistics.h"
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"
 
@@ -46,12 +47,12 @@ static void measure(bench *with, int texel, series all[METHOD_COUNT])
 static void add_row(report *to, const series *of, method which, int count, double tolerance)
 {
     report_row(to, "%s", method_name(which));
-    report_number(to, "us q1", 0, quantile_of(of->microseconds, count, 0.25));
-    report_number(to, "us median", 0, quantile_of(of->microseconds, count, 0.5));
-    report_number(to, "us q3", 0, quantile_of(of->microseconds, count, 0.75));
+    report_number(to, "us q1", 0, weft_quantile(of->microseconds, count, 0.25));
+    report_number(to, "us median", 0, weft_quantile(of->microseconds, count, 0.5));
+    report_number(to, "us q3", 0, weft_quantile(of->microseconds, count, 0.75));
     report_number(to, "passes", 1, mean_of(of->passes, count));
     report_number(to, "rel. RMSE", 4, mean_of(of->rmse, count));
-    report_number(to, "ratio", 1, quantile_of(of->ratio, count, 0.5));
+    report_number(to, "ratio", 1, weft_quantile(of->ratio, count, 0.5));
     report_number(to, "ours <= %", 1, 100 * share_at_most(of->excess, count, 1 + tolerance));
 }
 

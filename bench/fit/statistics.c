@@ -1,15 +1,11 @@
 #include "bench/fit/statistics.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
+#include "base/clock.h"
+#include "base/error_summary.h"
 
 double thread_microseconds(void)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e6 * (double)now.tv_sec + 1e-3 * (double)now.tv_nsec;
+    return 1e6 * weft_clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
 double mean_of(const double *values, int count)
@@ -22,29 +18,7 @@ double mean_of(const double *values, int count)
 
 double relative_rmse(double residual, double energy)
 {
-    return energy > 0 ? sqrt(residual / energy) : 0;
-}
-
-static int compare(const void *left, const void *right)
-{
-    double a = *(const double *)left, b = *(const double *)right;
-    return isnan(a) || isnan(b) ? isnan(a) - isnan(b) : (a > b) - (a < b);
-}
-
-double quantile_of(const double *values, int count, double share)
-{
-    if (!count)
-        return 0;
-    double *sorted = malloc((size_t)count * sizeof *sorted);
-    if (!sorted)
-        return NAN;
-    memcpy(sorted, values, (size_t)count * sizeof *sorted);
-    qsort(sorted, (size_t)count, sizeof *sorted, compare);
-    double place = share * (count - 1);
-    int below = (int)place, above = below + 1 < count ? below + 1 : below;
-    double result = sorted[below] + (place - below) * (sorted[above] - sorted[below]);
-    free(sorted);
-    return result;
+    return weft_error_sums_relative_rmse(&(weft_error_sums){.square = energy, .square_error = residual});
 }
 
 double share_at_most(const double *values, int count, double limit)

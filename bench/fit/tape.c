@@ -1,3 +1,4 @@
+#include "base/statistics.h"
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"
 
@@ -38,7 +39,7 @@ static void add_row(const bench_plan *plan, bench *with, method which, const cha
     double rmse = relative_rmse(last.residual, with->source->samples.energy[0]);
     int lobes = with->options.lobe_count;
     report_row(plan->report, "%d lobe%s, %s", lobes, lobes > 1 ? "s" : "", name);
-    report_number(plan->report, "ms", 2, quantile_of(microseconds, REPEATS, 0.5) / 1000);
+    report_number(plan->report, "ms", 2, weft_quantile(microseconds, REPEATS, 0.5) / 1000);
     report_number(plan->report, "passes", 1, last.passes);
     report_number(plan->report, "rel. RMSE", 4, rmse);
     report_number(plan->report, "best known", 4, best_known[lobes - 1]);

@@ -1,5 +1,6 @@
 #include "btf/dataset/hdf5.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 
 void weft_hdf5_quiet(void)
@@ -35,4 +36,23 @@ hid_t weft_hdf5_half_type(void)
         return H5I_INVALID_HID;
     }
     return type;
+}
+
+static H5T_conv_ret_t refuse_number(H5T_conv_except_t what, hid_t from, hid_t to, void *number, void *result,
+                                    void *none)
+{
+    (void)from, (void)number, (void)result, (void)none;
+    if (H5Tget_class(to) != H5T_INTEGER || what == H5T_CONV_EXCEPT_PRECISION)
+        return H5T_CONV_UNHANDLED;
+    H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_DATATYPE, H5E_BADRANGE,
+             "holds a number that is negative, too large or not whole");
+    return H5T_CONV_ABORT;
+}
+
+hid_t weft_hdf5_whole_transfer(void)
+{
+    hid_t transfer = H5Pcreate(H5P_DATASET_XFER);
+    if (transfer >= 0)
+        H5Pset_type_conv_cb(transfer, refuse_number, NULL);
+    return transfer;
 }

@@ -21,6 +21,7 @@ struct weft_dataset {
     uint64_t file_size;
     weft_dataset_layout layout;
     hid_t file, half, samples, mask;
+    hid_t transfer;        /* of weft_hdf5_whole_transfer */
     hid_t opacity, frames; /* invalid where the file has none */
 };
 
@@ -34,6 +35,10 @@ const char *weft_hdf5_cause(void);
 /* IEEE binary16, which HDF5 1.10 has no name for; h5py shows it as float16. The caller closes it. Negative on failure.
  */
 hid_t weft_hdf5_half_type(void);
+
+/* A property list for H5Dread that refuses a number which the whole numbers asked for cannot hold (a negative one, a
+ * fraction), where HDF5 would take the nearest. The caller closes it. Negative on failure. */
+hid_t weft_hdf5_whole_transfer(void);
 
 /* Opens a dataset of the file so that its filtered chunks, once decoded, are kept for a while. Negative on failure. */
 hid_t weft_hdf5_open_cached(hid_t file, const char *name);

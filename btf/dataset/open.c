@@ -37,16 +37,15 @@ static herr_t read_whole_dataset(hid_t object, hid_t memory_type, void *buffer)
     return H5Dread(object, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer);
 }
 
-static bool is_scalar(hid_t space)
+/* Whether a space and a type are those of a single value of a class. */
+static bool is_one(hid_t space, hid_t type, H5T_class_t class)
 {
-    return space >= 0 && H5Sget_simple_extent_npoints(space) == 1;
+    return space >= 0 && type >= 0 && H5Sget_simple_extent_npoints(space) == 1 && H5Tget_class(type) == class;
 }
 
 /* The memory type of a string is the file's own, so that character sets and padding agree. NULL on failure. */
 static char *read_string(hid_t object, hid_t type, read_function *read)
 {
-    if (H5Tget_class(type) != H5T_STRING)
-        return NULL;
     char *text = NULL;
     if (H5Tis_variable_str(type) > 0) {
         char *owned_by_hdf5 = NULL;
@@ -66,16 +65,25 @@ static char *read_string(hid_t object, hid_t type, read_function *read)
     return text;
 }
 
+static weft_code open_attribute(const weft_dataset *dataset, const char *name, hid_t *attribute, weft_error *error)
+{
+    if (H5Aexists(dataset->file, name) == 0)
+        return fail(dataset, error, "has no attribute", name);
+    *attribute = H5Aopen(dataset->file, name, H5P_DEFAULT);
+    return *attribute >= 0 ? WEFT_OK : fail(dataset, error, "cannot open attribute", name);
+}
+
 static weft_code read_text_attribute(const weft_dataset *dataset, const char *name, char text[MAX_NAME],
                                      weft_error *error)
 {
-    hid_t attribute = H5Aopen(dataset->file, name, H5P_DEFAULT);
-    if (attribute < 0)
-        return fail(dataset, error, "has no attribute", name);
+    hid_t attribute;
+    WEFT_TRY(open_attribute(dataset, name, &attribute, error));
     hid_t space = H5Aget_space(attribute), type = H5Aget_type(attribute);
-    char *value = is_scalar(space) && type >= 0 ? read_string(attribute, type, read_attribute) : NULL;
+    char *value = NULL;
     weft_code code = WEFT_OK;
-    if (value && strlen(value) < MAX_NAME)
+    if (!is_one(space, type, H5T_STRING))
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s': attribute '%s' is not one string", dataset->path, name);
+    else if ((value = read_string(attribute, type, read_attribute)) && strlen(value) < MAX_NAME)
         snprintf(text, MAX_NAME, "%s", value);
     else
         code = fail(dataset, error, "cannot read attribute", name);
@@ -88,16 +96,28 @@ static weft_code read_text_attribute(const weft_dataset *dataset, const char *na
 
 static weft_code read_number_attribute(const weft_dataset *dataset, const char *name, double *value, weft_error *error)
 {
-    hid_t attribute = H5Aopen(dataset->file, name, H5P_DEFAULT);
-    if (attribute < 0)
-        return fail(dataset, error, "has no attribute", name);
-    hid_t space = H5Aget_space(attribute);
+    hid_t attribute;
+    WEFT_TRY(open_attribute(dataset, name, &attribute, error));
+    hid_t space = H5Aget_space(attribute), type = H5Aget_type(attribute);
     weft_code code = WEFT_OK;
-    if (!is_scalar(space) || H5Aread(attribute, H5T_NATIVE_DOUBLE, value) < 0)
+    if (!is_one(space, type, H5T_FLOAT) && !is_one(space, type, H5T_INTEGER))
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s': attribute '%s' is not one number", dataset->path, name);
+    else if (H5Aread(attribute, H5T_NATIVE_DOUBLE, value) < 0)
         code = fail(dataset, error, "cannot read attribute", name);
+    H5Tclose(type);
     H5Sclose(space);
     H5Aclose(attribute);
     return code;
+}
+
+static weft_code check_colour_space(const weft_dataset *dataset, weft_error *error)
+{
+    char text[MAX_NAME];
+    WEFT_TRY(read_text_attribute(dataset, "colour_space", text, error));
+    if (strcmp(text, WEFT_DATASET_COLOUR_SPACE) != 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': attribute 'colour_space' is '%s', must be '%s'", dataset->path,
+                         text, WEFT_DATASET_COLOUR_SPACE);
+    return WEFT_OK;
 }
 
 /* Index of the attribute's text among two names. */
@@ -128,6 +148,7 @@ static weft_code read_attributes(weft_dataset *dataset, weft_error *error)
     WEFT_TRY(read_choice(dataset, "distance", weft_distance_name, &distance, error));
     dataset->layout.values = (weft_values)values;
     dataset->layout.distance = (weft_distance)distance;
+    WEFT_TRY(check_colour_space(dataset, error));
     return read_number_attribute(dataset, "texel_pitch_mm", &dataset->layout.texel_pitch_mm, error);
 }
 
@@ -137,6 +158,9 @@ static weft_code read_attributes(weft_dataset *dataset, weft_error *error)
 static weft_code open_array(const weft_dataset *dataset, const char *name, int rank, hsize_t *size, hid_t *object,
                             weft_error *error)
 {
+    *object = H5I_INVALID_HID;
+    if (H5Lexists(dataset->file, name, H5P_DEFAULT) == 0)
+        return fail(dataset, error, "has no dataset", name);
     *object = weft_hdf5_open_cached(dataset->file, name);
     if (*object < 0)
         return fail(dataset, error, "cannot open", name);
@@ -147,7 +171,9 @@ static weft_code open_array(const weft_dataset *dataset, const char *name, int r
         H5Sget_simple_extent_dims(space, size, NULL);
     H5Tclose(type);
     H5Sclose(space);
-    if (found != rank || (class != H5T_FLOAT && class != H5T_INTEGER))
+    if (class != H5T_FLOAT && class != H5T_INTEGER)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' holds no numbers", dataset->path, name);
+    if (found != rank)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' must be numbers in %d dimensions, has %d", dataset->path,
                          name, rank, found);
     return WEFT_OK;
@@ -191,6 +217,7 @@ static weft_code open_texels(weft_dataset *dataset, weft_error *error)
     layout->height = limited_int(samples[0]);
     layout->width = limited_int(samples[1]);
     layout->image_count = limited_int(samples[2]);
+    WEFT_TRY(weft_dataset_layout_check_counts(layout, dataset->path, WEFT_BAD_INPUT, error));
     WEFT_TRY(open_optional(dataset, "opacity", 3, (hsize_t[]){samples[0], samples[1], (hsize_t)layout->view_count},
                            &dataset->opacity, error));
     return open_optional(dataset, "frame", 4, (hsize_t[]){samples[0], samples[1], 2, 3}, &dataset->frames, error);
@@ -211,7 +238,6 @@ static weft_code open_view_count(weft_dataset *dataset, weft_error *error)
 static weft_code check_plausible(const weft_dataset *dataset, weft_error *error)
 {
     const weft_dataset_layout *layout = &dataset->layout;
-    WEFT_TRY(weft_dataset_layout_check_counts(layout, dataset->path, WEFT_BAD_INPUT, error));
     uint64_t most = dataset->file_size * largest_ratio;
     uint64_t texels = (uint64_t)layout->width * (uint64_t)layout->height;
     uint64_t views = (uint64_t)layout->view_count;
@@ -232,7 +258,7 @@ static weft_code read_array(const weft_dataset *dataset, const char *name, int r
     weft_code code = open_array(dataset, name, rank, size, &object, error);
     if (code == WEFT_OK)
         code = check_size(dataset, name, rank, size, expected, error);
-    if (code == WEFT_OK && H5Dread(object, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer) < 0)
+    if (code == WEFT_OK && H5Dread(object, memory_type, H5S_ALL, H5S_ALL, dataset->transfer, buffer) < 0)
         code = fail(dataset, error, "cannot read", name);
     H5Dclose(object);
     return code;
@@ -240,19 +266,26 @@ static weft_code read_array(const weft_dataset *dataset, const char *name, int r
 
 static weft_code read_provenance(weft_dataset *dataset, weft_error *error)
 {
+    if (H5Lexists(dataset->file, "provenance", H5P_DEFAULT) == 0)
+        return fail(dataset, error, "has no dataset", "provenance");
     hid_t object = H5Dopen2(dataset->file, "provenance", H5P_DEFAULT);
     if (object < 0)
         return fail(dataset, error, "cannot open", "provenance");
     hid_t space = H5Dget_space(object), type = H5Dget_type(object);
-    char *text = is_scalar(space) && type >= 0 ? read_string(object, type, read_whole_dataset) : NULL;
+    char *text = NULL;
+    weft_code code = WEFT_OK;
+    if (!is_one(space, type, H5T_STRING))
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s': 'provenance' is not one string", dataset->path);
+    else if (!(text = read_string(object, type, read_whole_dataset)))
+        code = fail(dataset, error, "cannot read", "provenance");
     H5Tclose(type);
     H5Sclose(space);
     H5Dclose(object);
-    if (!text)
-        return fail(dataset, error, "cannot read", "provenance");
-    free(dataset->layout.provenance);
-    dataset->layout.provenance = text;
-    return WEFT_OK;
+    if (text) {
+        free(dataset->layout.provenance);
+        dataset->layout.provenance = text;
+    }
+    return code;
 }
 
 static void normalise(weft_vec3 *direction, int count)
@@ -293,12 +326,17 @@ static weft_code open_file(weft_dataset *dataset, weft_error *error)
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
     dataset->file = H5Fopen(dataset->path, H5F_ACC_RDONLY, access);
+    /* Any other call would forget the cause. */
+    const char *cause = weft_hdf5_cause();
     H5Pclose(access);
     if (dataset->file < 0)
         return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s' as HDF5 (%llu bytes): %s", dataset->path,
-                         (unsigned long long)dataset->file_size, weft_hdf5_cause());
+                         (unsigned long long)dataset->file_size, cause);
     dataset->half = weft_hdf5_half_type();
-    return dataset->half < 0 ? weft_fail(error, WEFT_SYSTEM, "HDF5 cannot make a half float type") : WEFT_OK;
+    dataset->transfer = weft_hdf5_whole_transfer();
+    if (dataset->half < 0 || dataset->transfer < 0)
+        return weft_fail(error, WEFT_SYSTEM, "HDF5 cannot make a half float type or a property list");
+    return WEFT_OK;
 }
 
 weft_code weft_dataset_open(const char *path, weft_dataset **result, weft_error *error)
@@ -308,7 +346,7 @@ weft_code weft_dataset_open(const char *path, weft_dataset **result, weft_error 
     weft_dataset *dataset = calloc(1, sizeof *dataset);
     if (!dataset)
         return weft_fail_memory(error, "dataset", sizeof *dataset);
-    dataset->file = dataset->half = H5I_INVALID_HID;
+    dataset->file = dataset->half = dataset->transfer = H5I_INVALID_HID;
     dataset->samples = dataset->mask = dataset->opacity = dataset->frames = H5I_INVALID_HID;
     dataset->path = strdup(path);
     weft_code code = dataset->path ? WEFT_OK : weft_fail_memory(error, "path", strlen(path));
@@ -332,6 +370,8 @@ void weft_dataset_close(weft_dataset *dataset)
         H5Fclose(dataset->file);
     if (dataset->half >= 0)
         H5Tclose(dataset->half);
+    if (dataset->transfer >= 0)
+        H5Pclose(dataset->transfer);
     weft_dataset_layout_free(&dataset->layout);
     free(dataset->path);
     free(dataset);

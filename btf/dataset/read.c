@@ -16,7 +16,7 @@ static weft_code read_slab(const weft_dataset *dataset, hid_t object, const char
     hid_t space = H5Dget_space(object), memory = H5Screate_simple(rank, count, NULL);
     bool done = space >= 0 && memory >= 0 &&
                 H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-                H5Dread(object, memory_type, memory, space, H5P_DEFAULT, buffer) >= 0;
+                H5Dread(object, memory_type, memory, space, dataset->transfer, buffer) >= 0;
     weft_code code = WEFT_OK;
     if (!done)
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s': cannot read '%s' of %d x %d texels at (%d, %d): %s",

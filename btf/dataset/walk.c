@@ -1,5 +1,6 @@
 #include "btf/dataset/walk.h"
 
+#include "base/integers.h"
 #include "btf/dataset/blocks.h"
 
 #include <stdlib.h>
@@ -13,17 +14,12 @@ typedef struct walking {
     uint8_t *mask;
 } walking;
 
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 static weft_code walk_row(const walking *walk, int y, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(walk->dataset);
-    int height = smaller(walk->height, layout->height - y);
+    int height = weft_smaller(walk->height, layout->height - y);
     for (int x = 0; x < layout->width; x += walk->width) {
-        weft_walk_block block = {x, y, smaller(walk->width, layout->width - x), height, walk->samples, walk->mask};
+        weft_walk_block block = {x, y, weft_smaller(walk->width, layout->width - x), height, walk->samples, walk->mask};
         WEFT_TRY(weft_dataset_read_block(walk->dataset, x, y, block.width, height, walk->samples, walk->mask, error));
         walk->visit(walk->context, &block);
     }
@@ -43,7 +39,7 @@ weft_code weft_walk_blocks(weft_dataset *dataset, weft_walk_visit *visit, void *
     weft_progress_report(progress, stage, 0, layout->height);
     for (int y = 0; code == WEFT_OK && y < layout->height; y += walk.height) {
         code = walk_row(&walk, y, error);
-        weft_progress_report(progress, stage, smaller(y + walk.height, layout->height), layout->height);
+        weft_progress_report(progress, stage, weft_smaller(y + walk.height, layout->height), layout->height);
     }
     free(walk.samples);
     free(walk.mask);

@@ -1,4 +1,5 @@
 #include "base/atomic_file.h"
+#include "base/integers.h"
 #include "btf/dataset/create.h"
 #include "btf/dataset/scratch.h"
 
@@ -113,11 +114,6 @@ typedef struct texel_block {
     uint8_t *group_mask;      /* [IMAGE_GROUP][height][width] */
 } texel_block;
 
-static int least(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 /* Whole rows of chunks where they fit into block_bytes, else part of one row. */
 static void choose_block(const weft_dataset_layout *layout, texel_block *block)
 {
@@ -130,7 +126,7 @@ static void choose_block(const weft_dataset_layout *layout, texel_block *block)
     bool is_part = rows == 0;
     block->width = is_part ? chunk_width * (int)(chunks > 0 ? chunks : 1) : layout->width;
     block->height = rows < (size_t)layout->height ? chunk_height * (int)(is_part ? 1 : rows) : layout->height;
-    block->height = least(block->height, layout->height);
+    block->height = weft_smaller(block->height, layout->height);
 }
 
 static weft_code block_allocate(const weft_dataset_layout *layout, texel_block *block, weft_error *error)
@@ -172,7 +168,7 @@ static weft_code gather(const weft_dataset_writer *writer, const texel_block *bl
     int images = writer->layout.image_count;
     size_t texels = (size_t)block->width * (size_t)block->height;
     for (int first = 0; first < images; first += IMAGE_GROUP) {
-        int count = least(IMAGE_GROUP, images - first);
+        int count = weft_smaller(IMAGE_GROUP, images - first);
         for (int i = 0; i < count; i++)
             WEFT_TRY(weft_scratch_take(&writer->scratch, first + i, block->x, block->y, block->width, block->height,
                                        block->group_samples + 3 * (size_t)i * texels,
@@ -191,8 +187,8 @@ static weft_code transpose(const weft_dataset_writer *writer, const weft_dataset
             texel_block block = whole;
             block.x = x;
             block.y = y;
-            block.width = least(whole.width, layout->width - x);
-            block.height = least(whole.height, layout->height - y);
+            block.width = weft_smaller(whole.width, layout->width - x);
+            block.height = weft_smaller(whole.height, layout->height - y);
             WEFT_TRY(gather(writer, &block, error));
             WEFT_TRY(weft_dataset_file_write(file, layout, x, y, block.width, block.height, block.samples, block.mask,
                                              error));

@@ -22,7 +22,10 @@ weft_angles weft_angles_of_direction(weft_vec3 direction);
  * index in [0, WEFT_UBO81_COUNT). Pure. */
 weft_angles weft_ubo81_angles(int index);
 
-/* Index in [0, 6) of the ring of ubo81 nearest to an elevation. Pure. */
+/* Rings of ubo81: theta 0, 15, 30, 45, 60, 75 degrees. */
+enum { WEFT_RING_COUNT = 6 };
+
+/* Index in [0, WEFT_RING_COUNT) of the ring of ubo81 nearest to an elevation. Pure. */
 int weft_ubo81_ring(weft_real theta_rad);
 
 static inline weft_real weft_rad_of_deg(weft_real deg)

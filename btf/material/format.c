@@ -118,11 +118,14 @@ static const char *fault_of_directions(const float *xyz, size_t count)
     return NULL;
 }
 
+/* The last is the PSNR: negative where the fit is poor, infinite where it is perfect. */
 static const char *fault_of_errors(const double *value, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        if (isnan(value[i]))
-            return "holds NaN";
+        bool is_psnr = i + 1 == count;
+        if (!(is_psnr ? value[i] > -INFINITY : value[i] >= 0 && value[i] < INFINITY))
+            return is_psnr ? "holds a PSNR that is NaN or minus infinity"
+                           : "holds an error that is NaN, negative or infinite";
     }
     return NULL;
 }

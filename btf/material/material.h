@@ -7,6 +7,7 @@
 #ifndef WEFT_BTF_MATERIAL_MATERIAL_H
 #define WEFT_BTF_MATERIAL_MATERIAL_H
 
+#include "base/error_summary.h"
 #include "base/half.h"
 #include "base/status.h"
 #include "btf/direction/frame.h"
@@ -22,15 +23,6 @@ enum {
     WEFT_MATERIAL_MAX_LIGHTS = 4096
 };
 
-/* What was measured when the material was written: decoded material against the dataset, over its valid samples. */
-typedef struct weft_material_error {
-    double median_relative; /* |fit - sample| / sample over samples above 1e-4 of the largest */
-    double percentile80_relative;
-    double rmse;          /* of reflectance times cosine */
-    double relative_rmse; /* rmse / rms of the samples */
-    double psnr_db;       /* 20 log10(peak / rmse), peak = 99.9th percentile of the samples */
-} weft_material_error;
-
 /* One mip level, row 0 at the top. Every array is owned by the material. */
 typedef struct weft_material_level {
     int width, height;
@@ -44,8 +36,9 @@ typedef struct weft_material_level {
                              NULL where the material has none (S = 1) */
     weft_table_basis *table_basis, *light_table_basis; /* what the tables were decoded from, where the material
                                                           has_table_bases; else NULL */
-    uint8_t *model; /* [height][width]: its model, see btf/material/models.h; NULL where all have the same */
-    weft_material_error error;
+    uint8_t *model;           /* [height][width]: its model, see btf/material/models.h; NULL where all have the same */
+    weft_error_summary error; /* the decoded material against the valid samples (reflectance times cosine) that it was
+                                 fitted to; its percentiles are accurate to 2 % of their value */
 } weft_material_level;
 
 typedef struct weft_material {

@@ -60,12 +60,16 @@ static weft_code read_directions(const weft_file_image *file, const weft_section
     return code;
 }
 
-static weft_code read_error(const weft_file_image *file, const weft_section *section, weft_material_error *measured,
+static weft_code read_error(const weft_file_image *file, const weft_section *section, weft_error_summary *measured,
                             weft_error *error)
 {
     double value[WEFT_FORMAT_ERRORS];
     WEFT_TRY(decode(file, section, value, error));
-    *measured = (weft_material_error){value[0], value[1], value[2], value[3], value[4]};
+    *measured = (weft_error_summary){.median_relative = value[0],
+                                     .percentile80_relative = value[1],
+                                     .rmse = value[2],
+                                     .relative_rmse = value[3],
+                                     .psnr_db = value[4]};
     return WEFT_OK;
 }
 

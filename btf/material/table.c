@@ -23,11 +23,12 @@ static uint64_t u64_at(const unsigned char *bytes)
 
 static weft_code check_header(const weft_file_image *file, weft_error *error)
 {
+    size_t start = file->size < sizeof weft_format_magic ? file->size : sizeof weft_format_magic;
+    if (memcmp(file->bytes, weft_format_magic, start) != 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no .weft file", file->path);
     if (file->size < WEFT_FORMAT_HEADER_SIZE)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is cut: %zu bytes, the header alone has %d", file->path,
                          file->size, WEFT_FORMAT_HEADER_SIZE);
-    if (memcmp(file->bytes, weft_format_magic, sizeof weft_format_magic) != 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no .weft file", file->path);
     uint32_t version = u32_at(file->bytes + 8), sections = u32_at(file->bytes + 12);
     uint64_t size = u64_at(file->bytes + 16);
     if (version != WEFT_FORMAT_VERSION)
@@ -65,7 +66,7 @@ static weft_code read_shape(const weft_file_image *file, weft_material *material
                                              level_count, limited_int(u32_at(b + 36)), limited_int(u32_at(b + 40)),
                                              limited_int(u32_at(b + 44)), &cause);
     if (code == WEFT_OK && level_count == 0)
-        code = weft_fail(&cause, WEFT_BAD_INPUT, "number of levels is 0");
+        code = weft_fail(&cause, WEFT_BAD_INPUT, "number of levels is 0, must be at least 1");
     memcpy(&material->texel_pitch_mm, b + 48, sizeof material->texel_pitch_mm);
     if (code == WEFT_OK && !(material->texel_pitch_mm > 0 && isfinite(material->texel_pitch_mm)))
         code = weft_fail(&cause, WEFT_BAD_INPUT, "texel pitch is %g mm", material->texel_pitch_mm);

@@ -179,7 +179,7 @@ static weft_code add_opacity(file_image *file, const weft_material *material, in
 static weft_code add_level_section(file_image *file, const weft_material *material, weft_section_kind kind, int k,
                                    weft_error *error)
 {
-    const weft_material_error *measured = &material->level[k].error;
+    const weft_error_summary *measured = &material->level[k].error;
     const double errors[WEFT_FORMAT_ERRORS] = {measured->median_relative, measured->percentile80_relative,
                                                measured->rmse, measured->relative_rmse, measured->psnr_db};
     switch (kind) {

@@ -21,15 +21,16 @@ static void journal_path(const weft_session *session, char path[PATH_MAX])
 
 /* ---- Reading ---- */
 
-static bool unpack_record(json_t *json, int *shot, weft_shot_record *record)
+static bool unpack_record(json_t *json, json_int_t *shot, weft_shot_record *record)
 {
-    json_int_t bytes, crc32;
-    if (json_unpack(json, "{si si sF sI sI}", "shot", shot, "stay", &record->stay, "exposure_s", &record->exposure_s,
-                    "bytes", &bytes, "crc32", &crc32) != 0)
+    json_int_t stay, bytes, crc32;
+    if (json_unpack(json, "{sI sI sF sI sI}", "shot", shot, "stay", &stay, "exposure_s", &record->exposure_s, "bytes",
+                    &bytes, "crc32", &crc32) != 0)
         return false;
-    if (bytes < 0 || crc32 < 0 || crc32 > UINT32_MAX || record->stay < 0 || record->stay >= WEFT_SESSION_MAX_SHOTS ||
+    if (bytes < 0 || crc32 < 0 || crc32 > UINT32_MAX || stay < 0 || stay >= WEFT_SESSION_MAX_SHOTS ||
         !(record->exposure_s > 0))
         return false;
+    record->stay = (int)stay;
     record->taken = true;
     record->bytes = (uint64_t)bytes;
     record->crc32 = (uint32_t)crc32;
@@ -41,23 +42,25 @@ static weft_code read_line(weft_session *session, const char *path, int line, co
 {
     json_error_t where;
     json_t *json = json_loadb(text, length, 0, &where);
-    int shot = -1;
+    json_int_t shot = -1;
     weft_shot_record record = {0};
     bool understood = json && unpack_record(json, &shot, &record);
     json_decref(json);
     if (!understood)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d is not a journal line", path, line);
     if (shot < 0 || shot >= session->shot_count)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d names shot %d, the plan has %d", path, line, shot,
-                         session->shot_count);
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d names shot %lld, the plan has %d", path, line,
+                         (long long)shot, session->shot_count);
     session->record[shot] = record;
     return WEFT_OK;
 }
 
-static weft_code read_lines(weft_session *session, const char *path, const char *text, weft_error *error)
+/* What follows the last newline was cut by a crash. */
+static weft_code read_lines(weft_session *session, const char *path, const char *text, size_t size, weft_error *error)
 {
     int line = 1;
-    for (const char *end; (end = strchr(text, '\n')); text = end + 1, line++)
+    const char *end_of_text = text + size;
+    for (const char *end; (end = memchr(text, '\n', (size_t)(end_of_text - text))); text = end + 1, line++)
         WEFT_TRY(read_line(session, path, line, text, (size_t)(end - text), error));
     return WEFT_OK;
 }
@@ -70,7 +73,7 @@ weft_code weft_journal_read(weft_session *session, weft_error *error)
     if (access(path, F_OK) != 0)
         return WEFT_OK;
     WEFT_TRY(weft_read_file(path, MAX_JOURNAL_BYTES, &text, &size, error));
-    weft_code code = read_lines(session, path, text, error);
+    weft_code code = read_lines(session, path, text, size, error);
     free(text);
     return code;
 }

@@ -77,23 +77,36 @@ weft_code weft_session_create(const weft_session *session, weft_error *error)
 
 /* ---- Reading ---- */
 
-static bool unpack_camera(json_t *json, weft_camera *c)
+/* The nearest int: a value beyond is out of every range, too. */
+static int limited_int(json_int_t value)
 {
-    return json_unpack(json, "{si si sF sF sF sF sF sF s[FFF]}", "width", &c->width, "height", &c->height, "fx", &c->fx,
-                       "fy", &c->fy, "cx", &c->cx, "cy", &c->cy, "k1", &c->k1, "k2", &c->k2, "vignetting",
-                       &c->vignetting[0], &c->vignetting[1], &c->vignetting[2]) == 0;
+    return value > INT_MAX ? INT_MAX : value < INT_MIN ? INT_MIN : (int)value;
 }
 
-static bool unpack_target(json_t *json, weft_target *t)
+/* This and what follows tell in `cause` why they could not. */
+static bool unpack_camera(json_t *json, weft_camera *c, json_error_t *cause)
 {
-    return json_unpack(json, "{sF sF sF sF}", "opening_mm", &t->opening_mm, "white_reflectance", &t->white_reflectance,
-                       "paper_reflectance", &t->paper_reflectance, "ink_reflectance", &t->ink_reflectance) == 0;
+    json_int_t width = 0, height = 0;
+    bool done = json_unpack_ex(json, cause, 0, "{sI sI sF sF sF sF sF sF s[FFF]}", "width", &width, "height", &height,
+                               "fx", &c->fx, "fy", &c->fy, "cx", &c->cx, "cy", &c->cy, "k1", &c->k1, "k2", &c->k2,
+                               "vignetting", &c->vignetting[0], &c->vignetting[1], &c->vignetting[2]) == 0;
+    c->width = limited_int(width);
+    c->height = limited_int(height);
+    return done;
+}
+
+static bool unpack_target(json_t *json, weft_target *t, json_error_t *cause)
+{
+    return json_unpack_ex(json, cause, 0, "{sF sF sF sF}", "opening_mm", &t->opening_mm, "white_reflectance",
+                          &t->white_reflectance, "paper_reflectance", &t->paper_reflectance, "ink_reflectance",
+                          &t->ink_reflectance) == 0;
 }
 
 static bool unpack_angles(json_t *json, weft_angles *angles)
 {
     double theta_deg, phi_deg;
-    if (json_unpack(json, "[FF]", &theta_deg, &phi_deg) != 0 || !(theta_deg >= 0 && theta_deg < 90))
+    if (json_unpack(json, "[FF]", &theta_deg, &phi_deg) != 0 || !(theta_deg >= 0 && theta_deg < 90) ||
+        !(fabs(phi_deg) <= 360))
         return false;
     *angles = (weft_angles){weft_rad_of_deg(theta_deg), weft_rad_of_deg(phi_deg)};
     return true;
@@ -124,6 +137,11 @@ static weft_code unpack_plan(json_t *plan, const char *path, weft_session *sessi
     return WEFT_OK;
 }
 
+static bool is_reflectance(double value)
+{
+    return value >= 0 && value <= 1;
+}
+
 static weft_code check_values(const weft_session *s, const char *path, weft_error *error)
 {
     const weft_camera *c = &s->camera;
@@ -133,34 +151,53 @@ static weft_code check_values(const weft_session *s, const char *path, weft_erro
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': %d bits with black level %d", path, s->bits, s->black_level);
     if (!(c->fx > 0 && c->fy > 0 && s->camera_distance_mm > 0 && s->light_distance_mm > 0 && s->target.opening_mm > 0))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': a focal length, distance or opening is not positive", path);
-    if (!(s->target.white_reflectance > 0 && s->target.white_reflectance <= 1))
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': white reference of reflectance %g", path,
-                         s->target.white_reflectance);
+    const weft_target *t = &s->target;
+    if (!(t->white_reflectance > 0 && is_reflectance(t->white_reflectance)) || !is_reflectance(t->paper_reflectance) ||
+        !is_reflectance(t->ink_reflectance))
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s': reflectances of the target %g (white), %g (paper), %g (ink), must be 0 to 1", path,
+                         t->white_reflectance, t->paper_reflectance, t->ink_reflectance);
     return WEFT_OK;
 }
 
-static bool unpack_strings(json_t *root, weft_session *s)
+/* Errors: WEFT_SYSTEM for memory. */
+static weft_code copy_texts(const char *rig, const char *sample, const json_t *settings, weft_session *s,
+                            weft_error *error)
 {
-    const char *rig, *sample;
-    if (json_unpack(root, "{ss ss}", "rig", &rig, "sample", &sample) != 0)
-        return false;
     s->rig = strdup(rig);
     s->sample = strdup(sample);
-    json_t *settings = json_object_get(root, "rig_settings");
     s->rig_settings = settings ? json_dumps(settings, JSON_COMPACT) : strdup("{}");
-    return s->rig && s->sample && s->rig_settings;
+    return s->rig && s->sample && s->rig_settings ? WEFT_OK : weft_fail_memory(error, session_name, 0);
+}
+
+static weft_code unpack_fields(json_t *root, const char *path, weft_session *s, weft_error *error)
+{
+    const char *rig = "", *sample = "";
+    json_t *camera = NULL, *target = NULL, *settings = NULL;
+    json_int_t bits = 0, black_level = 0;
+    json_error_t cause;
+    if (json_unpack_ex(root, &cause, 0, "{ss ss so so s?o sF sF sI sI}", "rig", &rig, "sample", &sample, "camera",
+                       &camera, "target", &target, "rig_settings", &settings, "camera_distance_mm",
+                       &s->camera_distance_mm, "light_distance_mm", &s->light_distance_mm, "bits", &bits, "black_level",
+                       &black_level) != 0 ||
+        !unpack_camera(camera, &s->camera, &cause) || !unpack_target(target, &s->target, &cause))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' lacks a field, or one has the wrong type: %s", path, cause.text);
+    if (settings && !json_is_object(settings))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'rig_settings' is no object", path);
+    s->bits = limited_int(bits);
+    s->black_level = limited_int(black_level);
+    return copy_texts(rig, sample, settings, s, error);
 }
 
 static weft_code unpack_session(json_t *root, const char *path, weft_session *s, weft_error *error)
 {
-    int version = 0;
-    if (json_unpack(root, "{si}", "weft_session", &version) != 0 || version != SESSION_VERSION)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a session of version %d", path, SESSION_VERSION);
-    if (!unpack_strings(root, s) || !unpack_camera(json_object_get(root, "camera"), &s->camera) ||
-        !unpack_target(json_object_get(root, "target"), &s->target) ||
-        json_unpack(root, "{sF sF si si}", "camera_distance_mm", &s->camera_distance_mm, "light_distance_mm",
-                    &s->light_distance_mm, "bits", &s->bits, "black_level", &s->black_level) != 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' lacks a field, or one has the wrong type", path);
+    json_int_t version = 0;
+    if (json_unpack(root, "{sI}", "weft_session", &version) != 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no session", path);
+    if (version != SESSION_VERSION)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a session of version %lld, this program reads version %d",
+                         path, (long long)version, SESSION_VERSION);
+    WEFT_TRY(unpack_fields(root, path, s, error));
     WEFT_TRY(check_values(s, path, error));
     return unpack_plan(json_object_get(root, "plan"), path, s, error);
 }

@@ -136,15 +136,8 @@ bool weft_error_tally_add_entries(weft_error_tally *tally, uint32_t (*entry)[2],
     return true;
 }
 
-void weft_error_sums_add(weft_error_sums *sums, const weft_error_sums *other)
-{
-    sums->count += other->count;
-    sums->square += other->square;
-    sums->square_error += other->square_error;
-}
-
 /* The value below which `share` of the counts lie; bin i covers [edge(i), edge(i + 1)), linear inside. */
-static double percentile(const uint64_t *count, int bins, double share, double (*edge)(int bin))
+static double quantile(const uint64_t *count, int bins, double share, double (*edge)(int bin))
 {
     double total = 0, below = 0;
     for (int i = 0; i < bins; i++)
@@ -168,19 +161,15 @@ static double relative_edge(int bin)
     return bin == 0 ? 0 : (double)float_of(((bits_of(0x1p-24f) >> 19) + (uint32_t)bin) << 19);
 }
 
-weft_material_error weft_error_result(const weft_error_tally *tally, const weft_error_sums *sums)
+weft_error_summary weft_error_tally_summarise(const weft_error_tally *tally, const weft_error_sums *sums)
 {
-    weft_material_error error = {0};
     uint64_t relative[RELATIVE_BINS] = {0};
-    for (uint32_t i = bits_of(tally->largest * 1e-4f) >> 22; i < THRESHOLD_BINS; i++) {
+    for (uint32_t i = bits_of(tally->largest * (float)weft_dim_share) >> 22; i < THRESHOLD_BINS; i++) {
         for (int j = 0; j < RELATIVE_BINS; j++)
             relative[j] += tally->relative[i][j];
     }
-    error.median_relative = percentile(relative, RELATIVE_BINS, 0.5, relative_edge);
-    error.percentile80_relative = percentile(relative, RELATIVE_BINS, 0.8, relative_edge);
-    error.rmse = sums->count > 0 ? sqrt(sums->square_error / sums->count) : 0;
-    error.relative_rmse = sums->square > 0 ? sqrt(sums->square_error / sums->square) : 0;
-    double peak = fmin(percentile(tally->magnitude, MAGNITUDE_BINS, 0.999, magnitude_edge), (double)tally->largest);
-    error.psnr_db = error.rmse > 0 && peak > 0 ? 20 * log10(peak / error.rmse) : 0;
-    return error;
+    double peak = quantile(tally->magnitude, MAGNITUDE_BINS, weft_peak_share, magnitude_edge);
+    return weft_error_summary_make(sums, quantile(relative, RELATIVE_BINS, 0.5, relative_edge),
+                                   quantile(relative, RELATIVE_BINS, 0.8, relative_edge),
+                                   fmin(peak, (double)tally->largest));
 }

@@ -1,9 +1,10 @@
-/* The error of a material over very many samples in bounded memory: sums in order, percentiles by histogram. */
+/* The summary of errors (base/error_summary.h) of a material over very many samples in bounded memory: sums in order,
+ * quantiles by histogram. */
 #ifndef WEFT_COMPRESS_FIT_MEASURE_H
 #define WEFT_COMPRESS_FIT_MEASURE_H
 
+#include "base/error_summary.h"
 #include "base/status.h"
-#include "btf/material/material.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -29,15 +30,8 @@ size_t weft_error_tally_entries(const weft_error_tally *tally, uint32_t (*entry)
 /* Adds such counts. False, with some of them added, where a bin does not exist. */
 bool weft_error_tally_add_entries(weft_error_tally *tally, uint32_t (*entry)[2], size_t count);
 
-/* Sums of squares; add them in a fixed order to get the same bits every time. */
-typedef struct weft_error_sums {
-    double count, square, square_error;
-} weft_error_sums;
-
-void weft_error_sums_add(weft_error_sums *sums, const weft_error_sums *other);
-
-/* Percentiles are accurate to 2 % of their value (histogram bins), the threshold of 1e-4 of the largest sample to half
- * an octave. All 0 without samples. */
-weft_material_error weft_error_result(const weft_error_tally *tally, const weft_error_sums *sums);
+/* The summary of the values in the tally and in the sums. Its quantiles are linear inside a bin of a histogram and so
+ * accurate to 2 % of their value; the limit below which a sample is dim is accurate to half an octave. Pure. */
+weft_error_summary weft_error_tally_summarise(const weft_error_tally *tally, const weft_error_sums *sums);
 
 #endif

@@ -1,16 +1,13 @@
 #include "compress/run/block_plan.h"
 
+#include "base/integers.h"
+
 #include <stdbool.h>
 #include <stdlib.h>
 
 static int whole_blocks(int texels, int side_level)
 {
     return (int)(((long)texels + (1L << side_level) - 1) >> side_level);
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
 }
 
 /* Adds the blocks of the square of 2^level texels at (x, y), in the order of a Z. */
@@ -21,7 +18,7 @@ static void add_square(weft_block_plan *plan, int width, int height, int level, 
     if (level == plan->side_level) {
         int side = 1 << level;
         plan->place[plan->count++] =
-            (weft_block_place){(int)x, (int)y, smaller(side, width - (int)x), smaller(side, height - (int)y)};
+            (weft_block_place){(int)x, (int)y, weft_smaller(side, width - (int)x), weft_smaller(side, height - (int)y)};
         return;
     }
     long half = 1L << (level - 1);
@@ -36,7 +33,7 @@ static bool in_one_group(const weft_block_place *a, const weft_block_place *b, i
 
 static int finished_level(const weft_block_plan *plan, size_t i)
 {
-    int level = smaller(plan->side_level, plan->last_level);
+    int level = weft_smaller(plan->side_level, plan->last_level);
     while (level < plan->last_level &&
            (i + 1 == plan->count || !in_one_group(&plan->place[i], &plan->place[i + 1], level + 1)))
         level++;

@@ -1,10 +1,11 @@
 #include "compress/run/block_reader.h"
 
+#include "base/clock.h"
+
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { SLOTS = 2 };
 
@@ -24,13 +25,6 @@ struct weft_block_reader {
     weft_error error;
     weft_block_reader_times times;
 };
-
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static uint64_t texel_bytes(const weft_dataset_layout *layout)
 {
@@ -59,12 +53,12 @@ static bool read_into(weft_block_reader *reader, size_t index)
     weft_texel_block *block = &reader->slot[index % SLOTS];
     block->place = reader->place[index];
     const weft_block_place *place = &block->place;
-    double began = seconds_now();
+    double began = weft_now_s();
     weft_error error = {0};
     weft_code code = weft_dataset_read_block(reader->dataset, place->x, place->y, place->width, place->height,
                                              block->samples, block->mask, &error);
     pthread_mutex_lock(&reader->mutex);
-    reader->times.reading += seconds_now() - began;
+    reader->times.reading += weft_now_s() - began;
     reader->times.bytes +=
         texel_bytes(weft_dataset_get_layout(reader->dataset)) * (uint64_t)place->width * (uint64_t)place->height;
     reader->code = code;
@@ -122,7 +116,7 @@ weft_code weft_block_reader_next(weft_block_reader *reader, const weft_texel_blo
 {
     if (reader->taken == reader->count)
         return weft_fail(error, WEFT_BAD_USAGE, "all %zu blocks have been read", reader->count);
-    double began = seconds_now();
+    double began = weft_now_s();
     pthread_mutex_lock(&reader->mutex);
     reader->released = reader->taken;
     pthread_cond_broadcast(&reader->changed);
@@ -133,7 +127,7 @@ weft_code weft_block_reader_next(weft_block_reader *reader, const weft_texel_blo
         *block = &reader->slot[reader->taken++ % SLOTS];
     else if (error)
         *error = reader->error;
-    reader->times.starving += seconds_now() - began;
+    reader->times.starving += weft_now_s() - began;
     pthread_mutex_unlock(&reader->mutex);
     return code;
 }

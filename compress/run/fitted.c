@@ -120,6 +120,6 @@ void weft_fitted_finish(const weft_fitted *fitted)
         weft_error_sums all = {0};
         for (size_t texel = 0; texel < texel_count(level); texel++)
             weft_error_sums_add(&all, &fitted->sums[k][texel]);
-        level->error = weft_error_result(fitted->tally[k], &all);
+        level->error = weft_error_tally_summarise(fitted->tally[k], &all);
     }
 }

@@ -1,5 +1,7 @@
 #include "compress/run/opacity.h"
 
+#include "base/integers.h"
+
 #include <stdlib.h>
 
 static weft_code store_opacity(weft_dataset *dataset, weft_material *material, weft_error *error)
@@ -20,15 +22,10 @@ static weft_code store_opacity(weft_dataset *dataset, weft_material *material, w
     return code;
 }
 
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 /* Mean code of the texels of level 0 that belong to texel (x, y) of level k, as its samples do. */
 static uint8_t mean_opacity(const weft_material_level *finest, const uint8_t *view, int k, int x, int y)
 {
-    int right = smaller((x + 1) << k, finest->width), bottom = smaller((y + 1) << k, finest->height);
+    int right = weft_smaller((x + 1) << k, finest->width), bottom = weft_smaller((y + 1) << k, finest->height);
     long sum = 0, count = (long)(right - (x << k)) * (bottom - (y << k));
     for (int row = y << k; row < bottom; row++)
         for (int column = x << k; column < right; column++)

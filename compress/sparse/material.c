@@ -93,7 +93,7 @@ static weft_code fit_level(const weft_sparse_field *field, const weft_sparse_set
     if (code == WEFT_OK) {
         for (size_t texel = 0; texel < texels; texel++)
             store_texel(field, &fitted[texel], texel, material, level, tally, &own);
-        material->level[level].error = weft_error_result(tally, &own.sums);
+        material->level[level].error = weft_error_tally_summarise(tally, &own.sums);
         counts->texels += own.texels;
         counts->empty += own.empty;
         counts->turned += own.turned;

@@ -1,5 +1,6 @@
 #include "compress/sparse/sparse.h"
 
+#include "base/error_summary.h"
 #include "compress/sparse/search.h"
 
 #include <math.h>
@@ -23,35 +24,25 @@ weft_code weft_sparse_fit(const weft_sparse_field *field, const weft_sparse_sett
 
 /* ---- Cross-validation ---- */
 
-static int compare_floats(const void *left, const void *right)
-{
-    const float *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
-
-/* Relative RMSE plus median relative error of the left-out image; `relative` [texel][3] is scratch. */
-static double prediction_error(const weft_sparse_search *run, int setting, float *relative)
+/* Relative RMSE plus median relative error of the left-out image; `value` [texel][3] is scratch. */
+static weft_code add_score(const weft_sparse_search *run, int setting, weft_compared *value, double *score)
 {
     const weft_sparse_field *field = run->field;
-    double square = 0, square_error = 0;
     size_t count = 0;
     for (size_t texel = 0; texel < weft_sparse_texel_count(field); texel++) {
         size_t at = texel * (size_t)field->image_count + (size_t)run->left_out;
         if (!(field->weight[at] > 0.5f))
             continue;
         weft_sparse_texel fit = weft_sparse_search_texel(run, setting, texel);
-        for (int k = 0; k < 3; k++) {
-            float sample = field->value[3 * at + (size_t)k];
-            float error = weft_sparse_value(&fit, field->light + 3 * at, field->view + 3 * at, k) - sample;
-            square += (double)(sample * sample);
-            square_error += (double)(error * error);
-            relative[count++] = fabsf(error) / fmaxf(sample, 1e-6f);
-        }
+        for (int k = 0; k < 3; k++)
+            value[count++] =
+                (weft_compared){.sample = field->value[3 * at + (size_t)k],
+                                .prediction = weft_sparse_value(&fit, field->light + 3 * at, field->view + 3 * at, k)};
     }
-    if (count == 0 || !(square > 0))
-        return 0;
-    qsort(relative, count, sizeof *relative, compare_floats);
-    return sqrt(square_error / square) + (double)relative[count / 2];
+    weft_error_summary summary;
+    weft_code code = weft_error_summary_of(value, count, &summary, NULL);
+    *score += summary.relative_rmse + summary.median_relative;
+    return code;
 }
 
 static int list_settings(weft_sparse_setting *setting)
@@ -72,23 +63,27 @@ static weft_code cross_validate(const weft_sparse_field *field, weft_sparse_sett
     weft_sparse_setting setting[WEFT_SPARSE_SETTINGS];
     double score[WEFT_SPARSE_SETTINGS] = {0};
     weft_sparse_search run = {.field = field, .setting = setting, .setting_count = list_settings(setting)};
-    size_t errors = 3 * weft_sparse_texel_count(field), bytes = errors * (size_t)run.setting_count * sizeof(float);
-    float *relative = malloc(bytes);
+    size_t values = 3 * weft_sparse_texel_count(field);
+    size_t bytes = values * (size_t)run.setting_count * sizeof(weft_compared);
+    weft_compared *value = malloc(bytes);
     weft_code code =
-        relative ? weft_sparse_search_create(&run, error) : weft_fail_memory(error, "cross-validation", bytes);
+        value ? weft_sparse_search_create(&run, error) : weft_fail_memory(error, "cross-validation", bytes);
     for (int fold = 0; code == WEFT_OK && fold < field->image_count; fold++) {
+        int failures = 0;
         run.left_out = fold;
         weft_sparse_search_run(&run);
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) reduction(+ : failures)
         for (int s = 0; s < run.setting_count; s++)
-            score[s] += prediction_error(&run, s, relative + (size_t)s * errors);
+            failures += add_score(&run, s, value + (size_t)s * values, &score[s]) != WEFT_OK;
+        if (failures > 0)
+            code = weft_fail_memory(error, "cross-validation", bytes);
     }
     int chosen = 0;
     for (int s = 1; s < run.setting_count; s++)
         chosen = score[s] < score[chosen] ? s : chosen;
     *best = setting[chosen];
     weft_sparse_search_free(&run);
-    free(relative);
+    free(value);
     return code;
 }
 

@@ -1,3 +1,4 @@
+#include "base/integers.h"
 #include "compress/texel/model_ladder.h"
 #include "compress/texel/parts.h"
 
@@ -62,18 +63,13 @@ weft_error_tally *weft_texel_fitter_tally(weft_texel_fitter *fitter)
     return fitter->tally;
 }
 
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 int weft_texel_group(const weft_dataset_layout *layout, int level, int x, int y, int extent[4])
 {
     int side = 1 << level;
     extent[0] = x * side;
     extent[1] = y * side;
-    extent[2] = smaller((x + 1) * side, layout->width);
-    extent[3] = smaller((y + 1) * side, layout->height);
+    extent[2] = weft_smaller((x + 1) * side, layout->width);
+    extent[3] = weft_smaller((y + 1) * side, layout->height);
     return (extent[2] - extent[0]) * (extent[3] - extent[1]);
 }
 

@@ -1,9 +1,6 @@
 #include "player/texture/mip_layout.h"
 
-static int larger(int a, int b)
-{
-    return a > b ? a : b;
-}
+#include "base/integers.h"
 
 static int rounded_up(int size, int block)
 {
@@ -24,8 +21,8 @@ weft_mip_layout weft_mip_layout_of(int width, int height, int level_count, int b
             y = below;
         }
         layout.area[level] = (weft_mip_area){x, y, width, height};
-        layout.width = larger(layout.width, x + across);
-        layout.height = larger(layout.height, y + down);
+        layout.width = weft_larger(layout.width, x + across);
+        layout.height = weft_larger(layout.height, y + down);
         if (level == 0)
             left = across;
         else if (x == left)

@@ -1,3 +1,4 @@
+#include "base/clock.h"
 #include "player/window/application_parts.h"
 
 #include "player/window/keys.h"
@@ -8,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64, PLOT_SIZE = 142 };
 
@@ -19,20 +19,13 @@ static const double turn_rad_per_s = 0.5;
 static const double note_s = 8, short_note_s = 1.5;
 static const double poll_of_loading_s = 0.01; /* frames that show nothing new would take from the thread that reads */
 
-double weft_application_now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 void weft_application_tell(weft_application *a, bool is_error, const char *text)
 {
     if (!text[0])
         return;
     snprintf(a->note, sizeof a->note, "%s", text);
     a->note_is_error = is_error;
-    a->note_ends_s = weft_application_now_s() + note_s;
+    a->note_ends_s = weft_now_s() + note_s;
 }
 
 /* What the host could not do is told and the window stays. */
@@ -86,7 +79,7 @@ static void on_key(void *context, int key, int action, int modifiers)
         weft_keys_press(i, key, modifiers, action == GLFW_REPEAT);
     if (i->said[0]) {
         weft_application_tell(a, false, i->said);
-        a->note_ends_s = weft_application_now_s() + short_note_s;
+        a->note_ends_s = weft_now_s() + short_note_s;
         i->said[0] = 0;
     }
 }
@@ -188,10 +181,10 @@ static weft_code prepare_canvas(weft_application *a, int width, int height, weft
     }
     if (i->changed || is_resized) {
         weft_canvas_clear(&a->canvas);
-        a->moved_s = weft_application_now_s();
+        a->moved_s = weft_now_s();
         a->rests = false;
         a->errors[0] = 0;
-    } else if (!a->rests && weft_application_now_s() - a->moved_s > settle_s) {
+    } else if (!a->rests && weft_now_s() - a->moved_s > settle_s) {
         weft_canvas_clear(&a->canvas);
         a->rests = true;
     }
@@ -233,12 +226,12 @@ static weft_code draw_frame(weft_application *a, weft_error *error)
 {
     const weft_scene *scene = &a->interaction.scene;
     weft_sampling sampling = sampling_of(a);
-    double start = weft_application_now_s();
+    double start = weft_now_s();
     weft_canvas_begin_frame(&a->canvas);
     WEFT_TRY(weft_player_draw(a->player, scene, a->canvas.width, a->canvas.height, sampling, error));
     weft_canvas_end_frame(&a->canvas);
     glFinish();
-    double elapsed_ms = 1000 * (weft_application_now_s() - start);
+    double elapsed_ms = 1000 * (weft_now_s() - start);
     a->total_ms += elapsed_ms;
     /* The first frame builds programs and is no measure of the others. */
     if (a->frame_count++ > 0)
@@ -334,7 +327,7 @@ static void grant_wishes(weft_application *a)
 
 static void turn_by_itself(weft_application *a)
 {
-    double now = weft_application_now_s();
+    double now = weft_now_s();
     if (a->interaction.turns && a->interaction.drag == WEFT_DRAG_NONE)
         weft_interaction_turn(&a->interaction, turn_rad_per_s * (now - a->stepped_s), 0);
     a->stepped_s = now;
@@ -444,7 +437,7 @@ weft_code weft_application_run(weft_application *a, const weft_scene *scene, wef
 {
     a->interaction = (weft_interaction){.scene = *scene, .start = *scene, .changed = true, .shows_panel = true};
     a->interaction.before = scene->pane[0];
-    a->stepped_s = weft_application_now_s();
+    a->stepped_s = weft_now_s();
     find_modes(a);
     long limit = a->setup.frame_limit;
     while (weft_window_poll(a->window, wait_s(a)) && (limit == 0 || a->frame_count < limit))

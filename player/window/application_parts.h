@@ -34,9 +34,6 @@ struct weft_application {
     double note_ends_s;
 };
 
-/* Seconds from some start. */
-double weft_application_now_s(void);
-
 /* Tells the user; `is_error` in red. */
 void weft_application_tell(weft_application *application, bool is_error, const char *text);
 

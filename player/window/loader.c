@@ -1,9 +1,10 @@
 #include "player/window/loader.h"
 
+#include "base/clock.h"
+
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
-#include <time.h>
 
 static const size_t most_bytes_waiting = (size_t)64 << 20;
 
@@ -250,16 +251,9 @@ static weft_code finish(weft_load *load, bool *shown, weft_error *error)
     return code;
 }
 
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 weft_code weft_loader_poll(weft_loader *loader, double budget_s, bool *shown, weft_error *error)
 {
-    double end_s = now_s() + budget_s;
+    double end_s = weft_now_s() + budget_s;
     *shown = false;
     do {
         pthread_mutex_lock(&loader->mutex);
@@ -272,7 +266,7 @@ weft_code weft_loader_poll(weft_loader *loader, double budget_s, bool *shown, we
             run_piece(loader, taken);
         else
             break;
-    } while (now_s() < end_s);
+    } while (weft_now_s() < end_s);
     return WEFT_OK;
 }
 

@@ -1,3 +1,4 @@
+#include "base/clock.h"
 #include "player/window/application_parts.h"
 
 #include "player/scene/false_colour.h"
@@ -113,7 +114,7 @@ void weft_application_show_notes(const weft_application *a, int width, int heigh
         show_progress(a, middle, bottom);
         bottom -= 2 * MARGIN * a->scale;
     }
-    if (a->note[0] && weft_application_now_s() < a->note_ends_s)
+    if (a->note[0] && weft_now_s() < a->note_ends_s)
         show_note(a, middle, bottom);
     if (a->interaction.shows_help)
         show_help(&room);

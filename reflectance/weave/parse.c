@@ -236,6 +236,8 @@ static weft_code parse_weave(weave_parser *parser)
     WEFT_TRY(block_check_complete(&parser->block, weave_fields, WEAVE_FIELD_COUNT, seen));
     if (!(seen & SEEN_PATTERN))
         return block_fail(&parser->block, "'pattern' is missing in the block that ends here");
+    if (parser->values.frozen_radius != 0 && parser->values.frozen_radius != 1)
+        return block_fail(&parser->block, "frozenRadius = %g, must be 0 or 1", parser->values.frozen_radius);
     WEFT_TRY(check_layout(parser));
     WEFT_TRY(check_pattern(parser));
     WEFT_TRY(block_advance(&parser->block));

@@ -1,6 +1,6 @@
 #include "registration/radiometry/radiometry.h"
 
-#include "registration/radiometry/statistics.h"
+#include "base/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

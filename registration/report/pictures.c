@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/colour.h"
 #include "base/image.h"
+#include "base/statistics.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -30,25 +31,17 @@ static weft_code write_picture(const weft_registration *registration, int stay, 
     return weft_image_write(path, image, NULL, error);
 }
 
-static int compare_floats(const void *first, const void *second)
-{
-    float a = *(const float *)first, b = *(const float *)second;
-    return a < b ? -1 : a > b;
-}
-
-/* The value that 2 % of the finite ones exceed; 1 where there is none above 0. */
+/* The quantile of 0.98 of the finite values; 1 where it is not above 0. */
 static float white_of(const float *value, size_t count)
 {
-    float *sorted = malloc((count + 1) * sizeof *sorted);
-    size_t finite = 0;
-    for (size_t i = 0; sorted && i < count; i++) {
+    float *finite = malloc((count + 1) * sizeof *finite);
+    size_t finite_count = 0;
+    for (size_t i = 0; finite && i < count; i++) {
         if (isfinite(value[i]))
-            sorted[finite++] = value[i];
+            finite[finite_count++] = value[i];
     }
-    if (finite)
-        qsort(sorted, finite, sizeof *sorted, compare_floats);
-    float white = finite ? sorted[finite - 1 - finite / 50] : 1;
-    free(sorted);
+    float white = finite_count ? weft_quantile_of_floats(finite, finite_count, 0.98) : 1;
+    free(finite);
     return white > 0 ? white : 1;
 }
 

@@ -1,28 +1,9 @@
 #include "registration/report/tables.h"
 
-#include "registration/radiometry/statistics.h"
+#include "base/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-void weft_write_escaped(FILE *page, const char *text)
-{
-    for (; *text; text++) {
-        switch (*text) {
-        case '&':
-            fputs("&amp;", page);
-            break;
-        case '<':
-            fputs("&lt;", page);
-            break;
-        case '>':
-            fputs("&gt;", page);
-            break;
-        default:
-            fputc(*text, page);
-        }
-    }
-}
 
 static int ring_of_stay(const weft_registration *r, int stay)
 {
@@ -76,32 +57,33 @@ weft_ring_summary weft_ring_summarise(const weft_session *session, const weft_re
     return summary;
 }
 
-void weft_write_faults(FILE *page, const weft_session *session, const weft_registration *r)
+void weft_write_faults(weft_page *page, const weft_session *session, const weft_registration *r)
 {
     if (r->fault_count == 0 && r->failed_stays == 0)
         return;
     fputs("<h2>What could not be used</h2>\n<table><tr><th class=\"text\">what</th><th class=\"text\">why</th></tr>\n",
-          page);
+          page->html);
     for (int stay = 0; stay < r->survey.stay_count; stay++) {
         const weft_stay *one = &r->survey.stay[stay];
         if (r->pose[stay].source != WEFT_POSE_FAILED)
             continue;
-        fprintf(page, "<tr class=\"bad\"><td class=\"text\">view %s, stay %d, %d photographs</td><td class=\"text\">",
+        fprintf(page->html,
+                "<tr class=\"bad\"><td class=\"text\">view %s, stay %d, %d photographs</td><td class=\"text\">",
                 weft_view_name_of(r->survey.view[one->view]).text, one->stay, one->count);
-        weft_write_escaped(page, r->pose[stay].remark);
-        fputs("</td></tr>\n", page);
+        weft_page_text(page, r->pose[stay].remark);
+        fputs("</td></tr>\n", page->html);
     }
     for (int shot = 0; shot < session->shot_count; shot++) {
         if (!r->fault[shot].reason[0])
             continue;
-        fprintf(page, "<tr class=\"bad\"><td class=\"text\">photograph %d</td><td class=\"text\">", shot);
-        weft_write_escaped(page, r->fault[shot].reason);
-        fputs("</td></tr>\n", page);
+        fprintf(page->html, "<tr class=\"bad\"><td class=\"text\">photograph %d</td><td class=\"text\">", shot);
+        weft_page_text(page, r->fault[shot].reason);
+        fputs("</td></tr>\n", page->html);
     }
-    fputs("</table>\n", page);
+    fputs("</table>\n", page->html);
 }
 
-void weft_write_rings(FILE *page, const weft_session *session, const weft_registration *r)
+void weft_write_rings(weft_page *page, const weft_session *session, const weft_registration *r)
 {
     fputs(
         "<h2>By ring of views</h2>\n<p>The error is the random one, estimated from what the drawing leaves unexplained "
@@ -111,22 +93,22 @@ void weft_write_rings(FILE *page, const weft_session *session, const weft_regist
         "<table><tr><th>view</th><th>stays</th><th>failed</th><th>error, median (texels)</th><th>worst</th>"
         "<th>correlation, median</th><th>worst</th><th>shift, median (mm)</th><th>worst</th><th>saturated "
         "(%)</th></tr>\n",
-        page);
+        page->html);
     for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
         weft_ring_summary s = weft_ring_summarise(session, r, ring);
         if (s.stays == 0)
             continue;
-        fprintf(page,
+        fprintf(page->html,
                 "<tr%s><td>%d&deg;</td><td>%d</td><td>%d</td><td>%.4f</td><td>%.4f</td><td>%.4f</td><td>%.4f</td>"
                 "<td>%.3f</td><td>%.3f</td><td>%.3f</td></tr>\n",
                 s.failed ? " class=\"weak\"" : "", 15 * ring, s.stays, s.failed, s.median_uncertainty,
                 s.worst_uncertainty, s.median_correlation, s.worst_correlation, s.median_shift_mm, s.worst_shift_mm,
                 100 * s.saturated);
     }
-    fputs("</table>\n", page);
+    fputs("</table>\n", page->html);
 }
 
-static void write_stay(FILE *page, const weft_session *session, const weft_registration *r, int stay)
+static void write_stay(weft_page *page, const weft_session *session, const weft_registration *r, int stay)
 {
     const weft_stay *one = &r->survey.stay[stay];
     const weft_view_pose *pose = &r->pose[stay];
@@ -134,24 +116,26 @@ static void write_stay(FILE *page, const weft_session *session, const weft_regis
     const char *class = pose->source == WEFT_POSE_FAILED                ? " class=\"bad\""
                         : pose->remark[0] || r->used[stay] < one->count ? " class=\"weak\""
                                                                         : "";
-    fprintf(page, "<tr%s><td>%s</td><td>%.1f</td><td>%.1f</td><td>%d</td><td>%d of %d</td><td class=\"text\">%s</td>",
-            class, weft_view_name_of(view).text, weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad),
-            one->stay, r->used[stay], one->count, weft_pose_source_name(pose));
-    fprintf(page, "<td>%d</td><td>%.2f</td><td>%.4f</td><td>%.4f</td><td>%.3f</td><td class=\"text\">",
+    fprintf(page->html,
+            "<tr%s><td>%s</td><td>%.1f</td><td>%.1f</td><td>%d</td><td>%d of %d</td><td class=\"text\">%s</td>", class,
+            weft_view_name_of(view).text, weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), one->stay,
+            r->used[stay], one->count, weft_pose_source_name(pose));
+    fprintf(page->html, "<td>%d</td><td>%.2f</td><td>%.4f</td><td>%.4f</td><td>%.3f</td><td class=\"text\">",
             pose->marker_count, pose->marker_rms_px, pose->correlation,
             weft_registration_uncertainty_texels(session, r, stay), pose->shift_mm);
-    weft_write_escaped(page, pose->remark);
-    fputs("</td></tr>\n", page);
+    weft_page_text(page, pose->remark);
+    fputs("</td></tr>\n", page->html);
 }
 
-void weft_write_stays(FILE *page, const weft_session *session, const weft_registration *r)
+void weft_write_stays(weft_page *page, const weft_session *session, const weft_registration *r)
 {
     fputs(
-        "<h2>Every view</h2>\n<table><tr><th>view</th><th>&theta;&deg;</th><th>&phi;&deg;</th><th>stay</th>"
+        "<h2>Every view</h2>\n<table "
+        "class=\"long\"><tr><th>view</th><th>&theta;&deg;</th><th>&phi;&deg;</th><th>stay</th>"
         "<th>photographs</th><th class=\"text\">used</th><th>markers</th><th>markers' RMS (px)</th><th>correlation</th>"
         "<th>error (texels)</th><th>shift (mm)</th><th class=\"text\">remark</th></tr>\n",
-        page);
+        page->html);
     for (int stay = 0; stay < r->survey.stay_count; stay++)
         write_stay(page, session, r, stay);
-    fputs("</table>\n", page);
+    fputs("</table>\n", page->html);
 }

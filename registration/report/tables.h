@@ -2,9 +2,8 @@
 #ifndef WEFT_REGISTRATION_REPORT_TABLES_H
 #define WEFT_REGISTRATION_REPORT_TABLES_H
 
+#include "base/page.h"
 #include "registration/outcome/outcome.h"
-
-#include <stdio.h>
 
 /* The stays of one ring of views (as in ubo81: 0, 15 .. 75 degrees; the nearest counts). */
 typedef struct weft_ring_summary {
@@ -15,18 +14,13 @@ typedef struct weft_ring_summary {
     double saturated; /* fraction of the samples */
 } weft_ring_summary;
 
-enum { WEFT_RING_COUNT = 6 };
-
 /* ring in [0, WEFT_RING_COUNT), or -1 for all. Pure. */
 weft_ring_summary weft_ring_summarise(const weft_session *session, const weft_registration *registration, int ring);
 
-/* Text with the characters that mean something to HTML replaced. */
-void weft_write_escaped(FILE *page, const char *text);
-
 /* Sections of the page, each with its heading; nothing where there is nothing to say. */
-void weft_write_faults(FILE *page, const weft_session *session, const weft_registration *registration);
-void weft_write_rings(FILE *page, const weft_session *session, const weft_registration *registration);
-void weft_write_whites(FILE *page, const weft_session *session, const weft_registration *registration);
-void weft_write_stays(FILE *page, const weft_session *session, const weft_registration *registration);
+void weft_write_faults(weft_page *page, const weft_session *session, const weft_registration *registration);
+void weft_write_rings(weft_page *page, const weft_session *session, const weft_registration *registration);
+void weft_write_whites(weft_page *page, const weft_session *session, const weft_registration *registration);
+void weft_write_stays(weft_page *page, const weft_session *session, const weft_registration *registration);
 
 #endif

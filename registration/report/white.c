@@ -1,6 +1,6 @@
 #include "registration/report/tables.h"
 
-#include "registration/radiometry/statistics.h"
+#include "base/statistics.h"
 
 #include <stdlib.h>
 
@@ -24,13 +24,13 @@ static int collect_levels(const weft_session *session, const weft_registration *
     return count;
 }
 
-static void write_ring(FILE *page, int ring, double overall, double *level, double *disagreement, int count)
+static void write_ring(weft_page *page, int ring, double overall, double *level, double *disagreement, int count)
 {
     if (count == 0)
         return;
     double median = weft_quantile(level, count, 0.5);
     fprintf(
-        page,
+        page->html,
         "<tr><td>%d&deg;</td><td>%d</td><td>%.5g</td><td>%+.2f</td><td>%+.2f &hellip; %+.2f</td><td>%.2f</td></tr>\n",
         15 * ring, count, median, 100 * (median / overall - 1), 100 * (weft_quantile(level, count, 0.05) / median - 1),
         100 * (weft_quantile(level, count, 0.95) / median - 1), 100 * weft_quantile(disagreement, count, 0.5));
@@ -48,30 +48,30 @@ static double level_of_stay(const weft_registration *r, const weft_stay *stay, d
 }
 
 /* A dot for every stay: its median white level against the median of all, over the order in which they were taken. */
-static void write_drift(FILE *page, const weft_registration *r, double overall, double *scratch)
+static void write_drift(weft_page *page, const weft_registration *r, double overall, double *scratch)
 {
     enum { width = 1000, height = 160, margin = 40 };
     const double reach = 0.05;
     int last = 1;
     for (int i = 0; i < r->survey.stay_count; i++)
         last = r->survey.stay[i].stay > last ? r->survey.stay[i].stay : last;
-    fprintf(page, "<svg viewBox=\"0 0 %d %d\" font-size=\"12\" fill=\"#5b6675\">", width, height);
+    fprintf(page->html, "<svg class=\"chart\" viewBox=\"0 0 %d %d\" font-size=\"12\" fill=\"#5b6675\">", width, height);
     for (int tick = -1; tick <= 1; tick++)
         fprintf(
-            page,
+            page->html,
             "<line x1=\"%d\" x2=\"%d\" y1=\"%d\" y2=\"%d\" stroke=\"#dfe3e8\"/><text x=\"4\" y=\"%d\">%+d %%</text>",
             margin, width - 10, height / 2 - tick * 60, height / 2 - tick * 60, height / 2 - tick * 60 + 4, 5 * tick);
     for (int i = 0; i < r->survey.stay_count; i++) {
         double level = level_of_stay(r, &r->survey.stay[i], scratch);
         double y = weft_clamp((level / overall - 1) / reach, -1.2, 1.2);
         if (level > 0)
-            fprintf(page, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"#2b6cb0\"/>",
+            fprintf(page->html, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"#2b6cb0\"/>",
                     margin + 10 + (double)(width - margin - 30) * r->survey.stay[i].stay / last, height / 2 - 60 * y);
     }
-    fputs("</svg>\n", page);
+    fputs("</svg>\n", page->html);
 }
 
-void weft_write_whites(FILE *page, const weft_session *session, const weft_registration *r)
+void weft_write_whites(weft_page *page, const weft_session *session, const weft_registration *r)
 {
     size_t shots = (size_t)session->shot_count;
     double *level = calloc(2 * shots, sizeof *level);
@@ -82,16 +82,17 @@ void weft_write_whites(FILE *page, const weft_session *session, const weft_regis
     fputs("<h2>White reference</h2>\n<p>The white level is the raw value above black, per second of exposure, of a "
           "perfect "
           "white diffuser lit along its normal; of a steady lamp it is the same in every photograph.",
-          page);
+          page->html);
     if (r->estimated_whites)
-        fprintf(page, " In %d photographs no patch could be measured; they use the level of the others.",
+        fprintf(page->html, " In %d photographs no patch could be measured; they use the level of the others.",
                 r->estimated_whites);
     fputs("</p>\n<table><tr><th>light</th><th>photographs</th><th>white level, median</th><th>against all (%)</th>"
           "<th>5th to 95th percentile (%)</th><th>patches disagree by (%)</th></tr>\n",
-          page);
+          page->html);
     for (int ring = 0; ring < WEFT_RING_COUNT && overall > 0; ring++)
         write_ring(page, ring, overall, level, disagreement, collect_levels(session, r, ring, level, disagreement));
-    fputs("</table>\n<p>White level of every stay of the camera, in the order in which they were taken:</p>\n", page);
+    fputs("</table>\n<p>White level of every stay of the camera, in the order in which they were taken:</p>\n",
+          page->html);
     if (overall > 0)
         write_drift(page, r, overall, level);
     free(level);

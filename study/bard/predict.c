@@ -1,13 +1,12 @@
 #include "study/bard/predict.h"
 
-#include "btf/dataset/blocks.h"
+#include "base/integers.h"
+#include "btf/dataset/derived.h"
 #include "btf/direction/direction.h"
 #include "study/bard/texel.h"
 
-#include <jansson.h>
 #include <omp.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 
 /* More samples than these do not change a median that is printed with three digits. */
 static const long enough_samples = 2000000;
@@ -30,8 +29,9 @@ typedef struct predicting {
     int thread_count;
     weft_bard_texel *texel; /* [thread_count] */
     long stride;            /* the error is measured in every stride-th texel */
-    weft_prediction *value;
-    long value_count;
+    weft_compared *value;
+    uint8_t *light_ring; /* [value_count] of ubo81 */
+    size_t value_count;
 } predicting;
 
 /* The texels of the dataset that are in memory. */
@@ -72,13 +72,13 @@ static void compare_texel(predicting *pass, size_t at)
         size_t sample = at * (size_t)layout->image_count + (size_t)i;
         if (pass->plan.is_used[i] || pass->measured_mask[sample] || pass->mask[sample] || !(pass->plan.mix[i].gain > 0))
             continue;
-        weft_vec3 view = layout->view[layout->view_of_image[i]];
-        uint8_t view_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(view).theta_rad);
         uint8_t light_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(layout->light[i]).theta_rad);
-        for (size_t c = 0; c < 3; c++)
+        for (size_t c = 0; c < 3; c++) {
+            pass->light_ring[pass->value_count] = light_ring;
             pass->value[pass->value_count++] =
-                (weft_prediction){weft_float_of_half(pass->predicted[3 * sample + c]),
-                                  weft_float_of_half(pass->measured[3 * sample + c]), view_ring, light_ring};
+                (weft_compared){.sample = weft_float_of_half(pass->measured[3 * sample + c]),
+                                .prediction = weft_float_of_half(pass->predicted[3 * sample + c])};
+        }
     }
 }
 
@@ -105,20 +105,15 @@ static weft_code pass_block(predicting *pass, texel_block block, weft_dataset_bl
 
 /* ---- All blocks ---- */
 
-static int least(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 static weft_code pass_blocks(predicting *pass, weft_dataset_block_writer *writer, const weft_progress *progress,
                              weft_error *error)
 {
     const weft_dataset_layout *layout = pass->layout;
     weft_progress_report(progress, "predicting images", 0, layout->height);
     for (int y = 0; y < layout->height; y += pass->block_height) {
-        int height = least(pass->block_height, layout->height - y);
+        int height = weft_smaller(pass->block_height, layout->height - y);
         for (int x = 0; x < layout->width; x += pass->block_width) {
-            texel_block block = {x, y, least(pass->block_width, layout->width - x), height};
+            texel_block block = {x, y, weft_smaller(pass->block_width, layout->width - x), height};
             WEFT_TRY(pass_block(pass, block, writer, error));
         }
         weft_progress_report(progress, "predicting images", y + height, layout->height);
@@ -162,31 +157,14 @@ static weft_code copy_opacity(weft_dataset *dataset, weft_dataset_block_writer *
     return code;
 }
 
-/* That of the dataset, and what was done to it. The caller frees it; NULL where memory is short. */
-static char *provenance_of(const predicting *pass)
-{
-    const weft_bard_report *report = pass->report;
-    json_t *provenance = json_loads(pass->layout->provenance, 0, NULL);
-    json_t *prediction = json_pack("{ss ss sf sf si si}", "model", "BARD", "map",
-                                   pass->options->map == WEFT_BARD_PRINTED ? "printed" : "in plane", "diffuse_share",
-                                   pass->options->diffuse_share, "largest_tilt_deg", report->largest_tilt_deg,
-                                   "photographs_used", report->photograph_count, "images", report->image_count);
-    json_object_set_new(provenance, "prediction", prediction);
-    char *text = provenance ? json_dumps(provenance, JSON_COMPACT) : NULL;
-    json_decref(provenance);
-    return text;
-}
-
 static weft_code finish(const predicting *pass, weft_dataset_block_writer *writer, weft_error *error)
 {
-    char *provenance = provenance_of(pass);
-    if (!provenance) {
-        weft_dataset_block_writer_abandon(writer);
-        return weft_fail_memory(error, "provenance", 0);
-    }
-    weft_code code = weft_dataset_block_writer_finish(writer, provenance, error);
-    free(provenance);
-    return code;
+    const weft_bard_report *report = pass->report;
+    json_t *made = json_pack("{ss ss sf sf si si}", "model", "BARD", "map",
+                             pass->options->map == WEFT_BARD_PRINTED ? "printed" : "in plane", "diffuse_share",
+                             pass->options->diffuse_share, "largest_tilt_deg", report->largest_tilt_deg,
+                             "photographs_used", report->photograph_count, "images", report->image_count);
+    return weft_derived_dataset_finish(writer, pass->layout, "prediction", made, error);
 }
 
 static weft_code write_predictions(predicting *pass, const char *output, const weft_progress *progress,
@@ -231,8 +209,9 @@ static weft_code allocate(predicting *pass, weft_error *error)
     pass->measured_mask = malloc(block);
     pass->mask = malloc(block);
     pass->value = malloc(values * sizeof *pass->value);
-    if (!pass->measured || !pass->predicted || !pass->measured_mask || !pass->mask || !pass->value)
-        return weft_fail_memory(error, "block of texels", 14 * block + values * sizeof *pass->value);
+    pass->light_ring = malloc(values);
+    if (!pass->measured || !pass->predicted || !pass->measured_mask || !pass->mask || !pass->value || !pass->light_ring)
+        return weft_fail_memory(error, "block of texels", 14 * block + values * (sizeof *pass->value + 1));
     return allocate_texels(pass, error);
 }
 
@@ -246,28 +225,17 @@ static void free_pass(predicting *pass)
     free(pass->measured_mask);
     free(pass->mask);
     free(pass->value);
+    free(pass->light_ring);
     weft_bard_plan_free(&pass->plan);
 }
 
 static weft_code summarise(const predicting *pass, weft_error *error)
 {
     weft_bard_report *report = pass->report;
-    WEFT_TRY(weft_prediction_error_of(pass->value, pass->value_count, (weft_prediction_choice){WEFT_CHOOSE_ALL, 0},
-                                      &report->all, error));
+    WEFT_TRY(weft_error_summary_of(pass->value, pass->value_count, &report->all, error));
     for (int ring = 0; ring < WEFT_RING_COUNT; ring++)
-        WEFT_TRY(weft_prediction_error_of(pass->value, pass->value_count,
-                                          (weft_prediction_choice){WEFT_CHOOSE_LIGHT_RING, ring},
-                                          &report->by_light[ring], error));
-    return WEFT_OK;
-}
-
-static weft_code check_output(const weft_dataset *dataset, const char *output, weft_error *error)
-{
-    struct stat a, b;
-    if (stat(weft_dataset_path(dataset), &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev &&
-        a.st_ino == b.st_ino)
-        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is the dataset itself; predictions would replace its photographs",
-                         output);
+        WEFT_TRY(weft_error_summary_of_group(pass->value, pass->light_ring, pass->value_count, ring,
+                                             &report->by_light[ring], error));
     return WEFT_OK;
 }
 
@@ -277,7 +245,7 @@ weft_code weft_bard_predict(weft_dataset *dataset, const char *output, const wef
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     predicting pass = {.dataset = dataset, .layout = layout, .options = options, .report = report};
     *report = (weft_bard_report){.image_count = layout->image_count};
-    WEFT_TRY(check_output(dataset, output, error));
+    WEFT_TRY(weft_derived_dataset_check(dataset, output, "predictions would replace its photographs", error));
     WEFT_TRY(weft_bard_plan_create(layout, weft_dataset_path(dataset), options->map, &pass.plan, error));
     report->photograph_count = pass.plan.count;
     report->largest_tilt_deg = pass.plan.largest_tilt_deg;

@@ -22,10 +22,10 @@ typedef struct weft_bard_report {
     double largest_tilt_deg;           /* of the lights that were used, from the normal */
     long filled_count;                 /* samples of the table that were masked, taken from the nearest valid view */
     long empty_texel_count;            /* texels without any valid sample in the table: written as missing */
-    weft_prediction_error all;         /* of the predicted images against the valid samples, as reflectance times cosine
-                                          or as the dataset holds it; over an even choice of texels where there are
-                                          many */
-    weft_prediction_error by_light[WEFT_RING_COUNT]; /* rings of ubo81 */
+    weft_error_summary all;            /* of the predicted images against the valid samples, as reflectance times cosine
+                                             or as the dataset holds it; over an even choice of texels where there are
+                                             many */
+    weft_error_summary by_light[WEFT_RING_COUNT]; /* rings of ubo81 */
 } weft_bard_report;
 
 /* Predicts every image of a far dataset from those of the light along the normal (of each view the image lit from

@@ -1,5 +1,6 @@
 #include "study/compare/compare.h"
 
+#include "base/atomic_file.h"
 #include "btf/dataset/fingerprint.h"
 #include "geometry/yarn/stitch.h"
 #include "study/compare/analytic.h"
@@ -8,7 +9,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* Freed with close_files. */
 typedef struct compared_files {
@@ -17,16 +17,10 @@ typedef struct compared_files {
     weft_compared_weave weave;
 } compared_files;
 
-static double file_bytes(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 ? (double)status.st_size : 0;
-}
-
 static void weigh(const weft_compare_options *options, const weft_dataset_layout *layout, weft_comparison *comparison)
 {
-    comparison->dataset_bytes = file_bytes(options->dataset);
-    comparison->material_bytes = file_bytes(options->material);
+    comparison->dataset_bytes = (double)weft_file_bytes(options->dataset);
+    comparison->material_bytes = (double)weft_file_bytes(options->material);
     comparison->half_float_bytes =
         (double)layout->width * layout->height * layout->image_count * 3 * (double)sizeof(weft_half);
 }
@@ -88,7 +82,7 @@ static weft_code measure_means(const weft_compare_options *options, const compar
                                const weft_progress *progress, weft_comparison *comparison, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(files->dataset);
-    weft_prediction_error mean[WEFT_CONTENDER_COUNT];
+    weft_error_summary mean[WEFT_CONTENDER_COUNT];
     weft_contenders contenders;
     WEFT_TRY(weft_contenders_open(options->dataset, options->material, &files->material, files->weave.path,
                                   options->bard, &contenders, error));

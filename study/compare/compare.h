@@ -27,9 +27,9 @@ enum { WEFT_LEAVE_ONE_OUT_LIMIT = 30 };
 
 /* A model against the data. */
 typedef struct weft_compared_model {
-    const char *name;           /* "compressed", "analytic", "BARD" */
-    weft_measurement texture;   /* sample by sample */
-    weft_prediction_error mean; /* of the mean BRDF over the directions of the images */
+    const char *name;         /* "compressed", "analytic", "BARD" */
+    weft_measurement texture; /* sample by sample */
+    weft_error_summary mean;  /* of the mean BRDF over the directions of the images */
 } weft_compared_model;
 
 /* What was measured. Freed with weft_comparison_free. */

@@ -60,14 +60,14 @@ weft_code weft_contender_brdf(const weft_contender *contender, weft_vec3 light, 
 /* Values of the data and of all models for the same directions. */
 typedef struct mean_values {
     long count; /* of directions with data */
-    weft_prediction *value[WEFT_CONTENDER_COUNT];
+    weft_compared *value[WEFT_CONTENDER_COUNT];
 } mean_values;
 
-static void keep(weft_prediction value[3], weft_rgb prediction, weft_rgb sample)
+static void keep(weft_compared value[3], weft_rgb prediction, weft_rgb sample)
 {
-    value[0] = (weft_prediction){.prediction = (float)prediction.r, .sample = (float)sample.r};
-    value[1] = (weft_prediction){.prediction = (float)prediction.g, .sample = (float)sample.g};
-    value[2] = (weft_prediction){.prediction = (float)prediction.b, .sample = (float)sample.b};
+    value[0] = (weft_compared){.sample = (float)sample.r, .prediction = (float)prediction.r};
+    value[1] = (weft_compared){.sample = (float)sample.g, .prediction = (float)prediction.g};
+    value[2] = (weft_compared){.sample = (float)sample.b, .prediction = (float)prediction.b};
 }
 
 static weft_code evaluate_image(const weft_contenders *contenders, const weft_dataset_layout *layout, int image,
@@ -95,7 +95,7 @@ static weft_code evaluate(const weft_contenders *contenders, const weft_dataset_
 {
     int stride = (layout->image_count + MEAN_IMAGES - 1) / MEAN_IMAGES;
     for (int i = 1; i < contenders->count; i++) {
-        size_t bytes = 3 * (size_t)layout->image_count * sizeof(weft_prediction);
+        size_t bytes = 3 * (size_t)layout->image_count * sizeof(weft_compared);
         values->value[i] = malloc(bytes);
         if (!values->value[i])
             return weft_fail_memory(error, "mean BRDFs", bytes);
@@ -108,14 +108,13 @@ static weft_code evaluate(const weft_contenders *contenders, const weft_dataset_
 }
 
 weft_code weft_contenders_measure(const weft_contenders *contenders, const weft_dataset_layout *layout,
-                                  const weft_progress *progress, weft_prediction_error *result, weft_error *error)
+                                  const weft_progress *progress, weft_error_summary *result, weft_error *error)
 {
     mean_values values = {0};
     weft_code code = evaluate(contenders, layout, progress, &values, error);
-    result[0] = (weft_prediction_error){0};
+    result[0] = (weft_error_summary){0};
     for (int i = 1; i < contenders->count && code == WEFT_OK; i++)
-        code = weft_prediction_error_of(values.value[i], 3 * values.count, (weft_prediction_choice){WEFT_CHOOSE_ALL, 0},
-                                        &result[i], error);
+        code = weft_error_summary_of(values.value[i], 3 * (size_t)values.count, &result[i], error);
     for (int i = 1; i < contenders->count; i++)
         free(values.value[i]);
     return code;

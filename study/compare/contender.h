@@ -2,9 +2,9 @@
 #ifndef WEFT_STUDY_COMPARE_CONTENDER_H
 #define WEFT_STUDY_COMPARE_CONTENDER_H
 
+#include "base/error_summary.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
-#include "study/error/prediction_error.h"
 #include "study/model/model.h"
 
 enum { WEFT_CONTENDER_COUNT = 4 }; /* data, compressed, analytic, BARD */
@@ -33,6 +33,6 @@ weft_code weft_contender_brdf(const weft_contender *contender, weft_vec3 light, 
 /* The error of each contender's mean BRDF against that of the data, error [count], over the directions of all images
  * (an even choice of at most about 7000); entry 0 is zero. Errors: those of weft_model_brdf; WEFT_SYSTEM for memory. */
 weft_code weft_contenders_measure(const weft_contenders *contenders, const weft_dataset_layout *layout,
-                                  const weft_progress *progress, weft_prediction_error *result, weft_error *error);
+                                  const weft_progress *progress, weft_error_summary *result, weft_error *error);
 
 #endif

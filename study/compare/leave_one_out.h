@@ -8,8 +8,8 @@
 /* One photograph, predicted by a material fitted to all the others. */
 typedef struct weft_left_out {
     weft_image_pair pair;
-    char name[64];               /* of the photograph's file, else "image N" */
-    weft_prediction_error error; /* over all channels of its valid samples */
+    char name[64];            /* of the photograph's file, else "image N" */
+    weft_error_summary error; /* over all channels of its valid samples */
 } weft_left_out;
 
 /* Freed with weft_leave_one_out_free. */

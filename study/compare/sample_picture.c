@@ -1,17 +1,12 @@
 #include "study/compare/sample_picture.h"
 
 #include "base/colour.h"
+#include "base/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 static const float masked_grey = 0.55f;
-
-static int ascending(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
 
 double weft_picture_exposure(const weft_image *image, const uint8_t *mask)
 {
@@ -23,8 +18,7 @@ double weft_picture_exposure(const weft_image *image, const uint8_t *mask)
         if (!(mask && mask[i / 3]) && isfinite(image->pixels[i]))
             value[count++] = image->pixels[i];
     }
-    qsort(value, count, sizeof *value, ascending);
-    double high = count > 0 ? (double)value[(size_t)(0.99 * (double)(count - 1))] : 0;
+    double high = (double)weft_quantile_of_floats(value, count, 0.99);
     free(value);
     return high > 0 ? 0.9 / high : 1;
 }

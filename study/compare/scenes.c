@@ -1,11 +1,11 @@
 #include "study/compare/scenes.h"
 
+#include "base/clock.h"
 #include "player/gl/context.h"
 #include "study/error/visible_error.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { PICTURE_SIZE = 400, PICTURE_SAMPLES = 3, PLANE_REPEATS = 1 };
 
@@ -41,19 +41,12 @@ static weft_scene scene_of(const setting *s, weft_mode mode)
     return scene;
 }
 
-static double now_ms(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
-}
-
 static weft_code draw(weft_player *player, const weft_scene *scene, int samples, weft_image *picture,
                       double *elapsed_ms, weft_error *error)
 {
-    double started = now_ms();
+    double started_s = weft_now_s();
     weft_code code = weft_player_picture(player, scene, PICTURE_SIZE, PICTURE_SIZE, samples, NULL, picture, error);
-    *elapsed_ms = now_ms() - started;
+    *elapsed_ms = 1e3 * (weft_now_s() - started_s);
     return code;
 }
 

@@ -2,12 +2,12 @@
 #ifndef WEFT_STUDY_COMPARE_SCENES_H
 #define WEFT_STUDY_COMPARE_SCENES_H
 
+#include "base/error_summary.h"
 #include "base/image.h"
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
 #include "player/draw/player.h"
-#include "study/error/prediction_error.h"
 
 /* What is drawn: the modes of the player, and BARD as a dataset in mode raw. */
 enum { WEFT_SCENE_COUNT = 3, WEFT_SCENE_BARD = WEFT_MODE_COUNT, WEFT_SCENE_MODELS };
@@ -19,7 +19,7 @@ const char *weft_scenes_model_name(int model);
 typedef struct weft_scene_pictures {
     const char *caption;
     weft_image picture[WEFT_SCENE_MODELS];
-    weft_prediction_error error[WEFT_SCENE_MODELS]; /* against raw, over the lit pixels of the mesh */
+    weft_error_summary error[WEFT_SCENE_MODELS]; /* against raw, over the lit pixels of the mesh */
 } weft_scene_pictures;
 
 /* Freed with weft_scenes_free. */

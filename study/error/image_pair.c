@@ -42,20 +42,19 @@ void weft_image_pair_fill(weft_image_pair *pair, const weft_dataset_layout *layo
     }
 }
 
-weft_code weft_image_pair_error(const weft_image_pair *pair, weft_prediction_error *result, weft_error *error)
+weft_code weft_image_pair_error(const weft_image_pair *pair, weft_error_summary *result, weft_error *error)
 {
     size_t values = 3 * (size_t)pair->sample.width * (size_t)pair->sample.height;
-    weft_prediction *value = malloc(values * sizeof *value);
+    weft_compared *value = malloc(values * sizeof *value);
     if (!value)
         return weft_fail_memory(error, "predictions", values * sizeof *value);
-    long count = 0;
+    size_t count = 0;
     for (size_t i = 0; i < values; i++) {
         if (pair->mask[i / 3] == 0)
             value[count++] =
-                (weft_prediction){.prediction = pair->prediction.pixels[i], .sample = pair->sample.pixels[i]};
+                (weft_compared){.sample = pair->sample.pixels[i], .prediction = pair->prediction.pixels[i]};
     }
-    weft_prediction_choice all = {WEFT_CHOOSE_ALL, 0};
-    weft_code code = weft_prediction_error_of(value, count, all, result, error);
+    weft_code code = weft_error_summary_of(value, count, result, error);
     free(value);
     return code;
 }

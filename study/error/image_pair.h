@@ -2,9 +2,9 @@
 #ifndef WEFT_STUDY_ERROR_IMAGE_PAIR_H
 #define WEFT_STUDY_ERROR_IMAGE_PAIR_H
 
+#include "base/error_summary.h"
 #include "base/image.h"
 #include "btf/dataset/dataset.h"
-#include "study/error/prediction_error.h"
 #include "study/error/predictor.h"
 
 /* Freed with weft_image_pair_free. */
@@ -25,6 +25,6 @@ void weft_image_pair_fill(weft_image_pair *pair, const weft_dataset_layout *layo
                           int y, int rows, const weft_half *samples, const uint8_t *mask);
 
 /* Over all channels of the samples that are not masked. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_image_pair_error(const weft_image_pair *pair, weft_prediction_error *result, weft_error *error);
+weft_code weft_image_pair_error(const weft_image_pair *pair, weft_error_summary *result, weft_error *error);
 
 #endif

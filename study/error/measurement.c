@@ -4,6 +4,7 @@
 #include "btf/direction/direction.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* More samples than these do not change a median that is printed with three digits. */
 static const long enough_samples = 2000000;
@@ -18,12 +19,13 @@ typedef struct measuring {
     weft_predictor *predictor;
     int *every_image; /* [image_count] 0, 1, 2, ... */
     weft_measurement *measurement;
-    int band_height, band_y; /* the rows held now */
-    weft_half *samples;      /* [band_height][width][image_count][3] */
-    uint8_t *mask;           /* [band_height][width][image_count] */
-    long stride;             /* every stride-th texel is measured */
-    weft_prediction *value;  /* [texel_count][image_count][3] until the empty slots are dropped */
-    long value_count;
+    int band_height, band_y;         /* the rows held now */
+    weft_half *samples;              /* [band_height][width][image_count][3] */
+    uint8_t *mask;                   /* [band_height][width][image_count] */
+    long stride;                     /* every stride-th texel is measured */
+    size_t value_count;              /* texel_count * image_count * 3 until the empty slots are dropped */
+    weft_compared *value;            /* [value_count] */
+    uint8_t *view_ring, *light_ring; /* [value_count] of ubo81 */
 } measuring;
 
 static void count_masks(const measuring *pass, int rows)
@@ -52,8 +54,8 @@ static weft_rgb sample_at(const measuring *pass, int x, int y, int image)
                       (double)weft_float_of_half(half[2])};
 }
 
-/* The three channels of a sample; `value` is untouched where it does not count. */
-static void measure_sample(const measuring *pass, int image, int x, int y, weft_rgb p, weft_prediction value[3])
+/* The three channels of a sample into the slots from `slot` on; they are untouched where it does not count. */
+static void measure_sample(const measuring *pass, int image, int x, int y, weft_rgb p, size_t slot)
 {
     const weft_dataset_layout *layout = pass->layout;
     weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
@@ -64,8 +66,11 @@ static void measure_sample(const measuring *pass, int image, int x, int y, weft_
     uint8_t view_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(view).theta_rad);
     uint8_t light_ring = (uint8_t)weft_ubo81_ring(weft_angles_of_direction(light).theta_rad);
     const double prediction[3] = {p.r, p.g, p.b}, sample[3] = {s.r, s.g, s.b};
-    for (int c = 0; c < 3; c++)
-        value[c] = (weft_prediction){(float)prediction[c], (float)sample[c], view_ring, light_ring};
+    for (size_t c = 0; c < 3; c++) {
+        pass->value[slot + c] = (weft_compared){.sample = (float)sample[c], .prediction = (float)prediction[c]};
+        pass->view_ring[slot + c] = view_ring;
+        pass->light_ring[slot + c] = light_ring;
+    }
 }
 
 /* Texels are measured in parallel, each into its own slots; slots without a sample stay marked. */
@@ -73,13 +78,13 @@ static void measure_texel(const measuring *pass, long texel)
 {
     int images = pass->layout->image_count, x = (int)(texel % pass->layout->width),
         y = (int)(texel / pass->layout->width);
-    weft_prediction *slot = pass->value + texel / pass->stride * 3 * images;
+    size_t slot = (size_t)(texel / pass->stride) * 3 * (size_t)images;
     weft_rgb prediction[IMAGES_AT_ONCE];
     for (int first = 0; first < images; first += IMAGES_AT_ONCE) {
         int count = images - first < IMAGES_AT_ONCE ? images - first : IMAGES_AT_ONCE;
         weft_predictor_predict(pass->predictor, x, y, pass->every_image + first, count, prediction);
         for (int i = 0; i < count; i++)
-            measure_sample(pass, first + i, x, y, prediction[i], slot + 3 * (first + i));
+            measure_sample(pass, first + i, x, y, prediction[i], slot + 3 * (size_t)(first + i));
     }
 }
 
@@ -107,10 +112,13 @@ static weft_code read_bands(measuring *pass, const char *what, const weft_progre
 
 static void drop_empty_slots(measuring *pass)
 {
-    long kept = 0;
-    for (long i = 0; i < pass->value_count; i++) {
-        if (pass->value[i].view_ring != no_ring)
-            pass->value[kept++] = pass->value[i];
+    size_t kept = 0;
+    for (size_t i = 0; i < pass->value_count; i++) {
+        if (pass->view_ring[i] == no_ring)
+            continue;
+        pass->value[kept] = pass->value[i];
+        pass->view_ring[kept] = pass->view_ring[i];
+        pass->light_ring[kept++] = pass->light_ring[i];
     }
     pass->value_count = kept;
 }
@@ -118,14 +126,13 @@ static void drop_empty_slots(measuring *pass)
 static weft_code summarise(const measuring *pass, weft_error *error)
 {
     weft_measurement *measurement = pass->measurement;
-    const weft_prediction *value = pass->value;
-    long count = pass->value_count;
-    WEFT_TRY(
-        weft_prediction_error_of(value, count, (weft_prediction_choice){WEFT_CHOOSE_ALL, 0}, &measurement->all, error));
+    const weft_compared *value = pass->value;
+    size_t count = pass->value_count;
+    WEFT_TRY(weft_error_summary_of(value, count, &measurement->all, error));
     for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
-        weft_prediction_choice view = {WEFT_CHOOSE_VIEW_RING, ring}, light = {WEFT_CHOOSE_LIGHT_RING, ring};
-        WEFT_TRY(weft_prediction_error_of(value, count, view, &measurement->by_view[ring], error));
-        WEFT_TRY(weft_prediction_error_of(value, count, light, &measurement->by_light[ring], error));
+        WEFT_TRY(weft_error_summary_of_group(value, pass->view_ring, count, ring, &measurement->by_view[ring], error));
+        WEFT_TRY(
+            weft_error_summary_of_group(value, pass->light_ring, count, ring, &measurement->by_light[ring], error));
     }
     return WEFT_OK;
 }
@@ -156,15 +163,16 @@ static weft_code allocate(measuring *pass, weft_error *error)
     pass->stride = choose_stride(layout);
     size_t band = (size_t)pass->band_height * (size_t)layout->width * (size_t)layout->image_count;
     pass->measurement->texel_count = ((long)layout->width * layout->height + pass->stride - 1) / pass->stride;
-    pass->value_count = 3 * pass->measurement->texel_count * layout->image_count;
+    pass->value_count = 3 * (size_t)pass->measurement->texel_count * (size_t)layout->image_count;
     pass->samples = malloc(3 * band * sizeof *pass->samples);
     pass->mask = malloc(band);
-    pass->value = malloc((size_t)pass->value_count * sizeof *pass->value);
+    pass->value = malloc(pass->value_count * sizeof *pass->value);
+    pass->view_ring = malloc(pass->value_count);
+    pass->light_ring = malloc(pass->value_count);
     pass->every_image = malloc((size_t)layout->image_count * sizeof *pass->every_image);
-    if (!pass->samples || !pass->mask || !pass->value || !pass->every_image)
-        return weft_fail_memory(error, "samples", (size_t)pass->value_count * sizeof *pass->value + 7 * band);
-    for (long i = 0; i < pass->value_count; i++)
-        pass->value[i].view_ring = no_ring;
+    if (!pass->samples || !pass->mask || !pass->value || !pass->view_ring || !pass->light_ring || !pass->every_image)
+        return weft_fail_memory(error, "samples", pass->value_count * (sizeof *pass->value + 2) + 7 * band);
+    memset(pass->view_ring, no_ring, pass->value_count);
     for (int i = 0; i < layout->image_count; i++)
         pass->every_image[i] = i;
     return WEFT_OK;
@@ -191,6 +199,8 @@ weft_code weft_measurement_make(weft_dataset *dataset, weft_predictor *predictor
     free(pass.samples);
     free(pass.mask);
     free(pass.value);
+    free(pass.view_ring);
+    free(pass.light_ring);
     free(pass.every_image);
     if (code != WEFT_OK)
         weft_measurement_free(measurement);

@@ -4,17 +4,16 @@
 
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
+#include "btf/direction/direction.h"
 #include "study/error/image_pair.h"
-
-enum { WEFT_RING_COUNT = 6 };
 
 /* Freed with weft_measurement_free. */
 typedef struct weft_measurement {
     int pair_count;
     weft_image_pair *pair; /* [pair_count] */
     long texel_count;      /* texels whose samples were measured */
-    weft_prediction_error all;
-    weft_prediction_error by_view[WEFT_RING_COUNT],
+    weft_error_summary all;
+    weft_error_summary by_view[WEFT_RING_COUNT],
         by_light[WEFT_RING_COUNT];                   /* rings of ubo81: theta nearest 0, 15, .. 75 degrees */
     long sample_count, missing, saturated, shadowed; /* texels times images, and how many of them are masked and why */
 } weft_measurement;

@@ -8,19 +8,18 @@ bool weft_surface_is_lit(const weft_surface_sample *sample)
 }
 
 weft_code weft_visible_error_of(const weft_image *data, const weft_image *model, const weft_surface_sample *surface,
-                                weft_prediction_error *result, weft_error *error)
+                                weft_error_summary *result, weft_error *error)
 {
     size_t pixels = (size_t)data->width * (size_t)data->height;
-    weft_prediction *value = malloc(3 * pixels * sizeof *value);
+    weft_compared *value = malloc(3 * pixels * sizeof *value);
     if (!value)
         return weft_fail_memory(error, "visible pixels", 3 * pixels * sizeof *value);
-    long count = 0;
+    size_t count = 0;
     for (size_t i = 0; i < 3 * pixels; i++) {
         if (weft_surface_is_lit(&surface[i / 3]))
-            value[count++] = (weft_prediction){.prediction = model->pixels[i], .sample = data->pixels[i]};
+            value[count++] = (weft_compared){.sample = data->pixels[i], .prediction = model->pixels[i]};
     }
-    weft_prediction_choice all = {WEFT_CHOOSE_ALL, 0};
-    weft_code code = weft_prediction_error_of(value, count, all, result, error);
+    weft_code code = weft_error_summary_of(value, count, result, error);
     free(value);
     return code;
 }
@@ -37,7 +36,7 @@ static weft_code draw_alone(weft_player *player, const weft_scene *scene, weft_m
 }
 
 weft_code weft_visible_error_measure(weft_player *player, const weft_scene *scene, weft_mode mode, int width,
-                                     int height, weft_prediction_error *result, weft_error *error)
+                                     int height, weft_error_summary *result, weft_error *error)
 {
     weft_image data = {0}, model = {0};
     weft_surface_sample *surface = NULL;

@@ -6,20 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static int compare_doubles(const void *left, const void *right)
-{
-    double a = *(const double *)left, b = *(const double *)right;
-    return (a > b) - (a < b);
-}
-
-static double largest_value(const weft_mean_brdf *mean)
-{
-    double largest = 0;
-    for (int i = 0; i < mean->count; i++)
-        largest = fmax(largest, fmax(mean->value[i].r, fmax(mean->value[i].g, mean->value[i].b)));
-    return largest;
-}
-
 /* Sums over the yarns that are like yarn `kind`: what its reflectance contributes to each channel. */
 static weft_rgb colour_of_kind(const weft_weave *weave, int kind)
 {
@@ -76,47 +62,34 @@ static void predict(const weft_weave *weave, const weft_vec3 *light, const weft_
     }
 }
 
-/* Appends the errors of the channels that are bright enough. */
-static size_t append_errors(weft_rgb data, weft_rgb model, double threshold, double *relative)
+/* The channels of one image, data and model. */
+static void keep(weft_rgb data, weft_rgb model, weft_compared value[3])
 {
-    const double measured[3] = {data.r, data.g, data.b}, predicted[3] = {model.r, model.g, model.b};
-    size_t count = 0;
-    for (int k = 0; k < 3; k++)
-        if (measured[k] > threshold)
-            relative[count++] = fabs(predicted[k] - measured[k]) / measured[k];
-    return count;
+    value[0] = (weft_compared){.sample = (float)data.r, .prediction = (float)model.r};
+    value[1] = (weft_compared){.sample = (float)data.g, .prediction = (float)model.g};
+    value[2] = (weft_compared){.sample = (float)data.b, .prediction = (float)model.b};
 }
 
-static weft_fit_weave_error percentiles(const weft_mean_brdf *mean, const weft_rgb *predicted, double *relative)
-{
-    double threshold = 1e-4 * largest_value(mean);
-    size_t count = 0;
-    for (int i = 0; i < mean->count; i++)
-        count += append_errors(mean->value[i], predicted[i], threshold, relative + count);
-    qsort(relative, count, sizeof *relative, compare_doubles);
-    if (count == 0)
-        return (weft_fit_weave_error){0};
-    return (weft_fit_weave_error){relative[count / 2], relative[count * 4 / 5]};
-}
-
-weft_code weft_fit_weave_measure(const weft_mean_brdf *mean, const weft_weave *weave, weft_fit_weave_error *result,
+weft_code weft_fit_weave_measure(const weft_mean_brdf *mean, const weft_weave *weave, weft_error_summary *result,
                                  weft_error *error)
 {
     size_t count = (size_t)mean->count;
-    double *relative = malloc(3 * count * sizeof *relative);
+    weft_compared *value = malloc(3 * count * sizeof *value);
     weft_rgb *predicted = malloc(count * sizeof *predicted);
     weft_code code = WEFT_OK;
-    if (relative && predicted) {
+    if (value && predicted) {
 #pragma omp parallel for schedule(dynamic)
         for (int first = 0; first < mean->count; first += TOGETHER) {
             int some = mean->count - first < TOGETHER ? mean->count - first : TOGETHER;
             predict(weave, mean->light + first, mean->view + first, some, predicted + first);
         }
-        *result = percentiles(mean, predicted, relative);
+        for (size_t i = 0; i < count; i++)
+            keep(mean->value[i], predicted[i], value + 3 * i);
+        code = weft_error_summary_of(value, 3 * count, result, error);
     } else {
-        code = weft_fail_memory(error, "relative errors", count * (3 * sizeof *relative + sizeof *predicted));
+        code = weft_fail_memory(error, "relative errors", count * (3 * sizeof *value + sizeof *predicted));
     }
-    free(relative);
+    free(value);
     free(predicted);
     return code;
 }

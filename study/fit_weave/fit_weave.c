@@ -1,12 +1,12 @@
 #include "study/fit_weave/fit_weave.h"
 
+#include "base/clock.h"
 #include "btf/direction/direction.h"
 #include "study/fit_weave/model.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* Directions looked at by the coarse grid and by the search that follows; the last steps look at all. */
 enum { GRID_IMAGES = 250, SEARCH_IMAGES = 500, GRID_STEPS = 5, GRID_SWEEPS = 2, STAGES = 4 };
@@ -241,17 +241,10 @@ static void describe(const weft_fit_weave_model *model, const double *parameters
         describe_group(model, group, deviation, &report->group[group]);
 }
 
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const weft_progress *progress,
                          weft_fit_weave_report *report, weft_error *error)
 {
-    double began = seconds_now(), parameters[WEFT_FIT_WEAVE_PARAMETERS] = {0};
+    double began = weft_now_s(), parameters[WEFT_FIT_WEAVE_PARAMETERS] = {0};
     double deviation[WEFT_FIT_WEAVE_PARAMETERS] = {0};
     weft_fit_weave_model model;
     *report = (weft_fit_weave_report){0};
@@ -268,6 +261,6 @@ weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const we
         code = weft_fit_weave_measure(mean, weave, &report->after, error);
     }
     weft_fit_weave_model_free(&model);
-    report->seconds = seconds_now() - began;
+    report->seconds = weft_now_s() - began;
     return code;
 }

@@ -3,15 +3,11 @@
 #ifndef WEFT_STUDY_FIT_WEAVE_FIT_WEAVE_H
 #define WEFT_STUDY_FIT_WEAVE_FIT_WEAVE_H
 
+#include "base/error_summary.h"
 #include "reflectance/weave/weave.h"
 #include "study/fit_weave/mean_brdf.h"
 
 enum { WEFT_FIT_WEAVE_GROUPS = 8 };
-
-/* |model - data| / data over images and channels whose value is above 1e-4 of the largest. */
-typedef struct weft_fit_weave_error {
-    double median_relative, percentile80_relative;
-} weft_fit_weave_error;
 
 /* Yarns of one direction with the same shape and colours: their fibres are fitted as one. */
 typedef struct weft_fit_weave_group {
@@ -34,7 +30,7 @@ typedef struct weft_fit_weave_report {
     double alpha, beta, alpha_deviation, beta_deviation;
     weft_fit_weave_turn turn;
     double askew_deg[3], askew_deviation[3]; /* turn of the sample about x, y, z; all 0 where it was held straight */
-    weft_fit_weave_error before, after;      /* the weave as it was given, and fitted */
+    weft_error_summary before, after;        /* of the mean BRDF: the weave as it was given, and fitted */
     double seconds;
 } weft_fit_weave_report;
 
@@ -51,8 +47,8 @@ typedef struct weft_fit_weave_report {
 weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const weft_progress *progress,
                          weft_fit_weave_report *report, weft_error *error);
 
-/* The error of a weave as it is. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_fit_weave_measure(const weft_mean_brdf *mean, const weft_weave *weave, weft_fit_weave_error *result,
+/* The error of the mean BRDF of a weave as it is, over images and channels. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_fit_weave_measure(const weft_mean_brdf *mean, const weft_weave *weave, weft_error_summary *result,
                                  weft_error *error);
 
 #endif

@@ -1,6 +1,6 @@
 #include "study/fit_weave/mean_brdf.h"
 
-#include "btf/dataset/blocks.h"
+#include "btf/dataset/walk.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -41,50 +41,23 @@ static void add_texel(const weft_half *samples, const uint8_t *mask, size_t imag
     }
 }
 
-/* Where the block begins, and its size. */
-typedef struct block {
-    int x, y, width, height;
-} block;
+/* What the pass over the blocks carries along. */
+typedef struct averaging {
+    const weft_texel_window *window;
+    size_t images;
+    sums *of;
+} averaging;
 
-static void add_block(const weft_half *samples, const uint8_t *mask, block at, const weft_texel_window *window,
-                      size_t images, sums *of)
+static void add_block(void *context, const weft_walk_block *at)
 {
-    for (int i = 0; i < at.width * at.height; i++) {
-        size_t first = (size_t)i * images;
-        double weight = weight_of(at.x + i % at.width, window->left, window->width, window->period_x) *
-                        weight_of(at.y + i / at.width, window->top, window->height, window->period_y);
+    const averaging *a = context;
+    for (int i = 0; i < at->width * at->height; i++) {
+        size_t first = (size_t)i * a->images;
+        double weight = weight_of(at->x + i % at->width, a->window->left, a->window->width, a->window->period_x) *
+                        weight_of(at->y + i / at->width, a->window->top, a->window->height, a->window->period_y);
         if (weight > 0)
-            add_texel(samples + 3 * first, mask + first, images, weight, of);
+            add_texel(at->samples + 3 * first, at->mask + first, a->images, weight, a->of);
     }
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-static weft_code add_blocks(weft_dataset *dataset, const weft_texel_window *window, const weft_progress *progress,
-                            sums *of, weft_error *error)
-{
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    int width, height;
-    weft_dataset_block_size(layout, &width, &height);
-    size_t images = (size_t)layout->image_count, largest = (size_t)width * (size_t)height * images;
-    weft_half *samples = malloc(3 * largest * sizeof *samples);
-    uint8_t *mask = malloc(largest);
-    weft_code code = samples && mask ? WEFT_OK : weft_fail_memory(error, "block of the dataset", 7 * largest);
-    for (int y = 0; code == WEFT_OK && y < layout->height; y += height) {
-        for (int x = 0; code == WEFT_OK && x < layout->width; x += width) {
-            block at = {x, y, smaller(width, layout->width - x), smaller(height, layout->height - y)};
-            code = weft_dataset_read_block(dataset, x, y, at.width, at.height, samples, mask, error);
-            if (code == WEFT_OK)
-                add_block(samples, mask, at, window, images, of);
-        }
-        weft_progress_report(progress, "reading rows", smaller(y + height, layout->height), layout->height);
-    }
-    free(samples);
-    free(mask);
-    return code;
 }
 
 static void append_image(const weft_dataset_layout *layout, int image, const sums *of, weft_mean_brdf *mean)
@@ -117,8 +90,9 @@ weft_code weft_mean_brdf_of(weft_dataset *dataset, const weft_texel_window *wind
     weft_code code = WEFT_OK;
     if (!mean->light || !mean->view || !mean->value || !of.rgb || !of.count)
         code = weft_fail_memory(error, "mean of the images", images * (sizeof *of.rgb + sizeof *mean->value));
+    averaging a = {.window = window ? window : &all, .images = images, .of = &of};
     if (code == WEFT_OK)
-        code = add_blocks(dataset, window ? window : &all, progress, &of, error);
+        code = weft_walk_blocks(dataset, add_block, &a, "reading rows", progress, error);
     for (int image = 0; code == WEFT_OK && image < layout->image_count; image++)
         append_image(layout, image, &of, mean);
     if (code == WEFT_OK && mean->count == 0)

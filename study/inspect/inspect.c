@@ -1,5 +1,6 @@
 #include "study/inspect/inspect.h"
 
+#include "base/atomic_file.h"
 #include "btf/dataset/dataset.h"
 #include "btf/direction/direction.h"
 #include "btf/file_kind.h"
@@ -12,15 +13,8 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <sys/stat.h>
 
 static const size_t longest_list = 16;
-
-static json_int_t file_size(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 ? (json_int_t)status.st_size : 0;
-}
 
 /* Replaces long lists (of photographs, of views) by how long they are: they are data, not a description. */
 static void shorten_lists(json_t *object)
@@ -71,7 +65,7 @@ static json_t *describe_basis(const weft_table_basis *basis)
 static json_t *describe_level(const weft_material *material, int k)
 {
     const weft_material_level *level = &material->level[k];
-    const weft_material_error *e = &level->error;
+    const weft_error_summary *e = &level->error;
     return json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f, s:o*, s:o*, s:o*}", "texels", level->width, level->height,
                      "median_relative_error", e->median_relative, "percentile80_relative_error",
                      e->percentile80_relative, "rmse", e->rmse, "relative_rmse", e->relative_rmse, "psnr_db",
@@ -86,8 +80,8 @@ static json_t *describe_material(const char *path, const weft_material *material
     for (int i = 0; i < material->level_count; i++)
         json_array_append_new(levels, describe_level(material, i));
     return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
-                     file_size(path), "texels", material->level[0].width, material->level[0].height, "lobes",
-                     material->lobe_count, "views_in_table", material->view_count, "lights_in_table",
+                     (json_int_t)weft_file_bytes(path), "texels", material->level[0].width, material->level[0].height,
+                     "lobes", material->lobe_count, "views_in_table", material->view_count, "lights_in_table",
                      material->light_count, "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata",
                      parsed(material->metadata));
 }
@@ -111,8 +105,8 @@ static json_t *describe_dataset(const char *path, const weft_dataset *dataset)
     json_int_t raw =
         (json_int_t)layout->width * layout->height * layout->image_count * 3 * (json_int_t)sizeof(weft_half);
     return json_pack("{s:s, s:s, s:I, s:I, s:[ii], s:i, s:i, s:s, s:s, s:s, s:f, s:o}", "file", path, "kind", "dataset",
-                     "bytes", file_size(path), "half_float_bytes", raw, "texels", layout->width, layout->height,
-                     "images", layout->image_count, "views", layout->view_count, "values",
+                     "bytes", (json_int_t)weft_file_bytes(path), "half_float_bytes", raw, "texels", layout->width,
+                     layout->height, "images", layout->image_count, "views", layout->view_count, "values",
                      layout->values == WEFT_REFLECTANCE ? "reflectance" : "reflectance times cosine",
                      "lights_and_views", layout->distance == WEFT_NEAR ? "positions (near)" : "directions (far)",
                      "frames", weft_dataset_has_frames(dataset) ? "given" : "of the surface", "texel_pitch_mm",

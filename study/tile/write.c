@@ -1,15 +1,12 @@
+#include "btf/dataset/derived.h"
 #include "btf/dataset/walk.h"
 #include "study/tile/mean.h"
 #include "study/tile/tile.h"
 
-#include "btf/dataset/blocks.h"
-
-#include <jansson.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* Bytes of the rows of the tile that are in memory, about. */
 static const size_t enough_bytes = (size_t)1 << 30;
@@ -204,31 +201,14 @@ static weft_code write_opacity(averaging *of, weft_dataset *dataset, weft_datase
     return code;
 }
 
-/* That of the dataset, and what was done to it. The caller frees it; NULL where memory is short. */
-static char *provenance_of(const averaging *of)
+static weft_code finish(const averaging *of, weft_dataset_block_writer *writer, weft_error *error)
 {
     const weft_tile_report *report = of->report;
     const weft_tile *tile = &report->tile;
-    json_t *provenance = json_loads(of->layout->provenance, 0, NULL);
     json_t *made = json_pack("{s[ff] s[ff] s[ff] s[ff] sf}", "size_mm", report->width_mm, report->height_mm,
                              "size_texels", tile->width, tile->height, "corner_texels", tile->left, tile->top, "tiles",
                              report->tiles_x, report->tiles_y, "residual_share", report->residual_share);
-    json_object_set_new(provenance, "tile", made);
-    char *text = provenance ? json_dumps(provenance, JSON_COMPACT) : NULL;
-    json_decref(provenance);
-    return text;
-}
-
-static weft_code finish(const averaging *of, weft_dataset_block_writer *writer, weft_error *error)
-{
-    char *provenance = provenance_of(of);
-    if (!provenance) {
-        weft_dataset_block_writer_abandon(writer);
-        return weft_fail_memory(error, "provenance", 0);
-    }
-    weft_code code = weft_dataset_block_writer_finish(writer, provenance, error);
-    free(provenance);
-    return code;
+    return weft_derived_dataset_finish(writer, of->layout, "tile", made, error);
 }
 
 static weft_code write_tile(averaging *of, weft_dataset *dataset, const char *output, int most_rows,
@@ -258,20 +238,11 @@ static void lay_out(averaging *of)
     of->report->texels_y = of->tile_layout.height;
 }
 
-static weft_code check_output(const weft_dataset *dataset, const char *output, weft_error *error)
-{
-    struct stat a, b;
-    if (stat(weft_dataset_path(dataset), &a) == 0 && stat(output, &b) == 0 && a.st_dev == b.st_dev &&
-        a.st_ino == b.st_ino)
-        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is the dataset itself; the tile would replace it", output);
-    return WEFT_OK;
-}
-
 weft_code weft_tile_write(weft_dataset *dataset, const char *output, const weft_progress *progress,
                           weft_tile_report *report, weft_error *error)
 {
     averaging of = {.layout = weft_dataset_get_layout(dataset), .tile = report->tile, .report = report};
-    WEFT_TRY(check_output(dataset, output, error));
+    WEFT_TRY(weft_derived_dataset_check(dataset, output, "the tile would replace it", error));
     lay_out(&of);
     report->empty_count = 0;
     size_t images = (size_t)of.layout->image_count, row = (size_t)of.tile_layout.width * images;

@@ -2,17 +2,16 @@
 #ifndef WEFT_STUDY_TRUTH_ERROR_H
 #define WEFT_STUDY_TRUTH_ERROR_H
 
+#include "base/error_summary.h"
 #include "base/image.h"
 #include "player/draw/player.h"
-#include "study/error/prediction_error.h"
 
 /* Pixels along a side of the blocks whose means say how right the tone is, wherever the yarns lie. */
 enum { WEFT_TRUTH_BLOCK = 8 };
 
 typedef struct weft_truth_error {
-    weft_prediction_error error; /* over the lit pixels of the mesh */
-    double psnr_db;              /* 20 log10(peak / rmse), peak = 99.9th percentile of the truth there */
-    double block_relative_rmse;  /* of means over blocks all of whose pixels are lit; 0 where there is none */
+    weft_error_summary error;   /* over the lit pixels of the mesh */
+    double block_relative_rmse; /* of means over blocks all of whose pixels are lit; 0 where there is none */
 } weft_truth_error;
 
 /* `surface` [height][width] as weft_player_read_surface gives it; both pictures linear. Errors: WEFT_SYSTEM for

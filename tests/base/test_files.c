@@ -217,6 +217,25 @@ static void images_survive_the_round_trip(void **state)
     weft_image_free(&written);
 }
 
+static void the_size_of_a_file_is_0_where_there_is_none(void **state)
+{
+    (void)state;
+    assert_int_equal(weft_write_file("sized", "1234567", 7, NULL), WEFT_OK);
+    assert_int_equal(weft_file_bytes("sized"), 7);
+    assert_int_equal(weft_file_bytes("unsized"), 0);
+}
+
+static void a_file_is_the_same_under_another_name(void **state)
+{
+    (void)state;
+    assert_int_equal(weft_write_file("one", "x", 1, NULL), WEFT_OK);
+    assert_int_equal(weft_write_file("other", "x", 1, NULL), WEFT_OK);
+    assert_int_equal(symlink("one", "another-name"), 0);
+    assert_true(weft_is_same_file("one", "./another-name"));
+    assert_false(weft_is_same_file("one", "other"));
+    assert_false(weft_is_same_file("missing", "missing"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -228,6 +247,8 @@ int main(void)
         cmocka_unit_test(photograph_keeps_every_raw_value_of_every_depth),
         cmocka_unit_test(bad_photographs_are_named),
         cmocka_unit_test(images_survive_the_round_trip),
+        cmocka_unit_test(the_size_of_a_file_is_0_where_there_is_none),
+        cmocka_unit_test(a_file_is_the_same_under_another_name),
     };
     return cmocka_run_group_tests(tests, enter_scratch, leave_scratch);
 }

@@ -115,7 +115,7 @@ static void wrong_attributes_are_named(void **state)
     static const text_edit edit[] = {{"format", "other", "format 'other'"},
                                      {"values", "radiance", "is 'radiance', must be"},
                                      {"distance", "", "is '', must be"},
-                                     {"version", "1", "cannot read attribute 'version'"}};
+                                     {"version", "1", "attribute 'version' is not one number"}};
     for (size_t i = 0; i < sizeof edit / sizeof edit[0]; i++) {
         hid_t file = open_copy();
         put_text_attribute(file, edit[i].name, edit[i].text);

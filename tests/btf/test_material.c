@@ -78,7 +78,7 @@ static void fill_randomly(weft_material *material)
             level->light_table[i] = (uint8_t)(rand() % 8);
         for (size_t i = 0; level->model && i < level_texels(level); i++)
             level->model[i] = (uint8_t)(rand() % WEFT_MODEL_CODES);
-        level->error = (weft_material_error){k, 1, 2, 3, INFINITY};
+        level->error = (weft_error_summary){k, 1, 2, 3, INFINITY, 0};
     }
 }
 

@@ -90,7 +90,7 @@ static void fill_level(weft_material *material, int k)
         level->light_table[i] = (uint8_t)(i * 5 + 3 * k);
     for (int i = 1; i < texels; i += 2)
         drop_parts(material, level, i);
-    level->error = (weft_material_error){0.01 + k, 0.02 + k, 0.03 + k, 0.04 + k, 50.0 + k};
+    level->error = (weft_error_summary){0.01 + k, 0.02 + k, 0.03 + k, 0.04 + k, 50.0 + k, 0};
 }
 
 void weft_bytes_write_example(const char *path)

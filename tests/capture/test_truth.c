@@ -1,6 +1,7 @@
 #include "capture/virtual/ground_truth.h"
 
 #include "base/image.h"
+#include "base/statistics.h"
 #include "tests/capture/small_session.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
@@ -119,18 +120,6 @@ static weft_rgb integrate_texel(int shot, int x, int y, int points)
     return sum;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
-static double median(double *values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, compare_doubles);
-    return values[count / 2];
-}
-
 static void reflectance_equals_an_independent_evaluation(void **state)
 {
     (void)state;
@@ -198,7 +187,7 @@ static void photographs_show_the_reflectance_of_the_truth(void **state)
                 error[count++] = photographed_texel(samples, shot, x, y) / reflectance[image][y][x][0] - 1;
         }
         /* Texels are 3.5 pixels here, so the highlights of a neighbour bleed in; on the whole it must not. */
-        assert_true(fabs(median(error, count)) < 0.05);
+        assert_true(fabs(weft_quantile(error, count, 0.5)) < 0.05);
     }
 }
 

@@ -1,6 +1,7 @@
 /* eval, info, verify and import as a user runs them. */
 #include "base/image.h"
 #include "btf/material/material.h"
+#include "tests/support/run_weft.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,32 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
-
-/* Runs weft with arguments for a shell; its two outputs go to `said`. Returns the exit code. */
-static int run(const char *arguments, char said[8192])
-{
-    char command[1024];
-    snprintf(command, sizeof command, WEFT_PROGRAM " %s 2>&1", arguments);
-    FILE *pipe = popen(command, "r");
-    assert_non_null(pipe);
-    size_t size = fread(said, 1, 8191, pipe);
-    said[size] = 0;
-    int status = pclose(pipe);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
-static void expect(const char *arguments, int code, const char *what)
-{
-    char said[8192];
-    assert_int_equal(run(arguments, said), code);
-    if (!strstr(said, what))
-        fail_msg("weft %s said '%s', not '%s'", arguments, said, what);
-}
 
 static void write_text(const char *path, const char *text)
 {
@@ -62,9 +40,9 @@ static void eval_appends_the_brdf_to_every_row(void **state)
     (void)state;
     write_material("file.weft");
     write_text("file.csv", "lx,ly,lz,vx,vy,vz\n0,0,1,0,0,1\n0,0,-1,0,0,1\n");
-    expect("eval file.weft --at file.csv --quiet", 0,
-           "lx,ly,lz,vx,vy,vz,r,g,b\n0,0,1,0,0,1,0.159154943,0.159154943,0.159154943\n");
-    expect("eval file.weft --at file.csv --quiet -o file-out.csv", 0, "");
+    expect_weft("eval file.weft --at file.csv --quiet", 0,
+                "lx,ly,lz,vx,vy,vz,r,g,b\n0,0,1,0,0,1,0.159154943,0.159154943,0.159154943\n");
+    expect_weft("eval file.weft --at file.csv --quiet -o file-out.csv", 0, "");
     assert_int_equal(access("file-out.csv", R_OK), 0);
 }
 
@@ -73,11 +51,11 @@ static void eval_names_what_is_wrong(void **state)
     (void)state;
     write_material("file.weft");
     write_text("file.csv", "lx,ly,lz\n0,0,1\n");
-    expect("eval file.weft --at file.csv", 1, "file.csv' has no column 'vx'");
-    expect("eval file.weft --at none.csv", 1, "none.csv");
-    expect("eval none.weft --at file.csv", 1, "none.weft");
-    expect("eval file.weft", 2, "--at");
-    expect("eval --help", 0, "Example: weft eval");
+    expect_weft("eval file.weft --at file.csv", 1, "file.csv' has no column 'vx'");
+    expect_weft("eval file.weft --at none.csv", 1, "none.csv");
+    expect_weft("eval none.weft --at file.csv", 1, "none.weft");
+    expect_weft("eval file.weft", 2, "--at");
+    expect_weft("eval --help", 0, "Example: weft eval");
 }
 
 static void an_input_is_never_the_output(void **state)
@@ -85,11 +63,11 @@ static void an_input_is_never_the_output(void **state)
     (void)state;
     write_material("file.weft");
     write_text("file.csv", "lx,ly,lz,vx,vy,vz\n0,0,1,0,0,1\n");
-    expect("eval file.weft --at file.csv -o ./file.csv", 2, "would overwrite");
-    expect("eval file.weft --at file.csv -o file.weft", 2, "would overwrite");
-    expect("compress file.weft -o file.weft", 2, "would overwrite");
-    expect("capture --sample file.csv --truth file.csv -o file-session", 2, "would overwrite");
-    expect("verify file.weft", 0, "sound");
+    expect_weft("eval file.weft --at file.csv -o ./file.csv", 2, "would overwrite");
+    expect_weft("eval file.weft --at file.csv -o file.weft", 2, "would overwrite");
+    expect_weft("compress file.weft -o file.weft", 2, "would overwrite");
+    expect_weft("capture --sample file.csv --truth file.csv -o file-session", 2, "would overwrite");
+    expect_weft("verify file.weft", 0, "sound");
 }
 
 /* What the reference vectors give for this cloth and pair of directions (tests/data/reference/microcylinder_cloth.csv),
@@ -104,12 +82,12 @@ static void eval_info_and_verify_take_microcylinder_cloth(void **state)
     write_text("file.csv", text);
     snprintf(arguments, sizeof arguments, "eval %s --at file.csv --as-printed --quiet", cloth);
     snprintf(expected, sizeof expected, "lx,ly,lz,vx,vy,vz,r,g,b\n%s,0.0152147184,0.0590503405,0.0736622146\n", pair);
-    expect(arguments, 0, expected);
+    expect_weft(arguments, 0, expected);
     snprintf(arguments, sizeof arguments, "info %s", cloth);
-    expect(arguments, 0, "kind: microcylinder cloth");
-    expect(arguments, 0, "tangents: 4 x 4");
+    expect_weft(arguments, 0, "kind: microcylinder cloth");
+    expect_weft(arguments, 0, "tangents: 4 x 4");
     snprintf(arguments, sizeof arguments, "verify %s", cloth);
-    expect(arguments, 0, "sound");
+    expect_weft(arguments, 0, "sound");
 }
 
 static void bad_microcylinder_cloth_is_named_with_line_and_column(void **state)
@@ -117,11 +95,11 @@ static void bad_microcylinder_cloth_is_named_with_line_and_column(void **state)
     (void)state;
     write_text("file.csv", "lx,ly,lz,vx,vy,vz\n0,0,1,0,0,1\n");
     write_text("file.mc", "microcylinder {\n  name = \"no thread\",\n  sigmb = 17\n}\n");
-    expect("verify file.mc", 1, "weft verify: file.mc:3:3: unknown key 'sigmb'");
-    expect("info file.mc", 1, "weft info: file.mc:3:3: unknown key 'sigmb'");
-    expect("eval file.mc --at file.csv", 1, "weft eval: file.mc:3:3: unknown key 'sigmb'");
+    expect_weft("verify file.mc", 1, "weft verify: file.mc:3:3: unknown key 'sigmb'");
+    expect_weft("info file.mc", 1, "weft info: file.mc:3:3: unknown key 'sigmb'");
+    expect_weft("eval file.mc --at file.csv", 1, "weft eval: file.mc:3:3: unknown key 'sigmb'");
     write_text("file.mc", "");
-    expect("verify file.mc", 1, "weft verify: file.mc:1:1: ");
+    expect_weft("verify file.mc", 1, "weft verify: file.mc:1:1: ");
     unlink("file.mc");
 }
 
@@ -129,10 +107,10 @@ static void info_and_verify_speak_of_the_file(void **state)
 {
     (void)state;
     write_material("file.weft");
-    expect("info file.weft", 0, "texels: 2 x 2");
-    expect("verify file.weft", 0, "sound");
-    expect("info file.weft --json", 0, "\"event\":\"info\"");
-    expect("info", 2, "needs a file");
+    expect_weft("info file.weft", 0, "texels: 2 x 2");
+    expect_weft("verify file.weft", 0, "sound");
+    expect_weft("info file.weft --json", 0, "\"event\":\"info\"");
+    expect_weft("info", 2, "needs a file");
 }
 
 static void verify_refuses_a_material_cut_anywhere(void **state)
@@ -144,7 +122,7 @@ static void verify_refuses_a_material_cut_anywhere(void **state)
     for (long cut = 0; cut < status.st_size; cut += 1 + status.st_size / 16) {
         write_material("file.weft");
         assert_int_equal(truncate("file.weft", cut), 0);
-        expect("verify file.weft", 1, "weft verify: ");
+        expect_weft("verify file.weft", 1, "weft verify: ");
     }
 }
 
@@ -153,16 +131,16 @@ static void import_leaves_nothing_when_a_photograph_is_bad(void **state)
     (void)state;
     mkdir("file-photographs", 0777);
     write_text("file-photographs/tl000_pl000_tv000_pv000.png", "not an image");
-    expect("import file-photographs -o file-out.btf.h5", 1, "tl000_pl000_tv000_pv000.png");
+    expect_weft("import file-photographs -o file-out.btf.h5", 1, "tl000_pl000_tv000_pv000.png");
     assert_int_not_equal(access("file-out.btf.h5", F_OK), 0);
     weft_image image;
     assert_int_equal(weft_image_create(2, 2, &image, NULL), WEFT_OK);
     assert_int_equal(weft_image_write("file-photographs/tl000_pl000_tv000_pv000.png", &image, NULL, NULL), WEFT_OK);
     weft_image_free(&image);
-    expect("import file-photographs -o file-out.btf.h5", 0, "2 x 2 texels, 1 images from 1 views");
-    expect("import file-photographs -o file-out.btf.h5 --size x", 2, "--size");
-    expect("import file-photographs", 2, "-o");
-    expect("verify file-out.btf.h5", 0, "valid_samples: 4");
+    expect_weft("import file-photographs -o file-out.btf.h5", 0, "2 x 2 texels, 1 images from 1 views");
+    expect_weft("import file-photographs -o file-out.btf.h5 --size x", 2, "--size");
+    expect_weft("import file-photographs", 2, "-o");
+    expect_weft("verify file-out.btf.h5", 0, "valid_samples: 4");
     unlink("file-out.btf.h5");
 }
 

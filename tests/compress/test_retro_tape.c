@@ -1,9 +1,9 @@
 /* A measured retro-reflective tape: two peaks, one of which points back at the light, a degree or two wide. */
+#include "base/clock.h"
 #include "texel_fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
 
 static const char tape_path[] = WEFT_SHARED "/real/retro-tape/retro-3M-yellow.dat";
@@ -116,13 +116,6 @@ static double fit_cold(texel_fixture *fixture, const weft_fit_options *options, 
     return texel_fixture_error(fixture, 0, fit, fixture->table);
 }
 
-static double thread_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static float value_at(const texel_fixture *fixture, int view, double light_theta_deg)
 {
     weft_vec3 direction = direction_of_deg(light_theta_deg);
@@ -149,9 +142,9 @@ static void lobes_come_within_a_percent_of_the_best_known_in_less_than_40_ms(voi
     for (int i = 0; i < (int)(sizeof best_known / sizeof *best_known); i++) {
         weft_fit_options options = options_of(i + 1, 8192);
         weft_fit fit;
-        double before = thread_seconds();
+        double before = weft_clock_seconds(CLOCK_THREAD_CPUTIME_ID);
         double error = fit_cold(*state, &options, &fit);
-        assert_true(thread_seconds() - before < 0.04);
+        assert_true(weft_clock_seconds(CLOCK_THREAD_CPUTIME_ID) - before < 0.04);
         assert_true(error < 1.01 * best_known[i]);
     }
 }

@@ -7,12 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-void expect_ok(weft_code code, const weft_error *error)
-{
-    if (code != WEFT_OK)
-        fail_msg("%s", error->message);
-}
-
 int stage_open(void **state)
 {
     weft_error error = {0};

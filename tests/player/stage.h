@@ -5,10 +5,7 @@
 #include "player/draw/player.h"
 #include "player/gl/context.h"
 #include "reflectance/lafortune/lafortune.h"
-#include "tests/support/cmocka_all.h"
-
-/* Fails the test with the message of `error`. */
-void expect_ok(weft_code code, const weft_error *error);
+#include "tests/support/expect_ok.h"
 
 /* A context and a player with the drape on it; ends the program with 77 where there is no OpenGL. */
 typedef struct stage {

@@ -1,5 +1,6 @@
 /* Layouts, filters and lights of whole pictures. */
 #include "base/colour.h"
+#include "base/error_summary.h"
 #include "player/scene/false_colour.h"
 #include "stage.h"
 
@@ -55,12 +56,10 @@ static weft_image draw(void **state, weft_scene scene, int samples)
 
 static double relative_rmse(const weft_image *a, const weft_image *b)
 {
-    double square = 0, norm = 0;
-    for (int i = 0; i < 3 * PIXELS; i++) {
-        square += pow((double)(a->pixels[i] - b->pixels[i]), 2);
-        norm += pow((double)b->pixels[i], 2);
-    }
-    return sqrt(square / norm);
+    weft_error_sums sums = {0};
+    for (int i = 0; i < 3 * PIXELS; i++)
+        weft_error_sums_add_value(&sums, (double)b->pixels[i], (double)a->pixels[i]);
+    return weft_error_sums_relative_rmse(&sums);
 }
 
 static void a_wipe_shows_one_mode_left_of_the_divider_and_another_right_of_it(void **state)

@@ -1,5 +1,6 @@
 /* Rows that go in as texels come out as blocks, on every level. */
 #include "base/half.h"
+#include "base/integers.h"
 #include "player/raw/levels.h"
 #include "tests/support/cmocka_all.h"
 
@@ -64,11 +65,6 @@ static void push_all(const weft_raw_plan *plan, int width, int height, picture *
     weft_raw_levels_free(levels);
 }
 
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 /* Box means of value_of, which is linear in x and y; at an odd edge the last texel counts twice. */
 static double mean_of(int level, int x, int y, int width, int height, int channel, int image)
 {
@@ -81,8 +77,8 @@ static double mean_of(int level, int x, int y, int width, int height, int channe
         finer_height = (finer_height + 1) / 2;
     }
     for (int i = 0; i < 4; i++)
-        sum += mean_of(level - 1, smaller(2 * x + i % 2, finer_width - 1), smaller(2 * y + i / 2, finer_height - 1),
-                       width, height, channel, image);
+        sum += mean_of(level - 1, weft_smaller(2 * x + i % 2, finer_width - 1),
+                       weft_smaller(2 * y + i / 2, finer_height - 1), width, height, channel, image);
     return sum / 4;
 }
 

@@ -75,23 +75,7 @@ static void compare_dialect(weft_gl_profile profile)
     assert_true(different[1] < TWIN_QUERIES / 200);
 }
 
-static void desktop_shader_equals_c(void **state)
-{
-    (void)state;
-    compare_dialect(WEFT_GL_CORE);
-}
-
-static void embedded_shader_equals_c(void **state)
-{
-    (void)state;
-    compare_dialect(WEFT_GL_ES);
-}
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(desktop_shader_equals_c),
-        cmocka_unit_test(embedded_shader_equals_c),
-    };
-    return cmocka_run_group_tests_name("GLSL twin of BARD", tests, NULL, NULL);
+    return twin_main("GLSL twin of BARD", compare_dialect);
 }

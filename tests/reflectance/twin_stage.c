@@ -2,7 +2,7 @@
 
 #include "player/gl/gl.h"
 #include "player/gl/shaders.h"
-#include "tests/support/cmocka_all.h"
+#include "tests/support/expect_ok.h"
 #include "tests/support/keep_modules.h"
 
 #include <stdlib.h>
@@ -19,12 +19,6 @@ static const char fragment_main[] = "uniform sampler2D table;\n"
                                     "                  texelFetch(query, at + ivec2(0, 128), 0),\n"
                                     "                  texelFetch(query, at + ivec2(0, 256), 0));\n"
                                     "}\n";
-
-static void expect_ok(weft_code code, const weft_error *error)
-{
-    if (code != WEFT_OK)
-        fail_msg("%s", error->message);
-}
 
 static GLuint upload(const float *rgba, int width, int height)
 {
@@ -91,4 +85,28 @@ void twin_run(weft_gl_profile profile, const char *const *sources, const twin_ta
     glDeleteTextures(1, &of_table);
     glDeleteProgram(program);
     weft_headless_free(headless);
+}
+
+static void (*compare_dialect)(weft_gl_profile profile);
+
+static void desktop_shader_equals_c(void **state)
+{
+    (void)state;
+    compare_dialect(WEFT_GL_CORE);
+}
+
+static void embedded_shader_equals_c(void **state)
+{
+    (void)state;
+    compare_dialect(WEFT_GL_ES);
+}
+
+int twin_main(const char *name, void (*compare)(weft_gl_profile profile))
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(desktop_shader_equals_c),
+        cmocka_unit_test(embedded_shader_equals_c),
+    };
+    compare_dialect = compare;
+    return cmocka_run_group_tests_name(name, tests, NULL, NULL);
 }

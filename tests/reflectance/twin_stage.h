@@ -22,4 +22,7 @@ typedef struct twin_table {
 void twin_run(weft_gl_profile profile, const char *const *sources, const twin_table *table, twin_queries queries,
               float (*result)[4]);
 
+/* The main program of such a test: runs `compare` in each dialect of GLSL as a test of the group `name`. */
+int twin_main(const char *name, void (*compare)(weft_gl_profile profile));
+
 #endif

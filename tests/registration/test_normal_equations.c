@@ -1,6 +1,5 @@
 #include "registration/pose/normal_equations.h"
 
-#include "registration/radiometry/statistics.h"
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"
 
@@ -55,15 +54,6 @@ static void equations_that_say_nothing_of_an_unknown_are_singular(void **state)
     assert_false(weft_normal_equations_factor(&equations, 3));
 }
 
-static void a_quantile_is_one_of_the_values(void **state)
-{
-    (void)state;
-    double value[] = {5, 1, 4, 2, 3};
-    assert_near(weft_quantile(value, 5, 0.5), 3, 0);
-    assert_near(weft_quantile(value, 5, 1), 5, 0);
-    assert_near(weft_quantile(value, 0, 0.5), 0, 0);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -71,7 +61,6 @@ int main(void)
         cmocka_unit_test(the_variance_of_a_mean_is_one_over_the_count),
         cmocka_unit_test(merged_parts_equal_the_whole),
         cmocka_unit_test(equations_that_say_nothing_of_an_unknown_are_singular),
-        cmocka_unit_test(a_quantile_is_one_of_the_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

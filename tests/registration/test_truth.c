@@ -1,7 +1,7 @@
 #include "registration/registration.h"
 
+#include "base/statistics.h"
 #include "btf/dataset/dataset.h"
-#include "registration/radiometry/statistics.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/ground_truth.h"
 #include "tests/support/scratch_folder.h"

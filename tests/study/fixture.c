@@ -5,12 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-void expect_ok(weft_code code, const weft_error *error)
-{
-    if (code != WEFT_OK)
-        fail_msg("%s", error->message);
-}
-
 static void put_image(weft_dataset_writer *writer, const weft_dataset_layout *layout, int image,
                       fixture_reflectance reflectance, int masked)
 {

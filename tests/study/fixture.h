@@ -5,13 +5,7 @@
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
 #include "reflectance/weave/weave.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/expect_ok.h"
 
 /* Reflectance (BRDF x pi) of a texel in a direction pair, whatever the test wants. */
 typedef weft_rgb (*fixture_reflectance)(int x, int y, weft_vec3 light, weft_vec3 view);
@@ -37,8 +31,5 @@ void fixture_near_dataset(const char *path, int size, int image_count, fixture_r
 
 /* Diffuse material of one level with rho = value(x, y), no lobes and no table. */
 void fixture_diffuse_material(const char *path, int width, int height, weft_rgb (*value)(int x, int y));
-
-/* Fails the test with the message of the error. */
-void expect_ok(weft_code code, const weft_error *error);
 
 #endif

@@ -3,11 +3,11 @@
 #include "fixture.h"
 #include "study/bard/plan.h"
 #include "study/bard/predict.h"
+#include "tests/support/run_weft.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 enum { WIDTH = 5, HEIGHT = 3 };
@@ -270,31 +270,11 @@ static void the_file_says_how_it_was_made(void **state)
 
 /* ---- The command ---- */
 
-/* `before` is what the shell does first. */
-static void expect_command_after(const char *before, const char *arguments, int code, const char *what)
-{
-    char command[1024], said[8192];
-    snprintf(command, sizeof command, "%s" WEFT_PROGRAM " bard %s 2>&1", before, arguments);
-    FILE *pipe = popen(command, "r");
-    assert_non_null(pipe);
-    said[fread(said, 1, sizeof said - 1, pipe)] = 0;
-    int status = pclose(pipe);
-    assert_true(WIFEXITED(status));
-    if (WEXITSTATUS(status) != code || !strstr(said, what))
-        fail_msg("weft bard %s exited with %d, not %d, and said '%s', not '%s'", arguments, WEXITSTATUS(status), code,
-                 said, what);
-}
-
-static void expect_command(const char *arguments, int code, const char *what)
-{
-    expect_command_after("", arguments, code, what);
-}
-
 static void a_full_disk_is_an_error_that_leaves_nothing(void **state)
 {
     (void)state;
     fixture_far_dataset(input, 40, 40, 3, lambertian, 0);
-    expect_command_after("ulimit -f 2048; ", "bard.btf.h5 -o bard.bard.h5", WEFT_SYSTEM, "bard.bard.h5");
+    expect_weft_after("ulimit -f 2048;", "bard bard.btf.h5 -o bard.bard.h5", WEFT_SYSTEM, "bard.bard.h5");
     assert_int_not_equal(access(output, F_OK), 0);
     forget_files();
 }
@@ -303,18 +283,18 @@ static void the_command_predicts_and_names_what_is_wrong(void **state)
 {
     (void)state;
     fixture_far_dataset(input, 4, 4, 3, lambertian, 0);
-    expect_command("bard.btf.h5 -o bard.bard.h5", 0, "predicted from 19 photographs of 361");
-    expect_command("bard.btf.h5 -o bard.bard.h5 --json --diffuse 0.5 --map printed", 0, "\"event\":\"prediction\"");
+    expect_weft("bard bard.btf.h5 -o bard.bard.h5", 0, "predicted from 19 photographs of 361");
+    expect_weft("bard bard.btf.h5 -o bard.bard.h5 --json --diffuse 0.5 --map printed", 0, "\"event\":\"prediction\"");
     unlink(output);
-    expect_command("none.btf.h5 -o bard.bard.h5", 1, "none.btf.h5");
-    expect_command("bard.btf.h5", 2, "-o");
-    expect_command("bard.btf.h5 -o bard.bard.h5 --diffuse 2", 2, "--diffuse");
-    expect_command("bard.btf.h5 -o bard.bard.h5 --map round", 2, "--map");
-    expect_command("bard.btf.h5 -o no-folder/bard.bard.h5", 3, "no-folder");
-    expect_command("bard.btf.h5 -o bard.btf.h5", 2, "would overwrite");
-    expect_command("--help", 0, "Example: weft bard");
+    expect_weft("bard none.btf.h5 -o bard.bard.h5", 1, "none.btf.h5");
+    expect_weft("bard bard.btf.h5", 2, "-o");
+    expect_weft("bard bard.btf.h5 -o bard.bard.h5 --diffuse 2", 2, "--diffuse");
+    expect_weft("bard bard.btf.h5 -o bard.bard.h5 --map round", 2, "--map");
+    expect_weft("bard bard.btf.h5 -o no-folder/bard.bard.h5", 3, "no-folder");
+    expect_weft("bard bard.btf.h5 -o bard.btf.h5", 2, "would overwrite");
+    expect_weft("bard --help", 0, "Example: weft bard");
     assert_int_equal(truncate(input, 5000), 0);
-    expect_command("bard.btf.h5 -o bard.bard.h5", 1, "bard.btf.h5");
+    expect_weft("bard bard.btf.h5 -o bard.bard.h5", 1, "bard.btf.h5");
     assert_int_not_equal(access(output, F_OK), 0);
     forget_files();
 }

@@ -1,4 +1,5 @@
 #include "base/atomic_file.h"
+#include "base/statistics.h"
 #include "btf/direction/direction.h"
 #include "fixture.h"
 #include "reflectance/microcylinder/file.h"
@@ -24,14 +25,8 @@ static weft_rgb flat(int x, int y)
     return (weft_rgb){0.25 + 0.05 * x, 0.2 + 0.05 * y, 0.15};
 }
 
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The error of `flat` against `glossy` straight from the two functions. */
-static weft_prediction_error expected_error(int ring)
+static weft_error_summary expected_error(int ring)
 {
     static double relative[WIDTH * HEIGHT * 361 * 3];
     long count = 0;
@@ -52,14 +47,14 @@ static weft_prediction_error expected_error(int ring)
             }
         }
     }
-    qsort(relative, (size_t)count, sizeof *relative, ascending);
-    double median = 0.5 * (relative[count / 2] + relative[(count - 1) / 2]);
-    double percentile80 = relative[(4 * count + 4) / 5 - 1];
-    return (weft_prediction_error){count, sqrt(errors / squares), median, percentile80, sqrt(errors / (double)count)};
+    return (weft_error_summary){.median_relative = weft_quantile(relative, (size_t)count, 0.5),
+                                .percentile80_relative = weft_quantile(relative, (size_t)count, 0.8),
+                                .relative_rmse = sqrt(errors / squares),
+                                .count = count};
 }
 
 /* The same of the means over the texels, without the cosine. */
-static weft_prediction_error expected_mean_error(void)
+static weft_error_summary expected_mean_error(void)
 {
     static double relative[361 * 3];
     long count = 0;
@@ -81,9 +76,10 @@ static weft_prediction_error expected_mean_error(void)
             relative[count++] = fabs(s - p) / s;
         }
     }
-    qsort(relative, (size_t)count, sizeof *relative, ascending);
-    return (weft_prediction_error){count, sqrt(errors / squares), relative[count / 2],
-                                   relative[(4 * count + 4) / 5 - 1], sqrt(errors / (double)count)};
+    return (weft_error_summary){.median_relative = weft_quantile(relative, (size_t)count, 0.5),
+                                .percentile80_relative = weft_quantile(relative, (size_t)count, 0.8),
+                                .relative_rmse = sqrt(errors / squares),
+                                .count = count};
 }
 
 static char *read_page(const char *path)
@@ -95,7 +91,7 @@ static char *read_page(const char *path)
     return text;
 }
 
-static void expect_error(const weft_prediction_error *measured, const weft_prediction_error *expected)
+static void expect_error(const weft_error_summary *measured, const weft_error_summary *expected)
 {
     assert_int_equal(measured->count, expected->count);
     assert_float_equal(measured->relative_rmse, expected->relative_rmse, 2e-3 * expected->relative_rmse);
@@ -114,7 +110,7 @@ static void the_page_tells_the_errors_that_the_functions_have(void **state)
     weft_comparison comparison;
     weft_error error = {0};
     expect_ok(weft_compare(&options, NULL, &comparison, &error), &error);
-    weft_prediction_error all = expected_error(-1), ring = expected_error(2), mean = expected_mean_error();
+    weft_error_summary all = expected_error(-1), ring = expected_error(2), mean = expected_mean_error();
     assert_int_equal(comparison.model_count, 1);
     expect_error(&comparison.model[0].mean, &mean);
     expect_error(&comparison.model[0].texture.all, &all);
@@ -123,7 +119,7 @@ static void the_page_tells_the_errors_that_the_functions_have(void **state)
     assert_int_equal(comparison.model[0].texture.saturated, 1);
     assert_int_equal(comparison.left_out.count, 0);
     char *page = read_page("compare-report/index.html"), row[128];
-    const weft_prediction_error *m = &comparison.model[0].texture.all;
+    const weft_error_summary *m = &comparison.model[0].texture.all;
     snprintf(row, sizeof row, "<td>all</td><td>%ld</td><td>%.2f %%</td><td>%.4f</td>", m->count,
              100 * m->median_relative, m->relative_rmse);
     assert_non_null(strstr(page, row));
@@ -134,7 +130,7 @@ static void the_page_tells_the_errors_that_the_functions_have(void **state)
 }
 
 /* A row of the table of models. */
-static void expect_model_row(const char *page, const char *name, const weft_prediction_error *e)
+static void expect_model_row(const char *page, const char *name, const weft_error_summary *e)
 {
     char row[160];
     snprintf(row, sizeof row, "<td>%s</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td><td>%.2f %%</td>", name, e->count,
@@ -145,7 +141,7 @@ static void expect_model_row(const char *page, const char *name, const weft_pred
 
 /* The error of the analytic cloth, sample by sample: laid as the fit found it, or as many tiles from the corner.
  * `weave` is the start of the fit, or what an earlier one found. */
-static weft_prediction_error compare_weave(const char *weave, bool fit, double tiles, bool on_yarns)
+static weft_error_summary compare_weave(const char *weave, bool fit, double tiles, bool on_yarns)
 {
     const weft_compare_options options = {.dataset = "compare.btf.h5",
                                           .material = "compare.weft",
@@ -157,7 +153,7 @@ static weft_prediction_error compare_weave(const char *weave, bool fit, double t
     weft_comparison comparison;
     weft_error error = {0};
     expect_ok(weft_compare(&options, NULL, &comparison, &error), &error);
-    weft_prediction_error result = comparison.model[1].texture.all;
+    weft_error_summary result = comparison.model[1].texture.all;
     char *page = read_page("compare-report/index.html");
     assert_int_equal(comparison.weave_on_yarns, on_yarns);
     assert_int_equal(strstr(page, "laid as the fit found its tiles") != NULL, on_yarns);
@@ -181,10 +177,10 @@ static void a_fitted_weave_lies_with_its_yarns_on_those_of_the_data(void **state
     fixture_far_dataset("compare.btf.h5", TEXELS, TEXELS, 3, fixture_woven, 0);
     fixture_diffuse_material("compare.weft", TEXELS, TEXELS, flat);
     const char *start = WEFT_ASSETS "/weaves/polyester_lining.wv";
-    weft_prediction_error laid = compare_weave(start, true, 0, true);
+    weft_error_summary laid = compare_weave(start, true, 0, true);
     assert_int_equal(rename("compare-report/fitted.wv", "fitted.wv"), 0);
-    weft_prediction_error kept = compare_weave("fitted.wv", false, 0, true);
-    weft_prediction_error beside = compare_weave("fitted.wv", false, TEXELS / tile, false);
+    weft_error_summary kept = compare_weave("fitted.wv", false, 0, true);
+    weft_error_summary beside = compare_weave("fitted.wv", false, TEXELS / tile, false);
     assert_true(laid.relative_rmse < 0.25 * beside.relative_rmse);
     assert_float_equal(kept.relative_rmse, laid.relative_rmse, 1e-9);
     weft_weave_free(&fixture_cloth.weave);
@@ -257,7 +253,7 @@ static void microcylinder_cloth_is_compared_as_it_is(void **state)
     assert_true(comparison.model[1].mean.relative_rmse < 1e-3);
     assert_true(comparison.model[0].texture.all.relative_rmse > 0.1);
     assert_non_null(strstr(page, "The analytic cloth is the microcylinder cloth"));
-    const weft_prediction_error *drawn = comparison.scenes.scene[0].error;
+    const weft_error_summary *drawn = comparison.scenes.scene[0].error;
     print_message("drawn against raw: analytic %.4f, compressed %.4f\n", drawn[WEFT_MODE_ANALYTIC].relative_rmse,
                   drawn[WEFT_MODE_COMPRESSED].relative_rmse);
     if (comparison.scenes.drawn)

@@ -15,12 +15,8 @@ static const char *const input = "tile.btf.h5", *const output = "tile.tile.btf.h
 
 /* ---- Cloth ---- */
 
-/* What the datasets of these tests show. */
-static struct {
-    double width, height, left, top; /* of the tile, texels */
-    double noise;                    /* standard deviation relative to the value */
-    weft_weave weave;
-} cloth;
+/* Standard deviation of what the datasets show, relative to the value. */
+static double noise;
 
 /* Mixes a state well (Steele, Lea and Flood 2014). */
 static uint64_t mixed(uint64_t state)
@@ -47,33 +43,22 @@ static double deviate(int x, int y, weft_vec3 light, weft_vec3 view)
 
 static weft_rgb noisy(weft_rgb value, int x, int y, weft_vec3 light, weft_vec3 view)
 {
-    double factor = fmax(1 + cloth.noise * deviate(x, y, light, view), 0);
+    double factor = fmax(1 + noise * deviate(x, y, light, view), 0);
     return (weft_rgb){factor * value.r, factor * value.g, factor * value.b};
 }
 
 /* A smooth tile without symmetry. */
 static weft_rgb waves(int x, int y, weft_vec3 light, weft_vec3 view)
 {
-    double u = 2 * WEFT_PI * (x + 0.5 - cloth.left) / cloth.width,
-           v = 2 * WEFT_PI * (y + 0.5 - cloth.top) / cloth.height;
+    double u = 2 * WEFT_PI * (x + 0.5 - fixture_cloth.left) / fixture_cloth.width,
+           v = 2 * WEFT_PI * (y + 0.5 - fixture_cloth.top) / fixture_cloth.height;
     double value = 0.5 + 0.2 * light.z * sin(u) * cos(v) + 0.1 * sin(2 * u + v) + 0.1 * view.z * cos(u - 2 * v);
     return noisy((weft_rgb){value, 0.5 * value, 0.25 * value}, x, y, light, view);
 }
 
-/* The weave, each texel the mean of 4 x 4 points. */
 static weft_rgb woven(int x, int y, weft_vec3 light, weft_vec3 view)
 {
-    enum { POINTS = 4 };
-    weft_rgb sum = {0};
-    for (int i = 0; i < POINTS * POINTS; i++) {
-        double U = (x + (i % POINTS + 0.5) / POINTS - cloth.left) / cloth.width;
-        double V = 1 - (y + (i / POINTS + 0.5) / POINTS - cloth.top) / cloth.height;
-        weft_weave_point point = weft_weave_locate(&cloth.weave, U, V, 0);
-        weft_rgb value = weft_weave_brdf(&cloth.weave, &point, light, view);
-        sum.r += value.r, sum.g += value.g, sum.b += value.b;
-    }
-    double scale = WEFT_PI / (POINTS * POINTS);
-    return noisy((weft_rgb){scale * sum.r, scale * sum.g, scale * sum.b}, x, y, light, view);
+    return noisy(fixture_woven(x, y, light, view), x, y, light, view);
 }
 
 static weft_rgb only_noise(int x, int y, weft_vec3 light, weft_vec3 view)
@@ -87,7 +72,7 @@ static void read_weave(const char *name)
     char path[512];
     weft_error error = {0};
     snprintf(path, sizeof path, "%s/weaves/%s", WEFT_ASSETS, name);
-    expect_ok(weft_weave_read(path, NULL, 0, &cloth.weave, NULL, &error), &error);
+    expect_ok(weft_weave_read(path, NULL, 0, &fixture_cloth.weave, NULL, &error), &error);
 }
 
 static weft_code find(const weft_weave *weave, weft_tile_report *report, weft_error *error)
@@ -121,15 +106,16 @@ static void the_period_is_found_to_a_twentieth_of_a_texel_under_noise(void **sta
     (void)state;
     static const double size[][2] = {{9.37, 13.82}, {12, 10}, {21.33, 32}};
     for (int i = 0; i < 3; i++) {
-        cloth.width = size[i][0], cloth.height = size[i][1], cloth.left = 3.3, cloth.top = 5.9, cloth.noise = 0.2;
+        fixture_cloth.width = size[i][0], fixture_cloth.height = size[i][1], fixture_cloth.left = 3.3,
+        fixture_cloth.top = 5.9, noise = 0.2;
         fixture_far_dataset(input, 70, 66, 2, waves, 1);
         weft_tile_report report;
         weft_error error = {0};
         expect_ok(find(NULL, &report, &error), &error);
-        expect_near("width", report.tile.width, cloth.width, 0.05);
-        expect_near("height", report.tile.height, cloth.height, 0.05);
-        expect_near("width in mm", report.width_mm, cloth.width, 0.05);
-        expect_near("tiles along u", report.tiles_x, 70 / cloth.width, 0.05);
+        expect_near("width", report.tile.width, fixture_cloth.width, 0.05);
+        expect_near("height", report.tile.height, fixture_cloth.height, 0.05);
+        expect_near("width in mm", report.width_mm, fixture_cloth.width, 0.05);
+        expect_near("tiles along u", report.tiles_x, 70 / fixture_cloth.width, 0.05);
     }
 }
 
@@ -141,18 +127,19 @@ static void the_weave_gives_the_phase_to_a_twentieth_of_a_texel_under_noise(void
     for (int i = 0; i < 3; i++) {
         read_weave(name[i]);
         double cell_x = i < 2 ? 2.11 : 8.44, cell_y = i < 2 ? 2.07 : 8.28;
-        cloth.width = cell_x * cloth.weave.tile_width, cloth.height = cell_y * cloth.weave.tile_height;
-        cloth.left = 4.27, cloth.top = 7.61, cloth.noise = 0.15;
+        fixture_cloth.width = cell_x * fixture_cloth.weave.tile_width,
+        fixture_cloth.height = cell_y * fixture_cloth.weave.tile_height;
+        fixture_cloth.left = 4.27, fixture_cloth.top = 7.61, noise = 0.15;
         fixture_far_dataset(input, 96, 96, 2, woven, 0);
         weft_tile_report report;
         weft_error error = {0};
-        expect_ok(find(&cloth.weave, &report, &error), &error);
-        expect_near("width", report.tile.width, cloth.width, 0.05);
-        expect_near("height", report.tile.height, cloth.height, 0.05);
-        expect_near("left", apart(report.tile.left, cloth.left, cell_x), 0, 0.05);
-        expect_near("top", apart(report.tile.top, cloth.top, cell_y), 0, 0.05);
+        expect_ok(find(&fixture_cloth.weave, &report, &error), &error);
+        expect_near("width", report.tile.width, fixture_cloth.width, 0.05);
+        expect_near("height", report.tile.height, fixture_cloth.height, 0.05);
+        expect_near("left", apart(report.tile.left, fixture_cloth.left, cell_x), 0, 0.05);
+        expect_near("top", apart(report.tile.top, fixture_cloth.top, cell_y), 0, 0.05);
         expect_near("likeness", report.likeness, 1, 0.08);
-        weft_weave_free(&cloth.weave);
+        weft_weave_free(&fixture_cloth.weave);
     }
 }
 
@@ -181,7 +168,7 @@ static double mean_of_image(const char *path, int image)
 static void the_mean_tile_is_free_of_noise_and_keeps_the_mean(void **state)
 {
     (void)state;
-    cloth.width = 12, cloth.height = 10, cloth.left = cloth.top = 0, cloth.noise = 0;
+    fixture_cloth.width = 12, fixture_cloth.height = 10, fixture_cloth.left = fixture_cloth.top = 0, noise = 0;
     fixture_far_dataset(input, 96, 80, 2, waves, 0);
     weft_tile_report report;
     weft_error error = {0};
@@ -190,7 +177,7 @@ static void the_mean_tile_is_free_of_noise_and_keeps_the_mean(void **state)
     assert_int_equal(report.texels_y, 10);
     expect_near("residual share", report.residual_share, 0, 0.05);
     expect_near("mean of image 5", mean_of_image(output, 5), mean_of_image(input, 5), 1e-3);
-    cloth.noise = 0.1;
+    noise = 0.1;
     fixture_far_dataset(input, 96, 80, 2, waves, 0);
     expect_ok(find(NULL, &report, &error), &error);
     expect_near("residual relative to the mean", report.residual_relative, 0.1, 0.02);
@@ -199,7 +186,7 @@ static void the_mean_tile_is_free_of_noise_and_keeps_the_mean(void **state)
 static void a_sample_masked_in_one_tile_comes_from_the_others(void **state)
 {
     (void)state;
-    cloth.width = 12, cloth.height = 10, cloth.left = cloth.top = 0, cloth.noise = 0;
+    fixture_cloth.width = 12, fixture_cloth.height = 10, fixture_cloth.left = fixture_cloth.top = 0, noise = 0;
     fixture_far_dataset(input, 36, 30, 2, waves, 1);
     weft_tile_report report;
     weft_error error = {0};
@@ -237,7 +224,7 @@ static void expect_refusal(const char *with)
     weft_tile_report report;
     weft_error error = {0};
     remove(output);
-    assert_int_equal(find(cloth.weave.yarn ? &cloth.weave : NULL, &report, &error), WEFT_BAD_INPUT);
+    assert_int_equal(find(fixture_cloth.weave.yarn ? &fixture_cloth.weave : NULL, &report, &error), WEFT_BAD_INPUT);
     if (!strstr(error.message, with))
         fail_msg("'%s' does not say '%s'", error.message, with);
     assert_int_not_equal(access(output, F_OK), 0);
@@ -248,7 +235,7 @@ static void what_has_no_tile_is_refused(void **state)
     (void)state;
     fixture_far_dataset(input, 64, 64, 2, only_noise, 0);
     expect_refusal("does not repeat along u");
-    cloth.width = 40, cloth.height = 10, cloth.left = cloth.top = cloth.noise = 0;
+    fixture_cloth.width = 40, fixture_cloth.height = 10, fixture_cloth.left = fixture_cloth.top = noise = 0;
     fixture_far_dataset(input, 60, 60, 2, waves, 0);
     expect_refusal("does not repeat along u");
     fixture_far_dataset(input, 6, 60, 2, waves, 0);
@@ -261,18 +248,18 @@ static void another_weave_is_refused(void **state)
 {
     (void)state;
     read_weave("cotton_denim.wv");
-    cloth.width = 15.5, cloth.height = 31, cloth.left = cloth.top = 2, cloth.noise = 0;
+    fixture_cloth.width = 15.5, fixture_cloth.height = 31, fixture_cloth.left = fixture_cloth.top = 2, noise = 0;
     fixture_far_dataset(input, 64, 64, 3, woven, 0);
-    weft_weave_free(&cloth.weave);
+    weft_weave_free(&fixture_cloth.weave);
     read_weave("silk_shantung.wv");
     expect_refusal("does not look like the weave 'Silk shantung'");
-    weft_weave_free(&cloth.weave);
+    weft_weave_free(&fixture_cloth.weave);
 }
 
 static void the_command_says_what_it_did(void **state)
 {
     (void)state;
-    cloth.width = 12, cloth.height = 10, cloth.left = cloth.top = 0, cloth.noise = 0;
+    fixture_cloth.width = 12, fixture_cloth.height = 10, fixture_cloth.left = fixture_cloth.top = 0, noise = 0;
     fixture_far_dataset(input, 36, 30, 2, waves, 0);
     remove(output);
     assert_int_equal(system(WEFT_PROGRAM " tile tile.btf.h5 -o tile.tile.btf.h5 | grep -q 'tiles: 3.00 x 3.00'"), 0);

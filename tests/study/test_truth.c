@@ -310,7 +310,7 @@ static void check_scene(const weft_truth_scene *scene)
             assert_true(e->error.count > 10000);
             assert_true(e->error.relative_rmse > scene->noise && e->error.relative_rmse < 1);
             assert_true(e->block_relative_rmse > 0 && e->block_relative_rmse < e->error.relative_rmse);
-            assert_true(e->psnr_db > 5 && e->psnr_db < 40);
+            assert_true(e->error.psnr_db > 5 && e->error.psnr_db < 40);
         }
     }
 }

@@ -2,39 +2,37 @@
 
 #include <jansson.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void print_tile(weft_page *page, const char *label, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static void print_tile(weft_page *page, const char *label, const char *format, ...)
-{
-    fputs("<div><b>", page->html);
-    va_list arguments;
-    va_start(arguments, format);
-    vfprintf(page->html, format, arguments);
-    va_end(arguments);
-    fprintf(page->html, "</b>%s</div>\n", label);
-}
-
 void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison)
 {
-    const weft_prediction_error *all = &comparison->model[0].texture.all;
+    const weft_error_summary *all = &comparison->model[0].texture.all;
     fprintf(page->html, "<p>%d \u00d7 %d texels of %.4g mm, %d images from %d views; lights and cameras %s.</p>\n",
             layout->width, layout->height, layout->texel_pitch_mm, layout->image_count, layout->view_count,
             layout->distance == WEFT_NEAR ? "near, their directions differ from texel to texel" : "far away");
     fputs("<div class=\"tiles\">\n", page->html);
-    print_tile(page, "half floats : material", "%.1f : 1", comparison->half_float_bytes / comparison->material_bytes);
-    print_tile(page, "relative RMSE, level 0", "%.4f", all->relative_rmse);
-    print_tile(page, "median relative error, level 0", "%.2f %%", 100 * all->median_relative);
+    weft_page_tile(page, "half floats : material", "%.1f : 1",
+                   comparison->half_float_bytes / comparison->material_bytes);
+    weft_page_tile(page, "relative RMSE, level 0", "%.4f", all->relative_rmse);
+    weft_page_tile(page, "median relative error, level 0", "%.2f %%", 100 * all->median_relative);
     if (comparison->left_out.count > 0) {
-        print_tile(page, "relative RMSE, photographs left out", "%.4f", comparison->left_out.mean_relative_rmse);
-        print_tile(page, "median relative error, photographs left out", "%.4f",
-                   comparison->left_out.mean_median_relative);
+        weft_page_tile(page, "relative RMSE, photographs left out", "%.4f", comparison->left_out.mean_relative_rmse);
+        weft_page_tile(page, "median relative error, photographs left out", "%.4f",
+                       comparison->left_out.mean_median_relative);
     }
     fputs("</div>\n", page->html);
+}
+
+/* What the columns of errors mean. */
+static void explain_error(weft_page *page)
+{
+    fprintf(
+        page->html,
+        "Relative RMSE: \u221a(\u03a3 (p \u2212 s)\u00b2 / \u03a3 s\u00b2) over samples s and predictions p. "
+        "Median relative and 80th percentile: of |p \u2212 s| / s, without the dim samples, which are at most %g of "
+        "the largest.",
+        weft_dim_share);
 }
 
 static void print_weave(weft_page *page, const weft_comparison *comparison)
@@ -66,7 +64,7 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
             100 * comparison->fit.before.median_relative, 100 * comparison->fit.before.percentile80_relative);
 }
 
-static void print_model_error(weft_page *page, const char *name, const weft_prediction_error *e)
+static void print_model_error(weft_page *page, const char *name, const weft_error_summary *e)
 {
     fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td><td>%.2f %%</td></tr>\n", name,
             e->count, e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
@@ -82,10 +80,11 @@ void weft_page_models(weft_page *page, const weft_comparison *comparison)
     fputs("<tr><th>mean BRDF of the material</th><th></th><th></th><th></th><th></th></tr>\n", page->html);
     for (int i = 0; i < comparison->model_count; i++)
         print_model_error(page, comparison->model[i].name, &comparison->model[i].mean);
-    fputs("</table>\n<p class=\"note\">Relative RMSE: \u221a(mean (p \u2212 s)\u00b2 / mean s\u00b2). Relative: |p "
-          "\u2212 s| / s, where s counts as at least 1e-4 of the largest sample. Samples in the quantity of the "
-          "dataset, the analytic cloth averaged over each texel and without its noise; mean BRDFs over the directions "
-          "of the images, as <code>weft eval</code> gives them without texture coordinates.",
+    fputs("</table>\n<p class=\"note\">", page->html);
+    explain_error(page);
+    fputs(" Samples in the quantity of the dataset, the analytic cloth averaged over each texel and without its noise; "
+          "mean BRDFs over the directions of the images, as <code>weft eval</code> gives them without texture "
+          "coordinates.",
           page->html);
     print_weave(page, comparison);
     fputs("</p>\n", page->html);
@@ -94,14 +93,14 @@ void weft_page_models(weft_page *page, const weft_comparison *comparison)
 static void print_levels(weft_page *page, const weft_material *material)
 {
     fputs("<h2>Error of the material, level by level</h2>\n<p class=\"note\">Measured over all valid samples when the "
-          "file was written, decoded "
-          "as a player sees it.</p>\n<table><tr><th>texels</th><th>median relative</th><th>80th "
+          "file was written, decoded as a player sees it; percentiles to 2 % of their "
+          "value.</p>\n<table><tr><th>texels</th><th>median relative</th><th>80th "
           "percentile</th><th>RMSE</th>"
           "<th>relative RMSE</th><th>PSNR</th></tr>\n",
           page->html);
     for (int i = 0; i < material->level_count; i++) {
         const weft_material_level *level = &material->level[i];
-        const weft_material_error *e = &level->error;
+        const weft_error_summary *e = &level->error;
         fprintf(page->html,
                 "<tr><td>%d \u00d7 %d</td><td>%.2f %%</td><td>%.2f %%</td><td>%.4f</td><td>%.4f</td><td>%.1f "
                 "dB</td></tr>\n",
@@ -111,7 +110,7 @@ static void print_levels(weft_page *page, const weft_material *material)
     fputs("</table>\n", page->html);
 }
 
-static void print_error(weft_page *page, const char *name, const weft_prediction_error *e)
+static void print_error(weft_page *page, const char *name, const weft_error_summary *e)
 {
     if (e->count == 0)
         return;
@@ -119,7 +118,7 @@ static void print_error(weft_page *page, const char *name, const weft_prediction
             100 * e->median_relative, e->relative_rmse);
 }
 
-static void print_rings(weft_page *page, const char *title, const weft_prediction_error ring[WEFT_RING_COUNT])
+static void print_rings(weft_page *page, const char *title, const weft_error_summary ring[WEFT_RING_COUNT])
 {
     fprintf(page->html, "<tr><th>%s</th><th></th><th></th><th></th></tr>\n", title);
     for (int i = 0; i < WEFT_RING_COUNT; i++) {
@@ -132,13 +131,11 @@ static void print_rings(weft_page *page, const char *title, const weft_predictio
 static void print_directions(weft_page *page, const weft_dataset_layout *layout, const weft_measurement *measurement)
 {
     fputs("<h2>Error by direction</h2>\n", page->html);
-    fprintf(
-        page->html,
-        "<p class=\"note\">Level 0 against the dataset, measured for this page over %ld of %ld texels. Relative RMSE: "
-        "\u221a(mean (p \u2212 s)\u00b2 / mean s\u00b2). Median relative: of |p \u2212 s| / s, where s counts as at "
-        "least "
-        "1e-4 of the largest sample.</p>\n",
-        measurement->texel_count, (long)layout->width * layout->height);
+    fprintf(page->html,
+            "<p class=\"note\">Level 0 against the dataset, measured for this page over %ld of %ld texels. ",
+            measurement->texel_count, (long)layout->width * layout->height);
+    explain_error(page);
+    fputs("</p>\n", page->html);
     fputs("<table><tr><th></th><th>values</th><th>median relative</th><th>relative RMSE</th></tr>\n", page->html);
     print_error(page, "all", &measurement->all);
     print_rings(page, "view from the normal", measurement->by_view);

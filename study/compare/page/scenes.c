@@ -22,7 +22,7 @@ static weft_code put_difference(weft_page *page, int index, const weft_scene_pic
                                 double exposure, weft_error *error)
 {
     char name[64], caption[160];
-    const weft_prediction_error *e = &scene->error[model];
+    const weft_error_summary *e = &scene->error[model];
     snprintf(name, sizeof name, "%s-minus-raw", weft_scenes_model_name(model));
     snprintf(caption, sizeof caption,
              "%s minus raw: relative RMSE %.4f, median relative %.2f %%, 80th percentile %.2f %%",

@@ -1,0 +1,74 @@
+/* What a report page makes of text from outside, and of its parts. */
+#include "tests/support/cmocka_all.h"
+
+#include "base/atomic_file.h"
+#include "base/page.h"
+#include "tests/support/scratch_folder.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define HOSTILE "<b>\"it's\" & more</b>"
+#define ESCAPED "&lt;b&gt;&quot;it&#39;s&quot; &amp; more&lt;/b&gt;"
+
+/* The caller frees it. */
+static char *finished_page(weft_page *page)
+{
+    char *html;
+    size_t size;
+    assert_int_equal(weft_page_finish(page, NULL), WEFT_OK);
+    assert_int_equal(weft_read_file("report/index.html", 1 << 20, &html, &size, NULL), WEFT_OK);
+    return html;
+}
+
+static void nothing_in_a_text_is_markup(void **state)
+{
+    (void)state;
+    weft_page page;
+    assert_int_equal(weft_page_begin("report", HOSTILE, &page, NULL), WEFT_OK);
+    weft_page_fact(&page, HOSTILE, "%s", HOSTILE);
+    weft_page_tile(&page, HOSTILE, "%s", HOSTILE);
+    char *html = finished_page(&page);
+    assert_non_null(strstr(html, "<title>" ESCAPED "</title>"));
+    assert_non_null(strstr(html, "<h1>" ESCAPED "</h1>"));
+    assert_non_null(strstr(html, "<tr><td>" ESCAPED "</td><td>" ESCAPED "</td></tr>"));
+    assert_non_null(strstr(html, "<div><b>" ESCAPED "</b>" ESCAPED "</div>"));
+    assert_null(strstr(html, "it's"));
+    free(html);
+}
+
+static void a_picture_lies_beside_the_page_under_its_caption(void **state)
+{
+    (void)state;
+    weft_page page;
+    weft_image image;
+    assert_int_equal(weft_image_create(3, 2, &image, NULL), WEFT_OK);
+    assert_int_equal(weft_page_begin("report", "Pictures", &page, NULL), WEFT_OK);
+    assert_int_equal(weft_page_picture(&page, "one", &image, 30, HOSTILE, NULL), WEFT_OK);
+    weft_image_free(&image);
+    char *html = finished_page(&page);
+    assert_non_null(strstr(html, "<a href=\"one.png\"><img src=\"one.png\" width=\"30\" alt=\"" ESCAPED "\"></a>"));
+    assert_non_null(strstr(html, "<figcaption>" ESCAPED "</figcaption>"));
+    assert_int_equal(access("report/one.png", R_OK), 0);
+    free(html);
+}
+
+static void a_page_that_is_given_up_leaves_no_file(void **state)
+{
+    (void)state;
+    weft_page page;
+    assert_int_equal(weft_page_begin("given-up", "Nothing", &page, NULL), WEFT_OK);
+    weft_page_abandon(&page);
+    assert_int_not_equal(access("given-up/index.html", F_OK), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_in_a_text_is_markup),
+        cmocka_unit_test(a_picture_lies_beside_the_page_under_its_caption),
+        cmocka_unit_test(a_page_that_is_given_up_leaves_no_file),
+    };
+    return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
+}
