@@ -19,7 +19,7 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-weft_code weave_lexer_fail(const weave_lexer *lexer, weft_error *error, const char *format, ...)
+weft_code weft_lexer_fail(const weft_lexer *lexer, weft_error *error, const char *format, ...)
 {
     char what[WEFT_MESSAGE_SIZE];
     va_list arguments;
@@ -29,22 +29,22 @@ weft_code weave_lexer_fail(const weave_lexer *lexer, weft_error *error, const ch
     return weft_fail(error, WEFT_BAD_INPUT, "%s:%d:%d: %s", lexer->path, lexer->token.line, lexer->token.column, what);
 }
 
-int weave_token_shown(const weave_token *token)
+int weft_token_shown(const weft_token *token)
 {
     return token->size < MAX_SHOWN ? (int)token->size : MAX_SHOWN;
 }
 
-bool weave_token_is_symbol(const weave_token *token, char symbol)
+bool weft_token_is_symbol(const weft_token *token, char symbol)
 {
-    return token->kind == WEAVE_SYMBOL && *token->text == symbol;
+    return token->kind == WEFT_TOKEN_SYMBOL && *token->text == symbol;
 }
 
-bool weave_token_is_word(const weave_token *token, const char *word)
+bool weft_token_is_word(const weft_token *token, const char *word)
 {
-    return token->kind == WEAVE_WORD && strlen(word) == token->size && memcmp(token->text, word, token->size) == 0;
+    return token->kind == WEFT_TOKEN_WORD && strlen(word) == token->size && memcmp(token->text, word, token->size) == 0;
 }
 
-static void place_token(weave_lexer *lexer)
+static void place_token(weft_lexer *lexer)
 {
     lexer->token.text = lexer->at;
     lexer->token.size = 0;
@@ -52,7 +52,7 @@ static void place_token(weave_lexer *lexer)
     lexer->token.column = (int)(lexer->at - lexer->line_start) + 1;
 }
 
-static void step(weave_lexer *lexer)
+static void step(weft_lexer *lexer)
 {
     if (*lexer->at++ == '\n') {
         lexer->line++;
@@ -60,19 +60,19 @@ static void step(weave_lexer *lexer)
     }
 }
 
-static weft_code skip_comment(weave_lexer *lexer, weft_error *error)
+static weft_code skip_comment(weft_lexer *lexer, weft_error *error)
 {
     place_token(lexer);
     lexer->at += 2;
     while (*lexer->at && !(lexer->at[0] == '*' && lexer->at[1] == '/'))
         step(lexer);
     if (!*lexer->at)
-        return weave_lexer_fail(lexer, error, "comment is not closed");
+        return weft_lexer_fail(lexer, error, "comment is not closed");
     lexer->at += 2;
     return WEFT_OK;
 }
 
-static weft_code skip_space(weave_lexer *lexer, weft_error *error)
+static weft_code skip_space(weft_lexer *lexer, weft_error *error)
 {
     for (;;) {
         if (*lexer->at && strchr(" \t\r\n", *lexer->at))
@@ -84,7 +84,7 @@ static weft_code skip_space(weave_lexer *lexer, weft_error *error)
     }
 }
 
-static void read_word(weave_lexer *lexer, weave_token_kind kind)
+static void read_word(weft_lexer *lexer, weft_token_kind kind)
 {
     lexer->token.kind = kind;
     lexer->token.text = lexer->at;
@@ -123,69 +123,69 @@ static const char *number_end(const char *start)
     return at;
 }
 
-static weft_code read_number(weave_lexer *lexer, weft_error *error)
+static weft_code read_number(weft_lexer *lexer, weft_error *error)
 {
     const char *end = number_end(lexer->at);
     size_t size = (size_t)(end - lexer->at);
     char digits[MAX_NUMBER_SIZE];
     if (size == 0 || is_word_start(*end) || *end == '.')
-        return weave_lexer_fail(lexer, error, "malformed number");
+        return weft_lexer_fail(lexer, error, "malformed number");
     if (size >= sizeof digits)
-        return weave_lexer_fail(lexer, error, "number of %zu characters, at most %d", size, MAX_NUMBER_SIZE - 1);
+        return weft_lexer_fail(lexer, error, "number of %zu characters, at most %d", size, MAX_NUMBER_SIZE - 1);
     memcpy(digits, lexer->at, size);
     digits[size] = '\0';
-    lexer->token.kind = WEAVE_NUMBER;
+    lexer->token.kind = WEFT_TOKEN_NUMBER;
     lexer->token.size = size;
     lexer->token.number = strtod_l(digits, NULL, lexer->numbers);
     lexer->at = end;
     if (!isfinite(lexer->token.number))
-        return weave_lexer_fail(lexer, error, "number out of range");
+        return weft_lexer_fail(lexer, error, "number out of range");
     return WEFT_OK;
 }
 
-static weft_code read_string(weave_lexer *lexer, weft_error *error)
+static weft_code read_string(weft_lexer *lexer, weft_error *error)
 {
     const char *end = ++lexer->at;
     while ((unsigned char)*end >= ' ' && *end != '"')
         end++;
     if (*end != '"')
-        return weave_lexer_fail(lexer, error, "string is not closed on its line");
-    lexer->token.kind = WEAVE_STRING;
+        return weft_lexer_fail(lexer, error, "string is not closed on its line");
+    lexer->token.kind = WEFT_TOKEN_STRING;
     lexer->token.text = lexer->at;
     lexer->token.size = (size_t)(end - lexer->at);
     lexer->at = end + 1;
     return WEFT_OK;
 }
 
-static weft_code read_parameter(weave_lexer *lexer, weft_error *error)
+static weft_code read_parameter(weft_lexer *lexer, weft_error *error)
 {
     lexer->at++;
     if (!is_word_start(*lexer->at))
-        return weave_lexer_fail(lexer, error, "a name must follow '$'");
-    read_word(lexer, WEAVE_PARAMETER);
+        return weft_lexer_fail(lexer, error, "a name must follow '$'");
+    read_word(lexer, WEFT_TOKEN_PARAMETER);
     return WEFT_OK;
 }
 
-static weft_code read_symbol(weave_lexer *lexer, weft_error *error)
+static weft_code read_symbol(weft_lexer *lexer, weft_error *error)
 {
     unsigned char c = (unsigned char)*lexer->at;
     if (!strchr("{},=", c))
-        return weave_lexer_fail(lexer, error, isprint(c) ? "unexpected character '%c'" : "unexpected byte %d", c);
-    lexer->token.kind = WEAVE_SYMBOL;
+        return weft_lexer_fail(lexer, error, isprint(c) ? "unexpected character '%c'" : "unexpected byte %d", c);
+    lexer->token.kind = WEFT_TOKEN_SYMBOL;
     lexer->token.size = 1;
     lexer->at++;
     return WEFT_OK;
 }
 
-weft_code weave_lexer_advance(weave_lexer *lexer, weft_error *error)
+weft_code weft_lexer_advance(weft_lexer *lexer, weft_error *error)
 {
     WEFT_TRY(skip_space(lexer, error));
     place_token(lexer);
     char c = *lexer->at;
     if (c == '\0') {
-        lexer->token.kind = WEAVE_END;
+        lexer->token.kind = WEFT_TOKEN_END;
     } else if (is_word_start(c)) {
-        read_word(lexer, WEAVE_WORD);
+        read_word(lexer, WEFT_TOKEN_WORD);
     } else if (is_digit(c) || c == '-' || c == '+' || c == '.') {
         return read_number(lexer, error);
     } else if (c == '"') {
@@ -198,16 +198,16 @@ weft_code weave_lexer_advance(weave_lexer *lexer, weft_error *error)
     return WEFT_OK;
 }
 
-weft_code weave_lexer_start(weave_lexer *lexer, const char *text, const char *path, weft_error *error)
+weft_code weft_lexer_start(weft_lexer *lexer, const char *text, const char *path, weft_error *error)
 {
-    *lexer = (weave_lexer){.path = path, .at = text, .line_start = text, .line = 1};
+    *lexer = (weft_lexer){.path = path, .at = text, .line_start = text, .line = 1};
     lexer->numbers = newlocale(LC_ALL_MASK, "C", NULL);
     if (!lexer->numbers)
         return weft_fail_memory(error, "locale of numbers", sizeof lexer->numbers);
-    return weave_lexer_advance(lexer, error);
+    return weft_lexer_advance(lexer, error);
 }
 
-void weave_lexer_end(weave_lexer *lexer)
+void weft_lexer_end(weft_lexer *lexer)
 {
     if (lexer->numbers)
         freelocale(lexer->numbers);

@@ -35,6 +35,14 @@ weft_setting_group weft_rig_settings_group(weft_rig_settings *settings)
     return (weft_setting_group){table, sizeof table / sizeof *table, settings};
 }
 
+weft_rig_settings weft_rig_settings_default(void)
+{
+    weft_rig_settings settings;
+    weft_setting_group group = weft_rig_settings_group(&settings);
+    weft_setting_group_reset(&group);
+    return settings;
+}
+
 weft_camera weft_rig_settings_camera(const weft_rig_settings *s)
 {
     return (weft_camera){

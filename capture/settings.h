@@ -24,6 +24,9 @@ typedef struct weft_rig_settings {
     double retries; /* of an exposure that the camera did not deliver */
 } weft_rig_settings;
 
+/* Those of the virtual rig as it stands in Weft. */
+weft_rig_settings weft_rig_settings_default(void);
+
 /* The camera as calibrated. Pure. */
 weft_camera weft_rig_settings_camera(const weft_rig_settings *settings);
 
@@ -57,7 +60,7 @@ typedef struct weft_setting_group {
 
 weft_setting_group weft_rig_settings_group(weft_rig_settings *settings);
 
-/* Gives every setting its default; those of a rig are of the virtual one as it stands in Weft. */
+/* Gives every setting its default. */
 void weft_setting_group_reset(const weft_setting_group *group);
 
 /* Overrides the values of `groups` by the numbers of a JSON file, whose key "rig" must be the name `rig`. Errors:

@@ -1,7 +1,6 @@
+#include "study/fit_weave/fit_weave.h"
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "study/fit_weave/dataset.h"
-#include "study/fit_weave/origin.h"
 
 #include <math.h>
 #include <stdio.h>

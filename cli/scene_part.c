@@ -2,7 +2,7 @@
 
 #include "btf/dataset/fingerprint.h"
 #include "btf/file_kind.h"
-#include "capture/virtual/cloth.h"
+#include "capture/settings.h"
 #include "player/window/dataset_load.h"
 #include "reflectance/microcylinder/file.h"
 
@@ -21,7 +21,7 @@ typedef struct part {
     /* One of these */
     weft_material material;
     weft_mesh mesh;
-    weft_virtual_cloth cloth;
+    weft_weave weave;
     weft_weave_texels texels;
     weft_microcylinder_description threads;
     weft_image image;
@@ -60,10 +60,9 @@ static weft_code read_weave(part *p, weft_error *error)
     p->is_threads = kind == WEFT_FILE_MICROCYLINDER;
     if (p->is_threads)
         return weft_microcylinder_read(p->path, NULL, 0, &p->threads, error);
-    weft_virtual_settings rig = weft_virtual_settings_default();
-    WEFT_TRY(weft_virtual_cloth_read(p->path, &rig, 0, &p->cloth, p->note, error));
-    p->width_mm = p->cloth.opening_mm;
-    return weft_weave_texels_of(&p->cloth.weave, &p->texels, error);
+    WEFT_TRY(weft_weave_read(p->path, NULL, 0, &p->weave, p->note, error));
+    p->width_mm = weft_rig_settings_default().opening_mm;
+    return weft_weave_texels_of(&p->weave, &p->texels, error);
 }
 
 static weft_code read_samples(part *p, weft_dataset *dataset, weft_load *load, weft_error *error)
@@ -112,7 +111,7 @@ static weft_code show_weave(part *p, weft_error *error)
     if (p->is_threads)
         return weft_player_set_threads(p->stage->player, &p->threads.cloth, error);
     const double *tiles = p->stage->options->settings.tiles;
-    const weft_weave_layout layout = weft_virtual_cloth_layout(&p->cloth, tiles[0], tiles[1]);
+    const weft_weave_layout layout = weft_weave_lay_out(&p->weave, tiles[0], tiles[1]);
     return weft_player_set_weave_texels(p->stage->player, &p->texels, &layout, error);
 }
 
@@ -203,7 +202,7 @@ static void release_part(void *data)
     part *p = data;
     weft_material_free(&p->material);
     weft_mesh_free(&p->mesh);
-    weft_virtual_cloth_free(&p->cloth);
+    weft_weave_free(&p->weave);
     weft_weave_texels_free(&p->texels);
     weft_image_free(&p->image);
     weft_dataset_load_free(p->dataset);

@@ -15,15 +15,11 @@ typedef struct weft_virtual_cloth {
     uint64_t noise_seed;  /* 0 = no noise */
 } weft_virtual_cloth;
 
-/* Reads the weave and chooses the tiles where the settings leave them open: about twelve square cells across.
+/* Reads the weave and chooses the tiles where the settings leave them open (weft_weave_whole_tiles).
  * The caller frees with weft_virtual_cloth_free. Errors: those of weft_weave_read; `warning` as there. */
 weft_code weft_virtual_cloth_read(const char *path, const weft_virtual_settings *settings, uint64_t seed,
                                   weft_virtual_cloth *cloth, char warning[WEFT_MESSAGE_SIZE], weft_error *error);
 void weft_virtual_cloth_free(weft_virtual_cloth *cloth);
-
-/* How the cloth lies on a material: tiles_u x tiles_v from the lower left corner where these are above 0, else as the
- * file of the weave says, else as the virtual rig lays it. Pure. */
-weft_weave_layout weft_virtual_cloth_layout(const weft_virtual_cloth *cloth, double tiles_u, double tiles_v);
 
 /* The point of the weave at a point of the plate inside the opening, mm. Pure. */
 weft_weave_point weft_virtual_cloth_locate(const weft_virtual_cloth *cloth, double x_mm, double y_mm);

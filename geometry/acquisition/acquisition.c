@@ -23,7 +23,7 @@ typedef struct acquisition {
     weft_acquisition_report *report;
     weft_dataset_writer *writer;
     weft_illumination *illumination;
-    view_samples samples;
+    weft_view_samples samples;
     weft_half *image;      /* [height][width][3] */
     float *opacity;        /* [height][width][direction_count] */
     weft_frame_sum *frame; /* [height][width] each view weighs by what it sees of the texel's cloth */
@@ -112,14 +112,14 @@ static void note_view(acquisition *a, int view)
     size_t texels = (size_t)a->options->width * (size_t)a->options->height, n = (size_t)a->direction_count;
     double share = 1 / ((double)texels * (double)n);
     for (size_t i = 0; i < texels; i++) {
-        const texel_samples *texel = &a->samples.texel[i];
-        double paths = (double)texel->batches * BATCH_PATHS, covered = (double)texel->hits / paths;
+        const weft_texel_samples *texel = &a->samples.texel[i];
+        double paths = (double)texel->batches * WEFT_BATCH_PATHS, covered = (double)texel->hits / paths;
         a->opacity[i * n + (size_t)view] = (float)covered;
         weft_frame_sum_merge(&a->frame[i], &texel->frame, (weft_real)(1 / paths));
         a->report->covered += covered * share;
         a->report->paths_per_texel += paths * share;
     }
-    a->report->noise = fmax(a->report->noise, view_samples_noise(&a->samples));
+    a->report->noise = fmax(a->report->noise, weft_view_samples_noise(&a->samples));
 }
 
 static weft_code put_frames(const acquisition *a, weft_error *error)
@@ -147,7 +147,7 @@ static weft_code acquire_views(acquisition *a, const weft_progress *progress, we
 {
     for (int view = 0; view < a->direction_count; view++) {
         weft_progress_report(progress, "simulating views", view, a->direction_count);
-        WEFT_TRY(view_samples_gather(&a->samples, a->illumination, a->direction[view], view, error));
+        WEFT_TRY(weft_view_samples_gather(&a->samples, a->illumination, a->direction[view], view, error));
         note_view(a, view);
         for (int light = 0; light < a->direction_count; light++)
             WEFT_TRY(put_light(a, view, light, error));
@@ -165,7 +165,7 @@ static weft_code prepare(acquisition *a, weft_error *error)
     WEFT_TRY(open_writer(a, error));
     WEFT_TRY(weft_illumination_create(a->stitch, a->mesh, a->direction, a->direction_count, &light, &a->illumination,
                                       error));
-    WEFT_TRY(view_samples_create(a->mesh, a->direction_count, a->options, &a->samples, error));
+    WEFT_TRY(weft_view_samples_create(a->mesh, a->direction_count, a->options, &a->samples, error));
     a->image = malloc(3 * texels * sizeof *a->image);
     a->opacity = calloc(texels * (size_t)a->direction_count, sizeof *a->opacity);
     a->frame = calloc(texels, sizeof *a->frame);
@@ -207,7 +207,7 @@ weft_code weft_acquire(const weft_stitch *stitch, const weft_tile_mesh *mesh, co
         code = finish(&a, error);
     weft_dataset_writer_abandon(a.writer);
     weft_illumination_free(a.illumination);
-    view_samples_free(&a.samples);
+    weft_view_samples_free(&a.samples);
     free(a.image);
     free(a.opacity);
     free(a.frame);

@@ -8,64 +8,64 @@
 /* Keeps the place in the texel apart from the bounces of the path, which count from 0. */
 #define PLACE_KEY 0x10000u
 
-enum { MAX_ROUNDS = 4 };
+enum { FIRST_BATCHES = 4, MAX_BATCHES = 512, MAX_ROUNDS = 4 };
 
-static size_t texel_count(const view_samples *samples)
+static size_t texel_count(const weft_view_samples *samples)
 {
     return (size_t)samples->options->width * (size_t)samples->options->height;
 }
 
-static size_t values_per_texel(const view_samples *samples)
+static size_t values_per_texel(const weft_view_samples *samples)
 {
     return 3 * (size_t)samples->light_count;
 }
 
-weft_code view_samples_create(const weft_tile_mesh *mesh, int light_count, const weft_acquisition_options *options,
-                              view_samples *samples, weft_error *error)
+weft_code weft_view_samples_create(const weft_tile_mesh *mesh, int light_count, const weft_acquisition_options *options,
+                                   weft_view_samples *samples, weft_error *error)
 {
-    *samples = (view_samples){.options = options,
-                              .tile_width = (weft_real)mesh->width,
-                              .tile_height = (weft_real)mesh->height,
-                              .top = (weft_real)mesh->top,
-                              .light_count = light_count};
+    *samples = (weft_view_samples){.options = options,
+                                   .tile_width = (weft_real)mesh->width,
+                                   .tile_height = (weft_real)mesh->height,
+                                   .top = (weft_real)mesh->top,
+                                   .light_count = light_count};
     size_t texels = texel_count(samples), bytes = texels * values_per_texel(samples) * sizeof *samples->sum;
     samples->texel = malloc(texels * sizeof *samples->texel);
     samples->sum = malloc(bytes);
     samples->wanted = malloc(texels * sizeof *samples->wanted);
     if (samples->texel && samples->sum && samples->wanted)
         return WEFT_OK;
-    view_samples_free(samples);
+    weft_view_samples_free(samples);
     return weft_fail_memory(error, "samples of a view", bytes);
 }
 
-void view_samples_free(view_samples *samples)
+void weft_view_samples_free(weft_view_samples *samples)
 {
     free(samples->texel);
     free(samples->sum);
     free(samples->wanted);
-    *samples = (view_samples){0};
+    *samples = (weft_view_samples){0};
 }
 
 /* Point k of a batch in a texel, on the top face of the bounding box. */
-static weft_vec3 place_in_texel(const view_samples *samples, int x, int y, uint64_t key, uint32_t k)
+static weft_vec3 place_in_texel(const weft_view_samples *samples, int x, int y, uint64_t key, uint32_t k)
 {
     double point[2];
-    sequence_point(sequence_key(key, PLACE_KEY), k, point);
+    weft_sequence_point(weft_sequence_key(key, PLACE_KEY), k, point);
     return weft_vec3_of((x + point[0]) / samples->options->width * samples->tile_width,
                         (samples->options->height - y - 1 + point[1]) / samples->options->height * samples->tile_height,
                         samples->top);
 }
 
-static void add_batch(view_samples *samples, const weft_illumination *illumination, weft_vec3 view, size_t index,
+static void add_batch(weft_view_samples *samples, const weft_illumination *illumination, weft_vec3 view, size_t index,
                       uint64_t key, float *batch)
 {
     size_t values = values_per_texel(samples);
-    texel_samples *texel = &samples->texel[index];
+    weft_texel_samples *texel = &samples->texel[index];
     float *sum = samples->sum + index * values;
     int x = (int)(index % (size_t)samples->options->width), y = (int)(index / (size_t)samples->options->width);
-    key = sequence_key(key, (uint64_t)texel->batches++);
+    key = weft_sequence_key(key, (uint64_t)texel->batches++);
     memset(batch, 0, values * sizeof *batch);
-    for (uint32_t k = 0; k < BATCH_PATHS; k++) {
+    for (uint32_t k = 0; k < WEFT_BATCH_PATHS; k++) {
         weft_first_hit first;
         if (!weft_illumination_path(illumination, place_in_texel(samples, x, y, key, k), view, key, k,
                                     (float(*)[3])(void *)batch, &first))
@@ -74,13 +74,13 @@ static void add_batch(view_samples *samples, const weft_illumination *illuminati
         weft_frame_sum_add(&texel->frame, first.normal, first.tangent, 1);
     }
     for (size_t i = 0; i < values; i++) {
-        float mean = batch[i] / BATCH_PATHS;
+        float mean = batch[i] / WEFT_BATCH_PATHS;
         sum[i] += mean;
         texel->squares += (double)mean * (double)mean;
     }
 }
 
-static double square_of_sums(const view_samples *samples, size_t index)
+static double square_of_sums(const weft_view_samples *samples, size_t index)
 {
     const float *sum = samples->sum + index * values_per_texel(samples);
     double square = 0;
@@ -89,18 +89,18 @@ static double square_of_sums(const view_samples *samples, size_t index)
     return square;
 }
 
-static void find_variance(view_samples *samples, size_t index)
+static void find_variance(weft_view_samples *samples, size_t index)
 {
-    texel_samples *texel = &samples->texel[index];
+    weft_texel_samples *texel = &samples->texel[index];
     double n = texel->batches;
     texel->variance = fmax(texel->squares - square_of_sums(samples, index) / n, 0) / (n - 1);
 }
 
 /* Brings every texel to its wanted number of batches. */
-static weft_code fill_up(view_samples *samples, const weft_illumination *illumination, weft_vec3 view, int number,
+static weft_code fill_up(weft_view_samples *samples, const weft_illumination *illumination, weft_vec3 view, int number,
                          weft_error *error)
 {
-    uint64_t view_key = sequence_key(samples->options->seed, (uint64_t)number);
+    uint64_t view_key = weft_sequence_key(samples->options->seed, (uint64_t)number);
     bool short_of_memory = false;
     long count = (long)texel_count(samples);
 #pragma omp parallel
@@ -112,7 +112,7 @@ static weft_code fill_up(view_samples *samples, const weft_illumination *illumin
         }
 #pragma omp for schedule(dynamic, 4)
         for (long i = 0; i < count; i++) {
-            uint64_t key = sequence_key(view_key, (uint64_t)i);
+            uint64_t key = weft_sequence_key(view_key, (uint64_t)i);
             while (batch && samples->texel[i].batches < samples->wanted[i])
                 add_batch(samples, illumination, view, (size_t)i, key, batch);
             find_variance(samples, (size_t)i);
@@ -123,7 +123,7 @@ static weft_code fill_up(view_samples *samples, const weft_illumination *illumin
                            : WEFT_OK;
 }
 
-double view_samples_noise(const view_samples *samples)
+double weft_view_samples_noise(const weft_view_samples *samples)
 {
     double error = 0, signal = 0;
     for (size_t i = 0; i < texel_count(samples); i++) {
@@ -134,13 +134,13 @@ double view_samples_noise(const view_samples *samples)
     return signal > 0 ? sqrt(error / signal) : 0;
 }
 
-static int batches_for(const texel_samples *texel, double scale)
+static int batches_for(const weft_texel_samples *texel, double scale)
 {
     return (int)weft_clamp(ceil(scale * sqrt(texel->variance)), FIRST_BATCHES, MAX_BATCHES);
 }
 
 /* Sum over the texels of the squared standard error that `scale` batches per standard deviation would leave. */
-static double error_left(const view_samples *samples, double scale)
+static double error_left(const weft_view_samples *samples, double scale)
 {
     double left = 0;
     for (size_t i = 0; i < texel_count(samples); i++)
@@ -148,7 +148,7 @@ static double error_left(const view_samples *samples, double scale)
     return left;
 }
 
-static void allocate_batches(view_samples *samples)
+static void allocate_batches(weft_view_samples *samples)
 {
     double signal = 0, most = 0;
     for (size_t i = 0; i < texel_count(samples); i++) {
@@ -168,18 +168,18 @@ static void allocate_batches(view_samples *samples)
         samples->wanted[i] = batches_for(&samples->texel[i], high);
 }
 
-weft_code view_samples_gather(view_samples *samples, const weft_illumination *illumination, weft_vec3 view, int number,
-                              weft_error *error)
+weft_code weft_view_samples_gather(weft_view_samples *samples, const weft_illumination *illumination, weft_vec3 view,
+                                   int number, weft_error *error)
 {
     size_t texels = texel_count(samples);
     memset(samples->sum, 0, texels * values_per_texel(samples) * sizeof *samples->sum);
     for (size_t i = 0; i < texels; i++) {
-        samples->texel[i] = (texel_samples){0};
+        samples->texel[i] = (weft_texel_samples){0};
         samples->wanted[i] = FIRST_BATCHES;
     }
     WEFT_TRY(fill_up(samples, illumination, view, number, error));
     /* The first batches tell the variance only roughly. */
-    for (int round = 0; round < MAX_ROUNDS && view_samples_noise(samples) > samples->options->noise; round++) {
+    for (int round = 0; round < MAX_ROUNDS && weft_view_samples_noise(samples) > samples->options->noise; round++) {
         allocate_batches(samples);
         WEFT_TRY(fill_up(samples, illumination, view, number, error));
     }

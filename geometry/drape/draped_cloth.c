@@ -10,7 +10,7 @@
 struct weft_draped_cloth {
     const weft_stitch *stitch;
     const weft_tile_mesh *mesh;
-    draped_scene *scene;
+    weft_draped_scene *scene;
 };
 
 weft_code weft_draped_cloth_create(const weft_stitch *stitch, const weft_tile_mesh *mesh,
@@ -22,7 +22,7 @@ weft_code weft_draped_cloth_create(const weft_stitch *stitch, const weft_tile_me
         return weft_fail_memory(error, "draped cloth", sizeof *cloth);
     cloth->stitch = stitch;
     cloth->mesh = mesh;
-    weft_code code = draped_scene_create(mesh, surface, WEFT_DRAPED_MAX_TRIANGLES, &cloth->scene, error);
+    weft_code code = weft_draped_scene_create(mesh, surface, WEFT_DRAPED_MAX_TRIANGLES, &cloth->scene, error);
     if (code != WEFT_OK) {
         weft_draped_cloth_free(cloth);
         return code;
@@ -35,18 +35,18 @@ void weft_draped_cloth_free(weft_draped_cloth *cloth)
 {
     if (!cloth)
         return;
-    draped_scene_free(cloth->scene);
+    weft_draped_scene_free(cloth->scene);
     free(cloth);
 }
 
 int weft_draped_cloth_triangle_count(const weft_draped_cloth *cloth)
 {
-    return draped_scene_triangle_count(cloth->scene);
+    return weft_draped_scene_triangle_count(cloth->scene);
 }
 
 /* A vertex of a path and what reached it of the light that leaves by the camera's ray. */
 typedef struct draped_vertex {
-    draped_hit hit;
+    weft_draped_hit hit;
     weft_fibre_view seen;
     weft_rgb throughput;
     bool is_near; /* all rays so far were within reach */
@@ -55,7 +55,7 @@ typedef struct draped_vertex {
 /* Next vertex along a ray; false where there is none or a yarn is seen from inside. */
 static bool find_vertex(const weft_draped_cloth *cloth, weft_vec3 from, weft_vec3 direction, draped_vertex *vertex)
 {
-    if (!draped_scene_trace(cloth->scene, from, direction, &vertex->hit) ||
+    if (!weft_draped_scene_trace(cloth->scene, from, direction, &vertex->hit) ||
         weft_dot(vertex->hit.normal, direction) >= 0)
         return false;
     const weft_fibre *fibre = &cloth->stitch->yarn[vertex->hit.yarn].fibre;
@@ -63,9 +63,9 @@ static bool find_vertex(const weft_draped_cloth *cloth, weft_vec3 from, weft_vec
     return true;
 }
 
-static weft_vec3 above(const weft_draped_cloth *cloth, const draped_hit *hit)
+static weft_vec3 above(const weft_draped_cloth *cloth, const weft_draped_hit *hit)
 {
-    return path_ray_start(cloth->mesh, hit->at, hit->normal);
+    return weft_path_ray_start(cloth->mesh, hit->at, hit->normal);
 }
 
 static void add_light(const weft_draped_cloth *cloth, const draped_vertex *vertex, const weft_draped_light *light,
@@ -74,7 +74,7 @@ static void add_light(const weft_draped_cloth *cloth, const draped_vertex *verte
     weft_real cosine = weft_dot(vertex->hit.normal, light->direction);
     if (!(cosine > 0))
         return;
-    weft_real obstacle = draped_scene_distance(cloth->scene, above(cloth, &vertex->hit), light->direction);
+    weft_real obstacle = weft_draped_scene_distance(cloth->scene, above(cloth, &vertex->hit), light->direction);
     weft_rgb f = weft_fibre_brdf(&vertex->seen, light->direction), t = vertex->throughput;
     weft_real arriving = (weft_real)WEFT_PI * cosine;
     const float sent[3] = {(float)(t.r * f.r * arriving), (float)(t.g * f.g * arriving), (float)(t.b * f.b * arriving)};
@@ -91,9 +91,9 @@ static bool bounce(const weft_draped_cloth *cloth, draped_vertex *vertex, weft_r
                    uint32_t index)
 {
     double point[2];
-    sequence_point(key, index, point);
-    weft_vec3 direction = path_cosine_direction(vertex->hit.normal, vertex->hit.tangent, point);
-    if (!path_reflect(weft_fibre_brdf(&vertex->seen, direction), &vertex->throughput))
+    weft_sequence_point(key, index, point);
+    weft_vec3 direction = weft_path_cosine_direction(vertex->hit.normal, vertex->hit.tangent, point);
+    if (!weft_path_reflect(weft_fibre_brdf(&vertex->seen, direction), &vertex->throughput))
         return false;
     if (!find_vertex(cloth, above(cloth, &vertex->hit), direction, vertex))
         return false;
@@ -107,10 +107,10 @@ bool weft_draped_cloth_path(const weft_draped_cloth *cloth, weft_vec3 origin, we
 {
     draped_vertex vertex = {.throughput = {1, 1, 1}, .is_near = true};
     if (!find_vertex(cloth, origin, direction, &vertex))
-        return !isinf(draped_scene_distance(cloth->scene, origin, direction));
+        return !isinf(weft_draped_scene_distance(cloth->scene, origin, direction));
     add_light(cloth, &vertex, light, radiance);
     for (int i = 0; i < light->bounces; i++) {
-        if (!bounce(cloth, &vertex, light->reach_mm, sequence_key(key, (uint64_t)i), index))
+        if (!bounce(cloth, &vertex, light->reach_mm, weft_sequence_key(key, (uint64_t)i), index))
             break;
         add_light(cloth, &vertex, light, radiance);
     }

@@ -1,12 +1,12 @@
 #include "geometry/drape/draped_scene.h"
 
-#include "reflectance/lafortune/lafortune.h"
+#include "btf/direction/frame.h"
 
 #include <embree3/rtcore.h>
 #include <stdlib.h>
 #include <string.h>
 
-struct draped_scene {
+struct weft_draped_scene {
     const weft_tile_mesh *mesh;
     int vertex_count, triangle_count;
     float (*position)[3], (*tangent)[3]; /* [vertex_count + 1]: Embree reads 16 bytes at a time */
@@ -43,7 +43,7 @@ static void store(weft_vec3 from, float to[3])
 }
 
 /* Lays one vertex of a tile over the surface; false beyond its hem. */
-static bool lay_vertex(draped_scene *scene, const weft_base_map *map, int tile_x, int tile_y, int from, int to)
+static bool lay_vertex(weft_draped_scene *scene, const weft_base_map *map, int tile_x, int tile_y, int from, int to)
 {
     const weft_tile_mesh *mesh = scene->mesh;
     const float *p = mesh->position[from], *t = mesh->tangent[from];
@@ -59,7 +59,7 @@ static bool lay_vertex(draped_scene *scene, const weft_base_map *map, int tile_x
 }
 
 /* Lays one tile; `is_on` [mesh->vertex_count] is scratch. */
-static void lay_tile(draped_scene *scene, const weft_base_map *map, int tile_x, int tile_y, bool *is_on)
+static void lay_tile(weft_draped_scene *scene, const weft_base_map *map, int tile_x, int tile_y, bool *is_on)
 {
     const weft_tile_mesh *mesh = scene->mesh;
     int first = scene->vertex_count;
@@ -76,7 +76,7 @@ static void lay_tile(draped_scene *scene, const weft_base_map *map, int tile_x, 
     }
 }
 
-static weft_code allocate(draped_scene *scene, size_t tiles, weft_error *error)
+static weft_code allocate(weft_draped_scene *scene, size_t tiles, weft_error *error)
 {
     size_t vertices = tiles * (size_t)scene->mesh->vertex_count + 1;
     size_t triangles = tiles * (size_t)scene->mesh->triangle_count;
@@ -88,7 +88,7 @@ static weft_code allocate(draped_scene *scene, size_t tiles, weft_error *error)
     return weft_fail_memory(error, "draped cloth", (2 * vertices + triangles) * sizeof *scene->position);
 }
 
-static weft_code lay_tiles(draped_scene *scene, const weft_base_map *map, int most, weft_error *error)
+static weft_code lay_tiles(weft_draped_scene *scene, const weft_base_map *map, int most, weft_error *error)
 {
     tile_range tiles;
     WEFT_TRY(find_tiles(scene->mesh, map, most, &tiles, error));
@@ -104,7 +104,7 @@ static weft_code lay_tiles(draped_scene *scene, const weft_base_map *map, int mo
 }
 
 /* Embree reads the arrays of the scene where they are. */
-static weft_code build_tree(draped_scene *scene, weft_error *error)
+static weft_code build_tree(weft_draped_scene *scene, weft_error *error)
 {
     /* One thread, so that the tree, and which of two triangles a ray through their edge meets, is always the same. */
     scene->device = rtcNewDevice("threads=1");
@@ -132,13 +132,13 @@ static weft_code build_tree(draped_scene *scene, weft_error *error)
                                               scene->triangle_count, (int)code);
 }
 
-weft_code draped_scene_create(const weft_tile_mesh *mesh, const weft_base_surface *surface, int most,
-                              draped_scene **result, weft_error *error)
+weft_code weft_draped_scene_create(const weft_tile_mesh *mesh, const weft_base_surface *surface, int most,
+                                   weft_draped_scene **result, weft_error *error)
 {
     weft_base_map map;
     *result = NULL;
     WEFT_TRY(weft_base_map_create(surface, &map, error));
-    draped_scene *scene = calloc(1, sizeof *scene);
+    weft_draped_scene *scene = calloc(1, sizeof *scene);
     weft_code code = scene ? WEFT_OK : weft_fail_memory(error, "draped cloth", sizeof *scene);
     if (code == WEFT_OK) {
         scene->mesh = mesh;
@@ -150,11 +150,11 @@ weft_code draped_scene_create(const weft_tile_mesh *mesh, const weft_base_surfac
     if (code == WEFT_OK)
         *result = scene;
     else
-        draped_scene_free(scene);
+        weft_draped_scene_free(scene);
     return code;
 }
 
-void draped_scene_free(draped_scene *scene)
+void weft_draped_scene_free(weft_draped_scene *scene)
 {
     if (!scene)
         return;
@@ -168,14 +168,14 @@ void draped_scene_free(draped_scene *scene)
     free(scene);
 }
 
-int draped_scene_triangle_count(const draped_scene *scene)
+int weft_draped_scene_triangle_count(const weft_draped_scene *scene)
 {
     return scene->triangle_count;
 }
 
 /* ---- Rays ---- */
 
-static bool find_nearest(const draped_scene *scene, weft_vec3 origin, weft_vec3 direction, struct RTCRayHit *found)
+static bool find_nearest(const weft_draped_scene *scene, weft_vec3 origin, weft_vec3 direction, struct RTCRayHit *found)
 {
     struct RTCIntersectContext context;
     *found = (struct RTCRayHit){.ray = {.org_x = (float)origin.x,
@@ -197,7 +197,8 @@ static weft_vec3 vector_of(const float from[3])
     return weft_vec3_of((weft_real)from[0], (weft_real)from[1], (weft_real)from[2]);
 }
 
-bool draped_scene_trace(const draped_scene *scene, weft_vec3 origin, weft_vec3 direction, draped_hit *hit)
+bool weft_draped_scene_trace(const weft_draped_scene *scene, weft_vec3 origin, weft_vec3 direction,
+                             weft_draped_hit *hit)
 {
     struct RTCRayHit found;
     if (!find_nearest(scene, origin, direction, &found))
@@ -207,7 +208,7 @@ bool draped_scene_trace(const draped_scene *scene, weft_vec3 origin, weft_vec3 d
     const weft_real weight[3] = {1 - u - v, u, v};
     weft_vec3 place[3], tangent = {0};
     int nearest = 0;
-    *hit = (draped_hit){.distance = (weft_real)found.ray.tfar};
+    *hit = (weft_draped_hit){.distance = (weft_real)found.ray.tfar};
     for (int i = 0; i < 3; i++) {
         place[i] = vector_of(scene->position[corner[i]]);
         hit->at = weft_add(hit->at, weft_scale(place[i], weight[i]));
@@ -220,7 +221,7 @@ bool draped_scene_trace(const draped_scene *scene, weft_vec3 origin, weft_vec3 d
     return true;
 }
 
-weft_real draped_scene_distance(const draped_scene *scene, weft_vec3 origin, weft_vec3 direction)
+weft_real weft_draped_scene_distance(const weft_draped_scene *scene, weft_vec3 origin, weft_vec3 direction)
 {
     struct RTCRayHit found;
     return find_nearest(scene, origin, direction, &found) ? (weft_real)found.ray.tfar : INFINITY;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 struct weft_illumination {
-    path_scene paths;
+    weft_path_scene paths;
     weft_illumination_options options;
     int light_count;
     weft_vec3 *light;
@@ -27,20 +27,20 @@ static void find_lights(const weft_illumination *illumination, weft_vec3 at, wef
 {
     uint8_t wanted[WEFT_ILLUMINATION_MAX_LIGHTS];
     mark_lights_above(illumination, normal, wanted);
-    weft_vec3 from = path_above(&illumination->paths, at, normal);
-    ray_scene_lit(illumination->paths.rays, from, illumination->light, illumination->light_count, wanted, lit);
+    weft_vec3 from = weft_path_above(&illumination->paths, at, normal);
+    weft_ray_scene_lit(illumination->paths.rays, from, illumination->light, illumination->light_count, wanted, lit);
 }
 
 static weft_code find_visibility(weft_illumination *illumination, weft_error *error)
 {
-    const weft_tile_mesh *mesh = ray_scene_mesh(illumination->paths.rays);
+    const weft_tile_mesh *mesh = weft_ray_scene_mesh(illumination->paths.rays);
     size_t lights = (size_t)illumination->light_count, size = lights * (size_t)mesh->triangle_count;
     illumination->lit = malloc(size);
     if (!illumination->lit)
         return weft_fail_memory(error, "visibility of the lights", size);
 #pragma omp parallel for schedule(dynamic, 64)
     for (int i = 0; i < mesh->triangle_count; i++) {
-        ray_hit middle = ray_scene_middle(illumination->paths.rays, i);
+        weft_ray_hit middle = weft_ray_scene_middle(illumination->paths.rays, i);
         find_lights(illumination, middle.at, middle.normal, illumination->lit + (size_t)i * lights);
     }
     return WEFT_OK;
@@ -54,7 +54,7 @@ static weft_code prepare(weft_illumination *illumination, const weft_tile_mesh *
     if (!illumination->light)
         return weft_fail_memory(error, "lights", size);
     memcpy(illumination->light, light, size);
-    WEFT_TRY(ray_scene_create(mesh, &illumination->paths.rays, error));
+    WEFT_TRY(weft_ray_scene_create(mesh, &illumination->paths.rays, error));
     if (illumination->options.bounces > 0 && !illumination->options.exact)
         return find_visibility(illumination, error);
     return WEFT_OK;
@@ -90,14 +90,14 @@ void weft_illumination_free(weft_illumination *illumination)
 {
     if (!illumination)
         return;
-    ray_scene_free(illumination->paths.rays);
+    weft_ray_scene_free(illumination->paths.rays);
     free(illumination->light);
     free(illumination->lit);
     free(illumination);
 }
 
-static void add_light(const weft_illumination *illumination, const path_vertex *vertex, int light, weft_rgb throughput,
-                      float radiance[3])
+static void add_light(const weft_illumination *illumination, const weft_path_vertex *vertex, int light,
+                      weft_rgb throughput, float radiance[3])
 {
     weft_vec3 direction = illumination->light[light];
     weft_rgb f = weft_fibre_brdf(&vertex->seen, direction);
@@ -108,7 +108,7 @@ static void add_light(const weft_illumination *illumination, const path_vertex *
 }
 
 /* Light straight from the lights: by shadow rays, or `roughly`, by what the middle of the triangle sees. */
-static void add_lights(const weft_illumination *illumination, const path_vertex *vertex, weft_rgb throughput,
+static void add_lights(const weft_illumination *illumination, const weft_path_vertex *vertex, weft_rgb throughput,
                        bool roughly, float (*radiance)[3])
 {
     uint8_t found[WEFT_ILLUMINATION_MAX_LIGHTS];
@@ -133,16 +133,17 @@ static void add_uniform_light(const weft_illumination *illumination, weft_rgb th
 }
 
 /* All vertices of a path after its first. The uniform light is met one ray after the last bounce. */
-static void follow(const weft_illumination *illumination, path_vertex *vertex, uint64_t key, uint32_t index,
+static void follow(const weft_illumination *illumination, weft_path_vertex *vertex, uint64_t key, uint32_t index,
                    float (*radiance)[3])
 {
     weft_rgb throughput = {1, 1, 1};
     int rays = illumination->options.bounces + illumination->options.uniform_light;
     for (int i = 0; i < rays; i++) {
-        path_end end = path_bounce(&illumination->paths, vertex, &throughput, sequence_key(key, (uint64_t)i), index);
-        if (end == PATH_LEFT)
+        weft_path_end end =
+            weft_path_bounce(&illumination->paths, vertex, &throughput, weft_sequence_key(key, (uint64_t)i), index);
+        if (end == WEFT_PATH_LEFT)
             add_uniform_light(illumination, throughput, radiance);
-        if (end != PATH_GOES_ON)
+        if (end != WEFT_PATH_GOES_ON)
             return;
         if (i < illumination->options.bounces)
             add_lights(illumination, vertex, throughput, illumination->lit != NULL, radiance);
@@ -152,12 +153,12 @@ static void follow(const weft_illumination *illumination, path_vertex *vertex, u
 bool weft_illumination_path(const weft_illumination *illumination, weft_vec3 place, weft_vec3 view, uint64_t key,
                             uint32_t index, float (*radiance)[3], weft_first_hit *first)
 {
-    path_vertex vertex;
-    if (!path_begin(&illumination->paths, place, view, &vertex))
+    weft_path_vertex vertex;
+    if (!weft_path_begin(&illumination->paths, place, view, &vertex))
         return false;
     if (first)
-        *first = (weft_first_hit){vertex.hit.at, path_surface_normal(&illumination->paths, &vertex), vertex.tangent,
-                                  vertex.yarn};
+        *first = (weft_first_hit){vertex.hit.at, weft_path_surface_normal(&illumination->paths, &vertex),
+                                  vertex.tangent, vertex.yarn};
     add_lights(illumination, &vertex, (weft_rgb){1, 1, 1}, false, radiance);
     follow(illumination, &vertex, key, index, radiance);
     return true;

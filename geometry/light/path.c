@@ -1,21 +1,20 @@
 #include "geometry/light/path.h"
 
-#include "btf/material/material.h"
+#include "btf/direction/frame.h"
 #include "geometry/light/path_step.h"
 #include "geometry/light/sample_sequence.h"
-#include "reflectance/lafortune/lafortune.h"
 
 static weft_vec3 vertex_vector(const float *from)
 {
     return weft_vec3_of(from[0], from[1], from[2]);
 }
 
-weft_vec3 path_above(const path_scene *scene, weft_vec3 at, weft_vec3 normal)
+weft_vec3 weft_path_above(const weft_path_scene *scene, weft_vec3 at, weft_vec3 normal)
 {
-    return path_ray_start(ray_scene_mesh(scene->rays), at, normal);
+    return weft_path_ray_start(weft_ray_scene_mesh(scene->rays), at, normal);
 }
 
-static weft_vec3 interpolate(const weft_tile_mesh *mesh, const ray_hit *hit, float (*attribute)[3])
+static weft_vec3 interpolate(const weft_tile_mesh *mesh, const weft_ray_hit *hit, float (*attribute)[3])
 {
     weft_vec3 sum = {0};
     for (int i = 0; i < 3; i++)
@@ -23,7 +22,7 @@ static weft_vec3 interpolate(const weft_tile_mesh *mesh, const ray_hit *hit, flo
     return sum;
 }
 
-static int yarn_at(const weft_tile_mesh *mesh, const ray_hit *hit)
+static int yarn_at(const weft_tile_mesh *mesh, const weft_ray_hit *hit)
 {
     int largest = hit->weight[1] > hit->weight[0] ? 1 : 0;
     largest = hit->weight[2] > hit->weight[largest] ? 2 : largest;
@@ -31,47 +30,49 @@ static int yarn_at(const weft_tile_mesh *mesh, const ray_hit *hit)
 }
 
 /* Next vertex along a ray. */
-static path_end find_vertex(const path_scene *scene, weft_vec3 from, weft_vec3 direction, path_vertex *vertex)
+static weft_path_end find_vertex(const weft_path_scene *scene, weft_vec3 from, weft_vec3 direction,
+                                 weft_path_vertex *vertex)
 {
-    const weft_tile_mesh *mesh = ray_scene_mesh(scene->rays);
-    if (!ray_scene_trace(scene->rays, from, direction, &vertex->hit))
-        return PATH_LEFT;
+    const weft_tile_mesh *mesh = weft_ray_scene_mesh(scene->rays);
+    if (!weft_ray_scene_trace(scene->rays, from, direction, &vertex->hit))
+        return WEFT_PATH_LEFT;
     if (weft_dot(vertex->hit.normal, direction) >= 0)
-        return PATH_LOST;
+        return WEFT_PATH_LOST;
     weft_frame frame = weft_frame_of_vectors(vertex->hit.normal, interpolate(mesh, &vertex->hit, mesh->tangent));
     vertex->tangent = frame.tangent;
     vertex->yarn = yarn_at(mesh, &vertex->hit);
     const weft_fibre *fibre = &scene->stitch->yarn[vertex->yarn].fibre;
     vertex->seen = weft_fibre_seen_from(fibre, frame.tangent, frame.normal, weft_scale(direction, -1));
-    return PATH_GOES_ON;
+    return WEFT_PATH_GOES_ON;
 }
 
-path_end path_bounce(const path_scene *scene, path_vertex *vertex, weft_rgb *throughput, uint64_t key, uint32_t index)
+weft_path_end weft_path_bounce(const weft_path_scene *scene, weft_path_vertex *vertex, weft_rgb *throughput,
+                               uint64_t key, uint32_t index)
 {
     double point[2];
-    sequence_point(key, index, point);
-    weft_vec3 direction = path_cosine_direction(vertex->hit.normal, vertex->tangent, point);
-    if (!path_reflect(weft_fibre_brdf(&vertex->seen, direction), throughput))
-        return PATH_LOST;
-    return find_vertex(scene, path_above(scene, vertex->hit.at, vertex->hit.normal), direction, vertex);
+    weft_sequence_point(key, index, point);
+    weft_vec3 direction = weft_path_cosine_direction(vertex->hit.normal, vertex->tangent, point);
+    if (!weft_path_reflect(weft_fibre_brdf(&vertex->seen, direction), throughput))
+        return WEFT_PATH_LOST;
+    return find_vertex(scene, weft_path_above(scene, vertex->hit.at, vertex->hit.normal), direction, vertex);
 }
 
 /* The point on the view ray just above the cloth. */
-static weft_vec3 ray_start(const path_scene *scene, weft_vec3 place, weft_vec3 view)
+static weft_vec3 ray_start(const weft_path_scene *scene, weft_vec3 place, weft_vec3 view)
 {
-    const weft_tile_mesh *mesh = ray_scene_mesh(scene->rays);
+    const weft_tile_mesh *mesh = weft_ray_scene_mesh(scene->rays);
     weft_real rise = (weft_real)mesh->top + (weft_real)mesh->cell / 2 - place.z;
     return weft_add(place, weft_scale(view, rise / view.z));
 }
 
-bool path_begin(const path_scene *scene, weft_vec3 place, weft_vec3 view, path_vertex *vertex)
+bool weft_path_begin(const weft_path_scene *scene, weft_vec3 place, weft_vec3 view, weft_path_vertex *vertex)
 {
     weft_vec3 start = ray_start(scene, place, view);
-    return find_vertex(scene, start, weft_scale(view, -1), vertex) == PATH_GOES_ON;
+    return find_vertex(scene, start, weft_scale(view, -1), vertex) == WEFT_PATH_GOES_ON;
 }
 
-weft_vec3 path_surface_normal(const path_scene *scene, const path_vertex *vertex)
+weft_vec3 weft_path_surface_normal(const weft_path_scene *scene, const weft_path_vertex *vertex)
 {
-    const weft_tile_mesh *mesh = ray_scene_mesh(scene->rays);
+    const weft_tile_mesh *mesh = weft_ray_scene_mesh(scene->rays);
     return weft_unit(interpolate(mesh, &vertex->hit, mesh->normal));
 }

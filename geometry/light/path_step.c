@@ -6,12 +6,12 @@
 /* A path that carries less than this part of the light is over. */
 #define NEGLIGIBLE 1e-4
 
-weft_vec3 path_ray_start(const weft_tile_mesh *mesh, weft_vec3 at, weft_vec3 normal)
+weft_vec3 weft_path_ray_start(const weft_tile_mesh *mesh, weft_vec3 at, weft_vec3 normal)
 {
     return weft_add(at, weft_scale(normal, (weft_real)RAY_OFFSET * (weft_real)mesh->cell));
 }
 
-weft_vec3 path_cosine_direction(weft_vec3 normal, weft_vec3 tangent, const double point[2])
+weft_vec3 weft_path_cosine_direction(weft_vec3 normal, weft_vec3 tangent, const double point[2])
 {
     weft_real radius = sqrt(point[0]), angle = 2 * (weft_real)WEFT_PI * point[1];
     weft_vec3 flat = weft_add(weft_scale(tangent, radius * cos(angle)),
@@ -19,7 +19,7 @@ weft_vec3 path_cosine_direction(weft_vec3 normal, weft_vec3 tangent, const doubl
     return weft_unit(weft_add(flat, weft_scale(normal, sqrt(1 - point[0]))));
 }
 
-bool path_reflect(weft_rgb f, weft_rgb *throughput)
+bool weft_path_reflect(weft_rgb f, weft_rgb *throughput)
 {
     throughput->r *= f.r * (weft_real)WEFT_PI;
     throughput->g *= f.g * (weft_real)WEFT_PI;

@@ -7,13 +7,13 @@
 #include <stdbool.h>
 
 /* Where a ray that leaves the surface at a place starts, so that it does not meet it again. */
-weft_vec3 path_ray_start(const weft_tile_mesh *mesh, weft_vec3 at, weft_vec3 normal);
+weft_vec3 weft_path_ray_start(const weft_tile_mesh *mesh, weft_vec3 at, weft_vec3 normal);
 
 /* A direction whose density is the cosine to the normal over pi, from a point of [0, 1)^2; `tangent` is unit and
  * perpendicular to the normal. */
-weft_vec3 path_cosine_direction(weft_vec3 normal, weft_vec3 tangent, const double point[2]);
+weft_vec3 weft_path_cosine_direction(weft_vec3 normal, weft_vec3 tangent, const double point[2]);
 
 /* Carries throughput over a reflection into such a direction: times f pi. False where hardly anything is left. */
-bool path_reflect(weft_rgb f, weft_rgb *throughput);
+bool weft_path_reflect(weft_rgb f, weft_rgb *throughput);
 
 #endif

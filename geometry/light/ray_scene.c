@@ -9,7 +9,7 @@ enum {
     PACKET = 16
 };
 
-struct ray_scene {
+struct weft_ray_scene {
     const weft_tile_mesh *mesh;
     RTCDevice device;
     RTCScene tile, block;
@@ -23,7 +23,7 @@ static weft_code embree_failure(RTCDevice device, const char *what, weft_error *
 }
 
 /* The triangles of one tile, shared with the mesh. */
-static weft_code build_tile(ray_scene *scene, weft_error *error)
+static weft_code build_tile(weft_ray_scene *scene, weft_error *error)
 {
     const weft_tile_mesh *mesh = scene->mesh;
     RTCGeometry geometry = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -48,7 +48,7 @@ static weft_code build_tile(ray_scene *scene, weft_error *error)
     return WEFT_OK;
 }
 
-static weft_code add_instance(ray_scene *scene, int tile_x, int tile_y, weft_error *error)
+static weft_code add_instance(weft_ray_scene *scene, int tile_x, int tile_y, weft_error *error)
 {
     RTCGeometry instance = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_INSTANCE);
     if (!instance)
@@ -63,7 +63,7 @@ static weft_code add_instance(ray_scene *scene, int tile_x, int tile_y, weft_err
     return WEFT_OK;
 }
 
-static weft_code build_block(ray_scene *scene, weft_error *error)
+static weft_code build_block(weft_ray_scene *scene, weft_error *error)
 {
     scene->block = rtcNewScene(scene->device);
     if (!scene->block)
@@ -79,9 +79,9 @@ static weft_code build_block(ray_scene *scene, weft_error *error)
     return WEFT_OK;
 }
 
-weft_code ray_scene_create(const weft_tile_mesh *mesh, ray_scene **result, weft_error *error)
+weft_code weft_ray_scene_create(const weft_tile_mesh *mesh, weft_ray_scene **result, weft_error *error)
 {
-    ray_scene *scene = calloc(1, sizeof *scene);
+    weft_ray_scene *scene = calloc(1, sizeof *scene);
     *result = NULL;
     if (!scene)
         return weft_fail_memory(error, "scene", sizeof *scene);
@@ -94,14 +94,14 @@ weft_code ray_scene_create(const weft_tile_mesh *mesh, ray_scene **result, weft_
     if (code == WEFT_OK)
         code = build_block(scene, error);
     if (code != WEFT_OK) {
-        ray_scene_free(scene);
+        weft_ray_scene_free(scene);
         return code;
     }
     *result = scene;
     return WEFT_OK;
 }
 
-void ray_scene_free(ray_scene *scene)
+void weft_ray_scene_free(weft_ray_scene *scene)
 {
     if (!scene)
         return;
@@ -114,7 +114,7 @@ void ray_scene_free(ray_scene *scene)
     free(scene);
 }
 
-const weft_tile_mesh *ray_scene_mesh(const ray_scene *scene)
+const weft_tile_mesh *weft_ray_scene_mesh(const weft_ray_scene *scene)
 {
     return scene->mesh;
 }
@@ -124,7 +124,7 @@ static weft_real wrap(weft_real x, weft_real period)
     return x - period * floor(x / period);
 }
 
-static weft_vec3 wrap_place(const ray_scene *scene, weft_vec3 place)
+static weft_vec3 wrap_place(const weft_ray_scene *scene, weft_vec3 place)
 {
     return weft_vec3_of(wrap(place.x, (weft_real)scene->mesh->width), wrap(place.y, (weft_real)scene->mesh->height),
                         place.z);
@@ -139,7 +139,7 @@ static weft_real block_exit(weft_real from, weft_real direction, weft_real tile)
 }
 
 /* How far to follow a ray from the middle tile; *leaves where it is out of the cloth after that. */
-static weft_real reach(const ray_scene *scene, weft_vec3 origin, weft_vec3 direction, bool *leaves)
+static weft_real reach(const weft_ray_scene *scene, weft_vec3 origin, weft_vec3 direction, bool *leaves)
 {
     weft_real sideways = fmin(block_exit(origin.x, direction.x, (weft_real)scene->mesh->width),
                               block_exit(origin.y, direction.y, (weft_real)scene->mesh->height));
@@ -167,22 +167,23 @@ static weft_vec3 vertex(const weft_tile_mesh *mesh, int triangle, int corner)
     return weft_vec3_of(at[0], at[1], at[2]);
 }
 
-static ray_hit describe_hit(const ray_scene *scene, int triangle, weft_real u, weft_real v, weft_real distance)
+static weft_ray_hit describe_hit(const weft_ray_scene *scene, int triangle, weft_real u, weft_real v,
+                                 weft_real distance)
 {
     weft_vec3 a = vertex(scene->mesh, triangle, 0), b = vertex(scene->mesh, triangle, 1);
     weft_vec3 c = vertex(scene->mesh, triangle, 2);
-    ray_hit hit = {.triangle = triangle, .weight = {1 - u - v, u, v}, .distance = distance};
+    weft_ray_hit hit = {.triangle = triangle, .weight = {1 - u - v, u, v}, .distance = distance};
     hit.at = weft_add(weft_scale(a, hit.weight[0]), weft_add(weft_scale(b, u), weft_scale(c, v)));
     hit.normal = weft_unit(weft_cross(weft_subtract(b, a), weft_subtract(c, a)));
     return hit;
 }
 
-ray_hit ray_scene_middle(const ray_scene *scene, int triangle)
+weft_ray_hit weft_ray_scene_middle(const weft_ray_scene *scene, int triangle)
 {
     return describe_hit(scene, triangle, (weft_real)1 / 3, (weft_real)1 / 3, 0);
 }
 
-bool ray_scene_trace(const ray_scene *scene, weft_vec3 origin, weft_vec3 direction, ray_hit *hit)
+bool weft_ray_scene_trace(const weft_ray_scene *scene, weft_vec3 origin, weft_vec3 direction, weft_ray_hit *hit)
 {
     weft_real travelled = 0;
     for (int block = 0; block < MAX_BLOCKS; block++) {
@@ -206,10 +207,10 @@ bool ray_scene_trace(const ray_scene *scene, weft_vec3 origin, weft_vec3 directi
 }
 
 /* Goes on with a shadow ray that left the block but not the cloth. */
-static bool lit_further(const ray_scene *scene, weft_vec3 origin, weft_vec3 direction)
+static bool lit_further(const weft_ray_scene *scene, weft_vec3 origin, weft_vec3 direction)
 {
-    ray_hit hit;
-    return !ray_scene_trace(scene, origin, direction, &hit);
+    weft_ray_hit hit;
+    return !weft_ray_scene_trace(scene, origin, direction, &hit);
 }
 
 typedef struct shadow_packet {
@@ -220,7 +221,7 @@ typedef struct shadow_packet {
     int count;
 } shadow_packet;
 
-static void add_to_packet(const ray_scene *scene, shadow_packet *packet, weft_vec3 origin, weft_vec3 direction,
+static void add_to_packet(const weft_ray_scene *scene, shadow_packet *packet, weft_vec3 origin, weft_vec3 direction,
                           int light)
 {
     int i = packet->count++;
@@ -239,7 +240,7 @@ static void add_to_packet(const ray_scene *scene, shadow_packet *packet, weft_ve
     packet->ray.flags[i] = packet->ray.id[i] = 0;
 }
 
-static void trace_packet(const ray_scene *scene, shadow_packet *packet, weft_vec3 origin, const weft_vec3 *light,
+static void trace_packet(const weft_ray_scene *scene, shadow_packet *packet, weft_vec3 origin, const weft_vec3 *light,
                          uint8_t *lit)
 {
     struct RTCIntersectContext context;
@@ -257,8 +258,8 @@ static void trace_packet(const ray_scene *scene, shadow_packet *packet, weft_vec
     packet->count = 0;
 }
 
-void ray_scene_lit(const ray_scene *scene, weft_vec3 place, const weft_vec3 *light, int light_count,
-                   const uint8_t *wanted, uint8_t *lit)
+void weft_ray_scene_lit(const weft_ray_scene *scene, weft_vec3 place, const weft_vec3 *light, int light_count,
+                        const uint8_t *wanted, uint8_t *lit)
 {
     _Alignas(64) shadow_packet packet = {0};
     weft_vec3 origin = wrap_place(scene, place);

@@ -31,9 +31,9 @@ static uint32_t sobol_second(uint32_t index)
     return sum;
 }
 
-void sequence_point(uint64_t key, uint32_t index, double point[2])
+void weft_sequence_point(uint64_t key, uint32_t index, double point[2])
 {
-    uint64_t shuffle = sequence_key(key, 0), scramble = sequence_key(key, 1);
+    uint64_t shuffle = weft_sequence_key(key, 0), scramble = weft_sequence_key(key, 1);
     uint32_t shuffled = owen_scramble(index, (uint32_t)shuffle);
     point[0] = owen_scramble(reverse_bits(shuffled), (uint32_t)scramble) * 0x1p-32;
     point[1] = owen_scramble(sobol_second(shuffled), (uint32_t)(scramble >> 32)) * 0x1p-32;

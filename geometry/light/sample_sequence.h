@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 /* A 64-bit hash of two numbers, to make keys of keys (the finaliser of SplitMix64, Steele et al. 2014). */
-static inline uint64_t sequence_key(uint64_t key, uint64_t number)
+static inline uint64_t weft_sequence_key(uint64_t key, uint64_t number)
 {
     uint64_t z = key + (number + 1) * 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -15,6 +15,6 @@ static inline uint64_t sequence_key(uint64_t key, uint64_t number)
 }
 
 /* Point `index` of the sequence of a key, in [0, 1)^2. */
-void sequence_point(uint64_t key, uint32_t index, double point[2]);
+void weft_sequence_point(uint64_t key, uint32_t index, double point[2]);
 
 #endif

@@ -8,7 +8,7 @@
 struct weft_stitch_sample {
     weft_stitch stitch;
     weft_tile_mesh mesh;
-    path_scene paths;
+    weft_path_scene paths;
     int bounces;
 };
 
@@ -17,7 +17,7 @@ static weft_code prepare(weft_stitch_sample *sample, const char *path, weft_erro
     WEFT_TRY(weft_stitch_read(path, &sample->stitch, error));
     WEFT_TRY(weft_tile_mesh_create(&sample->stitch, 0, path, &sample->mesh, error));
     sample->paths.stitch = &sample->stitch;
-    return ray_scene_create(&sample->mesh, &sample->paths.rays, error);
+    return weft_ray_scene_create(&sample->mesh, &sample->paths.rays, error);
 }
 
 weft_code weft_stitch_sample_read(const char *path, int bounces, weft_stitch_sample **result, weft_error *error)
@@ -39,7 +39,7 @@ void weft_stitch_sample_free(weft_stitch_sample *sample)
 {
     if (!sample)
         return;
-    ray_scene_free(sample->paths.rays);
+    weft_ray_scene_free(sample->paths.rays);
     weft_tile_mesh_free(&sample->mesh);
     weft_stitch_free(&sample->stitch);
     free(sample);
@@ -55,11 +55,6 @@ int weft_stitch_sample_bounces(const weft_stitch_sample *sample)
     return sample->bounces;
 }
 
-weft_real weft_stitch_sample_thickness(const weft_stitch_sample *sample)
-{
-    return (weft_real)sample->mesh.top - (weft_real)sample->mesh.bottom;
-}
-
 static void put_vector(weft_vec3 from, float to[3])
 {
     to[0] = (float)from.x;
@@ -72,7 +67,7 @@ static weft_vec3 vector_of(const float from[3])
     return weft_vec3_of((weft_real)from[0], (weft_real)from[1], (weft_real)from[2]);
 }
 
-static void keep(const weft_stitch_sample *sample, const path_vertex *vertex, weft_rgb throughput,
+static void keep(const weft_stitch_sample *sample, const weft_path_vertex *vertex, weft_rgb throughput,
                  weft_seen_vertex *kept)
 {
     const weft_fibre_view *seen = &vertex->seen;
@@ -90,14 +85,15 @@ static void keep(const weft_stitch_sample *sample, const path_vertex *vertex, we
 int weft_stitch_sample_see(const weft_stitch_sample *sample, weft_real x_mm, weft_real y_mm, weft_vec3 view,
                            uint64_t key, uint32_t index, weft_seen_vertex *vertex)
 {
-    path_vertex now;
+    weft_path_vertex now;
     weft_rgb throughput = {1, 1, 1};
     int count = 0;
-    if (!path_begin(&sample->paths, weft_vec3_of(x_mm, y_mm, (weft_real)sample->mesh.top), view, &now))
+    if (!weft_path_begin(&sample->paths, weft_vec3_of(x_mm, y_mm, (weft_real)sample->mesh.top), view, &now))
         return 0;
     keep(sample, &now, throughput, &vertex[count++]);
     while (count <= sample->bounces &&
-           path_bounce(&sample->paths, &now, &throughput, sequence_key(key, (uint64_t)count), index) == PATH_GOES_ON)
+           weft_path_bounce(&sample->paths, &now, &throughput, weft_sequence_key(key, (uint64_t)count), index) ==
+               WEFT_PATH_GOES_ON)
         keep(sample, &now, throughput, &vertex[count++]);
     return count;
 }
@@ -108,7 +104,7 @@ static bool is_lit(const weft_stitch_sample *sample, const weft_seen_vertex *ver
     uint8_t lit;
     weft_vec3 at = vector_of(vertex->at);
     at.z += (weft_real)sample->mesh.top;
-    ray_scene_lit(sample->paths.rays, path_above(&sample->paths, at, normal), &light, 1, &wanted, &lit);
+    weft_ray_scene_lit(sample->paths.rays, weft_path_above(&sample->paths, at, normal), &light, 1, &wanted, &lit);
     return lit;
 }
 

@@ -3,7 +3,7 @@
 #ifndef WEFT_GEOMETRY_LIGHT_STITCH_SAMPLE_H
 #define WEFT_GEOMETRY_LIGHT_STITCH_SAMPLE_H
 
-#include "geometry/yarn/stitch.h"
+#include "geometry/stitch/stitch.h"
 
 #include <stdint.h>
 
@@ -21,9 +21,6 @@ const weft_stitch *weft_stitch_sample_stitch(const weft_stitch_sample *sample);
 
 /* How many bounces its paths have at most. Pure. */
 int weft_stitch_sample_bounces(const weft_stitch_sample *sample);
-
-/* From the plane down to the lowest place of the cloth, mm. Pure. */
-weft_real weft_stitch_sample_thickness(const weft_stitch_sample *sample);
 
 /* A vertex of a path of light from the camera: what is kept of it until the lamp is known. */
 typedef struct weft_seen_vertex {

@@ -2,6 +2,8 @@
 
 #include <stdbool.h>
 
+enum { CUBE_FACES = 6 };
+
 /* Anticlockwise seen from outside of the cube. */
 typedef struct cube_face {
     int corner[4], edge[4]; /* edge i joins the corners i and i + 1 */
@@ -9,10 +11,10 @@ typedef struct cube_face {
 
 /* The loop through a cube, as edges in order; and where each edge leads to. */
 typedef struct cube_loop {
-    int count, edge[CUBE_EDGES];
+    int count, edge[WEFT_CUBE_EDGES];
 } cube_loop;
 
-int cube_edge_corner(int edge)
+int weft_cube_edge_corner(int edge)
 {
     int axis = edge / 4, first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2;
     return (edge & 1) << first | (edge >> 1 & 1) << second;
@@ -20,8 +22,8 @@ int cube_edge_corner(int edge)
 
 static int edge_between(int a, int b)
 {
-    for (int edge = 0; edge < CUBE_EDGES; edge++) {
-        int from = cube_edge_corner(edge), to = from | 1 << edge / 4;
+    for (int edge = 0; edge < WEFT_CUBE_EDGES; edge++) {
+        int from = weft_cube_edge_corner(edge), to = from | 1 << edge / 4;
         if ((a == from && b == to) || (a == to && b == from))
             return edge;
     }
@@ -40,7 +42,7 @@ static cube_face face_of(int index)
 }
 
 /* One line for each run of inside corners: from the edge where the run begins to the edge where it ends. */
-static void add_lines(const cube_face *face, int inside, int next[CUBE_EDGES])
+static void add_lines(const cube_face *face, int inside, int next[WEFT_CUBE_EDGES])
 {
     for (int i = 0; i < 4; i++) {
         int begin = (i + 3) % 4, end = i;
@@ -53,7 +55,7 @@ static void add_lines(const cube_face *face, int inside, int next[CUBE_EDGES])
 }
 
 /* Takes the loop through `start` out of `next`. */
-static cube_loop take_loop(int next[CUBE_EDGES], int start)
+static cube_loop take_loop(int next[WEFT_CUBE_EDGES], int start)
 {
     cube_loop loop = {0};
     for (int edge = start; next[edge] >= 0;) {
@@ -84,7 +86,7 @@ static bool may_join(const cube_loop *loop, int i, int j)
 }
 
 /* Triangles of the part of a loop from i to j, added to `to`; false, and nothing added, where there are none. */
-static bool cut(const cube_loop *loop, int i, int j, cube_case *to)
+static bool cut(const cube_loop *loop, int i, int j, weft_cube_case *to)
 {
     if (j - i < 2)
         return true;
@@ -104,25 +106,25 @@ static bool cut(const cube_loop *loop, int i, int j, cube_case *to)
     return false;
 }
 
-static cube_case build_case(int inside)
+static weft_cube_case build_case(int inside)
 {
-    cube_case built = {0};
-    int next[CUBE_EDGES];
-    for (int edge = 0; edge < CUBE_EDGES; edge++)
+    weft_cube_case built = {0};
+    int next[WEFT_CUBE_EDGES];
+    for (int edge = 0; edge < WEFT_CUBE_EDGES; edge++)
         next[edge] = -1;
     for (int i = 0; i < CUBE_FACES; i++) {
         cube_face face = face_of(i);
         add_lines(&face, inside, next);
     }
-    for (int edge = 0; edge < CUBE_EDGES; edge++) {
+    for (int edge = 0; edge < WEFT_CUBE_EDGES; edge++) {
         cube_loop loop = take_loop(next, edge);
         cut(&loop, 0, loop.count - 1, &built);
     }
     return built;
 }
 
-void cube_cases_build(cube_case cases[CUBE_CASES])
+void weft_cube_cases_build(weft_cube_case cases[WEFT_CUBE_CASES])
 {
-    for (int inside = 0; inside < CUBE_CASES; inside++)
+    for (int inside = 0; inside < WEFT_CUBE_CASES; inside++)
         cases[inside] = build_case(inside);
 }

@@ -10,17 +10,17 @@
 #ifndef WEFT_GEOMETRY_YARN_CUBE_CASES_H
 #define WEFT_GEOMETRY_YARN_CUBE_CASES_H
 
-enum { CUBE_CORNERS = 8, CUBE_EDGES = 12, CUBE_FACES = 6, CUBE_CASES = 256, CUBE_MAX_TRIANGLES = 5 };
+enum { WEFT_CUBE_CORNERS = 8, WEFT_CUBE_EDGES = 12, WEFT_CUBE_CASES = 256, WEFT_CUBE_MAX_TRIANGLES = 5 };
 
-typedef struct cube_case {
+typedef struct weft_cube_case {
     int triangle_count;
-    int edge[CUBE_MAX_TRIANGLES][3]; /* anticlockwise seen from outside */
-} cube_case;
+    int edge[WEFT_CUBE_MAX_TRIANGLES][3]; /* anticlockwise seen from outside */
+} weft_cube_case;
 
 /* Bit c of an index into `cases` is set where corner c is inside. Pure. */
-void cube_cases_build(cube_case cases[CUBE_CASES]);
+void weft_cube_cases_build(weft_cube_case cases[WEFT_CUBE_CASES]);
 
 /* The corner from which an edge runs along its axis. Pure. */
-int cube_edge_corner(int edge);
+int weft_cube_edge_corner(int edge);
 
 #endif

@@ -9,7 +9,7 @@
 #ifndef WEFT_GEOMETRY_YARN_FIBRE_H
 #define WEFT_GEOMETRY_YARN_FIBRE_H
 
-#include "geometry/yarn/stitch.h"
+#include "geometry/stitch/stitch.h"
 
 /* A fibre seen from one side. */
 typedef struct weft_fibre_view {

@@ -1,7 +1,7 @@
 /* Marching cubes over a periodic grid (Lorensen and Cline 1987, cases as in geometry/yarn/cube_cases.h). */
 #include "geometry/yarn/cube_cases.h"
+#include "geometry/yarn/field.h"
 #include "geometry/yarn/tile_mesh.h"
-#include "geometry/yarn/yarn_field.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ enum { MAX_NODES = 1 << 24, EDGE_STEPS = 4 };
 #define MARGIN_CELLS 2.5
 
 typedef struct polygoniser {
-    const segment_grid *grid;
+    const weft_segment_grid *grid;
     weft_tile_mesh *mesh;
     int cells[3];
     weft_vec3 cell;
@@ -51,7 +51,7 @@ static void evaluate_nodes(polygoniser *p)
         for (int y = 0; y < p->cells[1]; y++) {
             float *row = p->value + ((size_t)z * (size_t)p->cells[1] + (size_t)y) * (size_t)p->cells[0];
             for (int x = 0; x < p->cells[0]; x++)
-                row[x] = (float)yarn_field_value(p->grid, node_place(p, x, y, z));
+                row[x] = (float)weft_yarn_field_value(p->grid, node_place(p, x, y, z));
         }
     }
 }
@@ -86,7 +86,7 @@ static weft_real crossing(const polygoniser *p, weft_vec3 a, weft_vec3 b, weft_r
         weft_real share = value_a / (value_a - value_b);
         middle = low + (high - low) * weft_clamp(share, (weft_real)0.02, (weft_real)0.98);
         weft_vec3 place = weft_add(weft_scale(a, 1 - middle), weft_scale(b, middle));
-        weft_real value = yarn_field_value(p->grid, place_in_tile(stitch, place));
+        weft_real value = weft_yarn_field_value(p->grid, weft_place_in_tile(stitch, place));
         if ((value < 0) == a_inside) {
             low = middle;
             value_a = value;
@@ -148,7 +148,7 @@ static weft_code add_triangle(polygoniser *p, const int cell[3], const int edges
         WEFT_TRY(grow_array((void **)&mesh->triangle, sizeof *mesh->triangle, p->triangle_capacity, error));
     }
     for (int i = 0; i < 3; i++) {
-        int corner = cube_edge_corner(edges[i]);
+        int corner = weft_cube_edge_corner(edges[i]);
         int32_t vertex;
         WEFT_TRY(vertex_on_edge(p, cell[0] + (corner & 1), cell[1] + (corner >> 1 & 1), cell[2] + (corner >> 2),
                                 edges[i] / 4, &vertex, error));
@@ -161,19 +161,19 @@ static weft_code add_triangle(polygoniser *p, const int cell[3], const int edges
 static int corners_inside(const polygoniser *p, int x, int y, int z)
 {
     int inside = 0;
-    for (int c = 0; c < CUBE_CORNERS; c++)
+    for (int c = 0; c < WEFT_CUBE_CORNERS; c++)
         inside |= (node_value(p, x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)) < 0) << c;
     return inside;
 }
 
 static weft_code add_triangles(polygoniser *p, weft_error *error)
 {
-    cube_case cases[CUBE_CASES];
-    cube_cases_build(cases);
+    weft_cube_case cases[WEFT_CUBE_CASES];
+    weft_cube_cases_build(cases);
     for (int z = 0; z < p->cells[2]; z++) {
         for (int y = 0; y < p->cells[1]; y++) {
             for (int x = 0; x < p->cells[0]; x++) {
-                const cube_case *found = &cases[corners_inside(p, x, y, z)];
+                const weft_cube_case *found = &cases[corners_inside(p, x, y, z)];
                 for (int i = 0; i < found->triangle_count; i++)
                     WEFT_TRY(add_triangle(p, (const int[3]){x, y, z}, found->edge[i], error));
             }
@@ -195,8 +195,8 @@ static void describe_vertex(const polygoniser *p, int vertex)
     weft_tile_mesh *mesh = p->mesh;
     const float *at = mesh->position[vertex];
     weft_vec3 place = weft_vec3_of(at[0], at[1], at[2]), tangent = weft_vec3_of(1, 0, 0);
-    weft_vec3 normal = yarn_field_normal(p->grid, place, p->cell.x / 20);
-    int yarn = yarn_field_fibre(p->grid, place_in_tile(p->grid->skeleton->stitch, place), &tangent);
+    weft_vec3 normal = weft_yarn_field_normal(p->grid, place, p->cell.x / 20);
+    int yarn = weft_yarn_field_fibre(p->grid, weft_place_in_tile(p->grid->skeleton->stitch, place), &tangent);
     tangent = weft_unit(weft_subtract(tangent, weft_scale(normal, weft_dot(normal, tangent))));
     store(mesh->normal[vertex], normal);
     store(mesh->tangent[vertex], tangent);
@@ -266,7 +266,7 @@ static void find_extent(weft_tile_mesh *mesh)
     }
 }
 
-static weft_code polygonise(const segment_grid *grid, int resolution, const char *path, weft_tile_mesh *mesh,
+static weft_code polygonise(const weft_segment_grid *grid, int resolution, const char *path, weft_tile_mesh *mesh,
                             weft_error *error)
 {
     polygoniser p = {.grid = grid, .mesh = mesh};
@@ -289,18 +289,18 @@ static weft_code polygonise(const segment_grid *grid, int resolution, const char
 weft_code weft_tile_mesh_create(const weft_stitch *stitch, int resolution, const char *path, weft_tile_mesh *mesh,
                                 weft_error *error)
 {
-    yarn_skeleton skeleton;
-    segment_grid grid;
+    weft_yarn_skeleton skeleton;
+    weft_segment_grid grid;
     int cells = resolution > 0 ? resolution : stitch->resolution;
     weft_real margin = stitch->blend + (weft_real)MARGIN_CELLS * stitch->width / cells;
     *mesh = (weft_tile_mesh){.width = (float)stitch->width, .height = (float)stitch->height};
-    WEFT_TRY(yarn_skeleton_create(stitch, path, &skeleton, error));
-    weft_code code = segment_grid_create(&skeleton, margin, path, &grid, error);
+    WEFT_TRY(weft_yarn_skeleton_create(stitch, path, &skeleton, error));
+    weft_code code = weft_segment_grid_create(&skeleton, margin, path, &grid, error);
     if (code == WEFT_OK) {
         code = polygonise(&grid, cells, path, mesh, error);
-        segment_grid_free(&grid);
+        weft_segment_grid_free(&grid);
     }
-    yarn_skeleton_free(&skeleton);
+    weft_yarn_skeleton_free(&skeleton);
     if (code != WEFT_OK)
         weft_tile_mesh_free(mesh);
     return code;

@@ -2,7 +2,7 @@
 #ifndef WEFT_GEOMETRY_YARN_TILE_MESH_H
 #define WEFT_GEOMETRY_YARN_TILE_MESH_H
 
-#include "geometry/yarn/stitch.h"
+#include "geometry/stitch/stitch.h"
 
 #include <stdint.h>
 
@@ -21,7 +21,7 @@ typedef struct weft_tile_mesh {
     uint32_t (*triangle)[3]; /* anticlockwise seen from outside */
 } weft_tile_mesh;
 
-/* Polygonises the implicit surface of a stitch (geometry/yarn/yarn_field.h) by marching cubes on a grid of `resolution`
+/* Polygonises the implicit surface of a stitch (geometry/yarn/field.h) by marching cubes on a grid of `resolution`
  * cells across the width of the tile (0: that of the stitch). Deterministic for any number of threads. `path` names the
  * stitch in messages. Errors: WEFT_BAD_INPUT for a grid too large, WEFT_SYSTEM. */
 weft_code weft_tile_mesh_create(const weft_stitch *stitch, int resolution, const char *path, weft_tile_mesh *mesh,

@@ -25,7 +25,6 @@ extern const char weft_glsl_geometry_frag[];
 extern const char weft_glsl_lafortune[];
 extern const char weft_glsl_woven[];
 extern const char weft_glsl_weave[];
-extern const char weft_glsl_bard[];
 extern const char weft_glsl_microcylinder[];
 
 #endif

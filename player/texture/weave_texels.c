@@ -1,7 +1,7 @@
 #include "player/texture/weave_texels.h"
 
 #include "reflectance/weave/batch.h"
-#include "reflectance/weave/table.h"
+#include "reflectance/weave/shader_table.h"
 
 #include <stdlib.h>
 

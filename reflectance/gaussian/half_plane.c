@@ -43,7 +43,7 @@ typedef struct half_plane {
 } half_plane;
 
 /* The outer lobe times what the line leaves of the inner lobe beyond its half, relative to that half: -1..1. */
-static weft_real outer_integrand(const void *context, const abscissa *at)
+static weft_real outer_integrand(const void *context, const weft_abscissa *at)
 {
     const half_plane *plane = context;
     weft_real inner = plane->slope * at->x + plane->offset;
@@ -62,7 +62,7 @@ static weft_real integrate_outer(const half_plane *plane, weft_real reach)
         weft_real cut = i < 5 && plane->slope > 0 ? (level[i] - plane->offset) / plane->slope : reach;
         weft_real high = weft_clamp(cut, low, reach);
         if (high > low)
-            sum += integrate(outer_integrand, plane, low, high);
+            sum += weft_integrate(outer_integrand, plane, low, high);
         low = high;
     }
     return sum;

@@ -10,7 +10,7 @@ weft_real weft_lobe_power(weft_real a, weft_real n)
     return a == 0 && n == 0 ? 1 : 0;
 }
 
-weft_real weft_lobe_value(const weft_lobe *lobe, weft_vec3 light, weft_vec3 view)
+static weft_real lobe_value(const weft_lobe *lobe, weft_vec3 light, weft_vec3 view)
 {
     weft_real a = lobe->cx * light.x * view.x + lobe->cy * light.y * view.y + lobe->cz * light.z * view.z;
     return weft_lobe_power(a, lobe->n);
@@ -19,7 +19,7 @@ weft_real weft_lobe_value(const weft_lobe *lobe, weft_vec3 light, weft_vec3 view
 weft_real weft_lafortune(weft_real rho, const weft_lobe *lobes, int lobe_count, weft_vec3 light, weft_vec3 view)
 {
     for (int i = 0; i < lobe_count; i++)
-        rho += weft_lobe_value(&lobes[i], light, view);
+        rho += lobe_value(&lobes[i], light, view);
     return rho;
 }
 

@@ -15,9 +15,6 @@ typedef struct weft_lobe {
  * result stays finite. */
 weft_real weft_lobe_power(weft_real a, weft_real n);
 
-/* The lobe for directions in the frame of the texel. */
-weft_real weft_lobe_value(const weft_lobe *lobe, weft_vec3 light, weft_vec3 view);
-
 /* rho + sum of lobes, for directions in the frame of the texel; no T and no cosine. */
 weft_real weft_lafortune(weft_real rho, const weft_lobe *lobes, int lobe_count, weft_vec3 light, weft_vec3 view);
 

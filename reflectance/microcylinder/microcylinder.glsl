@@ -1,4 +1,4 @@
-// Cloth of microcylinder threads: twin of reflectance/microcylinder/microcylinder.c and microcylinder_cloth.c.
+// Cloth of microcylinder threads: twin of reflectance/microcylinder/microcylinder.c and cloth.c.
 // Common subset of GLSL 3.30 core and GLSL ES 3.00; needs highp float.
 
 const float THREAD_MAX_TILT = 89.9 * 3.14159265358979 / 180.0;

@@ -20,7 +20,7 @@ static const weft_real gauss_weight[PAIRS / 2] = {
 static const weft_real gauss_middle = 0.417959183673469387755102040816327;
 
 typedef struct problem {
-    integrand_function function;
+    weft_integrand function;
     const void *context;
     weft_real low, high;
     weft_real relative;  /* tolerance of a panel relative to itself */
@@ -32,17 +32,17 @@ typedef struct estimate {
     weft_real value, error;
 } estimate;
 
-abscissa abscissa_at(weft_real low, weft_real high, weft_real theta)
+weft_abscissa weft_abscissa_at(weft_real low, weft_real high, weft_real theta)
 {
     weft_real sine = sin(theta / 2), cosine = cos(theta / 2);
-    abscissa at = {.from_low = (high - low) * sine * sine, .to_high = (high - low) * cosine * cosine};
+    weft_abscissa at = {.from_low = (high - low) * sine * sine, .to_high = (high - low) * cosine * cosine};
     at.x = sine < cosine ? low + at.from_low : high - at.to_high;
     return at;
 }
 
 static weft_real transformed(const problem *p, weft_real theta)
 {
-    abscissa at = abscissa_at(p->low, p->high, theta);
+    weft_abscissa at = weft_abscissa_at(p->low, p->high, theta);
     return p->function(p->context, &at) * sin(theta) * ((p->high - p->low) / 2);
 }
 
@@ -78,7 +78,7 @@ static weft_real panel_edge(int panel)
     return (weft_real)WEFT_PI * (weft_real)panel / FIRST_PANELS;
 }
 
-weft_real integrate(integrand_function function, const void *context, weft_real low, weft_real high)
+weft_real weft_integrate(weft_integrand function, const void *context, weft_real low, weft_real high)
 {
     problem p = {.function = function, .context = context, .low = low, .high = high, .halvings = MAX_HALVINGS};
     p.relative = fmax((weft_real)RELATIVE_TOLERANCE, 8 * (weft_real)WEFT_REAL_EPSILON);

@@ -6,18 +6,18 @@
 
 /* Where a function is asked for its value. Near an end of the interval the distances are known to full relative
  * precision, x is not. */
-typedef struct abscissa {
+typedef struct weft_abscissa {
     weft_real x, from_low, to_high;
-} abscissa;
+} weft_abscissa;
 
-typedef weft_real (*integrand_function)(const void *context, const abscissa *at);
+typedef weft_real (*weft_integrand)(const void *context, const weft_abscissa *at);
 
 /* x = middle - half cos(theta) for an interval, 0 <= theta <= pi. */
-abscissa abscissa_at(weft_real low, weft_real high, weft_real theta);
+weft_abscissa weft_abscissa_at(weft_real low, weft_real high, weft_real theta);
 
 /* Integral of `function` over [low, high], low <= high, to about 1e-8 of the integral (double) or to rounding (single).
  * The substitution by theta makes square-root behaviour at either end smooth; kinks and peaks inside are found by
  * bisection (7- and 15-point Gauss-Kronrod rules, Piessens et al. 1983). */
-weft_real integrate(integrand_function function, const void *context, weft_real low, weft_real high);
+weft_real weft_integrate(weft_integrand function, const void *context, weft_real low, weft_real high);
 
 #endif

@@ -1,7 +1,7 @@
 #include "reflectance/weave/batch.h"
 
 #include "base/processor.h"
-#include "reflectance/weave/kernels.h"
+#include "reflectance/weave/batch_kernels.h"
 
 #include <stdlib.h>
 
@@ -25,35 +25,35 @@ static woven_kernels kernels_in_use(void)
 
 /* ---- Texture ---- */
 
-static void fill_row(const weft_yarn *yarn, float *const column[TABLE_COLUMNS], int row)
+static void fill_row(const weft_yarn *yarn, float *const column[WEFT_WOVEN_COLUMNS], int row)
 {
     const weft_prepared_segment *prepared = &yarn->prepared;
     const weft_segment *segment = &prepared->segment;
-    const weft_real value[TABLE_COLUMNS] = {
-        [TABLE_STAPLE] = prepared->admissible && !prepared->filament,
-        [TABLE_FILAMENT] = prepared->admissible && prepared->filament,
-        [TABLE_WARP] = yarn->warp,
-        [TABLE_AREA_WEIGHT] = yarn->area_weight,
-        [TABLE_ALPHA] = segment->alpha,
-        [TABLE_BETA] = segment->beta,
-        [TABLE_DELTA] = segment->delta,
-        [TABLE_UMAX] = segment->umax,
-        [TABLE_KAPPA] = segment->kappa,
-        [TABLE_WIDTH] = segment->width,
-        [TABLE_LENGTH] = segment->length,
-        [TABLE_HIGHLIGHT_WIDTH] = segment->highlight_width,
-        [TABLE_COT_PSI] = prepared->cot_psi,
-        [TABLE_INVERSE_SIN_PSI] = prepared->inverse_sin_psi,
-        [TABLE_PHASE_SCALE] = prepared->phase_scale,
-        [TABLE_RADIUS_SHARE] = prepared->radius_share,
+    const weft_real value[WEFT_WOVEN_COLUMNS] = {
+        [WEFT_WOVEN_STAPLE] = prepared->admissible && !prepared->filament,
+        [WEFT_WOVEN_FILAMENT] = prepared->admissible && prepared->filament,
+        [WEFT_WOVEN_WARP] = yarn->warp,
+        [WEFT_WOVEN_AREA_WEIGHT] = yarn->area_weight,
+        [WEFT_WOVEN_ALPHA] = segment->alpha,
+        [WEFT_WOVEN_BETA] = segment->beta,
+        [WEFT_WOVEN_DELTA] = segment->delta,
+        [WEFT_WOVEN_UMAX] = segment->umax,
+        [WEFT_WOVEN_KAPPA] = segment->kappa,
+        [WEFT_WOVEN_WIDTH] = segment->width,
+        [WEFT_WOVEN_LENGTH] = segment->length,
+        [WEFT_WOVEN_HIGHLIGHT_WIDTH] = segment->highlight_width,
+        [WEFT_WOVEN_COT_PSI] = prepared->cot_psi,
+        [WEFT_WOVEN_INVERSE_SIN_PSI] = prepared->inverse_sin_psi,
+        [WEFT_WOVEN_PHASE_SCALE] = prepared->phase_scale,
+        [WEFT_WOVEN_RADIUS_SHARE] = prepared->radius_share,
     };
-    for (int c = 0; c < TABLE_COLUMNS; c++)
+    for (int c = 0; c < WEFT_WOVEN_COLUMNS; c++)
         column[c][row] = (float)value[c];
 }
 
 weft_code weft_woven_table_create(const weft_weave *weave, weft_woven_table **result, weft_error *error)
 {
-    size_t count = (size_t)weave->yarn_count, bytes = TABLE_COLUMNS * (count + 1) * sizeof(float);
+    size_t count = (size_t)weave->yarn_count, bytes = WEFT_WOVEN_COLUMNS * (count + 1) * sizeof(float);
     weft_woven_table *table = calloc(1, sizeof *table);
     float *block = malloc(bytes);
     if (!table || !block) {
@@ -62,7 +62,7 @@ weft_code weft_woven_table_create(const weft_weave *weave, weft_woven_table **re
         return weft_fail_memory(error, "weave table", bytes);
     }
     table->yarn_count = weave->yarn_count;
-    for (size_t c = 0; c < TABLE_COLUMNS; c++)
+    for (size_t c = 0; c < WEFT_WOVEN_COLUMNS; c++)
         table->column[c] = block + c * count;
     for (int i = 0; i < weave->yarn_count; i++) {
         const weft_prepared_segment *prepared = &weave->yarn[i].prepared;

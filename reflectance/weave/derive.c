@@ -70,7 +70,7 @@ static void warn(const weft_weave *weave, const char *path, char warning[WEFT_ME
     }
 }
 
-void weave_derive(weft_weave *weave, const char *path, char warning[WEFT_MESSAGE_SIZE])
+void weft_weave_derive(weft_weave *weave, const char *path, char warning[WEFT_MESSAGE_SIZE])
 {
     int cells = weave->tile_width * weave->tile_height;
     for (int i = 0; i < weave->yarn_count; i++) {

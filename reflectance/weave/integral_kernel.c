@@ -1,9 +1,8 @@
 /* weft_prepared_reflectance within 1e-3: the places of a 15-point Gauss-Kronrod rule are the lanes. The integrals, cuts
- * and substitutions are those of woven_integral.c, but for the kinks where the yarn turns away from a direction, which
- * halving finds. */
-#include "reflectance/weave/kernels.h"
-#include "reflectance/weave/lanes.h"
-#include "reflectance/woven/mirror.h"
+ * and substitutions are those of reflectance/woven/integral.c, but for the kinks where the yarn turns away from a
+ * direction, which halving finds. */
+#include "reflectance/weave/batch_kernels.h"
+#include "reflectance/weave/mirror_lanes.h"
 
 enum { NODES = 16, MAX_PANELS = 24, MAX_CUTS = 16 };
 
@@ -51,8 +50,8 @@ typedef struct piece {
 /* sin and cos of x, |x| <= pi. */
 WEFT_INLINE void turn(lanes x, lanes *sine, lanes *cosine)
 {
-    lane_bits far = lanes_abs(x) > LANE_HALF_PI;
-    lanes near = lanes_select(far, lanes_sign_of(x, LANE_PI - lanes_abs(x)), x);
+    lane_bits far = lanes_abs(x) > WEFT_LANE_HALF_PI;
+    lanes near = lanes_select(far, lanes_sign_of(x, WEFT_LANE_PI - lanes_abs(x)), x);
     *sine = lanes_sin(near);
     *cosine = lanes_select(far, -lanes_cos(near), lanes_cos(near));
 }
@@ -155,7 +154,7 @@ WEFT_INLINE float cut_of(const integral *q, const piece *p, panel of, const esti
 /* Adds the integral over a piece; false where it does not settle. */
 WEFT_INLINE bool add_piece(const integral *q, piece p, float *sum)
 {
-    panel stack[MAX_PANELS + 2] = {{0, LANE_HALF_PI}};
+    panel stack[MAX_PANELS + 2] = {{0, WEFT_LANE_HALF_PI}};
     int depth = 1;
     for (int panels = 0; depth > 0; panels++) {
         panel at = stack[--depth];
@@ -188,7 +187,8 @@ WEFT_INLINE lane_vec3 broadcast(weft_vec3 d)
     return lane_vec3_of((float)d.x, (float)d.y, (float)d.z);
 }
 
-/* Where the integrand begins, ends, jumps or has a kink in the spine: see staple_breaks in woven_integral.c. */
+/* Where the integrand begins, ends, jumps or has a kink in the spine: see staple_breaks in
+ * reflectance/woven/integral.c. */
 WEFT_INLINE int staple_cuts(const weft_prepared_segment *prepared, double u0, double origin, double reach,
                             float cuts[MAX_CUTS])
 {
@@ -242,16 +242,16 @@ WEFT_INLINE void keep_visible(piece *p, double sin_u, double cos_u, weft_vec3 di
 WEFT_INLINE bool filament_integral(const weft_prepared_segment *prepared, integral *q, weft_vec3 half, weft_vec3 light,
                                    weft_vec3 view, float *result)
 {
-    mirror at;
+    weft_mirror at;
     double across = filament_mirror(half, &at), u = atan2(half.y, half.z), umax = prepared->spine.umax;
     *result = 0;
     if (!(across > 0 && fabs(u) < umax))
         return true;
-    double radius = filament_radius(prepared, &prepared->spine, u, at.sin_u, at.cos_u);
+    double radius = weft_filament_radius(prepared, &prepared->spine, u, at.sin_u, at.cos_u);
     q->sin_u = lanes_of((float)at.sin_u);
     q->cos_u = lanes_of((float)at.cos_u);
     q->radius = lanes_of((float)radius);
-    piece p = {-LANE_HALF_PI, LANE_HALF_PI};
+    piece p = {-WEFT_LANE_HALF_PI, WEFT_LANE_HALF_PI};
     keep_visible(&p, at.sin_u, at.cos_u, light);
     keep_visible(&p, at.sin_u, at.cos_u, view);
     if (!(p.low < p.high))

@@ -1,9 +1,81 @@
-#include "reflectance/weave/noise.h"
+/* Where a point of the cloth lies, and the two irregularities of cloth there (Irawan and Marschner 2012, 7.2.1), from
+ * 32-bit integer hashes so that C and GLSL agree. */
 #include "reflectance/weave/weave.h"
 
 #include "btf/direction/direction.h"
 
 #include <stdlib.h>
+
+/* A segment of the endless cloth: its centre in quarters of a cell. The pieces of a segment that crosses the border of
+ * a tile are different yarns of the file but have the same centre here. */
+typedef struct segment_place {
+    int64_t quarter_x, quarter_y;
+    bool warp;
+} segment_place;
+
+/* ---- Noise ---- */
+
+/* Keeps the three uses of one seed apart. */
+enum { STREAM_INTENSITY = 1, STREAM_WARP = 2, STREAM_WEFT = 3 };
+
+/* Bijective mixer of 32 bits with low bias (Wellons 2018, "lowbias32"). */
+static uint32_t mixed(uint32_t x)
+{
+    x = (x ^ x >> 16) * 0x7feb352du;
+    x = (x ^ x >> 15) * 0x846ca68bu;
+    return x ^ x >> 16;
+}
+
+static uint32_t start(uint64_t seed, uint32_t stream)
+{
+    return mixed(mixed(mixed(stream) + (uint32_t)seed) + (uint32_t)(seed >> 32));
+}
+
+static uint32_t fold(uint32_t hash, int64_t value)
+{
+    return mixed(hash + (uint32_t)value);
+}
+
+/* In (0, 1): 24 bits, so that single precision holds it exactly. */
+static weft_real unit_interval(uint32_t hash)
+{
+    return ((weft_real)(hash >> 8) + (weft_real)0.5) / (weft_real)16777216;
+}
+
+/* Exponentially distributed with mean 1, constant on each of fineness x fineness rectangles of a segment.
+ * `across`, `along` in [0, 1]: position in the segment. */
+static weft_real intensity_noise(uint64_t seed, segment_place place, weft_real fineness, weft_real across,
+                                 weft_real along)
+{
+    uint32_t hash = start(seed, STREAM_INTENSITY);
+    hash = fold(fold(hash, place.quarter_x), place.quarter_y);
+    hash = fold(hash, place.warp);
+    hash = fold(fold(hash, (int64_t)floor(across * fineness)), (int64_t)floor(along * fineness));
+    return -log(unit_interval(hash));
+}
+
+/* Floor of quarters / 4. */
+static int64_t cell_of(int64_t quarters)
+{
+    return quarters >= 0 ? quarters / 4 : -((3 - quarters) / 4);
+}
+
+/* One-dimensional gradient noise (Perlin 1985, fade of 2002) in [-1, 1] along the warp or weft yarn through the centre
+ * of a segment. `period` in cells. */
+static weft_real yarn_noise(uint64_t seed, segment_place place, bool along_warp, weft_real period)
+{
+    int64_t yarn = cell_of(along_warp ? place.quarter_x : place.quarter_y);
+    weft_real position = (weft_real)(along_warp ? place.quarter_y : place.quarter_x) / 4 / period;
+    weft_real knot = floor(position), t = position - knot;
+    uint32_t hash = fold(start(seed, along_warp ? STREAM_WARP : STREAM_WEFT), yarn);
+    weft_real before = 2 * unit_interval(fold(hash, (int64_t)knot)) - 1;
+    weft_real after = 2 * unit_interval(fold(hash, (int64_t)knot + 1)) - 1;
+    weft_real fade = t * t * t * (t * (t * 6 - 15) + 10);
+    /* Gradients of +-1 reach +-1/2 half way between knots. */
+    return 2 * (before * t + fade * (after * (t - 1) - before * t));
+}
+
+/* ---- Places ---- */
 
 /* Beyond this many tiles a coordinate says nothing about the place within one. */
 #define MAX_COORDINATE 1e9
@@ -28,32 +100,31 @@ static weft_real finite_coordinate(weft_real x)
 }
 
 /* Places along y count upward, tiles down. */
-static weave_segment_place place_of(const weft_weave *weave, const weft_yarn *yarn, weft_real tile_x, weft_real tile_y)
+static segment_place place_of(const weft_weave *weave, const weft_yarn *yarn, weft_real tile_x, weft_real tile_y)
 {
     weft_real center_x = (tile_x + yarn->center_u) * (weft_real)weave->tile_width;
     weft_real center_y = (yarn->center_v - tile_y) * (weft_real)weave->tile_height;
-    return (weave_segment_place){llround(4 * center_x), llround(4 * center_y), yarn->warp};
+    return (segment_place){llround(4 * center_x), llround(4 * center_y), yarn->warp};
 }
 
-static weft_real umax_offset(const weft_weave *weave, const weft_yarn *yarn, weave_segment_place place, uint64_t seed)
+static weft_real umax_offset(const weft_weave *weave, const weft_yarn *yarn, segment_place place, uint64_t seed)
 {
     const weft_real *amplitude_deg = weave->inclination_noise_deg + (yarn->warp ? 0 : 2);
-    weft_real offset_deg = amplitude_deg[0] * weave_yarn_noise(seed, place, true, weave->period) +
-                           amplitude_deg[1] * weave_yarn_noise(seed, place, false, weave->period);
+    weft_real offset_deg = amplitude_deg[0] * yarn_noise(seed, place, true, weave->period) +
+                           amplitude_deg[1] * yarn_noise(seed, place, false, weave->period);
     weft_real umax = yarn->segment.umax;
     return weft_clamp(umax + weft_rad_of_deg(offset_deg), yarn->min_umax, yarn->max_umax) - umax;
 }
 
-static void add_noise(const weft_weave *weave, weave_segment_place place, uint64_t seed, weft_weave_point *point)
+static void add_noise(const weft_weave *weave, segment_place place, uint64_t seed, weft_weave_point *point)
 {
     const weft_yarn *yarn = &weave->yarn[point->yarn];
     const weft_segment *segment = &yarn->segment;
     if (weave->period > 0)
         point->umax_offset_rad = umax_offset(weave, yarn, place, seed);
     if (weave->fineness > 0)
-        point->intensity =
-            weave_intensity_noise(seed, place, weave->fineness, point->x / segment->width + (weft_real)0.5,
-                                  point->y / segment->length + (weft_real)0.5);
+        point->intensity = intensity_noise(seed, place, weave->fineness, point->x / segment->width + (weft_real)0.5,
+                                           point->y / segment->length + (weft_real)0.5);
 }
 
 weft_weave_point weft_weave_locate(const weft_weave *weave, weft_real U, weft_real V, uint64_t seed)

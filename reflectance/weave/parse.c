@@ -7,6 +7,8 @@
 
 #define LARGE 1e6
 
+enum { MAX_TILE_SIDE = 4096, MAX_CELLS = 1 << 20, MAX_YARNS = 4096 };
+
 /* Numbers of the weave block, as in the file. */
 typedef struct weave_values {
     double tile_width, tile_height, alpha, beta, delta, highlight_width, warp_area, weft_area;
@@ -19,9 +21,9 @@ typedef struct yarn_values {
     double psi_deg, umax_deg, kappa, width, length, center_u, center_v, kd[3], ks[3];
 } yarn_values;
 
-static const block_field weave_fields[] = {
-    {"tileWidth", offsetof(weave_values, tile_width), 1, false, 1, WEAVE_MAX_TILE_SIDE},
-    {"tileHeight", offsetof(weave_values, tile_height), 1, false, 1, WEAVE_MAX_TILE_SIDE},
+static const weft_block_field weave_fields[] = {
+    {"tileWidth", offsetof(weave_values, tile_width), 1, false, 1, MAX_TILE_SIDE},
+    {"tileHeight", offsetof(weave_values, tile_height), 1, false, 1, MAX_TILE_SIDE},
     {"alpha", offsetof(weave_values, alpha), 1, false, 0, LARGE},
     {"beta", offsetof(weave_values, beta), 1, false, -LARGE, LARGE},
     {"ss", offsetof(weave_values, delta), 1, false, 0, 1},
@@ -41,7 +43,7 @@ static const block_field weave_fields[] = {
     {"cornerV", offsetof(weave_values, layout.corner_v), 1, true, -LARGE, LARGE},
 };
 
-static const block_field yarn_fields[] = {
+static const weft_block_field yarn_fields[] = {
     {"psi", offsetof(yarn_values, psi_deg), 1, false, -LARGE, LARGE},
     {"umax", offsetof(yarn_values, umax_deg), 1, false, -LARGE, LARGE},
     {"kappa", offsetof(yarn_values, kappa), 1, false, -LARGE, LARGE},
@@ -62,24 +64,25 @@ enum {
 enum { SEEN_NAME = 1 << WEAVE_FIELD_COUNT, SEEN_PATTERN = SEEN_NAME << 1, SEEN_TYPE = 1 << YARN_FIELD_COUNT };
 
 typedef struct weave_parser {
-    block_parser block;
+    weft_block_parser block;
     weft_weave *weave;
     weave_values values;
     size_t cell_count, cell_capacity, yarn_capacity;
-    weave_token pattern_at, largest_id_at; /* for messages that must wait for the end of the file */
+    weft_token pattern_at, largest_id_at; /* for messages that must wait for the end of the file */
     int largest_id;
 } weave_parser;
 
 static weft_code parse_pattern_cell(weave_parser *parser)
 {
-    static const block_field id_field = {.key = "yarn id", .count = 1, .low = 1, .high = WEAVE_MAX_YARNS};
-    weave_token token = parser->block.lexer.token;
+    static const weft_block_field id_field = {.key = "yarn id", .count = 1, .low = 1, .high = MAX_YARNS};
+    weft_token token = parser->block.lexer.token;
     double id = 0;
-    WEFT_TRY(block_grow(&parser->block, (void **)&parser->weave->pattern, parser->cell_count, &parser->cell_capacity,
-                        sizeof *parser->weave->pattern, WEAVE_MAX_CELLS, "cells in the pattern"));
-    if (token.kind == WEAVE_NUMBER && token.number != (int)weft_clamp(token.number, 0, WEAVE_MAX_YARNS + 1))
-        return block_fail(&parser->block, "a yarn id is a whole number from 1 to %d", WEAVE_MAX_YARNS);
-    WEFT_TRY(block_parse_number(&parser->block, &id_field, &id));
+    WEFT_TRY(weft_block_grow(&parser->block, (void **)&parser->weave->pattern, parser->cell_count,
+                             &parser->cell_capacity, sizeof *parser->weave->pattern, MAX_CELLS,
+                             "cells in the pattern"));
+    if (token.kind == WEFT_TOKEN_NUMBER && token.number != (int)weft_clamp(token.number, 0, MAX_YARNS + 1))
+        return weft_block_fail(&parser->block, "a yarn id is a whole number from 1 to %d", MAX_YARNS);
+    WEFT_TRY(weft_block_parse_number(&parser->block, &id_field, &id));
     if (id > parser->largest_id) {
         parser->largest_id = (int)id;
         parser->largest_id_at = token;
@@ -90,26 +93,26 @@ static weft_code parse_pattern_cell(weave_parser *parser)
 
 static weft_code parse_pattern(weave_parser *parser, unsigned *seen)
 {
-    WEFT_TRY(block_mark_seen(&parser->block, seen, SEEN_PATTERN));
+    WEFT_TRY(weft_block_mark_seen(&parser->block, seen, SEEN_PATTERN));
     parser->pattern_at = parser->block.lexer.token;
-    WEFT_TRY(block_advance(&parser->block));
-    WEFT_TRY(block_expect_symbol(&parser->block, '{'));
+    WEFT_TRY(weft_block_advance(&parser->block));
+    WEFT_TRY(weft_block_expect_symbol(&parser->block, '{'));
     for (bool more = true; more;) {
         WEFT_TRY(parse_pattern_cell(parser));
-        WEFT_TRY(block_next_item(&parser->block, &more));
+        WEFT_TRY(weft_block_next_item(&parser->block, &more));
     }
-    return block_expect_symbol(&parser->block, '}');
+    return weft_block_expect_symbol(&parser->block, '}');
 }
 
 static weft_code parse_yarn_type(weave_parser *parser, bool *warp, unsigned *seen)
 {
-    WEFT_TRY(block_mark_seen(&parser->block, seen, SEEN_TYPE));
-    WEFT_TRY(block_advance(&parser->block));
-    WEFT_TRY(block_expect_symbol(&parser->block, '='));
-    *warp = weave_token_is_word(&parser->block.lexer.token, "warp");
-    if (!*warp && !weave_token_is_word(&parser->block.lexer.token, "weft"))
-        return block_unexpected(&parser->block, "'warp' or 'weft'");
-    return block_advance(&parser->block);
+    WEFT_TRY(weft_block_mark_seen(&parser->block, seen, SEEN_TYPE));
+    WEFT_TRY(weft_block_advance(&parser->block));
+    WEFT_TRY(weft_block_expect_symbol(&parser->block, '='));
+    *warp = weft_token_is_word(&parser->block.lexer.token, "warp");
+    if (!*warp && !weft_token_is_word(&parser->block.lexer.token, "weft"))
+        return weft_block_unexpected(&parser->block, "'warp' or 'weft'");
+    return weft_block_advance(&parser->block);
 }
 
 static void store_yarn(weft_yarn *yarn, const yarn_values *values, bool warp)
@@ -126,12 +129,12 @@ static void store_yarn(weft_yarn *yarn, const yarn_values *values, bool warp)
 
 static weft_code parse_yarn_item(weave_parser *parser, yarn_values *values, bool *warp, unsigned *seen)
 {
-    if (weave_token_is_word(&parser->block.lexer.token, "type"))
+    if (weft_token_is_word(&parser->block.lexer.token, "type"))
         return parse_yarn_type(parser, warp, seen);
-    const block_field *field = block_find_field(&parser->block, yarn_fields, YARN_FIELD_COUNT);
+    const weft_block_field *field = weft_block_find_field(&parser->block, yarn_fields, YARN_FIELD_COUNT);
     if (!field)
-        return block_unknown_key(&parser->block);
-    return block_parse_field(&parser->block, yarn_fields, field, values, seen);
+        return weft_block_unknown_key(&parser->block);
+    return weft_block_parse_field(&parser->block, yarn_fields, field, values, seen);
 }
 
 static weft_code parse_yarn(weave_parser *parser)
@@ -140,52 +143,52 @@ static weft_code parse_yarn(weave_parser *parser)
     bool warp = false;
     unsigned seen = 0;
     weft_weave *weave = parser->weave;
-    WEFT_TRY(block_grow(&parser->block, (void **)&weave->yarn, (size_t)weave->yarn_count, &parser->yarn_capacity,
-                        sizeof *weave->yarn, WEAVE_MAX_YARNS, "yarns"));
-    WEFT_TRY(block_advance(&parser->block));
-    WEFT_TRY(block_expect_symbol(&parser->block, '{'));
+    WEFT_TRY(weft_block_grow(&parser->block, (void **)&weave->yarn, (size_t)weave->yarn_count, &parser->yarn_capacity,
+                             sizeof *weave->yarn, MAX_YARNS, "yarns"));
+    WEFT_TRY(weft_block_advance(&parser->block));
+    WEFT_TRY(weft_block_expect_symbol(&parser->block, '{'));
     for (bool more = true; more;) {
         WEFT_TRY(parse_yarn_item(parser, &values, &warp, &seen));
-        WEFT_TRY(block_next_item(&parser->block, &more));
+        WEFT_TRY(weft_block_next_item(&parser->block, &more));
     }
     if (!(seen & SEEN_TYPE))
-        return block_fail(&parser->block, "'type' is missing in the block that ends here");
-    WEFT_TRY(block_check_complete(&parser->block, yarn_fields, YARN_FIELD_COUNT, seen));
+        return weft_block_fail(&parser->block, "'type' is missing in the block that ends here");
+    WEFT_TRY(weft_block_check_complete(&parser->block, yarn_fields, YARN_FIELD_COUNT, seen));
     store_yarn(&weave->yarn[weave->yarn_count++], &values, warp);
-    return block_expect_symbol(&parser->block, '}');
+    return weft_block_expect_symbol(&parser->block, '}');
 }
 
 static weft_code parse_weave_item(weave_parser *parser, unsigned *seen)
 {
-    const weave_token *token = &parser->block.lexer.token;
-    if (weave_token_is_word(token, "name"))
-        return block_parse_name(&parser->block, parser->weave->name, sizeof parser->weave->name, seen, SEEN_NAME);
-    if (weave_token_is_word(token, "pattern"))
+    const weft_token *token = &parser->block.lexer.token;
+    if (weft_token_is_word(token, "name"))
+        return weft_block_parse_name(&parser->block, parser->weave->name, sizeof parser->weave->name, seen, SEEN_NAME);
+    if (weft_token_is_word(token, "pattern"))
         return parse_pattern(parser, seen);
-    if (weave_token_is_word(token, "yarn"))
+    if (weft_token_is_word(token, "yarn"))
         return parse_yarn(parser);
-    const block_field *field = block_find_field(&parser->block, weave_fields, WEAVE_FIELD_COUNT);
+    const weft_block_field *field = weft_block_find_field(&parser->block, weave_fields, WEAVE_FIELD_COUNT);
     if (!field)
-        return block_unknown_key(&parser->block);
-    return block_parse_field(&parser->block, weave_fields, field, &parser->values, seen);
+        return weft_block_unknown_key(&parser->block);
+    return weft_block_parse_field(&parser->block, weave_fields, field, &parser->values, seen);
 }
 
 static weft_code check_pattern(weave_parser *parser)
 {
     const weave_values *values = &parser->values;
     if (values->tile_width != (int)values->tile_width || values->tile_height != (int)values->tile_height)
-        return block_fail(&parser->block, "the tile has %g x %g cells, not whole numbers", values->tile_width,
-                          values->tile_height);
+        return weft_block_fail(&parser->block, "the tile has %g x %g cells, not whole numbers", values->tile_width,
+                               values->tile_height);
     size_t wanted = (size_t)values->tile_width * (size_t)values->tile_height;
     if (parser->cell_count != wanted) {
         parser->block.lexer.token = parser->pattern_at;
-        return block_fail(&parser->block, "the pattern has %zu cells, the tile %g x %g = %zu", parser->cell_count,
-                          values->tile_width, values->tile_height, wanted);
+        return weft_block_fail(&parser->block, "the pattern has %zu cells, the tile %g x %g = %zu", parser->cell_count,
+                               values->tile_width, values->tile_height, wanted);
     }
     if (parser->largest_id > parser->weave->yarn_count) {
         parser->block.lexer.token = parser->largest_id_at;
-        return block_fail(&parser->block, "yarn %d does not exist, there are only %d", parser->largest_id,
-                          parser->weave->yarn_count);
+        return weft_block_fail(&parser->block, "yarn %d does not exist, there are only %d", parser->largest_id,
+                               parser->weave->yarn_count);
     }
     return WEFT_OK;
 }
@@ -194,10 +197,10 @@ static weft_code check_layout(weave_parser *parser)
 {
     const weft_weave_layout *layout = &parser->values.layout;
     if ((layout->tiles_u > 0) != (layout->tiles_v > 0))
-        return block_fail(&parser->block, "tilesU = %g and tilesV = %g: both or neither are above 0", layout->tiles_u,
-                          layout->tiles_v);
+        return weft_block_fail(&parser->block, "tilesU = %g and tilesV = %g: both or neither are above 0",
+                               layout->tiles_u, layout->tiles_v);
     if (!(layout->tiles_u > 0) && (layout->corner_u != 0 || layout->corner_v != 0))
-        return block_fail(&parser->block, "cornerU and cornerV mean nothing without tilesU and tilesV");
+        return weft_block_fail(&parser->block, "cornerU and cornerV mean nothing without tilesU and tilesV");
     return WEFT_OK;
 }
 
@@ -225,38 +228,38 @@ static void store_values(weft_weave *weave, const weave_values *values)
 static weft_code parse_weave(weave_parser *parser)
 {
     unsigned seen = 0;
-    if (!weave_token_is_word(&parser->block.lexer.token, "weave"))
-        return block_unexpected(&parser->block, "'weave'");
-    WEFT_TRY(block_advance(&parser->block));
-    WEFT_TRY(block_expect_symbol(&parser->block, '{'));
+    if (!weft_token_is_word(&parser->block.lexer.token, "weave"))
+        return weft_block_unexpected(&parser->block, "'weave'");
+    WEFT_TRY(weft_block_advance(&parser->block));
+    WEFT_TRY(weft_block_expect_symbol(&parser->block, '{'));
     for (bool more = true; more;) {
         WEFT_TRY(parse_weave_item(parser, &seen));
-        WEFT_TRY(block_next_item(&parser->block, &more));
+        WEFT_TRY(weft_block_next_item(&parser->block, &more));
     }
-    WEFT_TRY(block_check_complete(&parser->block, weave_fields, WEAVE_FIELD_COUNT, seen));
+    WEFT_TRY(weft_block_check_complete(&parser->block, weave_fields, WEAVE_FIELD_COUNT, seen));
     if (!(seen & SEEN_PATTERN))
-        return block_fail(&parser->block, "'pattern' is missing in the block that ends here");
+        return weft_block_fail(&parser->block, "'pattern' is missing in the block that ends here");
     if (parser->values.frozen_radius != 0 && parser->values.frozen_radius != 1)
-        return block_fail(&parser->block, "frozenRadius = %g, must be 0 or 1", parser->values.frozen_radius);
+        return weft_block_fail(&parser->block, "frozenRadius = %g, must be 0 or 1", parser->values.frozen_radius);
     WEFT_TRY(check_layout(parser));
     WEFT_TRY(check_pattern(parser));
-    WEFT_TRY(block_advance(&parser->block));
-    if (parser->block.lexer.token.kind != WEAVE_END)
-        return block_unexpected(&parser->block, "the end of the file");
+    WEFT_TRY(weft_block_advance(&parser->block));
+    if (parser->block.lexer.token.kind != WEFT_TOKEN_END)
+        return weft_block_unexpected(&parser->block, "the end of the file");
     store_values(parser->weave, &parser->values);
     return WEFT_OK;
 }
 
-weft_code weave_parse_text(const char *text, const char *path, const weft_parameter *parameters, int parameter_count,
-                           weft_weave *weave, weft_error *error)
+weft_code weft_weave_parse_text(const char *text, const char *path, const weft_parameter *parameters,
+                                int parameter_count, weft_weave *weave, weft_error *error)
 {
     *weave = (weft_weave){0};
     weave_parser parser = {.block = {.error = error, .parameters = parameters, .parameter_count = parameter_count},
                            .weave = weave};
-    weft_code code = weave_lexer_start(&parser.block.lexer, text, path, error);
+    weft_code code = weft_lexer_start(&parser.block.lexer, text, path, error);
     if (code == WEFT_OK)
         code = parse_weave(&parser);
-    weave_lexer_end(&parser.block.lexer);
+    weft_lexer_end(&parser.block.lexer);
     if (code != WEFT_OK)
         weft_weave_free(weave);
     return code;

@@ -7,15 +7,15 @@
 weft_code weft_weave_parse(const char *text, const char *path, const weft_parameter *parameters, int parameter_count,
                            weft_weave *weave, char warning[WEFT_MESSAGE_SIZE], weft_error *error)
 {
-    WEFT_TRY(weave_parse_text(text, path, parameters, parameter_count, weave, error));
-    weave_derive(weave, path, warning);
+    WEFT_TRY(weft_weave_parse_text(text, path, parameters, parameter_count, weave, error));
+    weft_weave_derive(weave, path, warning);
     weave->specular_scale = weft_weave_specular_scale(weave);
     return WEFT_OK;
 }
 
 void weft_weave_update_yarns(weft_weave *weave)
 {
-    weave_derive(weave, NULL, NULL);
+    weft_weave_derive(weave, NULL, NULL);
 }
 
 void weft_weave_update(weft_weave *weave)

@@ -4,14 +4,12 @@
 
 #include "reflectance/weave/weave.h"
 
-enum { WEAVE_MAX_TILE_SIDE = 4096, WEAVE_MAX_CELLS = 1 << 20, WEAVE_MAX_YARNS = 4096 };
-
 /* What the text says, all of it checked except whether the model has such segments. Frees what it allocated on failure.
  */
-weft_code weave_parse_text(const char *text, const char *path, const weft_parameter *parameters, int parameter_count,
-                           weft_weave *weave, weft_error *error);
+weft_code weft_weave_parse_text(const char *text, const char *path, const weft_parameter *parameters,
+                                int parameter_count, weft_weave *weave, weft_error *error);
 
 /* Fills what follows from the text: admissibility, prepared segments, shares. `warning` as in weft_weave_read. */
-void weave_derive(weft_weave *weave, const char *path, char warning[WEFT_MESSAGE_SIZE]);
+void weft_weave_derive(weft_weave *weave, const char *path, char warning[WEFT_MESSAGE_SIZE]);
 
 #endif

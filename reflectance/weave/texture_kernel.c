@@ -1,7 +1,7 @@
 /* weft_prepared_texture for a vector of points: both kinds of yarn are evaluated where the weave has them, and masked.
  */
-#include "reflectance/weave/kernels.h"
-#include "reflectance/weave/lanes.h"
+#include "reflectance/weave/batch_kernels.h"
+#include "reflectance/weave/mirror_lanes.h"
 
 /* One evaluation a lane, in the frame of its segment. */
 typedef struct lane_segment {
@@ -35,7 +35,7 @@ WEFT_INLINE lanes staple_texture(const lane_segment *s)
     lanes along = s->half.y * at.cos_u - s->half.z * at.sin_u, across = s->half.y * at.sin_u + s->half.z * at.cos_u;
     lane_bits lit = lanes_staple_mirror(s->cot_psi, s->half.x, along, across, &at);
     lit &= lanes_faces_both(&at, s->light, s->view);
-    lanes centre = s->width * (lanes_atan(at.sin_v, at.cos_v) * (1 / LANE_PI));
+    lanes centre = s->width * (lanes_atan(at.sin_v, at.cos_v) * (1 / WEFT_LANE_PI));
     lit &= inside_band(s->x, centre, s->highlight_width * s->width, s->width);
     lane_spine spine = lanes_spine(s->kappa, s->width, s->length, s->umax);
     lanes radius = lanes_spine_radius(s->kappa, &spine, s->umax - lanes_abs(u), at.sin_u, at.cos_u);
@@ -65,17 +65,17 @@ WEFT_INLINE lanes filament_texture(const lane_segment *s)
     lanes across = lanes_sqrt(s->half.y * s->half.y + s->half.z * s->half.z);
     lane_mirror at = {.sin_u = s->half.y / across, .cos_u = s->half.z / across};
     lanes u = lanes_atan(s->half.y, s->half.z);
-    lane_bits lit = (across > LANE_MIN_ACROSS) & (lanes_abs(u) < s->umax);
+    lane_bits lit = (across > (float)WEFT_MIN_ACROSS) & (lanes_abs(u) < s->umax);
     lanes centre = s->length * (u / (2 * s->umax));
     lit &= inside_band(s->y, centre, s->highlight_width * s->length, s->length);
-    lanes v = LANE_PI * (s->x / s->width);
+    lanes v = WEFT_LANE_PI * (s->x / s->width);
     at.sin_v = lanes_sin(v);
     at.cos_v = lanes_cos(v);
     lit &= lanes_faces_both(&at, s->light, s->view);
     lanes radius = filament_radius(s, u);
     lanes attenuation = at.light_share * at.view_share * at.cosine_sum * fade(s->delta, s->umax, u);
     lanes integrand = lanes_yarn_area(s->width, radius, at.cos_v) / across * attenuation * phase(s);
-    return lanes_where(lit, LANE_PI * integrand / s->highlight_width);
+    return lanes_where(lit, WEFT_LANE_PI * integrand / s->highlight_width);
 }
 
 /* Of the cloth into the frame of a warp or weft segment. */
@@ -88,31 +88,31 @@ WEFT_INLINE lane_vec3 in_segment(lane_bits warp, const weft_batch_directions *of
 WEFT_INLINE lane_segment gather(const weft_woven_table *table, const weft_weave_batch *batch, lane_bits yarn, int i)
 {
     float *const *column = table->column;
-    lane_bits warp = lanes_gather(column[TABLE_WARP], yarn) > 0.0f;
-    lane_segment s = {.alpha = lanes_gather(column[TABLE_ALPHA], yarn),
-                      .beta = lanes_gather(column[TABLE_BETA], yarn),
-                      .delta = lanes_gather(column[TABLE_DELTA], yarn),
-                      .kappa = lanes_gather(column[TABLE_KAPPA], yarn),
-                      .width = lanes_gather(column[TABLE_WIDTH], yarn),
-                      .length = lanes_gather(column[TABLE_LENGTH], yarn),
-                      .highlight_width = lanes_gather(column[TABLE_HIGHLIGHT_WIDTH], yarn),
-                      .cot_psi = lanes_gather(column[TABLE_COT_PSI], yarn),
-                      .inverse_sin_psi = lanes_gather(column[TABLE_INVERSE_SIN_PSI], yarn),
-                      .phase_scale = lanes_gather(column[TABLE_PHASE_SCALE], yarn),
-                      .radius_share = lanes_gather(column[TABLE_RADIUS_SHARE], yarn),
+    lane_bits warp = lanes_gather(column[WEFT_WOVEN_WARP], yarn) > 0.0f;
+    lane_segment s = {.alpha = lanes_gather(column[WEFT_WOVEN_ALPHA], yarn),
+                      .beta = lanes_gather(column[WEFT_WOVEN_BETA], yarn),
+                      .delta = lanes_gather(column[WEFT_WOVEN_DELTA], yarn),
+                      .kappa = lanes_gather(column[WEFT_WOVEN_KAPPA], yarn),
+                      .width = lanes_gather(column[WEFT_WOVEN_WIDTH], yarn),
+                      .length = lanes_gather(column[WEFT_WOVEN_LENGTH], yarn),
+                      .highlight_width = lanes_gather(column[WEFT_WOVEN_HIGHLIGHT_WIDTH], yarn),
+                      .cot_psi = lanes_gather(column[WEFT_WOVEN_COT_PSI], yarn),
+                      .inverse_sin_psi = lanes_gather(column[WEFT_WOVEN_INVERSE_SIN_PSI], yarn),
+                      .phase_scale = lanes_gather(column[WEFT_WOVEN_PHASE_SCALE], yarn),
+                      .radius_share = lanes_gather(column[WEFT_WOVEN_RADIUS_SHARE], yarn),
                       .light = in_segment(warp, &batch->light, i),
                       .view = in_segment(warp, &batch->view, i)};
     s.x = lanes_load(batch->x + i);
     s.y = lanes_load(batch->y + i);
-    s.umax = lanes_gather(column[TABLE_UMAX], yarn) + lanes_load(batch->umax_offset_rad + i);
-    s.umax = lanes_min(s.umax, lanes_of(LANE_HALF_PI));
+    s.umax = lanes_gather(column[WEFT_WOVEN_UMAX], yarn) + lanes_load(batch->umax_offset_rad + i);
+    s.umax = lanes_min(s.umax, lanes_of(WEFT_LANE_HALF_PI));
     s.half = (lane_vec3){s.light.x + s.view.x, s.light.y + s.view.y, s.light.z + s.view.z};
     return s;
 }
 
 WEFT_INLINE lane_bits on_segment(const lane_segment *s)
 {
-    return (s->light.z > 0.0f) & (s->view.z > 0.0f) & (lanes_dot(s->half, s->half) >= LANE_MIN_HALF_SQUARED) &
+    return (s->light.z > 0.0f) & (s->view.z > 0.0f) & (lanes_dot(s->half, s->half) >= (float)WEFT_MIN_HALF_SQUARED) &
            (lanes_abs(s->x) <= 0.5f * s->width) & (lanes_abs(s->y) <= 0.5f * s->length);
 }
 
@@ -123,10 +123,10 @@ void WEFT_KERNEL(weft_woven_texture)(const weft_woven_table *table, weft_weave_b
         lane_segment s = gather(table, batch, yarn, i);
         lanes texture = lanes_of(0);
         if (table->any_staple)
-            texture += lanes_where(lanes_gather(table->column[TABLE_STAPLE], yarn) > 0.0f, staple_texture(&s));
+            texture += lanes_where(lanes_gather(table->column[WEFT_WOVEN_STAPLE], yarn) > 0.0f, staple_texture(&s));
         if (table->any_filament)
-            texture += lanes_where(lanes_gather(table->column[TABLE_FILAMENT], yarn) > 0.0f, filament_texture(&s));
-        lanes weight = lanes_gather(table->column[TABLE_AREA_WEIGHT], yarn) * lanes_load(batch->intensity + i);
+            texture += lanes_where(lanes_gather(table->column[WEFT_WOVEN_FILAMENT], yarn) > 0.0f, filament_texture(&s));
+        lanes weight = lanes_gather(table->column[WEFT_WOVEN_AREA_WEIGHT], yarn) * lanes_load(batch->intensity + i);
         lanes_store(batch->specular + i, weight * lanes_where(on_segment(&s), texture));
     }
 }

@@ -1,5 +1,5 @@
-// A tile of yarn segments: twin of reflectance/weave/locate.c, weave_noise.c and weave_brdf.c.
-// Needs woven.glsl before it, and a texture filled by weft_weave_table (its layout: reflectance/weave/table.h).
+// A tile of yarn segments: twin of reflectance/weave/locate.c and brdf.c.
+// Needs woven.glsl before it, and a texture filled by weft_weave_table (its layout: reflectance/weave/shader_table.h).
 // Common subset of GLSL 3.30 core and GLSL ES 3.00; needs highp float, int and sampler2D.
 
 const int WEAVE_TABLE_WIDTH = 256;

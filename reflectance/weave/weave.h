@@ -71,6 +71,13 @@ weft_code weft_weave_write(const char *path, const weft_weave *weave, const char
  * threads. Part of weft_weave_read. */
 weft_real weft_weave_specular_scale(const weft_weave *weave);
 
+/* Whole tiles for a square material: about twelve square cells across. Pure. */
+weft_weave_layout weft_weave_whole_tiles(const weft_weave *weave);
+
+/* How a weave lies on a material: tiles_u x tiles_v from the lower left corner where these are above 0, else as its
+ * file says, else in whole tiles. Pure. */
+weft_weave_layout weft_weave_lay_out(const weft_weave *weave, double tiles_u, double tiles_v);
+
 /* Where a point of the cloth lies: U along x, V along y, tile units, any sign. */
 typedef struct weft_weave_point {
     int yarn;                  /* index */

@@ -17,7 +17,7 @@ typedef struct staple_problem {
 } staple_problem;
 
 /* The mirroring point of the yarn at t; false where there is none. */
-static bool staple_at(const staple_problem *problem, weft_real t, mirror *at)
+static bool staple_at(const staple_problem *problem, weft_real t, weft_mirror *at)
 {
     weft_real u = problem->from_u0 ? problem->u0 + t : t, x = problem->from_u0 ? t : t - problem->u0;
     at->sin_u = sin(u);
@@ -37,22 +37,22 @@ typedef struct staple_piece {
 
 /* R at a point of the yarn. Where the yarn ends steeply R has its spike, as wide as cos(umax); the distance `inside`
  * from the end is known better than u. */
-static weft_real radius_at(const weft_prepared_segment *prepared, weft_real inside, const mirror *at)
+static weft_real radius_at(const weft_prepared_segment *prepared, weft_real inside, const weft_mirror *at)
 {
     const weft_spine *spine = &prepared->spine;
     weft_real cos_u = at->cos_u;
     if (cos_u < (weft_real)STEEP_COSINE)
         cos_u = spine->cos_umax * cos(inside) + spine->sin_umax * sin(inside);
-    return spine_radius(&prepared->segment, spine, inside, at->sin_u, cos_u);
+    return weft_spine_radius_at(&prepared->segment, spine, inside, at->sin_u, cos_u);
 }
 
 /* The integrand without its constant factors. */
-static weft_real staple_integrand(const void *context, const abscissa *where)
+static weft_real staple_integrand(const void *context, const weft_abscissa *where)
 {
     const staple_piece *piece = context;
     const staple_problem *problem = piece->problem;
     const weft_prepared_segment *prepared = problem->prepared;
-    mirror at = {0};
+    weft_mirror at = {0};
     if (!staple_at(problem, where->x, &at) || !faces_both(&at, problem->light, problem->view))
         return 0;
     weft_real from_low = piece->t.low - problem->range.low + where->from_low;
@@ -64,7 +64,7 @@ static weft_real staple_integrand(const void *context, const abscissa *where)
 /* Whether both directions are seen from the mirroring point, wherever v is. */
 static bool staple_faces(const staple_problem *problem, weft_real t)
 {
-    mirror at = {0};
+    weft_mirror at = {0};
     return staple_at(problem, t, &at) && faces_both(&at, problem->light, problem->view);
 }
 
@@ -81,7 +81,7 @@ static weft_real bisect_facing(const staple_problem *problem, weft_real faces, w
 static weft_real integrate_piece(const staple_problem *problem, weft_real low, weft_real high)
 {
     staple_piece piece = {problem, {low, high}};
-    return integrate(staple_integrand, &piece, low, high);
+    return weft_integrate(staple_integrand, &piece, low, high);
 }
 
 /* Integral between two breaks, cut where the yarn turns away from one of the directions: there the integrand has a
@@ -93,7 +93,7 @@ static weft_real integrate_between(const staple_problem *problem, weft_real low,
     bool faced = false;
     for (int i = 0; i < SAMPLES; i++) {
         weft_real theta = (weft_real)WEFT_PI * ((weft_real)i + (weft_real)0.5) / SAMPLES;
-        weft_real t = abscissa_at(low, high, theta).x;
+        weft_real t = weft_abscissa_at(low, high, theta).x;
         bool faces = staple_faces(problem, t);
         if (i > 0 && faces != faced) {
             weft_real cut = faces ? bisect_facing(problem, t, before) : bisect_facing(problem, before, t);
@@ -165,18 +165,18 @@ typedef struct filament_problem {
     weft_real sin_u, cos_u, radius;
 } filament_problem;
 
-static weft_real filament_integrand(const void *context, const abscissa *where)
+static weft_real filament_integrand(const void *context, const weft_abscissa *where)
 {
     const filament_problem *problem = context;
     weft_real v = where->x;
-    mirror at = {.sin_u = problem->sin_u, .cos_u = problem->cos_u, .sin_v = sin(v), .cos_v = cos(v)};
+    weft_mirror at = {.sin_u = problem->sin_u, .cos_u = problem->cos_u, .sin_v = sin(v), .cos_v = cos(v)};
     if (!faces_both(&at, problem->light, problem->view))
         return 0;
     return yarn_area(problem->segment, problem->radius, at.cos_v) * (at.light_share * at.view_share * at.cosine_sum);
 }
 
 /* Cuts to the v from which `direction` is seen: within pi/2 of its azimuth round the yarn. */
-static interval cut_to_visible(interval range, const mirror *at, weft_vec3 direction)
+static interval cut_to_visible(interval range, const weft_mirror *at, weft_vec3 direction)
 {
     weft_real azimuth = atan2(direction.x, direction.y * at->sin_u + direction.z * at->cos_u);
     const weft_real quarter = (weft_real)(WEFT_PI / 2);
@@ -188,17 +188,17 @@ static weft_real filament_reflectance(const weft_prepared_segment *prepared, wef
 {
     const weft_spine *spine = &prepared->spine;
     const weft_real quarter = (weft_real)(WEFT_PI / 2);
-    mirror at = {0};
+    weft_mirror at = {0};
     weft_real across = filament_mirror(half, &at), u = atan2(half.y, half.z);
     if (!(across > 0 && fabs(u) < spine->umax))
         return 0;
     filament_problem problem = {.light = light, .view = view, .segment = &prepared->segment, .sin_u = at.sin_u};
     problem.cos_u = at.cos_u;
-    problem.radius = filament_radius(prepared, spine, u, at.sin_u, at.cos_u);
+    problem.radius = weft_filament_radius(prepared, spine, u, at.sin_u, at.cos_u);
     interval range = cut_to_visible(cut_to_visible((interval){-quarter, quarter}, &at, light), &at, view);
     if (!(range.low < range.high))
         return 0;
-    return integrate(filament_integrand, &problem, range.low, range.high) / across *
+    return weft_integrate(filament_integrand, &problem, range.low, range.high) / across *
            filament_fade(prepared->segment.delta, spine->umax, u);
 }
 

@@ -84,8 +84,8 @@ static weft_real hyperbola_factor(const weft_segment *segment, const weft_spine 
     return (sin(inside) + end * sin_abs_u) / spine->sin_umax * (cos_u - spine->shape * sin_abs_u);
 }
 
-weft_real spine_radius(const weft_segment *segment, const weft_spine *spine, weft_real inside, weft_real sin_u,
-                       weft_real cos_u)
+weft_real weft_spine_radius_at(const weft_segment *segment, const weft_spine *spine, weft_real inside, weft_real sin_u,
+                               weft_real cos_u)
 {
     /* A u that is rounded beyond umax must not leave the spine: R has its pole just there. */
     cos_u = fmax(cos_u, spine->cos_umax);
@@ -94,15 +94,15 @@ weft_real spine_radius(const weft_segment *segment, const weft_spine *spine, wef
     return spine->scale / (e * sqrt(e));
 }
 
-weft_real filament_radius(const weft_prepared_segment *prepared, const weft_spine *spine, weft_real u, weft_real sin_u,
-                          weft_real cos_u)
+weft_real weft_filament_radius(const weft_prepared_segment *prepared, const weft_spine *spine, weft_real u,
+                               weft_real sin_u, weft_real cos_u)
 {
     if (!(prepared->radius_share < 1))
-        return spine_radius(&prepared->segment, spine, spine->umax - fabs(u), sin_u, cos_u);
+        return weft_spine_radius_at(&prepared->segment, spine, spine->umax - fabs(u), sin_u, cos_u);
     weft_real end = fmax(spine->umax * prepared->radius_share, (weft_real)WEFT_SEGMENT_MIN_UMAX);
     weft_real at = fmin(fabs(u), end);
     weft_spine shorter = weft_segment_spine(&prepared->segment, end);
-    return spine_radius(&prepared->segment, &shorter, end - at, sin(at), cos(at));
+    return weft_spine_radius_at(&prepared->segment, &shorter, end - at, sin(at), cos(at));
 }
 
 weft_real weft_spine_radius(const weft_segment *segment, weft_real u)
@@ -110,7 +110,7 @@ weft_real weft_spine_radius(const weft_segment *segment, weft_real u)
     if (!weft_segment_admissible(segment) || !(fabs(u) <= segment->umax))
         return 0;
     weft_spine spine = weft_segment_spine(segment, segment->umax);
-    return spine_radius(segment, &spine, spine.umax - fabs(u), sin(u), cos(u));
+    return weft_spine_radius_at(segment, &spine, spine.umax - fabs(u), sin(u), cos(u));
 }
 
 weft_prepared_segment weft_segment_prepare(const weft_segment *segment)

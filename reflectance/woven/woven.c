@@ -1,7 +1,7 @@
 #include "reflectance/woven/woven.h"
 #include "reflectance/woven/mirror.h"
 
-static bool staple_at(const weft_prepared_segment *prepared, weft_vec3 half, weft_real u, mirror *at)
+static bool staple_at(const weft_prepared_segment *prepared, weft_vec3 half, weft_real u, weft_mirror *at)
 {
     at->sin_u = sin(u);
     at->cos_u = cos(u);
@@ -15,11 +15,11 @@ static weft_yarn_point dark_point(const weft_prepared_segment *prepared, weft_re
 {
     const weft_spine *spine = &prepared->spine;
     weft_real on_spine = weft_clamp(u, -spine->umax, spine->umax);
-    weft_real radius = filament_radius(prepared, spine, on_spine, sin(on_spine), cos(on_spine));
+    weft_real radius = weft_filament_radius(prepared, spine, on_spine, sin(on_spine), cos(on_spine));
     return (weft_yarn_point){.radius = radius, .phase = phase};
 }
 
-static void light_up(weft_yarn_point *point, const mirror *at)
+static void light_up(weft_yarn_point *point, const weft_mirror *at)
 {
     point->active = true;
     point->normal = weft_vec3_of(at->sin_v, at->sin_u * at->cos_v, at->cos_u * at->cos_v);
@@ -28,7 +28,7 @@ static void light_up(weft_yarn_point *point, const mirror *at)
 
 static weft_yarn_point staple_point(const weft_prepared_segment *prepared, weft_real u, weft_vec3 light, weft_vec3 view)
 {
-    mirror at = {0};
+    weft_mirror at = {0};
     weft_vec3 half = weft_add(light, view);
     if (!(fabs(u) <= prepared->spine.umax))
         return (weft_yarn_point){0};
@@ -48,7 +48,7 @@ static weft_yarn_point filament_point(const weft_prepared_segment *prepared, wef
                                       weft_vec3 view)
 {
     weft_real umax = prepared->spine.umax;
-    mirror at = {0};
+    weft_mirror at = {0};
     weft_vec3 half = weft_add(light, view);
     weft_real across = filament_mirror(half, &at), u = atan2(half.y, half.z);
     if (!(across > 0))
@@ -107,14 +107,14 @@ static weft_real staple_texture(const weft_prepared_segment *prepared, weft_real
 {
     const weft_segment *segment = &prepared->segment;
     weft_real u = 2 * umax * y / segment->length;
-    mirror at = {0};
+    weft_mirror at = {0};
     if (!staple_at(prepared, half, u, &at) || !faces_both(&at, light, view))
         return 0;
     weft_real centre = segment->width * (atan2(at.sin_v, at.cos_v) / (weft_real)WEFT_PI);
     if (!inside_band(x, centre, segment->highlight_width * segment->width, segment->width))
         return 0;
     weft_spine spine = spine_for(prepared, umax);
-    weft_real radius = spine_radius(segment, &spine, umax - fabs(u), at.sin_u, at.cos_u);
+    weft_real radius = weft_spine_radius_at(segment, &spine, umax - fabs(u), at.sin_u, at.cos_u);
     weft_real integrand = yarn_area(segment, radius, at.cos_v) * prepared->inverse_sin_psi *
                           (at.light_share * at.view_share) * prepared_phase(prepared, light, view);
     return 2 * umax * integrand / segment->highlight_width;
@@ -125,7 +125,7 @@ static weft_real filament_texture(const weft_prepared_segment *prepared, weft_re
                                   weft_vec3 half, weft_vec3 light, weft_vec3 view)
 {
     const weft_segment *segment = &prepared->segment;
-    mirror at = {0};
+    weft_mirror at = {0};
     weft_real across = filament_mirror(half, &at);
     weft_real u = atan2(half.y, half.z);
     if (!(across > 0 && fabs(u) < umax))
@@ -139,7 +139,7 @@ static weft_real filament_texture(const weft_prepared_segment *prepared, weft_re
     if (!faces_both(&at, light, view))
         return 0;
     weft_spine spine = spine_for(prepared, umax);
-    weft_real radius = filament_radius(prepared, &spine, u, at.sin_u, at.cos_u);
+    weft_real radius = weft_filament_radius(prepared, &spine, u, at.sin_u, at.cos_u);
     weft_real attenuation = at.light_share * at.view_share * at.cosine_sum * filament_fade(segment->delta, umax, u);
     weft_real integrand =
         yarn_area(segment, radius, at.cos_v) / across * attenuation * prepared_phase(prepared, light, view);

@@ -1,4 +1,4 @@
-// Texture value of one yarn segment of woven cloth: twin of reflectance/woven/woven.c, woven_mirror.h and woven_segment.c.
+// Texture value of one yarn segment of woven cloth: twin of reflectance/woven/woven.c, mirror.h and segment.c.
 // Common subset of GLSL 3.30 core and GLSL ES 3.00; needs highp float.
 
 const float WOVEN_PI = 3.14159265358979;

@@ -3,7 +3,7 @@
 #include "base/integers.h"
 #include "btf/dataset/derived.h"
 #include "btf/direction/direction.h"
-#include "study/bard/texel.h"
+#include "study/bard/texel_table.h"
 
 #include <omp.h>
 #include <stdlib.h>

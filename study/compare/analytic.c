@@ -3,7 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "btf/file_kind.h"
-#include "study/fit_weave/origin.h"
+#include "study/fit_weave/fit_weave.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,14 +49,13 @@ static weft_code open_threads(const weft_compare_options *options, weft_compared
 static weft_code open_weave(const weft_compare_options *options, weft_dataset *dataset, const weft_progress *progress,
                             weft_compared_weave *weave, weft_comparison *comparison, weft_error *error)
 {
-    weft_virtual_settings rig = weft_virtual_settings_default();
     if (options->fit)
         WEFT_TRY(fit_and_write(options, dataset, weave->path, progress, &comparison->fit, error));
     WEFT_TRY(weft_fit_weave_origin(weave->path, dataset, comparison->weave_origin, error));
-    WEFT_TRY(weft_virtual_cloth_read(weave->path, &rig, 0, &weave->cloth, NULL, error));
-    memcpy(comparison->weave_name, weave->cloth.weave.name, sizeof comparison->weave_name);
-    comparison->weave_layout = weft_virtual_cloth_layout(&weave->cloth, options->tiles_u, options->tiles_v);
-    comparison->weave_on_yarns = weave->cloth.weave.layout.tiles_u > 0 && !(options->tiles_u > 0);
+    WEFT_TRY(weft_weave_read(weave->path, NULL, 0, &weave->weave, NULL, error));
+    memcpy(comparison->weave_name, weave->weave.name, sizeof comparison->weave_name);
+    comparison->weave_layout = weft_weave_lay_out(&weave->weave, options->tiles_u, options->tiles_v);
+    comparison->weave_on_yarns = weave->weave.layout.tiles_u > 0 && !(options->tiles_u > 0);
     return WEFT_OK;
 }
 
@@ -75,7 +74,7 @@ weft_code weft_compare_weave_open(const weft_compare_options *options, weft_data
 
 void weft_compare_weave_close(weft_compared_weave *weave)
 {
-    weft_virtual_cloth_free(&weave->cloth);
+    weft_weave_free(&weave->weave);
     free(weave->path);
     *weave = (weft_compared_weave){0};
 }

@@ -1,8 +1,7 @@
-/* The analytic cloth of weft_compare. Private to study/. */
+/* The analytic cloth of weft_compare. Private to the room. */
 #ifndef WEFT_STUDY_COMPARE_ANALYTIC_H
 #define WEFT_STUDY_COMPARE_ANALYTIC_H
 
-#include "capture/virtual/cloth.h"
 #include "reflectance/microcylinder/file.h"
 #include "study/compare/compare.h"
 
@@ -10,7 +9,7 @@
 typedef struct weft_compared_weave {
     char *path; /* of the file that is compared: the given or the fitted one */
     bool is_threads;
-    weft_virtual_cloth cloth;               /* a weave */
+    weft_weave weave;                       /* a weave */
     weft_microcylinder_description threads; /* or microcylinder cloth */
 } weft_compared_weave;
 

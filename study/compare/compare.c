@@ -2,10 +2,9 @@
 
 #include "base/atomic_file.h"
 #include "btf/dataset/fingerprint.h"
-#include "geometry/yarn/stitch.h"
+#include "geometry/stitch/stitch.h"
 #include "study/compare/analytic.h"
 #include "study/compare/page/sections.h"
-#include "study/compare/representative.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -59,8 +58,7 @@ static weft_code measure_weave(const compared_files *files, const weft_progress 
     if (weave->is_threads)
         WEFT_TRY(weft_predictor_of_threads(files->dataset, &weave->threads.cloth, &predictor, error));
     else
-        WEFT_TRY(
-            weft_predictor_of_weave(files->dataset, &weave->cloth.weave, &comparison->weave_layout, &predictor, error));
+        WEFT_TRY(weft_predictor_of_weave(files->dataset, &weave->weave, &comparison->weave_layout, &predictor, error));
     weft_code code = measure_texture(files->dataset, predictor, "analytic", progress, comparison, error);
     weft_predictor_free(predictor);
     return code;
@@ -103,7 +101,7 @@ static weft_code draw_scenes(const weft_compare_options *options, const compared
     if (options->weave && weave->is_threads)
         request.threads = &weave->threads.cloth;
     else if (options->weave)
-        request.weave = &weave->cloth.weave;
+        request.weave = &weave->weave;
     request.layout = &comparison->weave_layout;
     return weft_scenes_draw(&request, progress, &comparison->scenes, error);
 }

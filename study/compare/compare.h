@@ -7,7 +7,7 @@
 #include "study/compare/scenes.h"
 #include "study/compare/slices.h"
 #include "study/error/measurement.h"
-#include "study/fit_weave/dataset.h"
+#include "study/fit_weave/fit_weave.h"
 #include "study/truth/comparison.h"
 
 typedef struct weft_compare_options {

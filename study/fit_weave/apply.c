@@ -1,5 +1,5 @@
 /* What was found, put into the weave. */
-#include "study/fit_weave/model.h"
+#include "study/fit_weave/parametric_weave.h"
 
 static void apply_shapes(weft_fit_weave_model *model, const double *parameters)
 {

@@ -1,7 +1,5 @@
 /* Standard errors of the parameters of a fitted weave. */
-#include "study/fit_weave/model.h"
-
-#include "study/fit_weave/jackknife.h"
+#include "study/fit_weave/parametric_weave.h"
 
 #include <math.h>
 #include <stdlib.h>

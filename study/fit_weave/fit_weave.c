@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "btf/direction/direction.h"
-#include "study/fit_weave/model.h"
+#include "study/fit_weave/parametric_weave.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,6 +6,7 @@
 #include "base/error_summary.h"
 #include "reflectance/weave/weave.h"
 #include "study/fit_weave/mean_brdf.h"
+#include "study/tile/tile.h"
 
 enum { WEFT_FIT_WEAVE_GROUPS = 8 };
 
@@ -50,5 +51,29 @@ weft_code weft_fit_weave(const weft_mean_brdf *mean, weft_weave *weave, const we
 /* The error of the mean BRDF of a weave as it is, over images and channels. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_fit_weave_measure(const weft_mean_brdf *mean, const weft_weave *weave, weft_error_summary *result,
                                  weft_error *error);
+
+typedef struct weft_fit_weave_source {
+    bool tiled;                        /* the mean is that of a tile */
+    weft_tile_report tile;             /* their size, and where one begins */
+    int tiles_x, tiles_y;              /* so many whole ones lie in the material */
+    char why_whole[WEFT_MESSAGE_SIZE]; /* why the mean is that of the whole material, or "" */
+} weft_fit_weave_source;
+
+/* Finds the tile of the weave in the dataset (weft_tile_find), averages it over the material but for a sixteenth at
+ * each edge, every place of the tile alike, and fits the weave to that mean BRDF (weft_fit_weave). Where no tile is
+ * found, or none is whole, the mean is that of the whole material. The weave then lies (weave->layout) as the tiles do,
+ * or anyhow. Errors: those of reading and of weft_fit_weave. */
+weft_code weft_fit_weave_to_dataset(weft_dataset *dataset, weft_weave *weave, const weft_progress *progress,
+                                    weft_fit_weave_source *source, weft_fit_weave_report *report, weft_error *error);
+
+/* Writes a fitted weave whose first line tells the dataset (name and fingerprint) and the error. Atomic. Errors: those
+ * of reading and writing. */
+weft_code weft_fit_weave_write(const char *path, const weft_weave *weave, weft_dataset *dataset,
+                               const weft_fit_weave_report *report, weft_error *error);
+
+/* `origin`: "fitted to this dataset", "fitted to another dataset, ..." or "as its file gives it, fitted to no
+ * dataset". Errors: those of reading. */
+weft_code weft_fit_weave_origin(const char *path, weft_dataset *dataset, char origin[WEFT_MESSAGE_SIZE],
+                                weft_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 /* Which yarns are fitted as one, what they may become, and where they begin. */
-#include "study/fit_weave/model.h"
+#include "study/fit_weave/parametric_weave.h"
 
 #include "btf/direction/direction.h"
 

@@ -1,5 +1,5 @@
 /* Linear algebra by Eigen, which Ceres Solver stands on. */
-#include "study/fit_weave/jackknife.h"
+#include "study/fit_weave/least_squares.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

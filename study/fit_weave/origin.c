@@ -1,4 +1,4 @@
-#include "study/fit_weave/origin.h"
+#include "study/fit_weave/fit_weave.h"
 
 #include "btf/dataset/fingerprint.h"
 

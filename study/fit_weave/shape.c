@@ -1,6 +1,6 @@
 /* The reflectance of the segments of a group, in batches, kept for the shapes that were asked for last: a derivative
  * changes the shape of one group at a time. */
-#include "study/fit_weave/model.h"
+#include "study/fit_weave/parametric_weave.h"
 
 #include "reflectance/weave/batch.h"
 

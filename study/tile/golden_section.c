@@ -1,4 +1,4 @@
-#include "study/tile/golden_section.h"
+#include "study/tile/search.h"
 
 #include <math.h>
 

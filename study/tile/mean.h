@@ -1,8 +1,8 @@
-/* The mean of all tiles of a picture. Private to study/. */
+/* The mean of all tiles of a picture. Private to the room. */
 #ifndef WEFT_STUDY_TILE_MEAN_H
 #define WEFT_STUDY_TILE_MEAN_H
 
-#include "study/tile/pictures.h"
+#include "study/tile/textured_pictures.h"
 #include "study/tile/tile.h"
 
 /* The two texels of the tile, along one axis, between whose centres a point of the material lies. */

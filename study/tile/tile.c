@@ -1,7 +1,6 @@
 #include "study/tile/tile.h"
 
-#include "study/tile/period.h"
-#include "study/tile/phase.h"
+#include "study/tile/search.h"
 
 #include <math.h>
 

@@ -7,7 +7,7 @@
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
-#include "study/truth/error.h"
+#include "study/truth/picture_error.h"
 
 #include <stdbool.h>
 

@@ -90,7 +90,7 @@ static void trace_batch(const tracing *t, int pixel, uint64_t key, int paths, do
     weft_draped_radiance sum = {0};
     for (uint32_t i = 0; i < (uint32_t)paths; i++) {
         double point[2];
-        sequence_point(sequence_key(key, PLACE_KEY), i, point);
+        weft_sequence_point(weft_sequence_key(key, PLACE_KEY), i, point);
         weft_vec3 direction = ray_through(&t->from, pixel % width + point[0], height - pixel / width - 1 + point[1]);
         misses += !weft_draped_cloth_path(t->cloth, t->from.eye, direction, &t->light, key, i, &sum);
     }
@@ -105,10 +105,10 @@ static spread trace_pixel(const tracing *t, int pixel)
 {
     double all[BATCHES][3], near[BATCHES][3];
     spread result = {0};
-    uint64_t key = sequence_key(t->options->seed, (uint64_t)pixel);
+    uint64_t key = weft_sequence_key(t->options->seed, (uint64_t)pixel);
     int paths = (t->options->paths + BATCHES - 1) / BATCHES;
     for (int b = 0; b < BATCHES; b++)
-        trace_batch(t, pixel, sequence_key(key, (uint64_t)b), paths, all[b], near[b]);
+        trace_batch(t, pixel, weft_sequence_key(key, (uint64_t)b), paths, all[b], near[b]);
     for (int c = 0; c < 3; c++) {
         double mean = 0, near_mean = 0, squares = 0;
         for (int b = 0; b < BATCHES; b++) {

@@ -75,11 +75,10 @@ static weft_rig rig_of(bench *b)
     weft_rig rig = {.name = "bench",
                     .sample = "a piece of paper",
                     .identity = "{\"lens\":\"75 mm\"}",
+                    .settings = weft_rig_settings_default(),
                     .camera = {b, expose},
                     .stage = {b, home, move_camera, move_light},
                     .light = {b, power}};
-    weft_setting_group group = weft_rig_settings_group(&rig.settings);
-    weft_setting_group_reset(&group);
     rig.settings.width_px = rig.settings.height_px = SIZE;
     rig.settings.focal_length_px = 440;
     return rig;

@@ -72,7 +72,7 @@ static double mean_of_tile(const laid_stitch *laid, int tiles, weft_vec3 view, c
     *mean = (weft_draped_radiance){0};
     for (uint32_t i = 0; i < PATHS; i++) {
         double point[2];
-        sequence_point(7, i, point);
+        weft_sequence_point(7, i, point);
         weft_vec3 place =
             weft_vec3_of((tiles / 2 + point[0]) * laid->stitch.width, (tiles / 2 + point[1]) * laid->stitch.height, 0);
         weft_vec3 origin = weft_add(place, weft_scale(view, 40));
@@ -96,7 +96,7 @@ static double mean_of_endless(const laid_stitch *laid, weft_vec3 view, weft_vec3
         fail_msg("%s", error.message);
     for (uint32_t i = 0; i < PATHS; i++) {
         double point[2];
-        sequence_point(9, i, point);
+        weft_sequence_point(9, i, point);
         weft_vec3 place =
             weft_vec3_of(point[0] * laid->stitch.width, point[1] * laid->stitch.height, (weft_real)laid->mesh.top);
         hits += weft_illumination_path(illumination, place, view, 10, i, sum, NULL);

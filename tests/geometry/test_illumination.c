@@ -56,7 +56,7 @@ static double mean_radiance(const lit_stitch *lit, weft_vec3 view, int paths, ui
     memset(mean, 0, (size_t)rows * sizeof *mean);
     for (int i = 0; i < paths; i++) {
         double point[2];
-        sequence_point(sequence_key(seed, 0x10000), (uint32_t)i, point);
+        weft_sequence_point(weft_sequence_key(seed, 0x10000), (uint32_t)i, point);
         weft_vec3 place = weft_vec3_of(point[0] * lit->stitch.width, point[1] * lit->stitch.height, 0);
         hits += weft_illumination_path(lit->illumination, place, view, seed, (uint32_t)i, mean, NULL);
     }

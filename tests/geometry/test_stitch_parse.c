@@ -1,5 +1,5 @@
 /* Reading stitch files: what each key becomes, and a line and column for every mistake. */
-#include "geometry/yarn/stitch.h"
+#include "geometry/stitch/stitch.h"
 #include "tests/geometry/stitch_text.h"
 #include "tests/support/cmocka_all.h"
 

@@ -76,7 +76,10 @@ static void the_highest_yarn_touches_the_plane(void **state)
         lowest = fmin(lowest, (double)vertex.at[2]);
     }
     assert_true(highest <= 0 && highest > -0.01);
-    assert_true(lowest < -0.3 && lowest >= -weft_stitch_sample_thickness(sample));
+    weft_tile_mesh mesh;
+    assert_int_equal(weft_tile_mesh_create(stitch, 0, "knit", &mesh, NULL), WEFT_OK);
+    assert_true(lowest < -0.3 && lowest >= (double)mesh.bottom - (double)mesh.top);
+    weft_tile_mesh_free(&mesh);
     weft_stitch_sample_free(sample);
 }
 

@@ -38,11 +38,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
         abort();
     memcpy(text, bytes, size);
     text[size] = '\0';
-    weft_code code = weave_parse_text(text, "fuzz.wv", parameters, 1, &weave, &error);
+    weft_code code = weft_weave_parse_text(text, "fuzz.wv", parameters, 1, &weave, &error);
     if (code != WEFT_OK && (error.code != code || strncmp(error.message, "fuzz.wv:", 8) != 0))
         abort();
     if (code == WEFT_OK) {
-        weave_derive(&weave, "fuzz.wv", warning);
+        weft_weave_derive(&weave, "fuzz.wv", warning);
         weave.specular_scale = 1;
         evaluate(&weave);
         weft_weave_free(&weave);

@@ -1,7 +1,8 @@
 /* bard.glsl gives what weft_bard_brdf gives, both maps, in both dialects of GLSL, on random and extreme inputs. */
-#include "player/gl/shaders.h"
 #include "tests/reflectance/bard_fixture.h"
 #include "tests/reflectance/twin_stage.h"
+
+extern const char twin_glsl_bard[];
 
 static const char twin_source[] =
     "vec4 twin(sampler2D table, vec4 a, vec4 light, vec4 view)\n"
@@ -63,7 +64,7 @@ static void compare_dialect(weft_gl_profile profile)
     for (int i = 0; i < BARD_TABLE_THETAS * BARD_TABLE_PHIS; i++)
         rgba[i][0] = (float)table.value[i];
     weft_bard_grid grid = bard_table_grid(&table);
-    const char *const sources[] = {weft_glsl_bard, twin_source, NULL};
+    const char *const sources[] = {twin_glsl_bard, twin_source, NULL};
     fill_queries(queries);
     twin_run(profile, sources, &(twin_table){rgba[0], BARD_TABLE_PHIS, BARD_TABLE_THETAS}, queries, result);
     int different[2] = {0};

@@ -1,11 +1,10 @@
 /* microcylinder.glsl gives what weft_microcylinder_scattering gives, both weightings, in both dialects of GLSL, on
  * random and extreme directions. */
+#include "player/gl/shaders.h"
 #include "tests/reflectance/microcylinder_cloths.h"
 #include "tests/reflectance/random.h"
 #include "tests/reflectance/twin_stage.h"
 #include "tests/support/cmocka_all.h"
-
-extern const char twin_glsl_microcylinder[];
 
 static const char twin_source[] =
     "vec4 twin(sampler2D table, vec4 a, vec4 light, vec4 view)\n"
@@ -82,7 +81,7 @@ static bool query_agrees(const weft_prepared_cloth *cloth, twin_queries queries,
 static void compare_cloth(weft_gl_profile profile, const reference_cloth *cloth, twin_queries queries)
 {
     static float result[TWIN_QUERIES][4], rgba[WEFT_MICROCYLINDER_TABLE_WIDTH][4];
-    const char *const sources[] = {twin_glsl_microcylinder, twin_source, NULL};
+    const char *const sources[] = {weft_glsl_microcylinder, twin_source, NULL};
     weft_microcylinder_table(&cloth->prepared, rgba);
     twin_run(profile, sources, &(twin_table){rgba[0], WEFT_MICROCYLINDER_TABLE_WIDTH, 1}, queries, result);
     int different = 0;

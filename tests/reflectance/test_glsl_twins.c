@@ -2,7 +2,7 @@
  * GLSL. */
 #include "btf/direction/direction.h"
 #include "player/gl/shaders.h"
-#include "reflectance/weave/table.h"
+#include "reflectance/weave/shader_table.h"
 #include "tests/reflectance/random.h"
 #include "tests/reflectance/twin_stage.h"
 #include "tests/support/cmocka_all.h"

@@ -1,6 +1,6 @@
 /* The texture for the shader holds what the evaluator in C uses. */
 #include "btf/direction/direction.h"
-#include "reflectance/weave/table.h"
+#include "reflectance/weave/shader_table.h"
 #include "tests/reflectance/weave_text.h"
 #include "tests/support/cmocka_all.h"
 

@@ -1,7 +1,7 @@
 /* weft bard on datasets whose truth is known. */
 #include "btf/direction/direction.h"
 #include "fixture.h"
-#include "study/bard/plan.h"
+#include "study/bard/photographs.h"
 #include "study/bard/predict.h"
 #include "tests/support/run_weft.h"
 

@@ -1,7 +1,7 @@
 /* Weaves fitted to datasets that nobody has cut. */
 #include "btf/direction/direction.h"
 #include "fixture.h"
-#include "study/fit_weave/dataset.h"
+#include "study/fit_weave/fit_weave.h"
 
 #include <math.h>
 #include <stdio.h>

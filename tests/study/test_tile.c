@@ -1,7 +1,7 @@
 /* weft tile on cloth whose tile is known. */
 #include "btf/direction/direction.h"
 #include "fixture.h"
-#include "study/tile/pictures.h"
+#include "study/tile/textured_pictures.h"
 #include "study/tile/tile.h"
 
 #include <math.h>
