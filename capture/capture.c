@@ -2,13 +2,10 @@
 
 #include "base/clock.h"
 #include "capture/photograph_writer.h"
-#include "capture/resume.h"
+#include "capture/planned_session.h"
 #include "capture/shooting.h"
-#include "capture/virtual/ground_truth.h"
-#include "capture/virtual/virtual_rig.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include <sys/statvfs.h>
 
 /* ---- Before the first photograph ---- */
@@ -34,22 +31,46 @@ static weft_code check_space(const weft_session *session, int missing, weft_erro
     return WEFT_OK;
 }
 
+weft_code weft_capture_begin(const weft_capture_request *request, weft_rig *rig, const weft_progress *progress,
+                             weft_capture *capture, weft_error *error)
+{
+    weft_session planned;
+    *capture = (weft_capture){.rig = rig, .held = {.lock = -1}};
+    WEFT_TRY(weft_session_of_plan(request->folder, request->plan, rig, &planned, error));
+    weft_code code = weft_session_hold(&planned, progress, &capture->held, error);
+    weft_session_free(&planned);
+    WEFT_TRY(code);
+    const weft_session *session = &capture->held.session;
+    int missing = count_missing(session);
+    capture->summary.damaged = capture->held.damaged;
+    capture->summary.found = session->shot_count - missing;
+    code = check_space(session, missing, error);
+    if (code != WEFT_OK)
+        weft_capture_end(capture);
+    return code;
+}
+
+void weft_capture_end(weft_capture *capture)
+{
+    weft_held_session_release(&capture->held);
+}
+
 /* ---- Photographs ---- */
 
-/* A capture under way. */
+/* Photographs being taken. */
 typedef struct run {
-    weft_session *session;
+    weft_capture *capture;
     weft_shooting shooting;
     weft_photograph_writer *writer;
     const volatile sig_atomic_t *stop;
     const weft_progress *progress;
-    weft_capture_summary *summary;
     bool *missing; /* [shot_count]; the records of the session belong to the writer */
 } run;
 
 static weft_code take_shots(run *r, weft_error *error)
 {
-    int shot_count = r->session->shot_count;
+    weft_capture_summary *summary = &r->capture->summary;
+    int shot_count = r->capture->held.session.shot_count;
     for (int shot = 0; shot < shot_count; shot++) {
         if (!r->missing[shot])
             continue;
@@ -59,15 +80,15 @@ static weft_code take_shots(run *r, weft_error *error)
         uint16_t *samples = weft_photograph_writer_buffer(r->writer);
         WEFT_TRY(weft_shooting_take(&r->shooting, shot, samples, &record, error));
         WEFT_TRY(weft_photograph_writer_submit(r->writer, shot, &record, error));
-        r->summary->taken++;
-        weft_progress_report(r->progress, "taking photographs", r->summary->found + r->summary->taken, shot_count);
+        summary->taken++;
+        weft_progress_report(r->progress, "taking photographs", summary->found + summary->taken, shot_count);
     }
     return WEFT_OK;
 }
 
 static weft_code take_and_write(run *r, weft_error *error)
 {
-    WEFT_TRY(weft_photograph_writer_start(r->session, &r->writer, error));
+    WEFT_TRY(weft_photograph_writer_start(&r->capture->held.session, &r->writer, error));
     double start_s = weft_now_s();
     weft_code code = take_shots(r, error);
     weft_error last = {0};
@@ -77,77 +98,40 @@ static weft_code take_and_write(run *r, weft_error *error)
         if (error)
             *error = last;
     }
-    r->summary->seconds = weft_now_s() - start_s;
-    r->summary->exposures = r->shooting.exposures;
-    r->summary->timeouts = r->shooting.timeouts;
+    weft_capture_summary *summary = &r->capture->summary;
+    summary->seconds = weft_now_s() - start_s;
+    summary->exposures = r->shooting.exposures;
+    summary->timeouts = r->shooting.timeouts;
     return code;
 }
 
 static weft_code take_missing(run *r, weft_error *error)
 {
-    const weft_session *session = r->session;
+    const weft_held_session *held = &r->capture->held;
+    const weft_session *session = &held->session;
     r->missing = malloc((size_t)session->shot_count * sizeof *r->missing);
     if (!r->missing)
         return weft_fail_memory(error, "plan", (size_t)session->shot_count);
     for (int i = 0; i < session->shot_count; i++)
         r->missing[i] = !session->record[i].taken;
-    weft_code code = take_and_write(r, error);
+    weft_code code = weft_shooting_begin(r->capture->rig, session, held->next_stay, &r->shooting, error);
+    if (code == WEFT_OK)
+        code = take_and_write(r, error);
+    weft_shooting_end(&r->shooting);
     free(r->missing);
     return code;
 }
 
-static weft_code photograph(const weft_capture_request *request, const weft_capture_setup *setup,
-                            weft_held_session *held, const volatile sig_atomic_t *stop, const weft_progress *progress,
-                            weft_capture_summary *summary, weft_error *error)
+weft_code weft_capture_take(weft_capture *capture, const volatile sig_atomic_t *stop, const weft_progress *progress,
+                            weft_error *error)
 {
-    weft_session *session = &held->session;
-    weft_rig rig;
-    WEFT_TRY(weft_rig_virtual_open(&setup->world, &session->target, &setup->sample, held->next_stay, &rig, error));
-    run r = {.session = session,
-             .shooting = weft_shooting_begin(&rig, session, &request->settings, held->next_stay),
-             .stop = stop,
-             .progress = progress,
-             .summary = summary};
-    weft_code code = take_missing(&r, error);
-    weft_shooting_end(&r.shooting);
-    rig.close(rig.back_end);
-    return code;
-}
-
-static weft_code complete(const weft_capture_request *request, const weft_capture_setup *setup, weft_held_session *held,
-                          const volatile sig_atomic_t *stop, const weft_progress *progress,
-                          weft_capture_summary *summary, weft_error *error)
-{
-    weft_session *session = &held->session;
+    const weft_session *session = &capture->held.session;
+    run r = {.capture = capture, .stop = stop, .progress = progress};
+    if (count_missing(session) > 0)
+        WEFT_TRY(take_missing(&r, error));
     int missing = count_missing(session);
-    summary->damaged = held->damaged;
-    summary->found = session->shot_count - missing;
-    weft_truth_request truth = {request->truth, request->truth_size, request->truth_images};
-    WEFT_TRY(check_space(session, missing, error));
-    WEFT_TRY(weft_truth_check_path(&truth, session, error));
-    if (missing > 0)
-        WEFT_TRY(photograph(request, setup, held, stop, progress, summary, error));
-    missing = count_missing(session);
     if (missing > 0)
         return weft_fail(error, WEFT_SYSTEM, "stopped, %d of %d photographs; run again to go on",
                          session->shot_count - missing, session->shot_count);
-    return weft_truth_write(&truth, session, &setup->world, &setup->sample, progress, error);
-}
-
-weft_code weft_capture_run(const weft_capture_request *request, const volatile sig_atomic_t *stop,
-                           const weft_progress *progress, weft_capture_summary *summary, weft_error *error)
-{
-    weft_capture_setup setup;
-    weft_held_session held;
-    *summary = (weft_capture_summary){0};
-    WEFT_TRY(weft_capture_setup_make(request, &setup, error));
-    summary->shot_count = setup.session.shot_count;
-    memcpy(summary->warning, setup.warning, sizeof summary->warning);
-    weft_code code = weft_session_hold(&setup.session, progress, &held, error);
-    if (code == WEFT_OK) {
-        code = complete(request, &setup, &held, stop, progress, summary, error);
-        weft_held_session_release(&held);
-    }
-    weft_capture_setup_free(&setup);
-    return code;
+    return WEFT_OK;
 }

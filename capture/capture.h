@@ -1,42 +1,58 @@
-/* Taking the photographs of a session. */
+/* Taking the photographs of a session with a rig that the caller has opened. */
 #ifndef WEFT_CAPTURE_CAPTURE_H
 #define WEFT_CAPTURE_CAPTURE_H
 
-#include "base/progress.h"
-#include "capture/setup.h"
+#include "capture/resume.h"
+#include "capture/rig.h"
 
 #include <signal.h>
 
+typedef struct weft_capture_request {
+    const char *folder; /* of the session */
+    const char *plan;   /* "ubo81" or a CSV file, see capture/plan.h */
+} weft_capture_request;
+
 typedef struct weft_capture_summary {
-    int shot_count;
     int found;   /* photographs that were there already */
     int damaged; /* of the journal, taken again */
     int taken;
-    int exposures;                   /* including those repeated for a better exposure */
-    int timeouts;                    /* exposures that the camera did not deliver, repeated */
-    double seconds;                  /* of taking photographs */
-    char warning[WEFT_MESSAGE_SIZE]; /* of the weave file; empty if all is well */
+    int exposures;  /* including those repeated for a better exposure */
+    int timeouts;   /* exposures that the camera did not deliver, repeated */
+    double seconds; /* of taking photographs */
 } weft_capture_summary;
 
-/* Takes every photograph of the plan that the session does not hold yet, then writes the ground truth. Every photograph
- * appears under its final name when it is complete and then in the journal, so that the same call goes on wherever the
- * process died. `stop` (may be NULL) is read between shots: when it is not 0, the shot in flight is completed and the
- * call returns. Parallel (OpenMP); the photographs are the same bytes for any number of threads. Errors: WEFT_BAD_INPUT
- * for plan, sample or a session that is another one; WEFT_SYSTEM for a device that fails for good, a full disk, too
- * little space to begin with, or a stop ("stopped, N of M photographs ..."). What was taken stays. */
-weft_code weft_capture_run(const weft_capture_request *request, const volatile sig_atomic_t *stop,
-                           const weft_progress *progress, weft_capture_summary *summary, weft_error *error);
+/* A session in which this process alone takes photographs. */
+typedef struct weft_capture {
+    weft_rig *rig; /* borrowed */
+    weft_held_session held;
+    weft_capture_summary summary;
+} weft_capture;
+
+/* Reads the plan and creates the session, or opens the one that was begun with the same plan and the same rig. Takes no
+ * photograph. The caller ends with weft_capture_end. Errors: WEFT_BAD_INPUT for the plan or a session that is another
+ * one; WEFT_SYSTEM where another process takes photographs in it, or the disk has too little space. */
+weft_code weft_capture_begin(const weft_capture_request *request, weft_rig *rig, const weft_progress *progress,
+                             weft_capture *capture, weft_error *error);
+void weft_capture_end(weft_capture *capture);
+
+/* Takes every photograph of the plan that the session does not hold yet, and counts in capture->summary. Every
+ * photograph appears under its final name when it is complete and then in the journal, so that a new capture goes on
+ * wherever the process died. `stop` (may be NULL) is read between shots: when it is not 0, the shot in flight is
+ * completed and the call returns. Parallel (OpenMP); the photographs are the same bytes for any number of threads.
+ * Errors: WEFT_SYSTEM for a device that fails for good, a full disk, or a stop ("stopped, N of M photographs ...").
+ * What was taken stays. */
+weft_code weft_capture_take(weft_capture *capture, const volatile sig_atomic_t *stop, const weft_progress *progress,
+                            weft_error *error);
 
 /* What a capture would do. */
 typedef struct weft_capture_rehearsal {
     int shot_count, view_count, driven_aside; /* lights that step aside for the camera */
     uint64_t bytes;                           /* of disk */
     double seconds_per_photograph;            /* measured on one photograph */
-    char warning[WEFT_MESSAGE_SIZE];
 } weft_capture_rehearsal;
 
-/* Plans, takes one photograph in memory and writes nothing. Errors: as weft_capture_run. */
-weft_code weft_capture_rehearse(const weft_capture_request *request, weft_capture_rehearsal *rehearsal,
+/* Plans, takes one photograph in memory and writes nothing. Errors: those of the plan and of the rig. */
+weft_code weft_capture_rehearse(const weft_capture_request *request, weft_rig *rig, weft_capture_rehearsal *rehearsal,
                                 weft_error *error);
 
 #endif

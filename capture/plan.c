@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,23 +20,15 @@ void weft_plan_free(weft_plan *plan)
     *plan = (weft_plan){0};
 }
 
-weft_code weft_plan_of_pairs(const weft_angles *views, int view_count, const weft_angles *lights, int light_count,
-                             weft_plan *plan, weft_error *error)
-{
-    WEFT_TRY(allocate_plan(view_count * light_count, plan, error));
-    for (int i = 0; i < plan->shot_count; i++) {
-        weft_angles light = lights[i % light_count];
-        plan->shot[i] = (weft_shot){light, views[i / light_count], light};
-    }
-    return WEFT_OK;
-}
-
+/* All pairs, view by view. */
 static weft_code plan_of_ubo81(weft_plan *plan, weft_error *error)
 {
-    weft_angles grid[WEFT_UBO81_COUNT];
-    for (int i = 0; i < WEFT_UBO81_COUNT; i++)
-        grid[i] = weft_ubo81_angles(i);
-    return weft_plan_of_pairs(grid, WEFT_UBO81_COUNT, grid, WEFT_UBO81_COUNT, plan, error);
+    WEFT_TRY(allocate_plan(WEFT_UBO81_COUNT * WEFT_UBO81_COUNT, plan, error));
+    for (int i = 0; i < plan->shot_count; i++) {
+        weft_angles light = weft_ubo81_angles(i % WEFT_UBO81_COUNT);
+        plan->shot[i] = (weft_shot){light, weft_ubo81_angles(i / WEFT_UBO81_COUNT), light};
+    }
+    return WEFT_OK;
 }
 
 /* ---- Reading a plan ---- */
@@ -174,4 +167,53 @@ weft_code weft_plan_read(const char *name, weft_plan *plan, weft_error *error)
                                        : weft_fail(error, WEFT_BAD_INPUT, "%s: the plan has no shots", name);
     weft_csv_free(&csv);
     return code;
+}
+
+/* ---- Lights that step aside for the camera ---- */
+
+static const double lowest_light_deg = 89;
+
+/* Unit vector perpendicular to `view` that leads from it to `light`, or toward the zenith where the two coincide
+ * (toward +x where the view is the zenith). */
+static weft_vec3 way_aside(weft_vec3 light, weft_vec3 view)
+{
+    weft_vec3 goal = weft_length(weft_subtract(light, view)) > 1e-9 ? light : weft_vec3_of(0, 0, 1);
+    weft_vec3 aside = weft_subtract(goal, weft_scale(view, weft_dot(goal, view)));
+    if (weft_length(aside) < 1e-9)
+        aside = weft_vec3_of(1, 0, 0);
+    return weft_unit(aside);
+}
+
+/* The direction at `half_angle_rad` from the view, `turn_rad` round it from `aside`. */
+static weft_vec3 beside(weft_vec3 view, weft_vec3 aside, double half_angle_rad, double turn_rad)
+{
+    weft_vec3 across = weft_cross(view, aside);
+    weft_vec3 way = weft_add(weft_scale(aside, cos(turn_rad)), weft_scale(across, sin(turn_rad)));
+    return weft_unit(weft_add(weft_scale(view, cos(half_angle_rad)), weft_scale(way, sin(half_angle_rad))));
+}
+
+weft_angles weft_light_beside_camera(weft_angles light, weft_angles view, double half_angle_rad)
+{
+    weft_vec3 toward_light = weft_direction_of_angles(light), toward_view = weft_direction_of_angles(view);
+    if (weft_dot(toward_light, toward_view) < cos(half_angle_rad))
+        return light;
+    weft_vec3 aside = way_aside(toward_light, toward_view);
+    /* The farther the turn from the direct way, the farther the direction from the light. */
+    for (int step = 0; step <= 180; step++) {
+        for (int side = 1; side >= -1; side -= 2) {
+            weft_vec3 driven = beside(toward_view, aside, half_angle_rad, side * weft_rad_of_deg(step));
+            weft_angles angles = weft_angles_of_direction(driven);
+            if (driven.z > 0 && angles.theta_rad <= weft_rad_of_deg(lowest_light_deg))
+                return angles;
+        }
+    }
+    return light;
+}
+
+void weft_plan_avoid_camera(weft_plan *plan, double half_angle_rad)
+{
+    for (int i = 0; i < plan->shot_count; i++) {
+        weft_shot *shot = &plan->shot[i];
+        shot->light_driven = weft_light_beside_camera(shot->light, shot->view, half_angle_rad);
+    }
 }

@@ -15,10 +15,6 @@ typedef struct weft_plan {
  * Errors: WEFT_BAD_INPUT "FILE:LINE: ..." also where two shots would have photographs of the same name. */
 weft_code weft_plan_read(const char *name, weft_plan *plan, weft_error *error);
 
-/* All pairs of `views` and `lights`, view-major. */
-weft_code weft_plan_of_pairs(const weft_angles *views, int view_count, const weft_angles *lights, int light_count,
-                             weft_plan *plan, weft_error *error);
-
 void weft_plan_free(weft_plan *plan);
 
 /* Drives every light that is closer to its view than `half_angle_rad` (half the angle that the camera covers, seen from

@@ -1,11 +1,10 @@
-#include "base/clock.h"
 #include "capture/capture.h"
 
+#include "base/clock.h"
+#include "capture/planned_session.h"
 #include "capture/shooting.h"
-#include "capture/virtual/virtual_rig.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static void count_plan(const weft_session *session, weft_capture_rehearsal *rehearsal)
 {
@@ -22,41 +21,35 @@ static void count_plan(const weft_session *session, weft_capture_rehearsal *rehe
     }
 }
 
-static weft_code time_photograph(const weft_capture_request *request, const weft_capture_setup *setup,
-                                 weft_capture_rehearsal *rehearsal, weft_error *error)
+static weft_code time_photograph(weft_rig *rig, const weft_session *session, uint16_t *samples, double *seconds,
+                                 weft_error *error)
 {
-    const weft_session *session = &setup->session;
-    size_t bytes = (size_t)session->camera.width * (size_t)session->camera.height * 3 * sizeof(uint16_t);
-    uint16_t *samples = malloc(bytes);
-    if (!samples)
-        return weft_fail_memory(error, "photograph", bytes);
-    weft_rig rig;
-    weft_code code = weft_rig_virtual_open(&setup->world, &session->target, &setup->sample, 0, &rig, error);
-    if (code == WEFT_OK) {
-        weft_shooting shooting = weft_shooting_begin(&rig, session, &request->settings, 0);
-        weft_shot_record record;
-        /* The first one prepares the view, which all its lights share. */
+    weft_shooting shooting;
+    weft_shot_record record;
+    weft_code code = weft_shooting_begin(rig, session, 0, &shooting, error);
+    /* The first one prepares the view, which all its lights share. */
+    if (code == WEFT_OK)
         code = weft_shooting_take(&shooting, 0, samples, &record, error);
-        double start_s = weft_now_s();
-        if (code == WEFT_OK)
-            code = weft_shooting_take(&shooting, 0, samples, &record, error);
-        rehearsal->seconds_per_photograph = weft_now_s() - start_s;
-        weft_shooting_end(&shooting);
-        rig.close(rig.back_end);
-    }
-    free(samples);
+    double start_s = weft_now_s();
+    if (code == WEFT_OK)
+        code = weft_shooting_take(&shooting, 0, samples, &record, error);
+    *seconds = weft_now_s() - start_s;
+    weft_shooting_end(&shooting);
     return code;
 }
 
-weft_code weft_capture_rehearse(const weft_capture_request *request, weft_capture_rehearsal *rehearsal,
+weft_code weft_capture_rehearse(const weft_capture_request *request, weft_rig *rig, weft_capture_rehearsal *rehearsal,
                                 weft_error *error)
 {
-    weft_capture_setup setup;
+    weft_session session;
     *rehearsal = (weft_capture_rehearsal){0};
-    WEFT_TRY(weft_capture_setup_make(request, &setup, error));
-    memcpy(rehearsal->warning, setup.warning, sizeof rehearsal->warning);
-    count_plan(&setup.session, rehearsal);
-    weft_code code = time_photograph(request, &setup, rehearsal, error);
-    weft_capture_setup_free(&setup);
+    WEFT_TRY(weft_session_of_plan(request->folder, request->plan, rig, &session, error));
+    count_plan(&session, rehearsal);
+    size_t bytes = (size_t)session.camera.width * (size_t)session.camera.height * 3 * sizeof(uint16_t);
+    uint16_t *samples = malloc(bytes);
+    weft_code code = samples ? time_photograph(rig, &session, samples, &rehearsal->seconds_per_photograph, error)
+                             : weft_fail_memory(error, "photograph", bytes);
+    free(samples);
+    weft_session_free(&session);
     return code;
 }

@@ -1,33 +1,16 @@
 #include "capture/settings.h"
 
 #include "base/json_text.h"
-#include "geometry/light/stitch_sample.h"
 
 #include <math.h>
-#include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_SETTINGS_BYTES = 1 << 20 };
 
-/* Name, place, default and bounds of every setting. */
-typedef struct setting {
-    const char *name;
-    size_t offset;
-    double value, low, high;
-    bool whole;
-} setting;
+#define REAL(name, value, low, high) WEFT_SETTING(weft_rig_settings, name, value, low, high, false)
+#define WHOLE(name, value, low, high) WEFT_SETTING(weft_rig_settings, name, value, low, high, true)
 
-#define REAL(name, value, low, high)                                                                                   \
-    {                                                                                                                  \
-#name, offsetof(weft_rig_settings, name), value, low, high, false                                              \
-    }
-#define WHOLE(name, value, low, high)                                                                                  \
-    {                                                                                                                  \
-#name, offsetof(weft_rig_settings, name), value, low, high, true                                               \
-    }
-
-static const setting table[] = {
+static const weft_rig_setting table[] = {
     WHOLE(width_px, 416, 32, 8192),
     WHOLE(height_px, 416, 32, 8192),
     REAL(focal_length_px, 1920, 10, 1e6),
@@ -45,85 +28,37 @@ static const setting table[] = {
     REAL(shortest_exposure_s, 1.0 / 4000, 1e-6, 10),
     REAL(longest_exposure_s, 2, 1e-6, 3600),
     WHOLE(retries, 3, 0, 20),
-    REAL(full_well_electrons, 240000, 100, 1e7),
-    REAL(read_noise_electrons, 10, 0, 1000),
-    REAL(sensitivity_electrons, 2e7, 1, 1e12),
-    REAL(aperture_mm, 4, 0, 100),
-    WHOLE(samples_per_pixel, 12, 1, 64),
-    REAL(focal_length_error, 0.0005, -0.1, 0.1),
-    REAL(principal_point_error_px, 0.2, 0, 10),
-    REAL(k1_error, 0.02, -0.5, 0.5),
-    REAL(mounting_rotation_deg, 0.3, 0, 5),
-    REAL(mounting_translation_mm, 0.3, 0, 10),
-    REAL(stay_rotation_deg, 0.05, 0, 5),
-    REAL(stay_translation_mm, 0.1, 0, 10),
-    REAL(light_rotation_deg, 0.05, 0, 5),
-    REAL(light_power_drift, 0.002, 0, 0.1),
-    REAL(timeout_probability, 0, 0, 0.9),
-    WHOLE(tiles_x, 0, 0, 10000),
-    WHOLE(tiles_y, 0, 0, 10000),
-    WHOLE(cloth_noise, 1, 0, 1),
-    WHOLE(bounces, 3, 0, WEFT_STITCH_SAMPLE_MAX_BOUNCES),
 };
 
-enum { SETTING_COUNT = sizeof table / sizeof table[0] };
-
-static double *place_of(weft_rig_settings *settings, const setting *entry)
+weft_setting_group weft_rig_settings_group(weft_rig_settings *settings)
 {
-    return (double *)((char *)settings + entry->offset);
+    return (weft_setting_group){table, sizeof table / sizeof *table, settings};
 }
 
 weft_rig_settings weft_rig_settings_default(void)
 {
     weft_rig_settings settings;
-    for (int i = 0; i < SETTING_COUNT; i++)
-        *place_of(&settings, &table[i]) = table[i].value;
+    weft_setting_group group = weft_rig_settings_group(&settings);
+    weft_setting_group_reset(&group);
     return settings;
 }
 
-/* ---- Reading ---- */
-
-static const setting *find_setting(const char *name)
+weft_camera weft_rig_settings_camera(const weft_rig_settings *s)
 {
-    for (int i = 0; i < SETTING_COUNT; i++) {
-        if (strcmp(table[i].name, name) == 0)
-            return &table[i];
-    }
-    return NULL;
+    return (weft_camera){
+        .width = (int)s->width_px,
+        .height = (int)s->height_px,
+        .fx = s->focal_length_px,
+        .fy = s->focal_length_px,
+        .cx = (s->width_px - 1) / 2,
+        .cy = (s->height_px - 1) / 2,
+        .k1 = s->k1,
+        .k2 = s->k2,
+        .vignetting = {s->vignetting_r2, s->vignetting_r4, s->vignetting_r6},
+    };
 }
 
-static weft_code read_setting(const char *path, const char *name, json_t *json, weft_rig_settings *settings,
-                              weft_error *error)
-{
-    const setting *entry = find_setting(name);
-    if (!entry)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': there is no setting '%s'", path, name);
-    double value = json_number_value(json);
-    if (!json_is_number(json) || !(value >= entry->low && value <= entry->high) ||
-        (entry->whole && value != floor(value)))
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' must be a %snumber from %g to %g", path, name,
-                         entry->whole ? "whole " : "", entry->low, entry->high);
-    *place_of(settings, entry) = value;
-    return WEFT_OK;
-}
-
-static weft_code read_settings(const char *path, json_t *root, weft_rig_settings *settings, weft_error *error)
-{
-    const char *name, *rig = json_string_value(json_object_get(root, "rig"));
-    json_t *value;
-    if (!json_is_object(root) || !rig)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a JSON object with a key 'rig'", path);
-    if (strcmp(rig, "virtual") != 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': this build has no rig '%s', only 'virtual'", path, rig);
-    json_object_foreach (root, name, value) {
-        if (strcmp(name, "rig") != 0)
-            WEFT_TRY(read_setting(path, name, value, settings, error));
-    }
-    return WEFT_OK;
-}
-
-/* Bounds that tie two settings together. */
-static weft_code check_settings(const char *path, const weft_rig_settings *s, weft_error *error)
+weft_code weft_rig_settings_check(const weft_rig_settings *s, const char *path, weft_error *error)
 {
     if (s->longest_exposure_s < s->shortest_exposure_s)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': the longest exposure, %g s, is below the shortest, %g s", path,
@@ -140,45 +75,79 @@ static weft_code check_settings(const char *path, const weft_rig_settings *s, we
     return WEFT_OK;
 }
 
-weft_code weft_rig_settings_read(const char *path, weft_rig_settings *settings, weft_error *error)
+/* ---- Settings by name ---- */
+
+static double *place_of(const weft_setting_group *group, const weft_rig_setting *setting)
+{
+    return (double *)((char *)group->values + setting->offset);
+}
+
+void weft_setting_group_reset(const weft_setting_group *group)
+{
+    for (int i = 0; i < group->count; i++)
+        *place_of(group, &group->setting[i]) = group->setting[i].value;
+}
+
+/* The setting of that name and its group; NULL where there is none. */
+static const weft_rig_setting *find_setting(const weft_setting_group *groups, int group_count, const char *name,
+                                            const weft_setting_group **group)
+{
+    for (*group = groups; *group < groups + group_count; (*group)++) {
+        for (int i = 0; i < (*group)->count; i++) {
+            if (strcmp((*group)->setting[i].name, name) == 0)
+                return &(*group)->setting[i];
+        }
+    }
+    return NULL;
+}
+
+static weft_code read_setting(const char *path, const char *name, const json_t *json, const weft_setting_group *groups,
+                              int group_count, weft_error *error)
+{
+    const weft_setting_group *group;
+    const weft_rig_setting *setting = find_setting(groups, group_count, name, &group);
+    if (!setting)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': there is no setting '%s'", path, name);
+    double value = json_number_value(json);
+    if (!json_is_number(json) || !(value >= setting->low && value <= setting->high) ||
+        (setting->whole && value != floor(value)))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' must be a %snumber from %g to %g", path, name,
+                         setting->whole ? "whole " : "", setting->low, setting->high);
+    *place_of(group, setting) = value;
+    return WEFT_OK;
+}
+
+static weft_code read_settings(const char *path, json_t *root, const char *rig, const weft_setting_group *groups,
+                               int group_count, weft_error *error)
+{
+    const char *name, *found = json_string_value(json_object_get(root, "rig"));
+    json_t *value;
+    if (!json_is_object(root) || !found)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a JSON object with a key 'rig'", path);
+    if (strcmp(found, rig) != 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': this build has no rig '%s', only '%s'", path, found, rig);
+    json_object_foreach (root, name, value) {
+        if (strcmp(name, "rig") != 0)
+            WEFT_TRY(read_setting(path, name, value, groups, group_count, error));
+    }
+    return WEFT_OK;
+}
+
+weft_code weft_setting_groups_read(const char *path, const char *rig, const weft_setting_group *groups, int group_count,
+                                   weft_error *error)
 {
     json_t *root = NULL;
     WEFT_TRY(weft_json_read(path, MAX_SETTINGS_BYTES, &root, error));
-    weft_code code = read_settings(path, root, settings, error);
+    weft_code code = read_settings(path, root, rig, groups, group_count, error);
     json_decref(root);
-    if (code == WEFT_OK)
-        code = check_settings(path, settings, error);
     return code;
 }
 
-/* ---- Writing ---- */
-
-char *weft_rig_settings_text(const weft_rig_settings *settings, uint64_t seed, const char *sample_file,
-                             uint32_t sample_crc32)
+void weft_setting_group_write(const weft_setting_group *group, json_t *object)
 {
-    json_t *root =
-        json_pack("{sI so sI}", "seed", (json_int_t)seed, "sample_file",
-                  weft_json_text(sample_file, strlen(sample_file)), "sample_crc32", (json_int_t)sample_crc32);
-    for (int i = 0; root && i < SETTING_COUNT; i++) {
-        double value = *place_of((weft_rig_settings *)settings, &table[i]);
-        json_object_set_new(root, table[i].name, table[i].whole ? json_integer((json_int_t)value) : json_real(value));
+    for (int i = 0; i < group->count; i++) {
+        const weft_rig_setting *setting = &group->setting[i];
+        double value = *place_of(group, setting);
+        json_object_set_new(object, setting->name, setting->whole ? json_integer((json_int_t)value) : json_real(value));
     }
-    char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
-    json_decref(root);
-    return text;
-}
-
-weft_camera weft_rig_settings_camera(const weft_rig_settings *s)
-{
-    return (weft_camera){
-        .width = (int)s->width_px,
-        .height = (int)s->height_px,
-        .fx = s->focal_length_px,
-        .fy = s->focal_length_px,
-        .cx = (s->width_px - 1) / 2,
-        .cy = (s->height_px - 1) / 2,
-        .k1 = s->k1,
-        .k2 = s->k2,
-        .vignetting = {s->vignetting_r2, s->vignetting_r4, s->vignetting_r6},
-    };
 }

@@ -1,9 +1,13 @@
-/* Settings of a rig: how it is set up and calibrated, how it exposes and, for the virtual rig, how it errs.
- * Read from a JSON object whose keys are the names of the fields; docs/reference/session-format.md lists them. */
+/* Settings of a rig of any kind: how it is calibrated and set up and how it exposes; and how settings are read and
+ * written. A file of settings is a JSON object whose keys are the names of the fields;
+ * docs/reference/session-format.md lists them. */
 #ifndef WEFT_CAPTURE_SETTINGS_H
 #define WEFT_CAPTURE_SETTINGS_H
 
 #include "btf/session/session.h"
+
+#include <jansson.h>
+#include <stddef.h>
 
 typedef struct weft_rig_settings {
     /* The camera as calibrated (btf/session/camera.h); the principal point is the centre of the photograph. */
@@ -18,41 +22,53 @@ typedef struct weft_rig_settings {
     /* Exposure. */
     double shortest_exposure_s, longest_exposure_s;
     double retries; /* of an exposure that the camera did not deliver */
-    /* The sensor of the virtual camera: pixels binned two by two, as cameras do for a reduced raw file. */
-    double full_well_electrons;
-    double read_noise_electrons;
-    double sensitivity_electrons; /* per second, for radiance 1; the light gives irradiance 1 at the origin along its
-                                     normal */
-    double aperture_mm;           /* diameter of the entrance pupil; focused on the camera distance */
-    double samples_per_pixel;
-    /* Errors of the virtual rig: what calibration and nominal pose do not know. */
-    double focal_length_error; /* relative */
-    double principal_point_error_px;
-    double k1_error; /* relative */
-    double mounting_rotation_deg, mounting_translation_mm;
-    double stay_rotation_deg, stay_translation_mm; /* standard deviation per axis, drawn anew for every stay */
-    double light_rotation_deg;                     /* standard deviation per axis, drawn anew for every move */
-    double light_power_drift;                      /* relative standard deviation, per exposure */
-    double timeout_probability;                    /* of an exposure that fails */
-    /* The sample of the virtual rig. */
-    double tiles_x, tiles_y; /* of the weave, across the opening; 0 = chosen by the weave */
-    double cloth_noise;      /* 1 = with the noise of the weave, 0 = without */
-    double bounces;          /* of light between the yarns of a stitch */
 } weft_rig_settings;
 
-/* The virtual rig as it stands in Weft. */
+/* Those of the virtual rig as it stands in Weft. */
 weft_rig_settings weft_rig_settings_default(void);
-
-/* Overrides `settings` by the numbers of a JSON file; "rig" names the back end and must be "virtual".
- * Errors: WEFT_BAD_INPUT naming the file and the key, for an unknown key or a value out of its bounds. */
-weft_code weft_rig_settings_read(const char *path, weft_rig_settings *settings, weft_error *error);
-
-/* The settings, the seed of the virtual rig and the identity of its sample as JSON text, for session.json.
- * The caller frees it. NULL where memory runs out. */
-char *weft_rig_settings_text(const weft_rig_settings *settings, uint64_t seed, const char *sample_file,
-                             uint32_t sample_crc32);
 
 /* The camera as calibrated. Pure. */
 weft_camera weft_rig_settings_camera(const weft_rig_settings *settings);
+
+/* Bounds that tie two settings together. Errors: WEFT_BAD_INPUT naming the file `path`. */
+weft_code weft_rig_settings_check(const weft_rig_settings *settings, const char *path, weft_error *error);
+
+/* ---- Settings by name ---- */
+
+/* Name, place, default and bounds of a number, which is a double in the structure of its group. */
+typedef struct weft_rig_setting {
+    const char *name;
+    size_t offset; /* bytes from the start of the structure */
+    double value, low, high;
+    bool whole;
+} weft_rig_setting;
+
+/* The setting of a field of `structure`. */
+#define WEFT_SETTING(structure, field, default_value, least, most, is_whole)                                           \
+    {                                                                                                                  \
+        .name = #field, .offset = offsetof(structure, field), .value = default_value, .low = least, .high = most,      \
+        .whole = is_whole                                                                                              \
+    }
+
+/* Settings, and the structure that holds their values (borrowed). A rig has the group below and those that its back
+ * end adds. */
+typedef struct weft_setting_group {
+    const weft_rig_setting *setting;
+    int count;
+    void *values;
+} weft_setting_group;
+
+weft_setting_group weft_rig_settings_group(weft_rig_settings *settings);
+
+/* Gives every setting its default. */
+void weft_setting_group_reset(const weft_setting_group *group);
+
+/* Overrides the values of `groups` by the numbers of a JSON file, whose key "rig" must be the name `rig`. Errors:
+ * WEFT_BAD_INPUT naming the file and the key, for an unknown key or a value out of its bounds. */
+weft_code weft_setting_groups_read(const char *path, const char *rig, const weft_setting_group *groups, int group_count,
+                                   weft_error *error);
+
+/* Adds every setting to a JSON object. */
+void weft_setting_group_write(const weft_setting_group *group, json_t *object);
 
 #endif

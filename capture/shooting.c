@@ -3,15 +3,17 @@
 /* At most MAX_METERED exposures of a shot, each retried; frames are numbered FRAMES_PER_SHOT x shot + exposure. */
 enum { MAX_METERED = 8, FRAMES_PER_SHOT = 256 };
 
-weft_shooting weft_shooting_begin(weft_rig *rig, const weft_session *session, const weft_rig_settings *settings,
-                                  int next_stay)
+weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int next_stay, weft_shooting *shooting,
+                              weft_error *error)
 {
-    return (weft_shooting){.rig = rig,
-                           .session = session,
-                           .limits = {settings->shortest_exposure_s, settings->longest_exposure_s},
-                           .retries = (int)settings->retries,
-                           .stay = -1,
-                           .next_stay = next_stay};
+    const weft_rig_settings *settings = &rig->settings;
+    *shooting = (weft_shooting){.rig = rig,
+                                .session = session,
+                                .limits = {settings->shortest_exposure_s, settings->longest_exposure_s},
+                                .retries = (int)settings->retries,
+                                .stay = -1,
+                                .next_stay = next_stay};
+    return rig->stage.home(rig->stage.device, next_stay, error);
 }
 
 void weft_shooting_end(weft_shooting *shooting)

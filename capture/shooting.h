@@ -4,7 +4,6 @@
 
 #include "capture/exposure.h"
 #include "capture/rig.h"
-#include "capture/settings.h"
 
 typedef struct weft_shooting {
     weft_rig *rig;
@@ -19,10 +18,10 @@ typedef struct weft_shooting {
     int exposures, timeouts; /* counted */
 } weft_shooting;
 
-/* `settings` give exposure limits and retries; `next_stay` numbers the first stay. Borrows rig and session. The caller
- * ends with weft_shooting_end. */
-weft_shooting weft_shooting_begin(weft_rig *rig, const weft_session *session, const weft_rig_settings *settings,
-                                  int next_stay);
+/* Homes the stage; `next_stay` numbers the first stay. Borrows rig and session. The caller ends with weft_shooting_end.
+ * Errors: those of the rig. */
+weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int next_stay, weft_shooting *shooting,
+                              weft_error *error);
 void weft_shooting_end(weft_shooting *shooting);
 
 /* Takes shot `shot` of the session into `samples`; *record receives stay and exposure. Errors: those of the rig, once

@@ -1,4 +1,5 @@
 #include "capture/capture.h"
+#include "capture/virtual/ground_truth.h"
 #include "cli/arguments.h"
 
 #include <stdio.h>
@@ -8,7 +9,9 @@
 typedef struct capture_command {
     weft_common_options common;
     weft_capture_request request;
-    const char *rig;
+    weft_virtual_request rig;
+    weft_truth_request truth;
+    const char *rig_file; /* "virtual" or NULL: the virtual rig as it stands */
     bool dry_run;
 } capture_command;
 
@@ -16,22 +19,22 @@ static const weft_option option_table[] = {
     {"output", 'o', "SESSION", "The folder of the session", .is_required = true, .kind = WEFT_OPTION_TEXT,
      .offset = offsetof(capture_command, request.folder)},
     {"rig", .argument = "virtual|FILE.json", .help = "The rig, or a file with its settings (default: virtual)",
-     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig)},
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig_file)},
     {"sample", .argument = "CLOTH.wv|.stitch",
      .help = "What the virtual rig photographs: a weave, flat, or a stitch, which has depth", .is_required = true,
-     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, request.sample)},
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig.sample)},
     {"plan", .argument = "ubo81|FILE.csv",
      .help = "Which photographs: all pairs of 81 directions (default), or a table with the columns theta_light_deg, "
              "phi_light_deg, theta_view_deg, phi_view_deg",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, request.plan)},
     {"seed", .argument = "N", .help = "Start of the random numbers of the virtual rig (default: 1)",
-     .kind = WEFT_OPTION_SEED, .offset = offsetof(capture_command, request.seed)},
+     .kind = WEFT_OPTION_SEED, .offset = offsetof(capture_command, rig.seed)},
     {"truth", .argument = "FILE.h5", .help = "Where the ground truth goes (default: SESSION.truth.h5)",
-     .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(capture_command, request.truth)},
+     .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(capture_command, truth.path)},
     {"truth-size", .argument = "N", .help = "Texels along a side of the truth (default: 64)", .kind = WEFT_OPTION_WHOLE,
-     .offset = offsetof(capture_command, request.truth_size), .low = 1, .high = 4096},
+     .offset = offsetof(capture_command, truth.size), .low = 1, .high = 4096},
     {"truth-images", .argument = "N", .help = "Photographs of which the truth is computed (default: 81)",
-     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, request.truth_images), .low = 1, .high = 1000000},
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, truth.image_count), .low = 1, .high = 1000000},
     {"dry-run", .help = "Say what would be done and what it needs; write nothing", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(capture_command, dry_run)},
     {0},
@@ -57,25 +60,18 @@ static void listen_for_stop(void)
 
 /* ---- Running ---- */
 
-static weft_code read_rig(capture_command *command, weft_error *error)
-{
-    if (!command->rig || strcmp(command->rig, "virtual") == 0)
-        return WEFT_OK;
-    return weft_rig_settings_read(command->rig, &command->request.settings, error);
-}
-
 static void say_warning(const weft_common_options *common, const char *warning)
 {
     if (warning[0])
         weft_command_say(common, "%s", warning);
 }
 
-static weft_code rehearse(const capture_command *command, weft_error *error)
+static weft_code rehearse(const capture_command *command, weft_virtual_rig *rig, weft_error *error)
 {
     const weft_common_options *common = &command->common;
     weft_capture_rehearsal rehearsal;
-    WEFT_TRY(weft_capture_rehearse(&command->request, &rehearsal, error));
-    say_warning(common, rehearsal.warning);
+    WEFT_TRY(weft_capture_rehearse(&command->request, &rig->rig, &rehearsal, error));
+    say_warning(common, rig->warning);
     weft_command_say(common, "%d photographs: %d views, each with all its lights before the camera moves on",
                      rehearsal.shot_count, rehearsal.view_count);
     weft_command_say(common, "%d lights step aside for the camera", rehearsal.driven_aside);
@@ -88,7 +84,6 @@ static weft_code rehearse(const capture_command *command, weft_error *error)
 static void say_summary(const capture_command *command, const weft_capture_summary *summary)
 {
     const weft_common_options *common = &command->common;
-    say_warning(common, summary->warning);
     if (summary->found > 0)
         weft_command_say(common, "%d photographs were there already", summary->found);
     if (summary->damaged > 0)
@@ -100,24 +95,50 @@ static void say_summary(const capture_command *command, const weft_capture_summa
                      summary->exposures);
 }
 
-static weft_code capture(const capture_command *command, weft_error *error)
+/* The photographs, then the truth that they are to be measured against. */
+static weft_code photograph(const capture_command *command, const weft_virtual_rig *rig, weft_capture *capture,
+                            const weft_progress *progress, weft_error *error)
+{
+    const weft_session *session = &capture->held.session;
+    WEFT_TRY(weft_truth_check_path(&command->truth, session, error));
+    WEFT_TRY(weft_capture_take(capture, &stop_asked, progress, error));
+    return weft_truth_write(&command->truth, session, rig, progress, error);
+}
+
+static weft_code take_session(const capture_command *command, weft_virtual_rig *rig, weft_error *error)
 {
     weft_progress progress = weft_command_progress(&command->common);
-    weft_capture_summary summary;
+    weft_capture capture;
     listen_for_stop();
-    WEFT_TRY(weft_capture_run(&command->request, &stop_asked, &progress, &summary, error));
-    say_summary(command, &summary);
-    return WEFT_OK;
+    WEFT_TRY(weft_capture_begin(&command->request, &rig->rig, &progress, &capture, error));
+    weft_code code = photograph(command, rig, &capture, &progress, error);
+    weft_capture_end(&capture);
+    if (code == WEFT_OK) {
+        say_warning(&command->common, rig->warning);
+        say_summary(command, &capture.summary);
+    }
+    return code;
+}
+
+static weft_code open_rig_and_capture(capture_command *command, weft_error *error)
+{
+    weft_virtual_rig rig;
+    if (command->rig_file && strcmp(command->rig_file, "virtual") != 0)
+        WEFT_TRY(weft_virtual_settings_read(command->rig_file, &command->rig.settings, error));
+    WEFT_TRY(weft_virtual_rig_open(&command->rig, &rig, error));
+    weft_code code = command->dry_run ? rehearse(command, &rig, error) : take_session(command, &rig, error);
+    weft_virtual_rig_close(&rig);
+    return code;
 }
 
 static int run(int argc, char **argv)
 {
-    capture_command command = {.request = weft_capture_request_default()};
+    capture_command command = {.request = {.plan = "ubo81"},
+                               .rig = {.seed = 1, .settings = weft_virtual_settings_default()},
+                               .truth = {.size = 64, .image_count = WEFT_UBO81_COUNT}};
     weft_arguments_parse(&weft_command_capture, argc, argv, &command);
     weft_error error = {0};
-    weft_code code = read_rig(&command, &error);
-    if (code == WEFT_OK)
-        code = command.dry_run ? rehearse(&command, &error) : capture(&command, &error);
+    weft_code code = open_rig_and_capture(&command, &error);
     return weft_command_exit("capture", &command.common, code, &error);
 }
 

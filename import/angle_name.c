@@ -25,7 +25,7 @@ static bool parse_word(const char *word, double angle_deg[ANGLE_COUNT], bool fou
     return true;
 }
 
-bool weft_parse_angle_name(const char *name, weft_named_angles *angles)
+bool weft_angle_name_parse(const char *name, weft_named_angles *angles)
 {
     const char *slash = strrchr(name, '/');
     char text[256];
@@ -48,7 +48,7 @@ bool weft_parse_angle_name(const char *name, weft_named_angles *angles)
     return true;
 }
 
-void weft_angle_name(const weft_named_angles *angles, char name[64])
+void weft_angle_name_write(const weft_named_angles *angles, char name[64])
 {
     snprintf(name, 64, "tl%03.0f_pl%03.0f_tv%03.0f_pv%03.0f", weft_deg_of_rad(angles->light.theta_rad),
              weft_deg_of_rad(angles->light.phi_rad), weft_deg_of_rad(angles->view.theta_rad),

@@ -13,9 +13,9 @@ typedef struct weft_named_angles {
 /* Reads tl, pl, tv and pv (degrees, decimals allowed, any case and order) from the name of a file: words separated by
  * blanks, _ or -. Folders in front and the extension are ignored. False where one of the four is missing, or occurs
  * twice. Pure. */
-bool weft_parse_angle_name(const char *name, weft_named_angles *angles);
+bool weft_angle_name_parse(const char *name, weft_named_angles *angles);
 
 /* The UTIA name "tlTTT_plPPP_tvTTT_pvPPP" of four angles. Pure. */
-void weft_angle_name(const weft_named_angles *angles, char name[64]);
+void weft_angle_name_write(const weft_named_angles *angles, char name[64]);
 
 #endif

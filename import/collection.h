@@ -23,28 +23,11 @@ typedef struct weft_collection {
     weft_lines notes;
 } weft_collection;
 
-/* Recognises the kind of collection that a folder holds and lists its photographs.
- * Errors: WEFT_BAD_INPUT for a folder that holds none, or whose tables or names contradict themselves. */
-weft_code weft_collection_open(const char *folder, weft_collection *collection, weft_error *error);
 void weft_collection_free(weft_collection *collection);
 
 /* Appends a photograph; `name` is copied. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_collection_add(weft_collection *collection, const char *name, weft_photograph photograph,
                               weft_error *error);
-
-/* ---- One function for every kind of collection; `collection` starts empty ---- */
-
-/* NN.png with camera_pos.txt, light_pos.txt, image_size.txt and light_power.txt. */
-weft_code weft_collection_of_positions(const char *folder, weft_collection *collection, weft_error *error);
-/* directions.csv with the columns file, theta_light_deg, phi_light_deg, theta_view_deg, phi_view_deg. */
-weft_code weft_collection_of_table(const char *folder, weft_collection *collection, weft_error *error);
-/* Photographs named by their angles, in the folder or one below. */
-weft_code weft_collection_of_names(const char *folder, weft_collection *collection, weft_error *error);
-
-/* ---- Shared by them ---- */
-
-/* Names (relative, sorted) of the image files in a folder and the folders in it. Freed with weft_lines_free. */
-weft_code weft_list_images(const char *folder, weft_lines *names, weft_error *error);
 
 /* "FOLDER/NAME" in new memory. NULL where memory is short. */
 char *weft_join_path(const char *folder, const char *name);

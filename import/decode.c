@@ -2,13 +2,14 @@
 
 #include "base/colour.h"
 #include "base/image.h"
-#include "import/area_average.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const double largest_half = 65504;
+
+/* ---- Colour and light of a pixel ---- */
 
 /* Linear light in place; marks clipped pixels. Float images have no known clipping level. */
 static void linearise(weft_image *image, double saturated_at, uint8_t *clipped)
@@ -59,18 +60,84 @@ static weft_code check_finite(const weft_image *image, const char *path, weft_er
     return WEFT_OK;
 }
 
+/* ---- Reduction to texels by exact area averaging ---- */
+
+/* The part of an axis under one pixel of the result: pixels first..last with weights that are 1 inside. */
+typedef struct span {
+    int first, last;
+    double first_weight, last_weight;
+} span;
+
+static span span_of(int index, int source_count, int result_count)
+{
+    /* Bounds as whole numbers over result_count, so that equal ratios give exactly whole spans. */
+    long begin = (long)index * source_count, end = begin + source_count;
+    int first = (int)(begin / result_count), last = (int)((end - 1) / result_count);
+    double first_end = fmin((double)end, (double)(first + 1) * result_count);
+    double last_begin = fmax((double)begin, (double)last * result_count);
+    return (span){first, last, (first_end - (double)begin) / result_count, ((double)end - last_begin) / result_count};
+}
+
+static double weight_in(const span *s, int index)
+{
+    return index == s->first ? s->first_weight : index == s->last ? s->last_weight : 1;
+}
+
+static void average_pixel(const weft_image *image, const uint8_t *flagged, const span *sx, const span *sy, float *pixel,
+                          uint8_t *touched)
+{
+    double sum[3] = {0}, area = 0;
+    *touched = 0;
+    for (int y = sy->first; y <= sy->last; y++) {
+        for (int x = sx->first; x <= sx->last; x++) {
+            size_t at = (size_t)y * (size_t)image->width + (size_t)x;
+            double weight = weight_in(sx, x) * weight_in(sy, y);
+            for (int c = 0; c < 3; c++)
+                sum[c] += weight * (double)image->pixels[3 * at + (size_t)c];
+            area += weight;
+            *touched |= flagged[at];
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        pixel[c] = (float)(sum[c] / area);
+}
+
+/* Every pixel of `result` (allocated, no larger than `image`) becomes the mean of `image` over the area it covers;
+ * pixels that are covered in part count by that part. touched [result height][width] = whether any pixel with flagged
+ * [image height][width] != 0 took part. */
+static weft_code area_average(const weft_image *image, const uint8_t *flagged, weft_image *result, uint8_t *touched,
+                              weft_error *error)
+{
+    span *sx = malloc((size_t)result->width * sizeof *sx);
+    if (!sx)
+        return weft_fail_memory(error, "spans", (size_t)result->width * sizeof *sx);
+    for (int x = 0; x < result->width; x++)
+        sx[x] = span_of(x, image->width, result->width);
+    for (int y = 0; y < result->height; y++) {
+        span sy = span_of(y, image->height, result->height);
+        for (int x = 0; x < result->width; x++) {
+            size_t at = (size_t)y * (size_t)result->width + (size_t)x;
+            average_pixel(image, flagged, &sx[x], &sy, result->pixels + 3 * at, touched + at);
+        }
+    }
+    free(sx);
+    return WEFT_OK;
+}
+
 static weft_code average_texels(const weft_decoding *decoding, const weft_image *image, const uint8_t *clipped,
                                 weft_half *samples, uint8_t *mask, weft_error *error)
 {
     weft_image texels;
     WEFT_TRY(weft_image_create(decoding->width, decoding->height, &texels, error));
-    weft_code code = weft_area_average(image, clipped, &texels, mask, error);
+    weft_code code = area_average(image, clipped, &texels, mask, error);
     size_t count = 3 * (size_t)decoding->width * (size_t)decoding->height;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; code == WEFT_OK && i < count; i++)
         samples[i] = weft_half_of_float(texels.pixels[i]);
     weft_image_free(&texels);
     return code;
 }
+
+/* ---- A photograph ---- */
 
 static weft_code convert(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
                          weft_image *image, weft_image_kind kind, weft_half *samples, uint8_t *mask, weft_error *error)
@@ -93,7 +160,7 @@ static weft_code convert(const weft_decoding *decoding, const char *path, const 
     return code;
 }
 
-weft_code weft_decode_photograph(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
+weft_code weft_photograph_decode(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
                                  weft_half *samples, uint8_t *mask, size_t *saturated, weft_error *error)
 {
     weft_image image;

@@ -18,7 +18,7 @@ typedef struct weft_decoding {
 /* Decodes one photograph (weft_import says how) into samples [height][width][3] and mask [height][width]; *saturated is
  * the number of masked texels. Thread-safe. Errors: WEFT_BAD_INPUT naming the file: unreadable, of another size, NaN or
  * infinite values. */
-weft_code weft_decode_photograph(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
+weft_code weft_photograph_decode(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
                                  weft_half *samples, uint8_t *mask, size_t *saturated, weft_error *error);
 
 #endif

@@ -82,7 +82,7 @@ static weft_code add_missing(weft_collection *collection, weft_vec3 light, weft_
 {
     weft_named_angles angles = {weft_angles_of_direction(light), weft_angles_of_direction(view)};
     char name[64];
-    weft_angle_name(&angles, name);
+    weft_angle_name_write(&angles, name);
     weft_photograph photograph = {.missing = true, .light = light, .view = view};
     return weft_collection_add(collection, name, photograph, error);
 }

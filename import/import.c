@@ -1,10 +1,9 @@
 #include "import/import.h"
 
 #include "base/image.h"
-#include "import/collection.h"
+#include "import/dataset_description.h"
 #include "import/decode.h"
-#include "import/import_provenance.h"
-#include "import/layout.h"
+#include "import/readers.h"
 
 #include <stdlib.h>
 
@@ -109,7 +108,7 @@ static weft_code read_photograph(const import_run *run, int index, size_t *satur
     if (!samples || !mask || !path)
         code = weft_fail_memory(error, "photograph", 3 * texels * sizeof *samples);
     if (code == WEFT_OK)
-        code = weft_decode_photograph(&run->decoding, path, photograph, samples, mask, saturated, error);
+        code = weft_photograph_decode(&run->decoding, path, photograph, samples, mask, saturated, error);
     if (code == WEFT_OK)
         code = weft_dataset_writer_put_image(run->writer, index, samples, mask, error);
     free(samples);

@@ -1,4 +1,5 @@
 #include "import/far_photograph.h"
+#include "import/readers.h"
 
 #include "base/csv.h"
 
@@ -67,7 +68,7 @@ static int by_text(const void *a, const void *b)
 static weft_code note_unlisted(const char *folder, weft_collection *collection, weft_error *error)
 {
     weft_lines images;
-    WEFT_TRY(weft_list_images(folder, &images, error));
+    WEFT_TRY(weft_images_list(folder, &images, error));
     size_t count = (size_t)collection->count;
     char **listed = malloc(count * sizeof *listed + 1);
     weft_code code = listed ? WEFT_OK : weft_fail_memory(error, "names", count * sizeof *listed);

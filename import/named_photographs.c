@@ -1,11 +1,12 @@
 #include "import/far_photograph.h"
+#include "import/readers.h"
 
 static weft_code add_named(const char *folder, const weft_lines *names, weft_collection *collection, weft_error *error)
 {
     int unreadable = 0;
     for (int i = 0; i < names->count; i++) {
         weft_named_angles angles;
-        if (weft_parse_angle_name(names->line[i], &angles))
+        if (weft_angle_name_parse(names->line[i], &angles))
             WEFT_TRY(weft_collection_add_far(collection, names->line[i], 0, &angles, error));
         else if (unreadable++ == 0)
             WEFT_TRY(weft_lines_add(&collection->notes, error, "left out '%s': no tl, pl, tv and pv in its name",
@@ -22,7 +23,7 @@ weft_code weft_collection_of_names(const char *folder, weft_collection *collecti
     collection->kind = "photographs named by their angles";
     collection->distance = WEFT_FAR;
     weft_lines names;
-    WEFT_TRY(weft_list_images(folder, &names, error));
+    WEFT_TRY(weft_images_list(folder, &names, error));
     weft_code code = add_named(folder, &names, collection, error);
     weft_lines_free(&names);
     WEFT_TRY(code);

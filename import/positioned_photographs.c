@@ -1,6 +1,6 @@
 /* A folder of flash photographs with the positions of camera and light, in the layout of the MaterialGAN collection
  * (Guo et al. 2020): centimetres, one line a photograph, origin at the centre of the photographed square. */
-#include "import/collection.h"
+#include "import/readers.h"
 
 #include "base/csv.h"
 

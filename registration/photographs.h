@@ -2,15 +2,9 @@
 #ifndef WEFT_REGISTRATION_PHOTOGRAPHS_H
 #define WEFT_REGISTRATION_PHOTOGRAPHS_H
 
-#include "registration/pose/prediction.h"
-#include "registration/survey.h"
+#include "registration/outcome/outcome.h"
 
 #include <stddef.h>
-
-/* Why photographs cannot be used; empty where they can. */
-typedef struct weft_fault {
-    char reason[200];
-} weft_fault;
 
 typedef struct weft_photographs {
     const weft_session *session;

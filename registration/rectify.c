@@ -149,15 +149,15 @@ static weft_code rectify_all(job *j, int *used, weft_error *error)
     return result;
 }
 
-/* Two standard deviations of the lens's smear at the corner of the opening where it is widest, pixels. */
-static double smear_reach(const weft_view_pose *pose, double opening_mm)
+/* Two standard deviations of the point spread of the lens at the corner of the opening where it is widest, pixels. */
+static double point_spread_reach(const weft_view_pose *pose, double opening_mm)
 {
     const double *last = pose->homography.m[2];
     double widest = 0;
     for (int corner = 0; corner < 4; corner++) {
         double x = opening_mm * (corner % 2 - 0.5), y = opening_mm * (corner / 2 - 0.5);
         double z = (last[0] * x + last[1] * y) / last[2] + 1;
-        widest = fmax(widest, pose->smear.constant + pose->smear.depth * (1 - 1 / z) * (1 - 1 / z));
+        widest = fmax(widest, pose->point_spread.constant + pose->point_spread.depth * (1 - 1 / z) * (1 - 1 / z));
     }
     return 2 * sqrt(widest);
 }
@@ -181,13 +181,16 @@ weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const wef
     const weft_target *target = &rectifier->session->target;
     job j = {
         .rectifier = rectifier, .photographs = photographs, .estimated = estimated, .shown = shown, .shown_shot = -1};
-    weft_resampling resampling = {
-        &rectifier->sight->camera, rectifier->sight->inverse_vignetting,  pose->homography,
-        target->opening_mm,        smear_reach(pose, target->opening_mm), is_most_frontal(&registration->survey, stay)};
+    weft_resampling resampling = {&rectifier->sight->camera,
+                                  rectifier->sight->inverse_vignetting,
+                                  pose->homography,
+                                  target->opening_mm,
+                                  point_spread_reach(pose, target->opening_mm),
+                                  is_most_frontal(&registration->survey, stay)};
     WEFT_TRY(weft_resampler_create(&resampling, registration->settings.width, registration->settings.height,
                                    &j.resampler, error));
-    weft_code code =
-        weft_reference_pixels_find(rectifier->sight, target, &pose->homography, pose->smear, &j.reference, error);
+    weft_code code = weft_reference_pixels_find(rectifier->sight, target, &pose->homography, pose->point_spread,
+                                                &j.reference, error);
     if (code == WEFT_OK)
         code = rectify_all(&j, &registration->used[stay], error);
     weft_reference_pixels_free(&j.reference);

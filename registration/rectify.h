@@ -3,7 +3,7 @@
 #define WEFT_REGISTRATION_RECTIFY_H
 
 #include "btf/dataset/dataset.h"
-#include "registration/registration.h"
+#include "registration/photographs.h"
 
 /* What the stays of a registration share. */
 typedef struct weft_rectifier {

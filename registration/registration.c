@@ -16,31 +16,14 @@ typedef struct work {
     weft_rectifier rectifier;
     weft_sight sight;
     const weft_progress *progress;
-    weft_smear smear;      /* of the last view that was refined: the lens is the same */
-    float *fitted, *shown; /* for the report; NULL where there is none */
-    long done;             /* photographs */
+    weft_point_spread point_spread; /* of the last view that was refined: the lens is the same */
+    float *fitted, *shown;          /* for the report; NULL where there is none */
+    long done;                      /* photographs */
 } work;
 
 weft_registration_settings weft_registration_defaults(const weft_session *session)
 {
     return (weft_registration_settings){64, 64, {session->target.opening_mm / 8, 0.8}, false, NULL};
-}
-
-void weft_registration_free(weft_registration *registration)
-{
-    weft_survey_free(&registration->survey);
-    free(registration->pose);
-    free(registration->used);
-    free(registration->fault);
-    free(registration->white);
-    free(registration->saturated);
-    *registration = (weft_registration){0};
-}
-
-double weft_registration_uncertainty_texels(const weft_session *session, const weft_registration *registration,
-                                            int stay)
-{
-    return registration->pose[stay].uncertainty_mm * registration->settings.width / session->target.opening_mm;
 }
 
 static weft_code allocate(const weft_session *session, weft_registration *registration, weft_error *error)
@@ -121,12 +104,12 @@ static weft_code find_and_rectify(work *w, int stay, const weft_photographs *pho
     weft_pose promised_pose =
         weft_pose_of_view(registration->survey.view[registration->survey.stay[stay].view], session->camera_distance_mm);
     weft_homography promised = weft_homography_of_pose(&session->camera, &promised_pose);
-    WEFT_TRY(weft_find_pose(&w->sight, &session->target, photographs->average, &promised, w->smear,
+    WEFT_TRY(weft_pose_find(&w->sight, &session->target, photographs->average, &promised, w->point_spread,
                             &registration->settings.limits, pose, w->fitted, error));
     if (pose->source == WEFT_POSE_FAILED)
         return WEFT_OK;
     if (pose->source == WEFT_POSE_DRAWING)
-        w->smear = pose->smear;
+        w->point_spread = pose->point_spread;
     return weft_rectify_stay(&w->rectifier, stay, photographs, NULL, w->shown, error);
 }
 

@@ -2,7 +2,7 @@
 #ifndef WEFT_REGISTRATION_WHITE_ESTIMATE_H
 #define WEFT_REGISTRATION_WHITE_ESTIMATE_H
 
-#include "registration/registration.h"
+#include "registration/outcome/outcome.h"
 
 /* Whether a registered stay holds a usable photograph without a white level. Pure. */
 bool weft_white_lacking(const weft_registration *registration, int stay);

@@ -2,10 +2,10 @@
 
 #include "capture/virtual/random.h"
 
-weft_code weft_virtual_cloth_read(const char *path, const weft_rig_settings *settings, uint64_t seed,
+weft_code weft_virtual_cloth_read(const char *path, const weft_virtual_settings *settings, uint64_t seed,
                                   weft_virtual_cloth *cloth, char warning[WEFT_MESSAGE_SIZE], weft_error *error)
 {
-    *cloth = (weft_virtual_cloth){.opening_mm = settings->opening_mm};
+    *cloth = (weft_virtual_cloth){.opening_mm = settings->rig.opening_mm};
     WEFT_TRY(weft_weave_read(path, NULL, 0, &cloth->weave, warning, error));
     weft_code code = weft_woven_table_create(&cloth->weave, &cloth->table, error);
     if (code != WEFT_OK) {

@@ -2,7 +2,7 @@
 #ifndef WEFT_CAPTURE_VIRTUAL_CLOTH_H
 #define WEFT_CAPTURE_VIRTUAL_CLOTH_H
 
-#include "capture/settings.h"
+#include "capture/virtual/virtual_settings.h"
 #include "reflectance/weave/batch.h"
 
 #include <stddef.h>
@@ -17,7 +17,7 @@ typedef struct weft_virtual_cloth {
 
 /* Reads the weave and chooses the tiles where the settings leave them open (weft_weave_whole_tiles).
  * The caller frees with weft_virtual_cloth_free. Errors: those of weft_weave_read; `warning` as there. */
-weft_code weft_virtual_cloth_read(const char *path, const weft_rig_settings *settings, uint64_t seed,
+weft_code weft_virtual_cloth_read(const char *path, const weft_virtual_settings *settings, uint64_t seed,
                                   weft_virtual_cloth *cloth, char warning[WEFT_MESSAGE_SIZE], weft_error *error);
 void weft_virtual_cloth_free(weft_virtual_cloth *cloth);
 

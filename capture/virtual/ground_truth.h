@@ -3,8 +3,7 @@
 #define WEFT_CAPTURE_VIRTUAL_GROUND_TRUTH_H
 
 #include "base/progress.h"
-#include "capture/virtual/sample.h"
-#include "capture/virtual/world.h"
+#include "capture/virtual/virtual_rig.h"
 
 typedef struct weft_truth_request {
     const char *path; /* HDF5 file (docs/reference/session-format.md); NULL = FOLDER.truth.h5 */
@@ -17,10 +16,9 @@ typedef struct weft_truth_request {
 weft_code weft_truth_check_path(const weft_truth_request *request, const weft_session *session, weft_error *error);
 
 /* Writes, atomically, the true pose of every stay, the true camera, the true light position of every shot, and the
- * reflectance of a choice of shots. Follows from settings, seed and journal, whatever interruptions the session had.
+ * reflectance of a choice of shots. Follows from the rig and the journal, whatever interruptions the session had.
  * Parallel. Errors: WEFT_SYSTEM. */
-weft_code weft_truth_write(const weft_truth_request *request, const weft_session *session,
-                           const weft_virtual_world *world, const weft_virtual_sample *sample,
+weft_code weft_truth_write(const weft_truth_request *request, const weft_session *session, const weft_virtual_rig *rig,
                            const weft_progress *progress, weft_error *error);
 
 /* The choice: one shot of each view in turn, each time with another light, so that all rings of views meet all rings of

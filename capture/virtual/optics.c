@@ -81,11 +81,11 @@ static void place_samples(double aperture_mm, weft_virtual_optics *optics)
 
 weft_code weft_virtual_optics_make(const weft_virtual_world *world, weft_virtual_optics *optics, weft_error *error)
 {
-    const weft_rig_settings *settings = &world->settings;
+    const weft_virtual_settings *settings = &world->settings;
     *optics = (weft_virtual_optics){.width = world->camera.width,
                                     .height = world->camera.height,
                                     .sample_count = (int)settings->samples_per_pixel,
-                                    .focus_mm = settings->camera_distance_mm};
+                                    .focus_mm = settings->rig.camera_distance_mm};
     WEFT_TRY(allocate_optics(optics, error));
     trace_corners(&world->camera, optics);
     measure_vignetting(&world->camera, optics);

@@ -9,10 +9,10 @@ static bool is_stitch(const char *path)
     return length >= tail && strcmp(path + length - tail, ending) == 0;
 }
 
-weft_code weft_virtual_sample_read(const char *path, const weft_rig_settings *settings, uint64_t seed,
+weft_code weft_virtual_sample_read(const char *path, const weft_virtual_settings *settings, uint64_t seed,
                                    weft_virtual_sample *sample, char warning[WEFT_MESSAGE_SIZE], weft_error *error)
 {
-    *sample = (weft_virtual_sample){.opening_mm = settings->opening_mm};
+    *sample = (weft_virtual_sample){.opening_mm = settings->rig.opening_mm};
     if (!is_stitch(path))
         return weft_virtual_cloth_read(path, settings, seed, &sample->flat, warning, error);
     warning[0] = '\0';

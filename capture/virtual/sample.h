@@ -15,7 +15,7 @@ typedef struct weft_virtual_sample {
 /* Reads NAME.stitch as a stitch and any other file as a weave. The tiles of a stitch have their own size; the lower
  * left corner of one is that of the opening. The caller frees with weft_virtual_sample_free. Errors: those of
  * weft_virtual_cloth_read and weft_stitch_sample_read; WEFT_BAD_INPUT for settings that a stitch cannot follow. */
-weft_code weft_virtual_sample_read(const char *path, const weft_rig_settings *settings, uint64_t seed,
+weft_code weft_virtual_sample_read(const char *path, const weft_virtual_settings *settings, uint64_t seed,
                                    weft_virtual_sample *sample, char warning[WEFT_MESSAGE_SIZE], weft_error *error);
 void weft_virtual_sample_free(weft_virtual_sample *sample);
 

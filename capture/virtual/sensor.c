@@ -29,9 +29,9 @@ static float *make_quantiles(void)
     return quantiles;
 }
 
-weft_code weft_virtual_sensor_make(const weft_rig_settings *s, weft_virtual_sensor *sensor, weft_error *error)
+weft_code weft_virtual_sensor_make(const weft_virtual_settings *s, weft_virtual_sensor *sensor, weft_error *error)
 {
-    int full_scale = (1 << (int)s->bits) - 1, black_level = (int)s->black_level;
+    int full_scale = (1 << (int)s->rig.bits) - 1, black_level = (int)s->rig.black_level;
     *sensor = (weft_virtual_sensor){
         .read_noise = (float)s->read_noise_electrons,
         .electrons_per_step = (float)(s->full_well_electrons / (full_scale - black_level)),

@@ -2,7 +2,7 @@
 #ifndef WEFT_CAPTURE_VIRTUAL_SENSOR_H
 #define WEFT_CAPTURE_VIRTUAL_SENSOR_H
 
-#include "capture/settings.h"
+#include "capture/virtual/virtual_settings.h"
 
 #include <stddef.h>
 
@@ -16,7 +16,8 @@ typedef struct weft_virtual_sensor {
 enum { WEFT_NORMAL_BITS = 12, WEFT_NORMAL_COUNT = 1 << WEFT_NORMAL_BITS };
 
 /* Owned by the caller (weft_virtual_sensor_free). Errors: WEFT_SYSTEM. */
-weft_code weft_virtual_sensor_make(const weft_rig_settings *settings, weft_virtual_sensor *sensor, weft_error *error);
+weft_code weft_virtual_sensor_make(const weft_virtual_settings *settings, weft_virtual_sensor *sensor,
+                                   weft_error *error);
 void weft_virtual_sensor_free(weft_virtual_sensor *sensor);
 
 /* raw = black + (electrons + noise) / electrons_per_step, rounded and clipped, for electrons = gain radiance. The noise

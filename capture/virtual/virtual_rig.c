@@ -1,19 +1,23 @@
 #include "capture/virtual/virtual_rig.h"
 
+#include "capture/file_crc.h"
 #include "capture/virtual/random.h"
 #include "capture/virtual/sensor.h"
 #include "capture/virtual/view.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-typedef struct virtual_rig {
-    weft_virtual_world world;
-    const weft_target *target;
+/* Camera, stage and light: in one structure, because a photograph depends on all three. */
+typedef struct virtual_devices {
+    const weft_virtual_world *world;
     const weft_virtual_sample *sample;
+    weft_target target;
+    char *identity;
     weft_virtual_optics optics;
     weft_virtual_sensor sensor;
     int next_stay, stay;
-    bool homed, light_on, light_placed;
+    bool homed, camera_placed, light_placed, light_on;
     weft_angles view; /* where the camera axes stand */
     weft_pose pose;
     weft_vec3 light; /* plate frame, mm */
@@ -21,33 +25,45 @@ typedef struct virtual_rig {
     bool seen_valid;     /* whether `seen` belongs to this stay */
     float *radiance;     /* [height][width][3] under full power */
     bool radiance_valid; /* whether `radiance` belongs to this stay and light */
-} virtual_rig;
+} virtual_devices;
 
 /* ---- Stage ---- */
 
-static weft_code move_camera(void *device, weft_angles view, bool *moved, weft_error *error)
+static weft_code home(void *device, int first_stay, weft_error *error)
 {
     (void)error;
-    virtual_rig *rig = device;
-    *moved = !rig->homed || view.theta_rad != rig->view.theta_rad || view.phi_rad != rig->view.phi_rad;
+    virtual_devices *devices = device;
+    devices->next_stay = first_stay;
+    devices->homed = true;
+    devices->camera_placed = devices->light_placed = false;
+    return WEFT_OK;
+}
+
+static weft_code move_camera(void *device, weft_angles view, bool *moved, weft_error *error)
+{
+    virtual_devices *devices = device;
+    if (!devices->homed)
+        return weft_fail(error, WEFT_SYSTEM, "virtual stage: the axes are not homed");
+    *moved =
+        !devices->camera_placed || view.theta_rad != devices->view.theta_rad || view.phi_rad != devices->view.phi_rad;
     if (!*moved)
         return WEFT_OK;
-    rig->homed = true;
-    rig->stay = rig->next_stay++;
-    rig->view = view;
-    rig->pose = weft_virtual_world_pose(&rig->world, view, rig->stay);
-    rig->seen_valid = rig->radiance_valid = rig->light_placed = false;
+    devices->camera_placed = true;
+    devices->stay = devices->next_stay++;
+    devices->view = view;
+    devices->pose = weft_virtual_world_pose(devices->world, view, devices->stay);
+    devices->seen_valid = devices->radiance_valid = devices->light_placed = false;
     return WEFT_OK;
 }
 
 static weft_code move_light(void *device, weft_angles light, weft_error *error)
 {
-    virtual_rig *rig = device;
-    if (!rig->homed)
-        return weft_fail(error, WEFT_SYSTEM, "virtual stage: the axes are not homed");
-    rig->light = weft_virtual_world_light(&rig->world, light, rig->stay);
-    rig->light_placed = true;
-    rig->radiance_valid = false;
+    virtual_devices *devices = device;
+    if (!devices->camera_placed)
+        return weft_fail(error, WEFT_SYSTEM, "virtual stage: the light moves before the camera");
+    devices->light = weft_virtual_world_light(devices->world, light, devices->stay);
+    devices->light_placed = true;
+    devices->radiance_valid = false;
     return WEFT_OK;
 }
 
@@ -56,27 +72,28 @@ static weft_code move_light(void *device, weft_angles light, weft_error *error)
 static weft_code power_light(void *device, bool on, weft_error *error)
 {
     (void)error;
-    virtual_rig *rig = device;
-    rig->light_on = on;
+    virtual_devices *devices = device;
+    devices->light_on = on;
     return WEFT_OK;
 }
 
 /* ---- Camera ---- */
 
-static weft_code look(virtual_rig *rig, weft_error *error)
+static weft_code look(virtual_devices *devices, weft_error *error)
 {
-    if (!rig->homed || !rig->light_placed)
+    if (!devices->camera_placed || !devices->light_placed)
         return weft_fail(error, WEFT_SYSTEM, "virtual camera: camera and light have not been driven anywhere");
-    if (!rig->seen_valid) {
-        weft_virtual_view_free(&rig->seen);
-        WEFT_TRY(weft_virtual_view_make(&rig->optics, rig->target, rig->sample, &rig->pose, &rig->seen, error));
-        rig->seen_valid = true;
+    if (!devices->seen_valid) {
+        weft_virtual_view_free(&devices->seen);
+        WEFT_TRY(weft_virtual_view_make(&devices->optics, &devices->target, devices->sample, &devices->pose,
+                                        &devices->seen, error));
+        devices->seen_valid = true;
     }
-    if (!rig->radiance_valid) {
-        bool shadowed = weft_virtual_world_shadowed(&rig->world, &rig->pose, rig->light);
-        weft_virtual_view_light(&rig->seen, rig->sample, rig->light, rig->world.settings.light_distance_mm,
-                                shadowed ? 0 : 1, rig->radiance);
-        rig->radiance_valid = true;
+    if (!devices->radiance_valid) {
+        bool shadowed = weft_virtual_world_shadowed(devices->world, &devices->pose, devices->light);
+        weft_virtual_view_light(&devices->seen, devices->sample, devices->light,
+                                devices->world->settings.rig.light_distance_mm, shadowed ? 0 : 1, devices->radiance);
+        devices->radiance_valid = true;
     }
     return WEFT_OK;
 }
@@ -90,61 +107,94 @@ static double shutter_time(double exposure_s)
 static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
                         weft_error *error)
 {
-    virtual_rig *rig = device;
-    const weft_rig_settings *settings = &rig->world.settings;
-    uint64_t seed = rig->world.seed;
+    virtual_devices *devices = device;
+    const weft_virtual_settings *settings = &devices->world->settings;
+    uint64_t seed = devices->world->seed;
     if (weft_random_uniform(seed, WEFT_RANDOM_FAULT, frame) < settings->timeout_probability)
         return weft_fail(error, WEFT_SYSTEM, "virtual camera: frame %llu timed out", (unsigned long long)frame);
-    WEFT_TRY(look(rig, error));
+    WEFT_TRY(look(devices, error));
     *read_back_s = shutter_time(exposure_s);
     double drift = 1 + settings->light_power_drift * weft_random_normal(seed, WEFT_RANDOM_POWER, frame);
-    double gain = rig->light_on ? settings->sensitivity_electrons * *read_back_s * drift : 0;
-    size_t count = (size_t)rig->optics.width * (size_t)rig->optics.height * 3;
-    weft_virtual_sensor_read(&rig->sensor, rig->radiance, count, gain, weft_random_bits(seed, WEFT_RANDOM_NOISE, frame),
-                             samples);
+    double gain = devices->light_on ? settings->sensitivity_electrons * *read_back_s * drift : 0;
+    size_t count = (size_t)devices->optics.width * (size_t)devices->optics.height * 3;
+    weft_virtual_sensor_read(&devices->sensor, devices->radiance, count, gain,
+                             weft_random_bits(seed, WEFT_RANDOM_NOISE, frame), samples);
     return WEFT_OK;
 }
 
 /* ---- Opening and closing ---- */
 
-static void close_rig(void *back_end)
+static void free_devices(virtual_devices *devices)
 {
-    virtual_rig *rig = back_end;
-    weft_virtual_view_free(&rig->seen);
-    weft_virtual_optics_free(&rig->optics);
-    weft_virtual_sensor_free(&rig->sensor);
-    free(rig->radiance);
-    free(rig);
+    weft_virtual_view_free(&devices->seen);
+    weft_virtual_optics_free(&devices->optics);
+    weft_virtual_sensor_free(&devices->sensor);
+    free(devices->radiance);
+    free(devices->identity);
+    free(devices);
 }
 
-static weft_code prepare(virtual_rig *rig, weft_error *error)
+static const char *base_name(const char *path)
 {
-    WEFT_TRY(weft_virtual_optics_make(&rig->world, &rig->optics, error));
-    WEFT_TRY(weft_virtual_sensor_make(&rig->world.settings, &rig->sensor, error));
-    size_t bytes = (size_t)rig->optics.width * (size_t)rig->optics.height * 3 * sizeof *rig->radiance;
-    rig->radiance = malloc(bytes);
-    return rig->radiance ? WEFT_OK : weft_fail_memory(error, "virtual camera", bytes);
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
 }
 
-weft_code weft_rig_virtual_open(const weft_virtual_world *world, const weft_target *target,
-                                const weft_virtual_sample *sample, int first_stay, weft_rig *rig, weft_error *error)
+static weft_code identify(const weft_virtual_request *request, char **identity, weft_error *error)
 {
-    virtual_rig *back_end = calloc(1, sizeof *back_end);
-    if (!back_end)
-        return weft_fail_memory(error, "virtual rig", sizeof *back_end);
-    back_end->world = *world;
-    back_end->target = target;
-    back_end->sample = sample;
-    back_end->next_stay = first_stay;
-    weft_code code = prepare(back_end, error);
+    uint64_t bytes;
+    uint32_t crc32;
+    WEFT_TRY(weft_file_crc(request->sample, &bytes, &crc32, error));
+    *identity = weft_virtual_settings_text(&request->settings, request->seed, base_name(request->sample), crc32);
+    return *identity ? WEFT_OK : weft_fail_memory(error, "virtual rig", 0);
+}
+
+static weft_code prepare(const weft_virtual_request *request, virtual_devices *devices, weft_error *error)
+{
+    WEFT_TRY(identify(request, &devices->identity, error));
+    WEFT_TRY(weft_virtual_optics_make(devices->world, &devices->optics, error));
+    WEFT_TRY(weft_virtual_sensor_make(&devices->world->settings, &devices->sensor, error));
+    size_t bytes = (size_t)devices->optics.width * (size_t)devices->optics.height * 3 * sizeof *devices->radiance;
+    devices->radiance = malloc(bytes);
+    return devices->radiance ? WEFT_OK : weft_fail_memory(error, "virtual camera", bytes);
+}
+
+static weft_code open_devices(const weft_virtual_request *request, weft_virtual_rig *rig, weft_error *error)
+{
+    virtual_devices *devices = malloc(sizeof *devices);
+    if (!devices)
+        return weft_fail_memory(error, "virtual rig", sizeof *devices);
+    *devices = (virtual_devices){.world = &rig->world,
+                                 .sample = &rig->sample,
+                                 .target = weft_target_for_opening(request->settings.rig.opening_mm)};
+    weft_code code = prepare(request, devices, error);
     if (code != WEFT_OK) {
-        close_rig(back_end);
+        free_devices(devices);
         return code;
     }
-    *rig = (weft_rig){.camera = {back_end, expose},
-                      .stage = {back_end, move_camera, move_light},
-                      .light = {back_end, power_light},
-                      .back_end = back_end,
-                      .close = close_rig};
+    rig->rig = (weft_rig){.name = "virtual",
+                          .sample = weft_virtual_sample_name(&rig->sample),
+                          .identity = devices->identity,
+                          .settings = request->settings.rig,
+                          .camera = {devices, expose},
+                          .stage = {devices, home, move_camera, move_light},
+                          .light = {devices, power_light}};
     return WEFT_OK;
+}
+
+weft_code weft_virtual_rig_open(const weft_virtual_request *request, weft_virtual_rig *rig, weft_error *error)
+{
+    *rig = (weft_virtual_rig){.world = weft_virtual_world_of(&request->settings, request->seed)};
+    WEFT_TRY(weft_virtual_sample_read(request->sample, &request->settings, request->seed, &rig->sample, rig->warning,
+                                      error));
+    weft_code code = open_devices(request, rig, error);
+    if (code != WEFT_OK)
+        weft_virtual_sample_free(&rig->sample);
+    return code;
+}
+
+void weft_virtual_rig_close(weft_virtual_rig *rig)
+{
+    free_devices(rig->rig.stage.device);
+    weft_virtual_sample_free(&rig->sample);
 }

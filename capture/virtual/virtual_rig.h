@@ -6,10 +6,25 @@
 #include "capture/virtual/sample.h"
 #include "capture/virtual/world.h"
 
-/* Opens a rig that photographs `sample` in `target`. It borrows both. Its stage counts stays from `first_stay`, the
- * number of stays that the session has already seen: the same seed and stay always give the same errors. The caller
- * closes with rig->close(rig->back_end). Errors: WEFT_SYSTEM. */
-weft_code weft_rig_virtual_open(const weft_virtual_world *world, const weft_target *target,
-                                const weft_virtual_sample *sample, int first_stay, weft_rig *rig, weft_error *error);
+/* What makes a virtual rig: the same request and the same stays always give the same photographs. */
+typedef struct weft_virtual_request {
+    const char *sample; /* weave or stitch file */
+    uint64_t seed;      /* below 2^63 */
+    weft_virtual_settings settings;
+} weft_virtual_request;
+
+/* An open virtual rig. The photographs follow from its world and its sample, and so does the ground truth. */
+typedef struct weft_virtual_rig {
+    weft_rig rig; /* what a capture drives */
+    weft_virtual_world world;
+    weft_virtual_sample sample;
+    char warning[WEFT_MESSAGE_SIZE]; /* of the weave file; empty if all is well */
+} weft_virtual_rig;
+
+/* Reads the sample and opens the rig; its identity holds the settings, the seed, and name and checksum of the sample's
+ * file. The structure must stay where it is until the caller closes it. Errors: those of weft_virtual_sample_read;
+ * WEFT_SYSTEM. */
+weft_code weft_virtual_rig_open(const weft_virtual_request *request, weft_virtual_rig *rig, weft_error *error);
+void weft_virtual_rig_close(weft_virtual_rig *rig);
 
 #endif

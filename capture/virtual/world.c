@@ -29,7 +29,8 @@ static weft_pose pose_of_vectors(weft_vec3 vector, weft_vec3 translation)
                        translation};
 }
 
-weft_pose weft_pose_compose(const weft_pose *outer, const weft_pose *inner)
+/* outer o inner: what `inner` maps first. */
+static weft_pose compose(const weft_pose *outer, const weft_pose *inner)
 {
     weft_pose result;
     for (int row = 0; row < 3; row++) {
@@ -43,9 +44,10 @@ weft_pose weft_pose_compose(const weft_pose *outer, const weft_pose *inner)
     return result;
 }
 
-weft_virtual_world weft_virtual_world_of(const weft_rig_settings *settings, uint64_t seed)
+weft_virtual_world weft_virtual_world_of(const weft_virtual_settings *settings, uint64_t seed)
 {
-    weft_virtual_world world = {.settings = *settings, .seed = seed, .camera = weft_rig_settings_camera(settings)};
+    weft_virtual_world world = {
+        .settings = *settings, .seed = seed, .camera = weft_rig_settings_camera(&settings->rig)};
     weft_vec3 error = weft_random_direction(seed, WEFT_RANDOM_CALIBRATION, 0);
     double angle = 2 * WEFT_PI * weft_random_uniform(seed, WEFT_RANDOM_CALIBRATION, 1);
     world.camera.fx *= 1 + settings->focal_length_error * copysign(1, error.x);
@@ -62,15 +64,15 @@ weft_virtual_world weft_virtual_world_of(const weft_rig_settings *settings, uint
 
 weft_pose weft_virtual_world_pose(const weft_virtual_world *world, weft_angles view, int stay)
 {
-    const weft_rig_settings *s = &world->settings;
+    const weft_virtual_settings *s = &world->settings;
     uint64_t index = 2 * (uint64_t)stay;
     weft_vec3 turn = weft_random_normal3(world->seed, WEFT_RANDOM_STAY, index);
     weft_vec3 shift = weft_random_normal3(world->seed, WEFT_RANDOM_STAY, index + 1);
     weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->stay_rotation_deg)),
                                       weft_scale(shift, s->stay_translation_mm));
-    weft_pose nominal = weft_pose_of_view(view, s->camera_distance_mm);
-    weft_pose in_rig = weft_pose_compose(&nominal, &error);
-    return weft_pose_compose(&in_rig, &world->mounting);
+    weft_pose nominal = weft_pose_of_view(view, s->rig.camera_distance_mm);
+    weft_pose in_rig = compose(&nominal, &error);
+    return compose(&in_rig, &world->mounting);
 }
 
 /* A number for a stay and a commanded direction, insensitive to the last digits of a stored angle. */
@@ -83,17 +85,17 @@ static uint64_t index_of_move(weft_angles driven, int stay)
 
 weft_vec3 weft_virtual_world_light(const weft_virtual_world *world, weft_angles driven, int stay)
 {
-    const weft_rig_settings *s = &world->settings;
+    const weft_virtual_settings *s = &world->settings;
     weft_vec3 turn = weft_random_normal3(world->seed, WEFT_RANDOM_LIGHT, index_of_move(driven, stay));
     weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->light_rotation_deg)), (weft_vec3){0, 0, 0});
-    weft_vec3 nominal = weft_scale(weft_direction_of_angles(driven), s->light_distance_mm);
+    weft_vec3 nominal = weft_scale(weft_direction_of_angles(driven), s->rig.light_distance_mm);
     weft_vec3 in_rig = apply(&error, nominal);
     return apply_inverse(&world->mounting, in_rig);
 }
 
 bool weft_virtual_world_shadowed(const weft_virtual_world *world, const weft_pose *pose, weft_vec3 light)
 {
-    double covered_rad = 0.9 * weft_rad_of_deg(world->settings.camera_half_angle_deg);
+    double covered_rad = 0.9 * weft_rad_of_deg(world->settings.rig.camera_half_angle_deg);
     weft_vec3 toward_camera = weft_unit(weft_pose_camera_position(pose));
     return weft_dot(toward_camera, weft_unit(light)) > cos(covered_rad);
 }

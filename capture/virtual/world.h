@@ -5,16 +5,16 @@
 #ifndef WEFT_CAPTURE_VIRTUAL_WORLD_H
 #define WEFT_CAPTURE_VIRTUAL_WORLD_H
 
-#include "capture/settings.h"
+#include "capture/virtual/virtual_settings.h"
 
 typedef struct weft_virtual_world {
-    weft_rig_settings settings;
+    weft_virtual_settings settings;
     uint64_t seed;
     weft_camera camera; /* the true one */
     weft_pose mounting; /* rig point = rotation . plate point + translation */
 } weft_virtual_world;
 
-weft_virtual_world weft_virtual_world_of(const weft_rig_settings *settings, uint64_t seed);
+weft_virtual_world weft_virtual_world_of(const weft_virtual_settings *settings, uint64_t seed);
 
 /* Plate frame to true camera frame during a stay: the nominal pose, with the error of the camera arm drawn for this
  * stay, after the mounting of the plate. Pure. */
@@ -26,8 +26,5 @@ weft_vec3 weft_virtual_world_light(const weft_virtual_world *world, weft_angles 
 /* Whether the camera body stands between the light and the sample. It covers nine tenths of the angle that the settings
  * keep free. Pure. */
 bool weft_virtual_world_shadowed(const weft_virtual_world *world, const weft_pose *pose, weft_vec3 light);
-
-/* outer o inner: what `inner` maps first. Pure. */
-weft_pose weft_pose_compose(const weft_pose *outer, const weft_pose *inner);
 
 #endif

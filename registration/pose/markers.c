@@ -85,7 +85,7 @@ static weft_code fit_corners(double (*plate)[2], double (*seen)[2], int count, w
                              weft_error *error)
 {
     uint8_t agrees[4 * WEFT_MARKERS_LIMIT] = {0};
-    weft_code code = weft_bridge_fit_homography((const double(*)[2])plate, (const double(*)[2])seen, count,
+    weft_code code = weft_opencv_fit_homography((const double(*)[2])plate, (const double(*)[2])seen, count,
                                                 ransac_reach_px, start->homography.m, agrees, error);
     double sum = 0;
     for (int i = 0; code == WEFT_OK && i < count; i++) {
@@ -115,7 +115,7 @@ weft_code weft_markers_locate(const weft_sight *sight, const weft_target *target
     }
     draw_front(sight, target, photograph, promised, front);
     expose_front(front, grey);
-    code = weft_bridge_find_markers(grey, front_side, front_side, marker, &count, error);
+    code = weft_opencv_find_markers(grey, front_side, front_side, marker, &count, error);
     if (code != WEFT_OK)
         goto done;
     count = pair_corners(target, promised, marker, count, plate, seen);

@@ -24,7 +24,7 @@ template <typename Work> weft_code guarded(const char *what, weft_error *error, 
 
 } // namespace
 
-extern "C" weft_code weft_bridge_find_markers(const uint8_t *grey, int width, int height, weft_marker *marker,
+extern "C" weft_code weft_opencv_find_markers(const uint8_t *grey, int width, int height, weft_marker *marker,
                                               int *count, weft_error *error)
 {
     *count = 0;
@@ -48,7 +48,7 @@ extern "C" weft_code weft_bridge_find_markers(const uint8_t *grey, int width, in
     });
 }
 
-extern "C" weft_code weft_bridge_fit_homography(const double (*from)[2], const double (*to)[2], int count, double reach,
+extern "C" weft_code weft_opencv_fit_homography(const double (*from)[2], const double (*to)[2], int count, double reach,
                                                 double homography[3][3], uint8_t *agrees, weft_error *error)
 {
     return guarded("fitting a homography", error, [&] {
@@ -65,7 +65,7 @@ extern "C" weft_code weft_bridge_fit_homography(const double (*from)[2], const d
     });
 }
 
-extern "C" weft_code weft_bridge_blur(float *picture, int width, int height, double deviation, weft_error *error)
+extern "C" weft_code weft_opencv_blur(float *picture, int width, int height, double deviation, weft_error *error)
 {
     return guarded("blurring", error, [&] {
         cv::Mat image(height, width, CV_32F, picture);

@@ -22,17 +22,17 @@ typedef struct weft_marker {
 /* Finds ArUco markers of DICT_4X4_50 in an 8-bit grey picture. The corners are refined by the gradients around them,
  * which is true to a fraction of a pixel where the markers are seen from the front. At most WEFT_MARKERS_LIMIT are
  * written to `marker`. Errors: WEFT_SYSTEM with the library's message. */
-weft_code weft_bridge_find_markers(const uint8_t *grey, int width, int height, weft_marker *marker, int *count,
+weft_code weft_opencv_find_markers(const uint8_t *grey, int width, int height, weft_marker *marker, int *count,
                                    weft_error *error);
 
 /* Homography (row-major, last element 1) from `count` >= 4 points to their images by RANSAC with the given reach, then
  * least squares over the points that agree, which get 1 in `agrees`. Errors: WEFT_BAD_INPUT where none fits;
  * WEFT_SYSTEM. */
-weft_code weft_bridge_fit_homography(const double (*from)[2], const double (*to)[2], int count, double reach,
+weft_code weft_opencv_fit_homography(const double (*from)[2], const double (*to)[2], int count, double reach,
                                      double homography[3][3], uint8_t *agrees, weft_error *error);
 
 /* Gaussian blur in place, the border replicated. Errors: WEFT_SYSTEM. */
-weft_code weft_bridge_blur(float *picture, int width, int height, double deviation, weft_error *error);
+weft_code weft_opencv_blur(float *picture, int width, int height, double deviation, weft_error *error);
 
 #ifdef __cplusplus
 }

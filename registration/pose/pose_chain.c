@@ -5,7 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
-double weft_homography_distance_mm(const weft_homography *a, const weft_homography *b, double opening_mm)
+/* Distance on the plate between where two homographies put the same pixels, mm, RMS over the opening. */
+static double homography_distance_mm(const weft_homography *a, const weft_homography *b, double opening_mm)
 {
     enum { grid = 5 };
     weft_homography inverse = weft_homography_inverse(b);
@@ -26,7 +27,8 @@ static weft_code refine_through(const weft_sight *sight, const float *photograph
                                 weft_refinement *refinement, float *fitted, weft_error *error)
 {
     for (int i = 0; i < blur_count; i++)
-        WEFT_TRY(weft_refine(sight, photograph, blur[i], refinement, i + 1 < blur_count ? NULL : fitted, error));
+        WEFT_TRY(
+            weft_refinement_run(sight, photograph, blur[i], refinement, i + 1 < blur_count ? NULL : fitted, error));
     return WEFT_OK;
 }
 
@@ -51,23 +53,23 @@ static void accept_drawing(const weft_refinement *refinement, weft_view_pose *po
 {
     pose->source = WEFT_POSE_DRAWING;
     pose->homography = refinement->homography;
-    pose->smear = refinement->smear;
+    pose->point_spread = refinement->point_spread;
     pose->uncertainty_mm = refinement->uncertainty_mm;
     pose->remark[0] = 0;
 }
 
 /* Tries to refine from one start. */
 static weft_code try_start(const weft_sight *sight, const float *photograph, const weft_homography *start,
-                           bool from_markers, const weft_homography *promised, weft_smear smear,
+                           bool from_markers, const weft_homography *promised, weft_point_spread point_spread,
                            const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error)
 {
-    weft_refinement refinement = {.homography = *start, .smear = smear};
+    weft_refinement refinement = {.homography = *start, .point_spread = point_spread};
     const double *blur = from_markers ? blur_from_markers : blur_from_promise;
     int blur_count = from_markers ? 1 : (int)(sizeof blur_from_promise / sizeof *blur_from_promise);
     WEFT_TRY(refine_through(sight, photograph, blur, blur_count, &refinement, fitted, error));
     pose->from_markers = from_markers;
     pose->correlation = refinement.correlation;
-    pose->shift_mm = weft_homography_distance_mm(&refinement.homography, promised, sight->opening_mm);
+    pose->shift_mm = homography_distance_mm(&refinement.homography, promised, sight->opening_mm);
     if (acceptable(&refinement, pose->shift_mm, limits, pose->remark, sizeof pose->remark))
         accept_drawing(&refinement, pose);
     return WEFT_OK;
@@ -80,16 +82,16 @@ static void fall_back(const weft_sight *sight, const weft_marker_start *markers,
     pose->source = WEFT_POSE_MARKERS;
     pose->from_markers = true;
     pose->homography = markers->homography;
-    pose->shift_mm = weft_homography_distance_mm(&markers->homography, promised, sight->opening_mm);
+    pose->shift_mm = homography_distance_mm(&markers->homography, promised, sight->opening_mm);
     double px_per_mm = sqrt(fabs(markers->homography.m[0][0] * markers->homography.m[1][1] -
                                  markers->homography.m[0][1] * markers->homography.m[1][0])) /
                        fabs(markers->homography.m[2][2]);
     pose->uncertainty_mm = px_per_mm > 0 ? markers->rms_px / px_per_mm : 0;
 }
 
-weft_code weft_find_pose(const weft_sight *sight, const weft_target *target, const float *photograph,
-                         const weft_homography *promised, weft_smear smear, const weft_pose_limits *limits,
-                         weft_view_pose *pose, float *fitted, weft_error *error)
+weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, const float *photograph,
+                         const weft_homography *promised, weft_point_spread point_spread,
+                         const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error)
 {
     enum { trusted_corners = 8 };
     weft_marker_start markers;
@@ -97,14 +99,27 @@ weft_code weft_find_pose(const weft_sight *sight, const weft_target *target, con
     WEFT_TRY(weft_markers_locate(sight, target, photograph, promised, &markers, error));
     pose->marker_count = markers.found;
     pose->marker_rms_px = markers.rms_px;
-    bool trusted =
-        markers.corners >= trusted_corners &&
-        weft_homography_distance_mm(&markers.homography, promised, sight->opening_mm) <= limits->tolerance_mm;
+    bool trusted = markers.corners >= trusted_corners &&
+                   homography_distance_mm(&markers.homography, promised, sight->opening_mm) <= limits->tolerance_mm;
     if (trusted)
-        WEFT_TRY(try_start(sight, photograph, &markers.homography, true, promised, smear, limits, pose, fitted, error));
+        WEFT_TRY(try_start(sight, photograph, &markers.homography, true, promised, point_spread, limits, pose, fitted,
+                           error));
     if (pose->source == WEFT_POSE_FAILED)
-        WEFT_TRY(try_start(sight, photograph, promised, false, promised, smear, limits, pose, fitted, error));
+        WEFT_TRY(try_start(sight, photograph, promised, false, promised, point_spread, limits, pose, fitted, error));
     if (pose->source == WEFT_POSE_FAILED && trusted)
         fall_back(sight, &markers, promised, pose);
     return WEFT_OK;
+}
+
+const char *weft_pose_source_name(const weft_view_pose *pose)
+{
+    switch (pose->source) {
+    case WEFT_POSE_DRAWING:
+        return pose->from_markers ? "rig, markers, drawing" : "rig, drawing";
+    case WEFT_POSE_MARKERS:
+        return "rig, markers";
+    case WEFT_POSE_FAILED:
+        break;
+    }
+    return "nothing";
 }

@@ -22,21 +22,21 @@ typedef struct weft_view_pose {
     int marker_count;           /* markers seen */
     double marker_rms_px;       /* reprojection of the corners that agree */
     weft_homography homography; /* plate mm to undistorted pixels */
-    weft_smear smear;
+    weft_point_spread point_spread;
     double correlation;    /* 0 where the refinement never ran */
     double uncertainty_mm; /* standard error of positions in the opening; of the markers: their reprojection error */
     double shift_mm;       /* against the rig's promise, RMS over the opening */
     char remark[160];      /* why it failed, or fell back; empty when all went well */
 } weft_view_pose;
 
-/* Finds the pose in `photograph` ([height][width], linear, vignetting removed, NaN where unknown). `smear` is the guess
- * the refinement starts from. `fitted` [height][width] may be NULL: the prediction under the fitted lighting, where the
- * source is the drawing. A pose that cannot be found is a result, not an error. Errors: WEFT_SYSTEM. */
-weft_code weft_find_pose(const weft_sight *sight, const weft_target *target, const float *photograph,
-                         const weft_homography *promised, weft_smear smear, const weft_pose_limits *limits,
-                         weft_view_pose *pose, float *fitted, weft_error *error);
+/* Finds the pose in `photograph` ([height][width], linear, vignetting removed, NaN where unknown). `point_spread` is
+ * the guess the refinement starts from. `fitted` [height][width] may be NULL: the prediction under the fitted lighting,
+ * where the source is the drawing. A pose that cannot be found is a result, not an error. Errors: WEFT_SYSTEM. */
+weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, const float *photograph,
+                         const weft_homography *promised, weft_point_spread point_spread,
+                         const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error);
 
-/* Distance on the plate between where two homographies put the same pixels, mm, RMS over the opening. Pure. */
-double weft_homography_distance_mm(const weft_homography *a, const weft_homography *b, double opening_mm);
+/* What it rests on in words, "rig, markers, drawing" and the like. Static text. */
+const char *weft_pose_source_name(const weft_view_pose *pose);
 
 #endif

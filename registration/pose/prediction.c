@@ -3,10 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { smear_samples = 64 };
+enum { samples_per_pixel = 64 };
 
-/* Beyond its square and smear, how far around a pixel (in pixels) nothing else may lie for it to be compared: central
- * differences look at its neighbours. */
+/* Beyond its square and point spread, how far around a pixel (in pixels) nothing else may lie for it to be compared:
+ * central differences look at its neighbours. */
 static const double neighbour_reach = 1.2;
 
 static void calibrate_pixels(weft_sight *sight)
@@ -74,24 +74,25 @@ void weft_prediction_free(weft_prediction *prediction)
 /* Points of a pixel's square (first pair, -1/2..1/2) and of a disc with unit variance per axis (second pair), from
  * the four-dimensional additive recurrence of Roberts (2018): even in every projection, so that no direction of an
  * edge is preferred. */
-typedef struct smear_pattern {
-    float square_x[smear_samples], square_y[smear_samples], disc_x[smear_samples], disc_y[smear_samples];
-} smear_pattern;
+typedef struct sample_pattern {
+    float square_x[samples_per_pixel], square_y[samples_per_pixel], disc_x[samples_per_pixel],
+        disc_y[samples_per_pixel];
+} sample_pattern;
 
 static void remove_mean(float *value)
 {
     float mean = 0;
-    for (int i = 0; i < smear_samples; i++)
-        mean += value[i] / smear_samples;
-    for (int i = 0; i < smear_samples; i++)
+    for (int i = 0; i < samples_per_pixel; i++)
+        mean += value[i] / samples_per_pixel;
+    for (int i = 0; i < samples_per_pixel; i++)
         value[i] -= mean;
 }
 
-static smear_pattern place_samples(void)
+static sample_pattern place_samples(void)
 {
     const double phi4 = 1.1673039782614187; /* root of x^5 = x + 1 */
-    smear_pattern pattern;
-    for (int i = 0; i < smear_samples; i++) {
+    sample_pattern pattern;
+    for (int i = 0; i < samples_per_pixel; i++) {
         double u[4], step = 1;
         for (int axis = 0; axis < 4; axis++)
             u[axis] = fmod(0.5 + (i + 1) * (step /= phi4), 1);
@@ -144,29 +145,30 @@ static weft_rectangle reach_of(const footprint *print, double pixels)
 
 /* The footprint must lie inside the raster: what is not excluded does. */
 WEFT_HOT static float average_over(const weft_drawing *drawing, const footprint *print, float deviation,
-                                   const smear_pattern *pattern)
+                                   const sample_pattern *pattern)
 {
-    float cells = 1 / (float)drawing->cell_mm, half = (float)drawing->half_mm, seen[smear_samples];
+    float cells = 1 / (float)drawing->cell_mm, half = (float)drawing->half_mm, seen[samples_per_pixel];
     float x0 = (print->x + half) * cells - 0.5f, y0 = (print->y + half) * cells - 0.5f;
     float xu = print->dx[0] * cells, xv = print->dy[0] * cells, yu = print->dx[1] * cells, yv = print->dy[1] * cells;
-    for (int i = 0; i < smear_samples; i++) {
+    for (int i = 0; i < samples_per_pixel; i++) {
         float u = pattern->square_x[i] + deviation * pattern->disc_x[i];
         float v = pattern->square_y[i] + deviation * pattern->disc_y[i];
         seen[i] = weft_drawing_between(drawing, x0 + u * xu + v * xv, y0 + u * yu + v * yv);
     }
     float sum = 0;
-    for (int i = 0; i < smear_samples; i++)
+    for (int i = 0; i < samples_per_pixel; i++)
         sum += seen[i];
-    return sum / smear_samples;
+    return sum / samples_per_pixel;
 }
 
 static void predict_pixel(const weft_sight *sight, const footprint *print, const weft_homography *homography,
-                          weft_smear smear, const smear_pattern *pattern, size_t at, weft_prediction *prediction)
+                          weft_point_spread point_spread, const sample_pattern *pattern, size_t at,
+                          weft_prediction *prediction)
 {
     /* The last row of the homography is the distance along the camera's axis, up to a factor. */
     double z = (homography->m[2][0] * print->x + homography->m[2][1] * print->y) / homography->m[2][2] + 1;
     double focus = z > 0 ? (1 - 1 / z) * (1 - 1 / z) : 0;
-    double deviation = sqrt(fmax(0, smear.constant + smear.depth * focus)), reach = 0.5 + 2 * deviation;
+    double deviation = sqrt(fmax(0, point_spread.constant + point_spread.depth * focus)), reach = 0.5 + 2 * deviation;
     weft_drawing_content around = weft_drawing_content_of(&sight->drawing, reach_of(print, reach + neighbour_reach));
     prediction->focus[at] = (float)focus;
     prediction->compared[at] = z > 0 && !around.excluded;
@@ -178,17 +180,17 @@ static void predict_pixel(const weft_sight *sight, const footprint *print, const
                                       : average_over(&sight->drawing, print, (float)deviation, pattern);
 }
 
-void weft_predict(const weft_sight *sight, const weft_homography *homography, weft_smear smear,
-                  weft_prediction *prediction)
+void weft_prediction_draw(const weft_sight *sight, const weft_homography *homography, weft_point_spread point_spread,
+                          weft_prediction *prediction)
 {
-    smear_pattern pattern = place_samples();
+    sample_pattern pattern = place_samples();
     weft_homography inverse = weft_homography_inverse(homography);
 #pragma omp parallel for schedule(dynamic, 8)
     for (int y = 0; y < sight->camera.height; y++) {
         for (int x = 0; x < sight->camera.width; x++) {
             footprint print = footprint_of(sight, &inverse, x, y);
             size_t at = (size_t)y * (size_t)sight->camera.width + (size_t)x;
-            predict_pixel(sight, &print, homography, smear, &pattern, at, prediction);
+            predict_pixel(sight, &print, homography, point_spread, &pattern, at, prediction);
         }
     }
 }

@@ -5,12 +5,13 @@
 #include "btf/session/camera.h"
 #include "registration/pose/drawing.h"
 
-/* How wide a point of the plate is smeared on the sensor, as a variance per axis in pixels^2 beyond the pixel's own
- * square: constant + depth x (1 - focus / z)^2, with z the distance along the camera's axis and focus that of the
- * plate's origin. The second term is the circle of confusion of a thin lens. */
-typedef struct weft_smear {
+/* The point spread function of the lens, by how wide it is: the variance per axis, in pixels^2 beyond the pixel's own
+ * square, of the light of a point of the plate on the sensor. It is constant + depth x (1 - focus / z)^2, with z the
+ * distance along the camera's axis and focus that of the plate's origin. The second term is the circle of confusion of
+ * a thin lens. */
+typedef struct weft_point_spread {
     double constant, depth;
-} weft_smear;
+} weft_point_spread;
 
 /* What stays the same for all photographs of a session. */
 typedef struct weft_sight {
@@ -24,7 +25,7 @@ typedef struct weft_sight {
 /* Per pixel, [height][width], of the size of the camera. */
 typedef struct weft_prediction {
     float *reflectance; /* of the drawn target, averaged as a pixel would; 0 off the plate */
-    float *focus;       /* (1 - focus / z)^2, the factor of weft_smear.depth */
+    float *focus;       /* (1 - focus / z)^2, the factor of weft_point_spread.depth */
     uint8_t *compared;  /* 1 where nothing but the drawing is within reach of the pixel and of its neighbours */
 } weft_prediction;
 
@@ -38,7 +39,7 @@ void weft_prediction_free(weft_prediction *prediction);
 
 /* Draws what the camera sees of the target under `homography` (plate mm to undistorted pixels, any scale), in focus at
  * the origin of the plate. Pure; uses OpenMP. */
-void weft_predict(const weft_sight *sight, const weft_homography *homography, weft_smear smear,
-                  weft_prediction *prediction);
+void weft_prediction_draw(const weft_sight *sight, const weft_homography *homography, weft_point_spread point_spread,
+                          weft_prediction *prediction);
 
 #endif

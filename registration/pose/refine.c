@@ -9,18 +9,18 @@
 
 /* The unknowns of one step. The homography is multiplied from the left by I + D, D's last element zero, in normalised
  * camera coordinates; the lighting is a polynomial of second degree over the photograph times the drawing, plus stray
- * light; the smear enters by the heat equation, d T / d variance = laplacian(T) / 2. */
+ * light; the point spread enters by the heat equation, d T / d variance = laplacian(T) / 2. */
 enum {
     motion_at = 0,
     motion_count = 8,
     gain_at = 8,
     gain_count = 6,
     stray_at = 14,
-    smear_at = 15,
+    spread_at = 15,
     unknown_count = 17,
-    unknown_count_blurred = smear_at,
+    unknown_count_blurred = spread_at,
     strip_count = 32, /* fixed, so that sums do not depend on the number of threads */
-    smear_steps = 4,  /* the smear creeps for long in a direction that hardly matters; then it is held */
+    spread_steps = 4, /* the point spread creeps for long in a direction that hardly matters; then it is held */
     iteration_limit = 15
 };
 
@@ -73,9 +73,9 @@ static weft_code blur_both(comparison *c, weft_error *error)
         c->photograph[i] = c->prediction.compared[i] ? c->photograph[i] : 0;
         c->prediction.reflectance[i] *= c->weight[i];
     }
-    WEFT_TRY(weft_bridge_blur(c->weight, width, height, c->blur_px, error));
-    WEFT_TRY(weft_bridge_blur(c->photograph, width, height, c->blur_px, error));
-    WEFT_TRY(weft_bridge_blur(c->prediction.reflectance, width, height, c->blur_px, error));
+    WEFT_TRY(weft_opencv_blur(c->weight, width, height, c->blur_px, error));
+    WEFT_TRY(weft_opencv_blur(c->photograph, width, height, c->blur_px, error));
+    WEFT_TRY(weft_opencv_blur(c->prediction.reflectance, width, height, c->blur_px, error));
     for (size_t i = 0; i < pixels; i++) {
         float inverse = c->weight[i] > 1e-6f ? 1 / c->weight[i] : 0;
         c->photograph[i] *= inverse;
@@ -87,7 +87,7 @@ static weft_code blur_both(comparison *c, weft_error *error)
 static weft_code look(comparison *c, const float *photograph, const weft_refinement *estimate, weft_error *error)
 {
     size_t pixels = pixel_count(c->sight);
-    weft_predict(c->sight, &estimate->homography, estimate->smear, &c->prediction);
+    weft_prediction_draw(c->sight, &estimate->homography, estimate->point_spread, &c->prediction);
     memcpy(c->photograph, photograph, pixels * sizeof(float));
     c->focus_limit = 0;
     for (size_t i = 0; i < pixels; i++) {
@@ -155,8 +155,8 @@ static void equation_at(const comparison *c, int x, int y, double row[WEFT_UNKNO
     for (int k = 0; k < gain_count; k++)
         row[gain_at + k] = basis[k] * t[0];
     row[stray_at] = 1;
-    row[smear_at] = half_laplacian;
-    row[smear_at + 1] = half_laplacian * c->prediction.focus[at];
+    row[spread_at] = half_laplacian;
+    row[spread_at + 1] = half_laplacian * c->prediction.focus[at];
     *residual = c->photograph[at] - gain * t[0] - c->stray;
 }
 
@@ -257,19 +257,19 @@ static double apply_step(comparison *c, const double *solution, weft_refinement 
     memcpy(c->gain, solution + gain_at, sizeof c->gain);
     c->stray = solution[stray_at];
     if (c->blur_px <= 0) {
-        refinement->smear.constant = fmax(0, refinement->smear.constant + solution[smear_at]);
-        refinement->smear.depth = fmax(0, refinement->smear.depth + solution[smear_at + 1]);
+        refinement->point_spread.constant = fmax(0, refinement->point_spread.constant + solution[spread_at]);
+        refinement->point_spread.depth = fmax(0, refinement->point_spread.depth + solution[spread_at + 1]);
     }
     return motion;
 }
 
 /* At a frontal view the depth term has no effect: hold it where it is. */
-static void hold_smear(comparison *c)
+static void hold_point_spread(comparison *c)
 {
     double(*m)[WEFT_UNKNOWNS_LIMIT] = c->equations.matrix;
     double scale = fmax(c->focus_limit, 1e-3);
-    m[smear_at][smear_at] *= 1 + 1e-6;
-    m[smear_at + 1][smear_at + 1] += 1e-4 * scale * scale * m[smear_at][smear_at];
+    m[spread_at][spread_at] *= 1 + 1e-6;
+    m[spread_at + 1][spread_at + 1] += 1e-4 * scale * scale * m[spread_at][spread_at];
 }
 
 /* Standard error of positions in the opening, mm RMS, from the factored equations. */
@@ -364,24 +364,24 @@ static void write_fitted(const comparison *c, float *fitted)
     }
 }
 
-/* Solves for a step; a smear that would become negative is held (an active set, at most two constraints), and so are
- * both where `hold_both`. False where the equations have no solution. `factored` receives what the uncertainty is
+/* Solves for a step; a point spread that would become negative is held (an active set, at most two constraints), and so
+ * are both where `hold_both`. False where the equations have no solution. `factored` receives what the uncertainty is
  * computed from. */
-static bool solve(const comparison *c, weft_smear smear, bool hold_both, int count, double *solution,
+static bool solve(const comparison *c, weft_point_spread point_spread, bool hold_both, int count, double *solution,
                   weft_normal_equations *factored)
 {
     bool held[2] = {hold_both, hold_both};
-    const double current[2] = {smear.constant, smear.depth};
+    const double current[2] = {point_spread.constant, point_spread.depth};
     for (bool again = true; again;) {
         again = false;
         *factored = c->equations;
         for (int k = 0; k < 2; k++)
-            factored->matrix[smear_at + k][smear_at + k] *= held[k] ? held_stiffness : 1;
+            factored->matrix[spread_at + k][spread_at + k] *= held[k] ? held_stiffness : 1;
         if (!weft_normal_equations_factor(factored, count))
             return false;
         weft_normal_equations_solve(factored, count, solution);
         for (int k = 0; k < 2 && count == unknown_count; k++) {
-            if (!held[k] && current[k] <= 0 && solution[smear_at + k] < 0)
+            if (!held[k] && current[k] <= 0 && solution[spread_at + k] < 0)
                 held[k] = again = true;
         }
     }
@@ -389,13 +389,13 @@ static bool solve(const comparison *c, weft_smear smear, bool hold_both, int cou
 }
 
 /* One step. False where the equations have no solution. */
-static bool step(comparison *c, weft_refinement *refinement, bool hold_smear_now, double *motion)
+static bool step(comparison *c, weft_refinement *refinement, bool hold_point_spread_now, double *motion)
 {
     int count = c->blur_px > 0 ? unknown_count_blurred : unknown_count;
     double solution[WEFT_UNKNOWNS_LIMIT] = {0};
     weft_normal_equations factored;
-    hold_smear(c);
-    if (!solve(c, refinement->smear, hold_smear_now, count, solution, &factored))
+    hold_point_spread(c);
+    if (!solve(c, refinement->point_spread, hold_point_spread_now, count, solution, &factored))
         return false;
     double freedom = fmax(1, c->equations.weights - count);
     double variance = c->deviation * c->deviation * fmax(1, c->equations.weights) / freedom;
@@ -413,7 +413,7 @@ static weft_code iterate(comparison *c, const float *photograph, weft_refinement
             guess_lighting(c);
         WEFT_TRY(gather(c, error));
         refinement->iterations = i + 1;
-        if (!step(c, refinement, i >= smear_steps, &motion))
+        if (!step(c, refinement, i >= spread_steps, &motion))
             return WEFT_OK;
         /* The second step is the first one with robust weights. */
         refinement->converged = i > 0 && motion < settled_px * fmax(1, 10 * c->blur_px);
@@ -421,8 +421,8 @@ static weft_code iterate(comparison *c, const float *photograph, weft_refinement
     return WEFT_OK;
 }
 
-weft_code weft_refine(const weft_sight *sight, const float *photograph, double blur_px, weft_refinement *refinement,
-                      float *fitted, weft_error *error)
+weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, double blur_px,
+                              weft_refinement *refinement, float *fitted, weft_error *error)
 {
     comparison c;
     WEFT_TRY(comparison_create(sight, blur_px, &c, error));

@@ -1,7 +1,7 @@
 /* Refinement of a homography against the drawn target: the predicted photograph is drawn anew under every estimate and
  * compared with the one that was taken, pixel by pixel, so that no photograph is ever resampled and the warp that is
  * left goes to the identity. Gauss-Newton on the correlation of the two, in the manner of Evangelidis & Psarakis 2008
- * ("ECC"), extended by a smooth lighting gradient, stray light and the smear of the lens as further unknowns.
+ * ("ECC"), extended by a smooth lighting gradient, stray light and the point spread of the lens as further unknowns.
  *
  * Measured against cv::findTransformECC in the same loop (drawing anew, lighting removed by a wide Gaussian, four
  * rounds) on the tests' plates with noise, defocus and a gradient, RMS texels of 64 at tilts 0, 30, 60, 75: 0.006 0.005
@@ -14,19 +14,19 @@
 /* An estimate and how good it is. */
 typedef struct weft_refinement {
     weft_homography homography; /* plate mm to undistorted pixels */
-    weft_smear smear;
+    weft_point_spread point_spread;
     bool converged; /* the last step moved the plate by less than 0.005 pixel */
     int iterations;
     double correlation;    /* of the photograph with the prediction, both without their smooth parts, -1..1 */
     double uncertainty_mm; /* standard error of positions in the opening, RMS, from the residual */
 } weft_refinement;
 
-/* Improves `refinement` (in: homography and smear; out: everything). `photograph` [height][width] is linear, of any
- * brightness, vignetting removed; values that are not finite are left out. `blur_px` > 0 compares both sides blurred by
- * a Gaussian of that deviation, which widens the reach to about two of it. `fitted` [height][width] may be NULL; it
- * receives the prediction under the fitted lighting. A failure to converge is no error. Errors: WEFT_SYSTEM for memory.
- * Uses OpenMP. */
-weft_code weft_refine(const weft_sight *sight, const float *photograph, double blur_px, weft_refinement *refinement,
-                      float *fitted, weft_error *error);
+/* Improves `refinement` (in: homography and point spread; out: everything). `photograph` [height][width] is linear, of
+ * any brightness, vignetting removed; values that are not finite are left out. `blur_px` > 0 compares both sides
+ * blurred by a Gaussian of that deviation, which widens the reach to about two of it. `fitted` [height][width] may be
+ * NULL; it receives the prediction under the fitted lighting. A failure to converge is no error. Errors: WEFT_SYSTEM
+ * for memory. Uses OpenMP. */
+weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, double blur_px,
+                              weft_refinement *refinement, float *fitted, weft_error *error);
 
 #endif

@@ -12,8 +12,8 @@ static const double largest_disagreement = 0.1;
 /* Raw values above black. */
 static const double dimmest_level = 1;
 
-/* A patch's pixels lie this far inside its outline, pixels: half of their own square, and as much again; the smear
- * adds. */
+/* A patch's pixels lie this far inside its outline, pixels: half of their own square, and as much again; the point
+ * spread adds. */
 static const double border_px = 1;
 
 double weft_relative_irradiance(weft_vec3 light, double x_mm, double y_mm)
@@ -42,12 +42,13 @@ static bool well_inside(weft_rectangle r, const weft_homography *inverse, const 
     return true;
 }
 
-/* Smear at the middle of a patch, as a standard deviation, pixels. */
-static double smear_at(const weft_homography *homography, weft_smear smear, weft_rectangle r)
+/* The point spread at the middle of a patch, as a standard deviation, pixels. */
+static double point_spread_deviation(const weft_homography *homography, weft_point_spread point_spread,
+                                     weft_rectangle r)
 {
     const double *last = homography->m[2];
     double z = (last[0] * (r.x0 + r.x1) / 2 + last[1] * (r.y0 + r.y1) / 2) / last[2] + 1;
-    double variance = smear.constant + smear.depth * (1 - 1 / z) * (1 - 1 / z);
+    double variance = point_spread.constant + point_spread.depth * (1 - 1 / z) * (1 - 1 / z);
     return z > 0 && variance > 0 ? sqrt(variance) : 0;
 }
 
@@ -70,10 +71,11 @@ static void box_of(const weft_camera *camera, const weft_homography *homography,
 }
 
 static weft_code find_patch(const weft_sight *sight, weft_rectangle r, const weft_homography *homography,
-                            weft_smear smear, weft_reference_pixels *reference, int patch, weft_error *error)
+                            weft_point_spread point_spread, weft_reference_pixels *reference, int patch,
+                            weft_error *error)
 {
     weft_homography inverse = weft_homography_inverse(homography);
-    double border = border_px + 2 * smear_at(homography, smear, r), sum_x = 0, sum_y = 0;
+    double border = border_px + 2 * point_spread_deviation(homography, point_spread, r), sum_x = 0, sum_y = 0;
     int low[2], end[2], count = 0;
     box_of(&sight->camera, homography, r, low, end);
     size_t box = end[0] > low[0] && end[1] > low[1] ? (size_t)(end[0] - low[0]) * (size_t)(end[1] - low[1]) : 0;
@@ -98,13 +100,13 @@ static weft_code find_patch(const weft_sight *sight, weft_rectangle r, const wef
 }
 
 weft_code weft_reference_pixels_find(const weft_sight *sight, const weft_target *target,
-                                     const weft_homography *homography, weft_smear smear,
+                                     const weft_homography *homography, weft_point_spread point_spread,
                                      weft_reference_pixels *reference, weft_error *error)
 {
     *reference = (weft_reference_pixels){0};
     for (int patch = 0; patch < WEFT_TARGET_REFERENCE_COUNT; patch++) {
         weft_code code =
-            find_patch(sight, weft_target_reference(target, patch), homography, smear, reference, patch, error);
+            find_patch(sight, weft_target_reference(target, patch), homography, point_spread, reference, patch, error);
         if (code != WEFT_OK) {
             weft_reference_pixels_free(reference);
             return code;

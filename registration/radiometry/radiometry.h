@@ -5,7 +5,7 @@
 
 #include "registration/pose/prediction.h"
 
-/* The pixels of the reference patches under one pose, away from their borders by the smear of the lens. */
+/* The pixels of the reference patches under one pose, away from their borders by the point spread of the lens. */
 typedef struct weft_reference_pixels {
     int count[WEFT_TARGET_REFERENCE_COUNT];
     int32_t *pixel[WEFT_TARGET_REFERENCE_COUNT];    /* [count] indices into the photograph */
@@ -27,7 +27,7 @@ double weft_relative_irradiance(weft_vec3 light, double x_mm, double y_mm);
 
 /* The caller frees with weft_reference_pixels_free. Errors: WEFT_SYSTEM. */
 weft_code weft_reference_pixels_find(const weft_sight *sight, const weft_target *target,
-                                     const weft_homography *homography, weft_smear smear,
+                                     const weft_homography *homography, weft_point_spread point_spread,
                                      weft_reference_pixels *reference, weft_error *error);
 void weft_reference_pixels_free(weft_reference_pixels *reference);
 

@@ -2,7 +2,7 @@
 #ifndef WEFT_REGISTRATION_REPORT_REPORT_H
 #define WEFT_REGISTRATION_REPORT_REPORT_H
 
-#include "registration/registration.h"
+#include "registration/outcome/outcome.h"
 
 /* What there is to see of a stay; any may be NULL. */
 typedef struct weft_report_pictures {

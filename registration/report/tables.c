@@ -5,19 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char *weft_pose_source_name(const weft_view_pose *pose)
-{
-    switch (pose->source) {
-    case WEFT_POSE_DRAWING:
-        return pose->from_markers ? "rig, markers, drawing" : "rig, drawing";
-    case WEFT_POSE_MARKERS:
-        return "rig, markers";
-    case WEFT_POSE_FAILED:
-        break;
-    }
-    return "nothing";
-}
-
 static int ring_of_stay(const weft_registration *r, int stay)
 {
     return weft_ubo81_ring(r->survey.view[r->survey.stay[stay].view].theta_rad);

@@ -3,7 +3,7 @@
 #define WEFT_REGISTRATION_REPORT_TABLES_H
 
 #include "base/page.h"
-#include "registration/registration.h"
+#include "registration/outcome/outcome.h"
 
 /* The stays of one ring of views (as in ubo81: 0, 15 .. 75 degrees; the nearest counts). */
 typedef struct weft_ring_summary {
@@ -16,9 +16,6 @@ typedef struct weft_ring_summary {
 
 /* ring in [0, WEFT_RING_COUNT), or -1 for all. Pure. */
 weft_ring_summary weft_ring_summarise(const weft_session *session, const weft_registration *registration, int ring);
-
-/* "markers + drawing" and the like. Static text. */
-const char *weft_pose_source_name(const weft_view_pose *pose);
 
 /* Sections of the page, each with its heading; nothing where there is nothing to say. */
 void weft_write_faults(weft_page *page, const weft_session *session, const weft_registration *registration);

@@ -43,11 +43,11 @@ static square kept_from_frame(square s, double opening_mm, weft_pixel reach)
     return s;
 }
 
-/* Whether a pixel sees nothing but the sample: its square, and the smear around that, lie in the opening. */
+/* Whether a pixel sees nothing but the sample: its square, and the point spread around that, lie in the opening. */
 static bool is_clear(const weft_resampling *r, const weft_homography *inverse, int x, int y)
 {
     weft_pixel at = weft_camera_undistort(r->camera, (weft_pixel){x, y});
-    double reach = 0.5 + r->smear_px, half = r->opening_mm / 2;
+    double reach = 0.5 + r->point_spread_px, half = r->opening_mm / 2;
     for (int corner = 0; corner < 4; corner++) {
         double dx = corner % 2 ? reach : -reach, dy = corner / 2 ? reach : -reach;
         weft_pixel plate = weft_homography_apply(inverse, at.x + dx, at.y + dy);
@@ -165,7 +165,7 @@ static weft_code append_texel(const weft_resampling *r, const weft_homography *i
 {
     long first = t->used;
     weft_pixel reach =
-        reach_on_plate(&r->homography, inverse, s.left + s.width / 2, s.top - s.height / 2, 1 + r->smear_px);
+        reach_on_plate(&r->homography, inverse, s.left + s.width / 2, s.top - s.height / 2, 1 + r->point_spread_px);
     square inside = kept_from_frame(s, r->opening_mm, reach);
     bool is_inside = inside.left == s.left && inside.top == s.top;
     WEFT_TRY(append_square(r, is_inside ? NULL : inverse, s, least_share_seen, resampler, t, error));

@@ -25,16 +25,17 @@ typedef struct weft_resampling {
     const float *inverse_vignetting; /* [camera height][width]; NULL: none */
     weft_homography homography;      /* plate mm to undistorted pixels */
     double opening_mm;
-    double smear_px; /* reach of the lens's smear beyond a pixel's own square */
-    bool fill;       /* texels that are not seen take the nearest place that is */
+    double point_spread_px; /* reach of the point spread of the lens beyond a pixel's own square */
+    bool fill;              /* texels that are not seen take the nearest place that is */
 } weft_resampling;
 
 /* Weights by area, as in conservative remapping (Jones 1999): a pixel counts as much of a texel as its square covers of
  * the texel's quadrangle in the photograph, computed exactly. A pixel is itself an average over its square, so nothing
  * is interpolated, no weight is negative and none rings at a glint. Beside the frame only pixels count whose square,
- * and the smear around it, lies in the opening, so that the bright print does not leak in. A texel of which less than
- * a quarter is seen so has no taps, or, where texels are filled, those of its square moved inward until all of it is
- * seen. The caller frees with weft_resampler_free. Errors: WEFT_BAD_INPUT for a size that is not positive; WEFT_SYSTEM.
+ * and the point spread around it, lies in the opening, so that the bright print does not leak in. A texel of which less
+ * than a quarter is seen so has no taps, or, where texels are filled, those of its square moved inward until all of it
+ * is seen. The caller frees with weft_resampler_free. Errors: WEFT_BAD_INPUT for a size that is not positive;
+ * WEFT_SYSTEM.
  */
 weft_code weft_resampler_create(const weft_resampling *resampling, int width, int height, weft_resampler *resampler,
                                 weft_error *error);

@@ -25,18 +25,18 @@ static void write_plan(void)
     assert_int_equal(fclose(file), 0);
 }
 
-weft_capture_request small_session_request(void)
+virtual_session small_session_request(void)
 {
     write_plan();
-    weft_capture_request request = weft_capture_request_default();
-    request.folder = "session";
-    request.plan = "plan.csv";
-    request.sample = WEFT_ASSETS "/weaves/polyester_lining.wv";
-    request.truth_size = 4;
-    request.truth_images = 5;
-    request.settings.width_px = request.settings.height_px = SMALL_SIZE;
-    request.settings.focal_length_px = 440;
-    request.settings.samples_per_pixel = 2;
+    virtual_session request = {.rig = {.seed = 1, .settings = weft_virtual_settings_default()}};
+    request.capture.folder = "session";
+    request.capture.plan = "plan.csv";
+    request.rig.sample = WEFT_ASSETS "/weaves/polyester_lining.wv";
+    request.truth.size = 4;
+    request.truth.image_count = 5;
+    request.rig.settings.rig.width_px = request.rig.settings.rig.height_px = SMALL_SIZE;
+    request.rig.settings.rig.focal_length_px = 440;
+    request.rig.settings.samples_per_pixel = 2;
     return request;
 }
 

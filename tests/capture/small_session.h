@@ -2,12 +2,12 @@
 #ifndef WEFT_TESTS_SMALL_SESSION_H
 #define WEFT_TESTS_SMALL_SESSION_H
 
-#include "capture/capture.h"
+#include "tests/support/virtual_session.h"
 
 enum { SMALL_SHOTS = 25, SMALL_SIZE = 96 };
 
 /* Writes its plan to plan.csv in the current folder. The folder of the session is "session". */
-weft_capture_request small_session_request(void);
+virtual_session small_session_request(void);
 
 /* Asserts that the session in `folder` is whole: the journal names every shot once in complete lines, every photograph
  * matches size and checksum and can be read, and nothing else lies beside them. */

@@ -1,44 +1,25 @@
 /* The virtual rig with a sample that has depth. */
-#include "capture/capture.h"
 #include "capture/virtual/ground_truth.h"
-#include "capture/virtual/virtual_rig.h"
 #include "tests/support/cmocka_all.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static weft_virtual_sample sample;
-
-static weft_rig_settings exact_settings(void)
+static weft_virtual_settings exact_settings(void)
 {
-    weft_rig_settings settings = weft_rig_settings_default();
-    settings.width_px = settings.height_px = 312;
-    settings.opening_mm = 7.2;
-    settings.focal_length_px = 6400;
-    settings.bits = 16;
+    weft_virtual_settings settings = weft_virtual_settings_default();
+    settings.rig.width_px = settings.rig.height_px = 312;
+    settings.rig.opening_mm = 7.2;
+    settings.rig.focal_length_px = 6400;
+    settings.rig.bits = 16;
     settings.full_well_electrons = 1e7;
     settings.sensitivity_electrons = 1e7;
     settings.read_noise_electrons = 0;
     settings.light_power_drift = 0;
-    settings.vignetting_r2 = settings.vignetting_r4 = 0;
+    settings.rig.vignetting_r2 = settings.rig.vignetting_r4 = 0;
     settings.mounting_rotation_deg = settings.mounting_translation_mm = 0;
     settings.stay_rotation_deg = settings.stay_translation_mm = settings.light_rotation_deg = 0;
     return settings;
-}
-
-static int read_sample(void **state)
-{
-    (void)state;
-    weft_rig_settings settings = exact_settings();
-    char warning[WEFT_MESSAGE_SIZE];
-    return weft_virtual_sample_read(WEFT_ASSETS "/stitches/plain_knit.stitch", &settings, 1, &sample, warning, NULL);
-}
-
-static int free_sample(void **state)
-{
-    (void)state;
-    weft_virtual_sample_free(&sample);
-    return 0;
 }
 
 static weft_angles degrees(double theta_deg, double phi_deg)
@@ -58,17 +39,17 @@ static double mean_over(const weft_virtual_world *world, const weft_pose *pose, 
         double y_mm = where.y0 + (i / PLACES + 0.5) / PLACES * (where.y1 - where.y0);
         weft_pixel at = weft_camera_distort(&world->camera, weft_homography_apply(&homography, x_mm, y_mm));
         size_t pixel = (size_t)lround(at.y) * (size_t)world->camera.width + (size_t)lround(at.x);
-        sum += samples[3 * pixel + 1] - world->settings.black_level;
+        sum += samples[3 * pixel + 1] - world->settings.rig.black_level;
     }
     return sum / (PLACES * PLACES);
 }
 
-static double true_mean(const weft_virtual_sample *of, weft_vec3 light, weft_vec3 camera)
+static double true_mean(const weft_virtual_sample *sample, weft_vec3 light, weft_vec3 camera)
 {
     enum { TEXELS = 37 };
     double sum = 0;
     for (int i = 0; i < TEXELS * TEXELS; i++)
-        sum += weft_truth_reflectance(of, TEXELS, i % TEXELS, i / TEXELS, light, camera).g;
+        sum += weft_truth_reflectance(sample, TEXELS, i % TEXELS, i / TEXELS, light, camera).g;
     return sum / (TEXELS * TEXELS);
 }
 
@@ -77,41 +58,43 @@ static void the_photograph_of_the_cloth_is_as_bright_as_the_truth_says(void **st
 {
     (void)state;
     static const double cases[3][4] = {{0, 0, 40, 30}, {55, 90, 20, 200}, {70, 10, 60, 120}};
-    weft_rig_settings settings = exact_settings();
-    weft_virtual_world world = weft_virtual_world_of(&settings, 5);
-    weft_target target = weft_target_for_opening(settings.opening_mm);
+    weft_virtual_request request = {WEFT_ASSETS "/stitches/plain_knit.stitch", 5, exact_settings()};
+    weft_virtual_rig virtual;
+    assert_int_equal(weft_virtual_rig_open(&request, &virtual, NULL), WEFT_OK);
+    const weft_virtual_world *world = &virtual.world;
+    weft_rig *rig = &virtual.rig;
+    weft_target target = weft_target_for_opening(rig->settings.opening_mm);
     double read_back_s;
-    weft_rig rig;
     bool moved;
-    uint16_t *samples = malloc(3 * (size_t)settings.width_px * (size_t)settings.height_px * sizeof *samples);
+    uint16_t *samples = malloc(3 * (size_t)world->camera.width * (size_t)world->camera.height * sizeof *samples);
     assert_non_null(samples);
-    assert_int_equal(weft_rig_virtual_open(&world, &target, &sample, 0, &rig, NULL), WEFT_OK);
+    assert_int_equal(rig->stage.home(rig->stage.device, 0, NULL), WEFT_OK);
     for (int i = 0; i < 3; i++) {
         weft_angles view = degrees(cases[i][0], cases[i][1]), light = degrees(cases[i][2], cases[i][3]);
-        rig.stage.move_camera(rig.stage.device, view, &moved, NULL);
-        rig.stage.move_light(rig.stage.device, light, NULL);
-        rig.light.power(rig.light.device, true, NULL);
-        assert_int_equal(rig.camera.expose(rig.camera.device, 1, 0.005, samples, &read_back_s, NULL), WEFT_OK);
-        weft_pose pose = weft_virtual_world_pose(&world, view, i);
-        weft_vec3 true_light = weft_virtual_world_light(&world, light, i);
+        rig->stage.move_camera(rig->stage.device, view, &moved, NULL);
+        rig->stage.move_light(rig->stage.device, light, NULL);
+        rig->light.power(rig->light.device, true, NULL);
+        assert_int_equal(rig->camera.expose(rig->camera.device, 1, 0.005, samples, &read_back_s, NULL), WEFT_OK);
+        weft_pose pose = weft_virtual_world_pose(world, view, i);
+        weft_vec3 true_light = weft_virtual_world_light(world, light, i);
         weft_rectangle tiles = {-1.8, -2.16, 1.8, 2.16}, patch = weft_target_reference(&target, 0);
         weft_rectangle inner = {0.7 * patch.x0 + 0.3 * patch.x1, 0.7 * patch.y0 + 0.3 * patch.y1,
                                 0.3 * patch.x0 + 0.7 * patch.x1, 0.3 * patch.y0 + 0.7 * patch.y1};
-        double white = mean_over(&world, &pose, samples, inner) / target.white_reflectance;
+        double white = mean_over(world, &pose, samples, inner) / target.white_reflectance;
         double cosine = weft_unit(true_light).z;
-        double found = mean_over(&world, &pose, samples, tiles) / white * cosine;
-        double expected = true_mean(&sample, true_light, weft_pose_camera_position(&pose));
+        double found = mean_over(world, &pose, samples, tiles) / white * cosine;
+        double expected = true_mean(&virtual.sample, true_light, weft_pose_camera_position(&pose));
         print_message("view %g: photograph %.4f, truth %.4f\n", cases[i][0], found, expected);
         assert_float_equal(found / expected, 1, 0.02);
     }
-    rig.close(rig.back_end);
+    weft_virtual_rig_close(&virtual);
     free(samples);
 }
 
 static void tiles_of_a_stitch_cannot_be_chosen(void **state)
 {
     (void)state;
-    weft_rig_settings settings = exact_settings();
+    weft_virtual_settings settings = exact_settings();
     weft_virtual_sample refused;
     char warning[WEFT_MESSAGE_SIZE];
     weft_error error = {0};
@@ -128,5 +111,5 @@ int main(void)
         cmocka_unit_test(the_photograph_of_the_cloth_is_as_bright_as_the_truth_says),
         cmocka_unit_test(tiles_of_a_stitch_cannot_be_chosen),
     };
-    return cmocka_run_group_tests(tests, read_sample, free_sample);
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,13 +14,13 @@
  * OpenMP thread, for those would not survive fork.) */
 static pid_t start_run(void)
 {
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
         weft_capture_summary summary;
         weft_error error = {0};
-        weft_code code = weft_capture_run(&request, NULL, NULL, &summary, &error);
+        weft_code code = virtual_session_take(&request, NULL, NULL, &summary, &error);
         if (code != WEFT_OK)
             fprintf(stderr, "%s\n", error.message);
         _exit((int)code);

@@ -6,36 +6,17 @@
 
 /* A small rig without noise, whose raw values are proportional to radiance. */
 typedef struct fixture {
-    weft_rig_settings settings;
-    weft_virtual_world world;
+    weft_virtual_rig virtual;
     weft_target target;
-    weft_rig rig;
     uint16_t *samples;
 } fixture;
 
-static weft_virtual_sample cloth;
-
-static int read_cloth(void **state)
+static weft_virtual_settings quiet_settings(void)
 {
-    (void)state;
-    weft_rig_settings settings = weft_rig_settings_default();
-    char warning[WEFT_MESSAGE_SIZE];
-    return weft_virtual_sample_read(WEFT_ASSETS "/weaves/polyester_lining.wv", &settings, 1, &cloth, warning, NULL);
-}
-
-static int free_cloth(void **state)
-{
-    (void)state;
-    weft_virtual_sample_free(&cloth);
-    return 0;
-}
-
-static weft_rig_settings quiet_settings(void)
-{
-    weft_rig_settings settings = weft_rig_settings_default();
-    settings.width_px = settings.height_px = 208;
-    settings.focal_length_px = 960;
-    settings.bits = 16;
+    weft_virtual_settings settings = weft_virtual_settings_default();
+    settings.rig.width_px = settings.rig.height_px = 208;
+    settings.rig.focal_length_px = 960;
+    settings.rig.bits = 16;
     settings.full_well_electrons = 1e7;
     settings.sensitivity_electrons = 2e7;
     settings.read_noise_electrons = 0;
@@ -43,19 +24,20 @@ static weft_rig_settings quiet_settings(void)
     return settings;
 }
 
-static void open_rig(const weft_rig_settings *settings, fixture *f)
+static void open_rig(const weft_virtual_settings *settings, fixture *f)
 {
-    f->settings = *settings;
-    f->world = weft_virtual_world_of(settings, 5);
-    f->target = weft_target_for_opening(settings->opening_mm);
-    assert_int_equal(weft_rig_virtual_open(&f->world, &f->target, &cloth, 0, &f->rig, NULL), WEFT_OK);
-    f->samples = malloc((size_t)settings->width_px * (size_t)settings->height_px * 3 * sizeof *f->samples);
+    weft_virtual_request request = {WEFT_ASSETS "/weaves/polyester_lining.wv", 5, *settings};
+    assert_int_equal(weft_virtual_rig_open(&request, &f->virtual, NULL), WEFT_OK);
+    const weft_rig_stage *stage = &f->virtual.rig.stage;
+    assert_int_equal(stage->home(stage->device, 0, NULL), WEFT_OK);
+    f->target = weft_target_for_opening(settings->rig.opening_mm);
+    f->samples = malloc((size_t)settings->rig.width_px * (size_t)settings->rig.height_px * 3 * sizeof *f->samples);
     assert_non_null(f->samples);
 }
 
 static void close_rig(fixture *f)
 {
-    f->rig.close(f->rig.back_end);
+    weft_virtual_rig_close(&f->virtual);
     free(f->samples);
 }
 
@@ -69,7 +51,7 @@ static bool photograph(fixture *f, weft_angles view, weft_angles light, double e
 {
     bool moved;
     double read_back_s;
-    weft_rig *rig = &f->rig;
+    weft_rig *rig = &f->virtual.rig;
     assert_int_equal(rig->stage.move_camera(rig->stage.device, view, &moved, NULL), WEFT_OK);
     assert_int_equal(rig->stage.move_light(rig->stage.device, light, NULL), WEFT_OK);
     assert_int_equal(rig->light.power(rig->light.device, on, NULL), WEFT_OK);
@@ -80,14 +62,15 @@ static bool photograph(fixture *f, weft_angles view, weft_angles light, double e
 
 static double raw(const fixture *f, int x, int y)
 {
-    return f->samples[3 * ((size_t)y * (size_t)f->settings.width_px + (size_t)x)] - f->settings.black_level;
+    return f->samples[3 * ((size_t)y * (size_t)f->virtual.world.settings.rig.width_px + (size_t)x)] -
+           f->virtual.world.settings.rig.black_level;
 }
 
 /* Pixel of the true camera that sees a point of the plate. */
 static weft_pixel project(const fixture *f, const weft_pose *pose, double x_mm, double y_mm)
 {
-    weft_homography homography = weft_homography_of_pose(&f->world.camera, pose);
-    return weft_camera_distort(&f->world.camera, weft_homography_apply(&homography, x_mm, y_mm));
+    weft_homography homography = weft_homography_of_pose(&f->virtual.world.camera, pose);
+    return weft_camera_distort(&f->virtual.world.camera, weft_homography_apply(&homography, x_mm, y_mm));
 }
 
 /* Mean raw value of a white patch over exposure, cosine, falloff and vignetting. */
@@ -103,7 +86,7 @@ static double normalised_white(const fixture *f, const weft_pose *pose, weft_vec
             weft_vec3 to_light = weft_subtract(light, weft_vec3_of(x_mm, y_mm, 0));
             double distance = weft_length(to_light);
             double irradiance = to_light.z / (distance * distance * distance);
-            double vignetting = weft_camera_vignetting(&f->world.camera, at);
+            double vignetting = weft_camera_vignetting(&f->virtual.world.camera, at);
             sum += raw(f, (int)lround(at.x), (int)lround(at.y)) / (exposure_s * irradiance * vignetting);
             count++;
         }
@@ -114,7 +97,7 @@ static double normalised_white(const fixture *f, const weft_pose *pose, weft_vec
 static void white_patches_obey_exposure_cosine_falloff_and_vignetting(void **state)
 {
     (void)state;
-    weft_rig_settings settings = quiet_settings();
+    weft_virtual_settings settings = quiet_settings();
     fixture f;
     open_rig(&settings, &f);
     const double cases[][5] = {{0, 0, 30, 0, 0.5}, {30, 90, 0, 0, 0.25}, {60, 200, 45, 10, 0.7}, {45, 300, 75, 120, 1}};
@@ -122,8 +105,8 @@ static void white_patches_obey_exposure_cosine_falloff_and_vignetting(void **sta
     for (int i = 0; i < 4; i++) {
         weft_angles view = degrees(cases[i][0], cases[i][1]), light = degrees(cases[i][2], cases[i][3]);
         photograph(&f, view, light, cases[i][4], true);
-        weft_pose pose = weft_virtual_world_pose(&f.world, view, i);
-        weft_vec3 true_light = weft_virtual_world_light(&f.world, light, i);
+        weft_pose pose = weft_virtual_world_pose(&f.virtual.world, view, i);
+        weft_vec3 true_light = weft_virtual_world_light(&f.virtual.world, light, i);
         for (int patch = 0; patch < WEFT_TARGET_REFERENCE_COUNT; patch++) {
             double white = normalised_white(&f, &pose, true_light, patch, cases[i][4]);
             reference = reference > 0 ? reference : white;
@@ -140,7 +123,7 @@ static double traced_print(const fixture *f, const weft_homography *to_plate, in
     double sum = 0;
     for (int i = 0; i < RAYS * RAYS; i++) {
         weft_pixel pixel = {x - 0.5 + (i % RAYS + 0.5) / RAYS, y - 0.5 + (i / RAYS + 0.5) / RAYS};
-        weft_pixel undistorted = weft_camera_undistort(&f->world.camera, pixel);
+        weft_pixel undistorted = weft_camera_undistort(&f->virtual.world.camera, pixel);
         weft_pixel plate = weft_homography_apply(to_plate, undistorted.x, undistorted.y);
         sum += weft_target_reflectance(&f->target, plate.x, plate.y);
     }
@@ -150,14 +133,14 @@ static double traced_print(const fixture *f, const weft_homography *to_plate, in
 static void edges_of_the_print_lie_where_the_true_camera_sees_them(void **state)
 {
     (void)state;
-    weft_rig_settings settings = quiet_settings();
+    weft_virtual_settings settings = quiet_settings();
     settings.aperture_mm = 0;
     settings.samples_per_pixel = 64;
     fixture f;
     open_rig(&settings, &f);
     photograph(&f, degrees(45, 30), degrees(20, 200), 0.5, true);
-    weft_pose pose = weft_virtual_world_pose(&f.world, degrees(45, 30), 0);
-    weft_homography to_pixels = weft_homography_of_pose(&f.world.camera, &pose);
+    weft_pose pose = weft_virtual_world_pose(&f.virtual.world, degrees(45, 30), 0);
+    weft_homography to_pixels = weft_homography_of_pose(&f.virtual.world.camera, &pose);
     weft_homography to_plate = weft_homography_inverse(&to_pixels);
     weft_rectangle marker = weft_target_marker(&f.target, 3);
     weft_pixel at = project(&f, &pose, (marker.x0 + marker.x1) / 2, (marker.y0 + marker.y1) / 2);
@@ -186,7 +169,7 @@ static void edges_of_the_print_lie_where_the_true_camera_sees_them(void **state)
 /* How much a wide pupil changes a photograph, relative to its contrast. */
 static double blur_of_wide_pupil(weft_angles view)
 {
-    weft_rig_settings settings = quiet_settings();
+    weft_virtual_settings settings = quiet_settings();
     fixture sharp, wide;
     settings.samples_per_pixel = 32;
     settings.aperture_mm = 0;
@@ -216,7 +199,7 @@ static void grazing_views_are_out_of_focus_and_frontal_ones_are_not(void **state
 static void the_camera_in_the_way_of_the_light_darkens_the_photograph(void **state)
 {
     (void)state;
-    weft_rig_settings settings = quiet_settings();
+    weft_virtual_settings settings = quiet_settings();
     fixture f;
     open_rig(&settings, &f);
     photograph(&f, degrees(45, 0), degrees(45, 0), 0.5, true);
@@ -230,8 +213,8 @@ static void the_camera_in_the_way_of_the_light_darkens_the_photograph(void **sta
 static void without_light_only_the_read_noise_remains(void **state)
 {
     (void)state;
-    weft_rig_settings settings = quiet_settings();
-    settings.full_well_electrons = (1 << 16) - 1 - settings.black_level; /* one electron a step */
+    weft_virtual_settings settings = quiet_settings();
+    settings.full_well_electrons = (1 << 16) - 1 - settings.rig.black_level; /* one electron a step */
     settings.read_noise_electrons = 10;
     fixture f;
     open_rig(&settings, &f);
@@ -251,7 +234,7 @@ static void without_light_only_the_read_noise_remains(void **state)
 static void a_stay_lasts_until_the_camera_axes_move(void **state)
 {
     (void)state;
-    weft_rig_settings settings = quiet_settings();
+    weft_virtual_settings settings = quiet_settings();
     fixture f;
     open_rig(&settings, &f);
     assert_true(photograph(&f, degrees(30, 0), degrees(30, 90), 0.5, true));
@@ -261,8 +244,8 @@ static void a_stay_lasts_until_the_camera_axes_move(void **state)
     assert_true(raw(&f, 60, 60) == first);
     assert_true(photograph(&f, degrees(30, 60), degrees(30, 90), 0.5, true));
     assert_true(photograph(&f, degrees(30, 0), degrees(30, 90), 0.5, true));
-    weft_pose pose = weft_virtual_world_pose(&f.world, degrees(30, 0), 0);
-    weft_pose again = weft_virtual_world_pose(&f.world, degrees(30, 0), 2);
+    weft_pose pose = weft_virtual_world_pose(&f.virtual.world, degrees(30, 0), 0);
+    weft_pose again = weft_virtual_world_pose(&f.virtual.world, degrees(30, 0), 2);
     double shift_mm = weft_length(weft_subtract(pose.translation, again.translation));
     assert_true(shift_mm > 0.001 && shift_mm < 2);
     close_rig(&f);
@@ -271,10 +254,10 @@ static void a_stay_lasts_until_the_camera_axes_move(void **state)
 static void errors_of_a_stay_have_the_size_that_the_settings_say(void **state)
 {
     (void)state;
-    weft_rig_settings settings = weft_rig_settings_default();
+    weft_virtual_settings settings = weft_virtual_settings_default();
     settings.mounting_rotation_deg = settings.mounting_translation_mm = 0;
     weft_virtual_world world = weft_virtual_world_of(&settings, 3);
-    weft_pose nominal = weft_pose_of_view(degrees(0, 0), settings.camera_distance_mm);
+    weft_pose nominal = weft_pose_of_view(degrees(0, 0), settings.rig.camera_distance_mm);
     double squares = 0;
     const int stays = 3000;
     for (int stay = 0; stay < stays; stay++) {
@@ -296,5 +279,5 @@ int main(void)
         cmocka_unit_test(a_stay_lasts_until_the_camera_axes_move),
         cmocka_unit_test(errors_of_a_stay_have_the_size_that_the_settings_say),
     };
-    return cmocka_run_group_tests(tests, read_cloth, free_cloth);
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,18 +18,18 @@ static void remove_session(void)
     assert_int_equal(system("rm -rf session session.truth.h5"), 0);
 }
 
-static weft_code run(const weft_capture_request *request, weft_capture_summary *summary, weft_error *error)
+static weft_code run(const virtual_session *request, weft_capture_summary *summary, weft_error *error)
 {
     *error = (weft_error){0};
-    return weft_capture_run(request, NULL, NULL, summary, error);
+    return virtual_session_take(request, NULL, NULL, summary, error);
 }
 
 static uint32_t crc_of_run(uint64_t seed, int threads)
 {
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
-    request.seed = seed;
+    request.rig.seed = seed;
     omp_set_num_threads(threads);
     assert_int_equal(run(&request, &summary, &error), WEFT_OK);
     omp_set_num_threads(2);
@@ -49,14 +49,14 @@ static void a_seed_gives_the_same_bytes_for_any_number_of_threads(void **state)
 }
 
 /* The largest raw value in the white patches, drawn in by a third. */
-static int brightest_white(const weft_capture_request *request, const weft_session *session, int shot)
+static int brightest_white(const virtual_session *request, const weft_session *session, int shot)
 {
     uint16_t *samples = malloc(SMALL_SIZE * SMALL_SIZE * 3 * sizeof *samples);
     char path[PATH_MAX];
     weft_session_photograph_path(session, shot, path, sizeof path);
     assert_non_null(samples);
     assert_int_equal(weft_photograph_read(path, SMALL_SIZE, SMALL_SIZE, session->bits, samples, NULL), WEFT_OK);
-    weft_virtual_world world = weft_virtual_world_of(&request->settings, request->seed);
+    weft_virtual_world world = weft_virtual_world_of(&request->rig.settings, request->rig.seed);
     weft_pose pose = weft_virtual_world_pose(&world, session->shot[shot].view, session->record[shot].stay);
     weft_homography homography = weft_homography_of_pose(&world.camera, &pose);
     int brightest = 0;
@@ -75,7 +75,7 @@ static int brightest_white(const weft_capture_request *request, const weft_sessi
 static void exposures_stay_within_limits_and_white_patches_below_saturation(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
     weft_session session;
@@ -86,8 +86,8 @@ static void exposures_stay_within_limits_and_white_patches_below_saturation(void
     int used = 0;
     for (int shot = 0; shot < SMALL_SHOTS; shot++) {
         double exposure_s = session.record[shot].exposure_s;
-        assert_true(exposure_s >= request.settings.shortest_exposure_s - 1e-6 &&
-                    exposure_s <= request.settings.longest_exposure_s);
+        assert_true(exposure_s >= request.rig.settings.rig.shortest_exposure_s - 1e-6 &&
+                    exposure_s <= request.rig.settings.rig.longest_exposure_s);
         int white = brightest_white(&request, &session, shot);
         assert_true(white < 4095);
         used += white > 0.6 * 4095;
@@ -101,11 +101,11 @@ static void exposures_stay_within_limits_and_white_patches_below_saturation(void
 static void exposures_that_time_out_are_repeated(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
-    request.settings.timeout_probability = 0.3;
-    request.settings.retries = 20;
+    request.rig.settings.timeout_probability = 0.3;
+    request.rig.settings.rig.retries = 20;
     assert_int_equal(run(&request, &summary, &error), WEFT_OK);
     assert_true(summary.timeouts > 0);
     small_session_assert_whole("session");
@@ -115,11 +115,11 @@ static void exposures_that_time_out_are_repeated(void **state)
 static void a_camera_that_never_delivers_ends_the_run_with_its_message(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
-    request.settings.timeout_probability = 0.9;
-    request.settings.retries = 1;
+    request.rig.settings.timeout_probability = 0.9;
+    request.rig.settings.rig.retries = 1;
     assert_int_equal(run(&request, &summary, &error), WEFT_SYSTEM);
     assert_non_null(strstr(error.message, "timed out"));
     assert_int_equal(small_session_journal_lines("session"), summary.taken);
@@ -129,7 +129,7 @@ static void a_camera_that_never_delivers_ends_the_run_with_its_message(void **st
 static void a_full_disk_ends_the_run_cleanly_and_it_goes_on_later(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
     scratch_limit_file_size(20000);
@@ -147,10 +147,10 @@ static void a_full_disk_ends_the_run_cleanly_and_it_goes_on_later(void **state)
 static void a_disk_that_fills_under_the_truth_leaves_no_half_file(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
-    request.truth_size = 64;
+    request.truth.size = 64;
     scratch_limit_file_size(50000);
     weft_code code = run(&request, &summary, &error);
     scratch_limit_file_size(0);
@@ -166,10 +166,10 @@ static void a_disk_that_fills_under_the_truth_leaves_no_half_file(void **state)
 static void a_place_where_the_truth_cannot_go_is_named_before_the_first_photograph(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
-    request.truth = "absent/truth.h5";
+    request.truth.path = "absent/truth.h5";
     assert_int_equal(run(&request, &summary, &error), WEFT_SYSTEM);
     assert_non_null(strstr(error.message, "absent"));
     assert_int_equal(summary.taken, 0);
@@ -179,11 +179,11 @@ static void a_place_where_the_truth_cannot_go_is_named_before_the_first_photogra
 static void a_sample_file_whose_name_is_not_utf_8_is_photographed(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
-    assert_int_equal(symlink(request.sample, "soi\xe9.wv"), 0);
-    request.sample = "soi\xe9.wv";
+    assert_int_equal(symlink(request.rig.sample, "soi\xe9.wv"), 0);
+    request.rig.sample = "soi\xe9.wv";
     assert_int_equal(run(&request, &summary, &error), WEFT_OK);
     assert_int_equal(run(&request, &summary, &error), WEFT_OK);
     assert_int_equal(summary.found, SMALL_SHOTS);
@@ -204,12 +204,12 @@ static void stop_after_seven(void *context, const char *stage, long done, long t
 static void a_stop_completes_the_shot_in_flight_and_the_next_run_goes_on(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error = {0};
     weft_progress progress = {stop_after_seven, NULL};
     stop = 0;
-    assert_int_equal(weft_capture_run(&request, &stop, &progress, &summary, &error), WEFT_SYSTEM);
+    assert_int_equal(virtual_session_take(&request, &stop, &progress, &summary, &error), WEFT_SYSTEM);
     assert_non_null(strstr(error.message, "stopped, 7 of 25 photographs"));
     assert_int_equal(run(&request, &summary, &error), WEFT_OK);
     assert_int_equal(summary.found, 7);
@@ -221,25 +221,25 @@ static void a_stop_completes_the_shot_in_flight_and_the_next_run_goes_on(void **
 static void another_seed_sample_rig_or_plan_does_not_continue_a_session(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
     assert_int_equal(run(&request, &summary, &error), WEFT_OK);
     uint32_t crc = small_session_crc("session");
-    weft_capture_request other = request;
-    other.seed = 2;
+    virtual_session other = request;
+    other.rig.seed = 2;
     assert_int_equal(run(&other, &summary, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "seed"));
     other = request;
-    other.sample = WEFT_ASSETS "/weaves/wool_gabardine.wv";
+    other.rig.sample = WEFT_ASSETS "/weaves/wool_gabardine.wv";
     assert_int_equal(run(&other, &summary, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "sample"));
     other = request;
-    other.settings.aperture_mm = 3;
+    other.rig.settings.aperture_mm = 3;
     assert_int_equal(run(&other, &summary, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "aperture_mm"));
     other = request;
-    other.plan = "ubo81";
+    other.capture.plan = "ubo81";
     assert_int_equal(run(&other, &summary, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "plan"));
     assert_int_equal(small_session_crc("session"), crc);
@@ -249,7 +249,7 @@ static void another_seed_sample_rig_or_plan_does_not_continue_a_session(void **s
 static void a_folder_that_holds_other_files_is_left_alone(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
     assert_int_equal(mkdir("session", 0777), 0);
@@ -263,7 +263,7 @@ static void a_folder_that_holds_other_files_is_left_alone(void **state)
 static void two_captures_cannot_share_a_session(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_summary summary;
     weft_error error;
     assert_int_equal(mkdir("session", 0777), 0);
@@ -280,9 +280,9 @@ static void two_captures_cannot_share_a_session(void **state)
 static void a_rehearsal_counts_and_writes_nothing(void **state)
 {
     (void)state;
-    weft_capture_request request = small_session_request();
+    virtual_session request = small_session_request();
     weft_capture_rehearsal rehearsal;
-    assert_int_equal(weft_capture_rehearse(&request, &rehearsal, NULL), WEFT_OK);
+    assert_int_equal(virtual_session_rehearse(&request, &rehearsal, NULL), WEFT_OK);
     assert_int_equal(rehearsal.shot_count, SMALL_SHOTS);
     assert_int_equal(rehearsal.view_count, 5);
     assert_int_equal(rehearsal.driven_aside, 5);

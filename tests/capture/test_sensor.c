@@ -10,7 +10,7 @@ enum { COUNT = 1 << 19 };
 
 static weft_virtual_sensor make_sensor(double full_well, double read_noise)
 {
-    weft_rig_settings settings = weft_rig_settings_default();
+    weft_virtual_settings settings = weft_virtual_settings_default();
     settings.full_well_electrons = full_well;
     settings.read_noise_electrons = read_noise;
     weft_virtual_sensor sensor;

@@ -1,20 +1,20 @@
-#include "capture/settings.h"
+#include "capture/virtual/virtual_settings.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static weft_code read_text(const char *text, weft_rig_settings *settings, weft_error *error)
+static weft_code read_text(const char *text, weft_virtual_settings *settings, weft_error *error)
 {
-    *settings = weft_rig_settings_default();
+    *settings = weft_virtual_settings_default();
     scratch_store("rig.json", text, strlen(text));
-    return weft_rig_settings_read("rig.json", settings, error);
+    return weft_virtual_settings_read("rig.json", settings, error);
 }
 
 static void assert_refused(const char *text, const char *message)
 {
-    weft_rig_settings settings;
+    weft_virtual_settings settings;
     weft_error error = {0};
     assert_int_equal(read_text(text, &settings, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "rig.json"));
@@ -24,11 +24,11 @@ static void assert_refused(const char *text, const char *message)
 static void a_rig_file_overrides_what_it_names(void **state)
 {
     (void)state;
-    weft_rig_settings settings, defaults = weft_rig_settings_default();
+    weft_virtual_settings settings, defaults = weft_virtual_settings_default();
     assert_int_equal(read_text("{\"rig\": \"virtual\", \"k1\": -0.25, \"width_px\": 128}", &settings, NULL), WEFT_OK);
-    assert_true(settings.k1 == -0.25 && settings.width_px == 128);
-    defaults.k1 = -0.25;
-    defaults.width_px = 128;
+    assert_true(settings.rig.k1 == -0.25 && settings.rig.width_px == 128);
+    defaults.rig.k1 = -0.25;
+    defaults.rig.width_px = 128;
     assert_memory_equal(&settings, &defaults, sizeof settings);
 }
 
@@ -57,9 +57,9 @@ static void settings_that_contradict_each_other_are_refused(void **state)
 static void the_text_of_the_settings_reads_back(void **state)
 {
     (void)state;
-    weft_rig_settings settings = weft_rig_settings_default();
+    weft_virtual_settings settings = weft_virtual_settings_default();
     settings.aperture_mm = 2.125;
-    char *text = weft_rig_settings_text(&settings, 99, "silk.wv", 0xffffffffu);
+    char *text = weft_virtual_settings_text(&settings, 99, "silk.wv", 0xffffffffu);
     assert_non_null(text);
     assert_non_null(strstr(text, "\"seed\":99"));
     assert_non_null(strstr(text, "\"sample_crc32\":4294967295"));

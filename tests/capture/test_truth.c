@@ -14,22 +14,21 @@
 enum { TEXELS = 8, IMAGES = 5, STAYS = 5 };
 
 static weft_session session;
-static weft_virtual_world world;
-static weft_virtual_sample cloth;
+static weft_virtual_rig rig;
 static double rotation[STAYS][3][3], translation[STAYS][3], light[SMALL_SHOTS][3];
 static int stay[SMALL_SHOTS], image_shot[IMAGES];
 static float reflectance[IMAGES][TEXELS][TEXELS][3];
 
-static weft_capture_request make_request(void)
+static virtual_session make_request(void)
 {
-    weft_capture_request request = small_session_request();
-    request.truth_size = TEXELS;
-    request.truth_images = IMAGES;
-    request.settings.bits = 16;
-    request.settings.full_well_electrons = 1e7;
-    request.settings.sensitivity_electrons = 8e8;
-    request.settings.samples_per_pixel = 32;
-    request.settings.light_power_drift = 0;
+    virtual_session request = small_session_request();
+    request.truth.size = TEXELS;
+    request.truth.image_count = IMAGES;
+    request.rig.settings.rig.bits = 16;
+    request.rig.settings.full_well_electrons = 1e7;
+    request.rig.settings.sensitivity_electrons = 8e8;
+    request.rig.settings.samples_per_pixel = 32;
+    request.rig.settings.light_power_drift = 0;
     return request;
 }
 
@@ -61,15 +60,11 @@ static int take_session(void **state)
 {
     if (scratch_folder_enter(state) != 0)
         return -1;
-    weft_capture_request request = make_request();
+    virtual_session request = make_request();
     weft_capture_summary summary;
-    char warning[WEFT_MESSAGE_SIZE];
-    world = weft_virtual_world_of(&request.settings, request.seed);
-    return weft_capture_run(&request, NULL, NULL, &summary, NULL) == WEFT_OK &&
+    return virtual_session_take(&request, NULL, NULL, &summary, NULL) == WEFT_OK &&
                    weft_session_open("session", &session, NULL) == WEFT_OK &&
-                   weft_virtual_sample_read(request.sample, &request.settings, request.seed, &cloth, warning, NULL) ==
-                       WEFT_OK &&
-                   load_truth()
+                   weft_virtual_rig_open(&request.rig, &rig, NULL) == WEFT_OK && load_truth()
                ? 0
                : -1;
 }
@@ -77,7 +72,7 @@ static int take_session(void **state)
 static int leave_session(void **state)
 {
     weft_session_free(&session);
-    weft_virtual_sample_free(&cloth);
+    weft_virtual_rig_close(&rig);
     return scratch_folder_leave(state);
 }
 
@@ -86,11 +81,11 @@ static void poses_and_lights_are_those_of_the_virtual_rig(void **state)
     (void)state;
     for (int shot = 0; shot < SMALL_SHOTS; shot++) {
         assert_int_equal(stay[shot], session.record[shot].stay);
-        weft_pose pose = weft_virtual_world_pose(&world, session.shot[shot].view, stay[shot]);
+        weft_pose pose = weft_virtual_world_pose(&rig.world, session.shot[shot].view, stay[shot]);
         assert_memory_equal(rotation[stay[shot]], pose.rotation, sizeof pose.rotation);
         assert_true(translation[stay[shot]][0] == pose.translation.x &&
                     translation[stay[shot]][2] == pose.translation.z);
-        weft_vec3 at = weft_virtual_world_light(&world, session.shot[shot].light_driven, stay[shot]);
+        weft_vec3 at = weft_virtual_world_light(&rig.world, session.shot[shot].light_driven, stay[shot]);
         assert_true(light[shot][0] == at.x && light[shot][1] == at.y && light[shot][2] == at.z);
     }
 }
@@ -113,10 +108,10 @@ static weft_rgb integrate_texel(int shot, int x, int y, int points)
         }
         camera_length = sqrt(camera_length);
         light_length = sqrt(light_length);
-        weft_weave_point point =
-            weft_weave_locate(&cloth.flat.weave, u * cloth.flat.tiles_x, v * cloth.flat.tiles_y, cloth.flat.noise_seed);
+        weft_weave_point point = weft_weave_locate(&rig.sample.flat.weave, u * rig.sample.flat.tiles_x,
+                                                   v * rig.sample.flat.tiles_y, rig.sample.flat.noise_seed);
         weft_rgb brdf = weft_weave_brdf(
-            &cloth.flat.weave, &point,
+            &rig.sample.flat.weave, &point,
             weft_vec3_of(to_light[0] / light_length, to_light[1] / light_length, to_light[2] / light_length),
             weft_vec3_of(to_camera[0] / camera_length, to_camera[1] / camera_length, to_camera[2] / camera_length));
         double weight = WEFT_PI * to_light[2] / light_length / (points * points);
@@ -156,19 +151,20 @@ static void reflectance_is_near_the_converged_mean_of_the_footprint(void **state
 static double photographed_texel(const uint16_t *samples, int shot, int x, int y)
 {
     enum { POINTS = 16 };
-    weft_pose pose = weft_virtual_world_pose(&world, session.shot[shot].view, stay[shot]);
-    weft_homography homography = weft_homography_of_pose(&world.camera, &pose);
-    const weft_rig_settings *s = &world.settings;
-    double electrons_per_step = s->full_well_electrons / (65535 - s->black_level), sum = 0;
+    weft_pose pose = weft_virtual_world_pose(&rig.world, session.shot[shot].view, stay[shot]);
+    weft_homography homography = weft_homography_of_pose(&rig.world.camera, &pose);
+    const weft_virtual_settings *s = &rig.world.settings;
+    double electrons_per_step = s->full_well_electrons / (65535 - s->rig.black_level), sum = 0;
     for (int i = 0; i < POINTS * POINTS; i++) {
         double x_mm = ((x + (i % POINTS + 0.5) / POINTS) / TEXELS - 0.5) * 32;
         double y_mm = (0.5 - (y + (i / POINTS + 0.5) / POINTS) / TEXELS) * 32;
-        weft_pixel at = weft_camera_distort(&world.camera, weft_homography_apply(&homography, x_mm, y_mm));
-        double raw = samples[3 * (lround(at.y) * SMALL_SIZE + lround(at.x))] - s->black_level;
+        weft_pixel at = weft_camera_distort(&rig.world.camera, weft_homography_apply(&homography, x_mm, y_mm));
+        double raw = samples[3 * (lround(at.y) * SMALL_SIZE + lround(at.x))] - s->rig.black_level;
         weft_vec3 to_light = {light[shot][0] - x_mm, light[shot][1] - y_mm, light[shot][2]};
-        double falloff = pow(weft_length(to_light) / s->light_distance_mm, 2);
+        double falloff = pow(weft_length(to_light) / s->rig.light_distance_mm, 2);
         sum += WEFT_PI * falloff * raw * electrons_per_step /
-               (s->sensitivity_electrons * session.record[shot].exposure_s * weft_camera_vignetting(&world.camera, at));
+               (s->sensitivity_electrons * session.record[shot].exposure_s *
+                weft_camera_vignetting(&rig.world.camera, at));
     }
     return sum / (POINTS * POINTS);
 }

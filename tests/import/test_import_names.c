@@ -11,7 +11,7 @@
 static void expect_angles(const char *name, double tl, double pl, double tv, double pv)
 {
     weft_named_angles angles;
-    assert_true(weft_parse_angle_name(name, &angles));
+    assert_true(weft_angle_name_parse(name, &angles));
     assert_float_equal(weft_deg_of_rad(angles.light.theta_rad), tl, 1e-9);
     assert_float_equal(weft_deg_of_rad(angles.light.phi_rad), pl, 1e-9);
     assert_float_equal(weft_deg_of_rad(angles.view.theta_rad), tv, 1e-9);
@@ -40,7 +40,7 @@ static void names_without_all_four_angles_are_left_out(void **state)
                                         ""};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         weft_named_angles angles;
-        if (weft_parse_angle_name(names[i], &angles))
+        if (weft_angle_name_parse(names[i], &angles))
             fail_msg("'%s' was read", names[i]);
     }
 }
@@ -51,7 +51,7 @@ static void names_written_are_names_read(void **state)
     const weft_named_angles angles = {{weft_rad_of_deg(30), weft_rad_of_deg(120)},
                                       {weft_rad_of_deg(75), weft_rad_of_deg(345)}};
     char name[64];
-    weft_angle_name(&angles, name);
+    weft_angle_name_write(&angles, name);
     assert_string_equal(name, "tl030_pl120_tv075_pv345");
     expect_angles(name, 30, 120, 75, 345);
 }

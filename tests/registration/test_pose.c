@@ -57,9 +57,9 @@ static weft_view_pose find(const plate_scene *what, double tilt_deg, double *err
     weft_homography promised;
     float *picture = photograph(what, tilt_deg, &pose, &promised);
     weft_view_pose found;
-    assert_int_equal(
-        weft_find_pose(&sight, &what->target, picture, &promised, (weft_smear){0, 0}, &limits, &found, NULL, NULL),
-        WEFT_OK);
+    assert_int_equal(weft_pose_find(&sight, &what->target, picture, &promised, (weft_point_spread){0, 0}, &limits,
+                                    &found, NULL, NULL),
+                     WEFT_OK);
     *error = error_texels(&pose, &found.homography);
     free(picture);
     return found;
@@ -80,13 +80,13 @@ static void poses_are_found_at_every_tilt_with_noise_defocus_and_a_light_gradien
     }
 }
 
-static void the_smear_of_the_lens_is_found_with_the_pose(void **state)
+static void the_point_spread_of_the_lens_is_found_with_the_pose(void **state)
 {
     (void)state;
     double error;
     weft_view_pose found = find(&scene, 60, &error);
     /* A disc of radius 16 |1 - focus / z| has a variance of a quarter of its square on each axis. */
-    assert_near(found.smear.depth / (16 * 16 / 4.0), 1, 0.25);
+    assert_near(found.point_spread.depth / (16 * 16 / 4.0), 1, 0.25);
 }
 
 static void markers_alone_come_within_half_a_texel(void **state)
@@ -114,7 +114,7 @@ static void the_rigs_promise_is_start_enough_without_markers(void **state)
     weft_refinement refinement = {.homography = promised};
     const double blur[] = {4, 1.5, 0};
     for (int i = 0; i < 3; i++)
-        assert_int_equal(weft_refine(&sight, picture, blur[i], &refinement, NULL, NULL), WEFT_OK);
+        assert_int_equal(weft_refinement_run(&sight, picture, blur[i], &refinement, NULL, NULL), WEFT_OK);
     assert_true(refinement.converged);
     assert_true(error_texels(&pose, &refinement.homography) < 0.025);
     free(picture);
@@ -150,7 +150,7 @@ static void darkness_fails(void **state)
     weft_view_pose found;
     float *black = calloc(SIZE * SIZE, sizeof *black);
     assert_int_equal(
-        weft_find_pose(&sight, &scene.target, black, &promised, (weft_smear){0, 0}, &limits, &found, NULL, NULL),
+        weft_pose_find(&sight, &scene.target, black, &promised, (weft_point_spread){0, 0}, &limits, &found, NULL, NULL),
         WEFT_OK);
     assert_int_equal(found.source, WEFT_POSE_FAILED);
     free(black);
@@ -164,9 +164,9 @@ static void a_plate_far_from_where_the_rig_promised_it_is_not_believed(void **st
     float *picture = photograph(&scene, 15, &pose, &promised);
     weft_pose_limits narrow = {0.001, 0.8};
     weft_view_pose found;
-    assert_int_equal(
-        weft_find_pose(&sight, &scene.target, picture, &promised, (weft_smear){0, 0}, &narrow, &found, NULL, NULL),
-        WEFT_OK);
+    assert_int_equal(weft_pose_find(&sight, &scene.target, picture, &promised, (weft_point_spread){0, 0}, &narrow,
+                                    &found, NULL, NULL),
+                     WEFT_OK);
     assert_int_equal(found.source, WEFT_POSE_FAILED);
     assert_non_null(strstr(found.remark, "promised"));
     free(picture);
@@ -176,7 +176,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(poses_are_found_at_every_tilt_with_noise_defocus_and_a_light_gradient),
-        cmocka_unit_test(the_smear_of_the_lens_is_found_with_the_pose),
+        cmocka_unit_test(the_point_spread_of_the_lens_is_found_with_the_pose),
         cmocka_unit_test(markers_alone_come_within_half_a_texel),
         cmocka_unit_test(the_rigs_promise_is_start_enough_without_markers),
         cmocka_unit_test(a_plate_covered_in_part_is_found_all_the_same),

@@ -26,8 +26,8 @@ static int look(void **state)
     homography = weft_homography_of_pose(&camera, &pose);
     samples = malloc(SIZE * SIZE * 3 * sizeof *samples);
     return samples && weft_sight_create(&camera, &target, 2, &sight, NULL) == WEFT_OK &&
-                   weft_reference_pixels_find(&sight, &target, &homography, (weft_smear){0, 0}, &reference, NULL) ==
-                       WEFT_OK
+                   weft_reference_pixels_find(&sight, &target, &homography, (weft_point_spread){0, 0}, &reference,
+                                              NULL) == WEFT_OK
                ? 0
                : -1;
 }

@@ -1,4 +1,3 @@
-#include "capture/capture.h"
 #include "registration/registration.h"
 
 #include "base/statistics.h"
@@ -6,6 +5,7 @@
 #include "tests/support/cmocka_all.h"
 #include "tests/support/ground_truth.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/virtual_session.h"
 
 #include <stdlib.h>
 
@@ -30,16 +30,12 @@ static int take_and_register(void **state)
     if (scratch_folder_enter(state) != 0)
         return -1;
     scratch_store("plan.csv", plan, sizeof plan - 1);
-    weft_capture_request request = {.folder = "session",
-                                    .plan = "plan.csv",
-                                    .sample = WEFT_ASSETS "/weaves/cotton_denim.wv",
-                                    .settings = weft_rig_settings_default(),
-                                    .seed = 5,
-                                    .truth_size = TEXELS,
-                                    .truth_images = TRUTH_IMAGES};
+    virtual_session request = {{"session", "plan.csv"},
+                               {WEFT_ASSETS "/weaves/cotton_denim.wv", 5, weft_virtual_settings_default()},
+                               {NULL, TEXELS, TRUTH_IMAGES}};
     weft_capture_summary summary;
     weft_error error = {0};
-    if (weft_capture_run(&request, NULL, NULL, &summary, &error) != WEFT_OK ||
+    if (virtual_session_take(&request, NULL, NULL, &summary, &error) != WEFT_OK ||
         weft_session_open("session", &session, &error) != WEFT_OK ||
         truth_read("session.truth.h5", &real, &error) != WEFT_OK) {
         print_error("%s\n", error.message);

@@ -70,17 +70,16 @@ static void fill_poses(const weft_session *session, const weft_virtual_world *wo
     }
 }
 
-static void fill_image(const weft_session *session, const weft_virtual_world *world, const weft_virtual_sample *sample,
-                       int shot, int size, float *reflectance)
+static void fill_image(const weft_session *session, const weft_virtual_rig *rig, int shot, int size, float *reflectance)
 {
     int stay = session->record[shot].stay;
-    weft_pose pose = weft_virtual_world_pose(world, session->shot[shot].view, stay);
+    weft_pose pose = weft_virtual_world_pose(&rig->world, session->shot[shot].view, stay);
     weft_vec3 camera = weft_pose_camera_position(&pose);
-    weft_vec3 light = weft_virtual_world_light(world, session->shot[shot].light_driven, stay);
+    weft_vec3 light = weft_virtual_world_light(&rig->world, session->shot[shot].light_driven, stay);
 #pragma omp parallel for schedule(dynamic, 4)
     for (int y = 0; y < size; y++) {
         for (int x = 0; x < size; x++) {
-            weft_rgb value = weft_truth_reflectance(sample, size, x, y, light, camera);
+            weft_rgb value = weft_truth_reflectance(&rig->sample, size, x, y, light, camera);
             float *texel = reflectance + 3 * ((size_t)y * (size_t)size + (size_t)x);
             texel[0] = (float)value.r;
             texel[1] = (float)value.g;
@@ -207,8 +206,7 @@ weft_code weft_truth_check_path(const weft_truth_request *request, const weft_se
     return WEFT_OK;
 }
 
-weft_code weft_truth_write(const weft_truth_request *request, const weft_session *session,
-                           const weft_virtual_world *world, const weft_virtual_sample *sample,
+weft_code weft_truth_write(const weft_truth_request *request, const weft_session *session, const weft_virtual_rig *rig,
                            const weft_progress *progress, weft_error *error)
 {
     truth t;
@@ -216,13 +214,13 @@ weft_code weft_truth_write(const weft_truth_request *request, const weft_session
     choose_path(request, session->folder, path);
     weft_code code = allocate_truth(request, session, &t, error);
     if (code == WEFT_OK) {
-        fill_poses(session, world, &t);
+        fill_poses(session, &rig->world, &t);
         size_t stride = (size_t)t.size * (size_t)t.size * 3;
         for (int image = 0; image < t.image_count; image++) {
-            fill_image(session, world, sample, t.image_shot[image], t.size, t.reflectance + (size_t)image * stride);
+            fill_image(session, rig, t.image_shot[image], t.size, t.reflectance + (size_t)image * stride);
             weft_progress_report(progress, "computing the ground truth", image + 1, t.image_count);
         }
-        code = write_file(path, &world->camera, sample->opening_mm, &t, error);
+        code = write_file(path, &rig->world.camera, rig->sample.opening_mm, &t, error);
     }
     free_truth(&t);
     return code;

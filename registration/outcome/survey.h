@@ -1,6 +1,6 @@
 /* What a session holds, as registration needs it: its distinct views, and its photographs by stay. */
-#ifndef WEFT_REGISTRATION_SURVEY_H
-#define WEFT_REGISTRATION_SURVEY_H
+#ifndef WEFT_REGISTRATION_OUTCOME_SURVEY_H
+#define WEFT_REGISTRATION_OUTCOME_SURVEY_H
 
 #include "btf/session/session.h"
 

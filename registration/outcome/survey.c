@@ -1,4 +1,4 @@
-#include "registration/survey.h"
+#include "registration/outcome/survey.h"
 
 #include <math.h>
 #include <stdio.h>

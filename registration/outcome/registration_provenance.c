@@ -1,7 +1,6 @@
-#include "registration/registration.h"
+#include "registration/outcome/outcome.h"
 
 #include "base/json_text.h"
-#include "registration/report/tables.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "import/collection.h"
+#include "import/readers.h"
 
 #include <fts.h>
 #include <stdbool.h>
@@ -38,7 +38,7 @@ static weft_code list_tree(FTS *tree, size_t folder_length, weft_lines *names, w
     return WEFT_OK;
 }
 
-weft_code weft_list_images(const char *folder, weft_lines *names, weft_error *error)
+weft_code weft_images_list(const char *folder, weft_lines *names, weft_error *error)
 {
     *names = (weft_lines){0};
     size_t length = strlen(folder);

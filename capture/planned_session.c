@@ -1,0 +1,55 @@
+#include "capture/planned_session.h"
+
+#include "capture/plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static weft_code describe(const char *folder, const weft_rig *rig, weft_session *session, weft_error *error)
+{
+    const weft_rig_settings *settings = &rig->settings;
+    session->folder = strdup(folder);
+    session->rig = strdup(rig->name);
+    session->sample = strdup(rig->sample);
+    session->rig_settings = strdup(rig->identity);
+    session->camera = weft_rig_settings_camera(settings);
+    session->camera_distance_mm = settings->camera_distance_mm;
+    session->light_distance_mm = settings->light_distance_mm;
+    session->bits = (int)settings->bits;
+    session->black_level = (int)settings->black_level;
+    session->target = weft_target_for_opening(settings->opening_mm);
+    if (!session->folder || !session->rig || !session->sample || !session->rig_settings)
+        return weft_fail_memory(error, "session", 0);
+    return WEFT_OK;
+}
+
+/* Takes the shots of the plan. */
+static weft_code adopt_plan(const char *name, const weft_rig *rig, weft_session *session, weft_error *error)
+{
+    weft_plan plan;
+    WEFT_TRY(weft_plan_read(name, &plan, error));
+    weft_plan_avoid_camera(&plan, weft_rad_of_deg(rig->settings.camera_half_angle_deg));
+    session->shot_count = plan.shot_count;
+    session->shot = plan.shot;
+    session->record = calloc((size_t)plan.shot_count, sizeof *session->record);
+    return session->record ? WEFT_OK : weft_fail_memory(error, "plan", (size_t)plan.shot_count * sizeof(weft_shot));
+}
+
+weft_code weft_session_of_plan(const char *folder, const char *plan, const weft_rig *rig, weft_session *session,
+                               weft_error *error)
+{
+    *session = (weft_session){0};
+    weft_code code = describe(folder, rig, session, error);
+    if (code == WEFT_OK)
+        code = adopt_plan(plan, rig, session, error);
+    if (code != WEFT_OK)
+        weft_session_free(session);
+    return code;
+}
+
+uint64_t weft_photograph_bytes(const weft_session *session)
+{
+    const uint64_t header = 2048;
+    uint64_t bits = (uint64_t)session->camera.width * (uint64_t)session->camera.height * 3 * (uint64_t)session->bits;
+    return bits / 8 + header;
+}

@@ -1,0 +1,15 @@
+/* A session before its first photograph: what follows from a plan and a rig. */
+#ifndef WEFT_CAPTURE_PLANNED_SESSION_H
+#define WEFT_CAPTURE_PLANNED_SESSION_H
+
+#include "capture/rig.h"
+
+/* The session that `rig` takes by `plan` ("ubo81" or a CSV file, see capture/plan.h) in `folder`; nothing of it is on
+ * disk. The caller frees with weft_session_free. Errors: WEFT_BAD_INPUT naming the file of the plan; WEFT_SYSTEM. */
+weft_code weft_session_of_plan(const char *folder, const char *plan, const weft_rig *rig, weft_session *session,
+                               weft_error *error);
+
+/* Bytes that a photograph of the session takes on disk, rounded up. Pure. */
+uint64_t weft_photograph_bytes(const weft_session *session);
+
+#endif

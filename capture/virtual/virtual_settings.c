@@ -1,0 +1,73 @@
+#include "capture/virtual/virtual_settings.h"
+
+#include "base/json_text.h"
+#include "geometry/light/stitch_sample.h"
+
+#include <string.h>
+
+enum { GROUP_COUNT = 2 };
+
+#define REAL(name, value, low, high) WEFT_SETTING(weft_virtual_settings, name, value, low, high, false)
+#define WHOLE(name, value, low, high) WEFT_SETTING(weft_virtual_settings, name, value, low, high, true)
+
+static const weft_rig_setting table[] = {
+    REAL(full_well_electrons, 240000, 100, 1e7),
+    REAL(read_noise_electrons, 10, 0, 1000),
+    REAL(sensitivity_electrons, 2e7, 1, 1e12),
+    REAL(aperture_mm, 4, 0, 100),
+    WHOLE(samples_per_pixel, 12, 1, 64),
+    REAL(focal_length_error, 0.0005, -0.1, 0.1),
+    REAL(principal_point_error_px, 0.2, 0, 10),
+    REAL(k1_error, 0.02, -0.5, 0.5),
+    REAL(mounting_rotation_deg, 0.3, 0, 5),
+    REAL(mounting_translation_mm, 0.3, 0, 10),
+    REAL(stay_rotation_deg, 0.05, 0, 5),
+    REAL(stay_translation_mm, 0.1, 0, 10),
+    REAL(light_rotation_deg, 0.05, 0, 5),
+    REAL(light_power_drift, 0.002, 0, 0.1),
+    REAL(timeout_probability, 0, 0, 0.9),
+    WHOLE(tiles_x, 0, 0, 10000),
+    WHOLE(tiles_y, 0, 0, 10000),
+    WHOLE(cloth_noise, 1, 0, 1),
+    WHOLE(bounces, 3, 0, WEFT_STITCH_SAMPLE_MAX_BOUNCES),
+};
+
+static void list_groups(weft_virtual_settings *settings, weft_setting_group groups[GROUP_COUNT])
+{
+    groups[0] = weft_rig_settings_group(&settings->rig);
+    groups[1] = (weft_setting_group){table, sizeof table / sizeof *table, settings};
+}
+
+weft_virtual_settings weft_virtual_settings_default(void)
+{
+    weft_virtual_settings settings;
+    weft_setting_group groups[GROUP_COUNT];
+    list_groups(&settings, groups);
+    for (int i = 0; i < GROUP_COUNT; i++)
+        weft_setting_group_reset(&groups[i]);
+    return settings;
+}
+
+weft_code weft_virtual_settings_read(const char *path, weft_virtual_settings *settings, weft_error *error)
+{
+    weft_setting_group groups[GROUP_COUNT];
+    list_groups(settings, groups);
+    WEFT_TRY(weft_setting_groups_read(path, "virtual", groups, GROUP_COUNT, error));
+    return weft_rig_settings_check(&settings->rig, path, error);
+}
+
+char *weft_virtual_settings_text(const weft_virtual_settings *settings, uint64_t seed, const char *sample_file,
+                                 uint32_t sample_crc32)
+{
+    weft_virtual_settings copy = *settings;
+    weft_setting_group groups[GROUP_COUNT];
+    list_groups(&copy, groups);
+    json_t *root =
+        json_pack("{sI so sI}", "seed", (json_int_t)seed, "sample_file",
+                  weft_json_text(sample_file, strlen(sample_file)), "sample_crc32", (json_int_t)sample_crc32);
+    for (int i = 0; root && i < GROUP_COUNT; i++)
+        weft_setting_group_write(&groups[i], root);
+    char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
+    json_decref(root);
+    return text;
+}

@@ -1,0 +1,43 @@
+/* Settings of the virtual rig: those of any rig, how its sensor works, how it errs, and how its sample is laid out. */
+#ifndef WEFT_CAPTURE_VIRTUAL_VIRTUAL_SETTINGS_H
+#define WEFT_CAPTURE_VIRTUAL_VIRTUAL_SETTINGS_H
+
+#include "capture/settings.h"
+
+typedef struct weft_virtual_settings {
+    weft_rig_settings rig;
+    /* The sensor: pixels binned two by two, as cameras do for a reduced raw file. */
+    double full_well_electrons;
+    double read_noise_electrons;
+    double sensitivity_electrons; /* per second, for radiance 1; the light gives irradiance 1 at the origin along its
+                                     normal */
+    double aperture_mm;           /* diameter of the entrance pupil; focused on the camera distance */
+    double samples_per_pixel;
+    /* Errors: what calibration and nominal pose do not know. */
+    double focal_length_error; /* relative */
+    double principal_point_error_px;
+    double k1_error; /* relative */
+    double mounting_rotation_deg, mounting_translation_mm;
+    double stay_rotation_deg, stay_translation_mm; /* standard deviation per axis, drawn anew for every stay */
+    double light_rotation_deg;                     /* standard deviation per axis, drawn anew for every move */
+    double light_power_drift;                      /* relative standard deviation, per exposure */
+    double timeout_probability;                    /* of an exposure that fails */
+    /* The sample. */
+    double tiles_x, tiles_y; /* of the weave, across the opening; 0 = chosen by the weave */
+    double cloth_noise;      /* 1 = with the noise of the weave, 0 = without */
+    double bounces;          /* of light between the yarns of a stitch */
+} weft_virtual_settings;
+
+/* The virtual rig as it stands in Weft. */
+weft_virtual_settings weft_virtual_settings_default(void);
+
+/* Overrides `settings` by the numbers of a JSON file; "rig" names the back end and must be "virtual".
+ * Errors: WEFT_BAD_INPUT naming the file and the key, for an unknown key or a value out of its bounds. */
+weft_code weft_virtual_settings_read(const char *path, weft_virtual_settings *settings, weft_error *error);
+
+/* The settings, the seed of the virtual rig and the identity of its sample as JSON text, for session.json.
+ * The caller frees it. NULL where memory runs out. */
+char *weft_virtual_settings_text(const weft_virtual_settings *settings, uint64_t seed, const char *sample_file,
+                                 uint32_t sample_crc32);
+
+#endif

@@ -1,0 +1,59 @@
+#include "import/readers.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool folder_holds(const char *folder, const char *name)
+{
+    char *path = weft_join_path(folder, name);
+    bool found = path && access(path, F_OK) == 0;
+    free(path);
+    return found;
+}
+
+static weft_code check_folder(const char *folder, weft_error *error)
+{
+    struct stat status;
+    if (stat(folder, &status) != 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "there is no folder '%s'", folder);
+    if (!S_ISDIR(status.st_mode))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a folder of photographs (unpack an archive first)",
+                         folder);
+    if (folder_holds(folder, "session.json"))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a session of `weft capture`: use `weft register`", folder);
+    return WEFT_OK;
+}
+
+static weft_code list_photographs(const char *folder, weft_collection *collection, weft_error *error)
+{
+    if (folder_holds(folder, "camera_pos.txt"))
+        return weft_collection_of_positions(folder, collection, error);
+    if (folder_holds(folder, "directions.csv"))
+        return weft_collection_of_table(folder, collection, error);
+    return weft_collection_of_names(folder, collection, error);
+}
+
+static int count_present(const weft_collection *collection)
+{
+    int count = 0;
+    for (int i = 0; i < collection->count; i++)
+        count += !collection->photograph[i].missing;
+    return count;
+}
+
+weft_code weft_collection_open(const char *folder, weft_collection *collection, weft_error *error)
+{
+    *collection = (weft_collection){0};
+    weft_code code = check_folder(folder, error);
+    if (code == WEFT_OK)
+        code = list_photographs(folder, collection, error);
+    if (code == WEFT_OK && count_present(collection) == 0)
+        code = weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' holds no photograph: neither positions, nor directions.csv, nor names like %s", folder,
+                         "tv045_pv090/tl030_pl120_tv045_pv090.png");
+    if (code != WEFT_OK)
+        weft_collection_free(collection);
+    return code;
+}

@@ -1,0 +1,26 @@
+/* How collections of photographs lie on disk: one reader for every kind, and the choice among them. */
+#ifndef WEFT_IMPORT_READERS_H
+#define WEFT_IMPORT_READERS_H
+
+#include "import/collection.h"
+
+/* Recognises the kind of collection that a folder holds and lists its photographs. The caller frees with
+ * weft_collection_free. Errors: WEFT_BAD_INPUT for a folder that holds none, or whose tables or names contradict
+ * themselves. */
+weft_code weft_collection_open(const char *folder, weft_collection *collection, weft_error *error);
+
+/* ---- One function for every kind of collection; `collection` starts empty ---- */
+
+/* NN.png with camera_pos.txt, light_pos.txt, image_size.txt and light_power.txt. */
+weft_code weft_collection_of_positions(const char *folder, weft_collection *collection, weft_error *error);
+/* directions.csv with the columns file, theta_light_deg, phi_light_deg, theta_view_deg, phi_view_deg. */
+weft_code weft_collection_of_table(const char *folder, weft_collection *collection, weft_error *error);
+/* Photographs named by their angles, in the folder or one below. */
+weft_code weft_collection_of_names(const char *folder, weft_collection *collection, weft_error *error);
+
+/* ---- Shared by them ---- */
+
+/* Names (relative, sorted) of the image files in a folder and the folders in it. Freed with weft_lines_free. */
+weft_code weft_images_list(const char *folder, weft_lines *names, weft_error *error);
+
+#endif

@@ -1,0 +1,47 @@
+/* What a registration found: what the report, the screen and the dataset tell of it. */
+#ifndef WEFT_REGISTRATION_OUTCOME_OUTCOME_H
+#define WEFT_REGISTRATION_OUTCOME_OUTCOME_H
+
+#include "registration/outcome/survey.h"
+#include "registration/pose/pose_chain.h"
+#include "registration/radiometry/radiometry.h"
+
+typedef struct weft_registration_settings {
+    int width, height; /* texels of the opening */
+    weft_pose_limits limits;
+    bool allow_unfinished;     /* register a session whose plan is not complete */
+    const char *report_folder; /* where the report goes; NULL: none */
+} weft_registration_settings;
+
+/* Why a photograph cannot be used; empty where it can. */
+typedef struct weft_fault {
+    char reason[200];
+} weft_fault;
+
+/* Indices of shots and stays are those of the session and the survey. */
+typedef struct weft_registration {
+    weft_registration_settings settings;
+    weft_survey survey;
+    weft_view_pose *pose; /* [survey.stay_count] */
+    int *used;            /* [survey.stay_count] photographs of the stay that are in the dataset */
+    weft_fault *fault;    /* [shot_count] */
+    weft_white *white;    /* [shot_count]; level as used, patches 0 where it was estimated or there is none */
+    float *saturated;     /* [shot_count] fraction of its texels that are masked as saturated */
+    int image_count;      /* photographs in the dataset */
+    int fault_count;      /* photographs that cannot be used */
+    int failed_stays;
+    int estimated_whites; /* photographs whose white level is that of others */
+    double seconds;
+} weft_registration;
+
+void weft_registration_free(weft_registration *registration);
+
+/* Random error of a stay's positions in texels of the dataset; errors of the calibration are not in it. Pure. */
+double weft_registration_uncertainty_texels(const weft_session *session, const weft_registration *registration,
+                                            int stay);
+
+/* JSON text for the dataset: session, calibration, settings and the outcome of every stay. Owned by the caller (free).
+ * NULL where memory is short. */
+char *weft_registration_provenance(const weft_session *session, const weft_registration *registration);
+
+#endif

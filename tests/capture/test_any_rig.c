@@ -1,0 +1,184 @@
+/* The capture with a rig that is no virtual one: it knows nothing but capture/rig.h. Links the core alone. */
+#include "capture/capture.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHOTS = 4, SIZE = 96, BITS = 12, BLACK = 64 };
+
+static const char plan[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n"
+                           "30,0,0,0\n45,120,0,0\n60,240,40,90\n10,0,40,90\n";
+
+/* A rig whose photographs are even, as bright as their exposure is long. */
+typedef struct bench {
+    int homings, first_stay, moves;
+    bool homed, broken, light_on;
+    weft_angles view;
+} bench;
+
+static weft_code home(void *device, int first_stay, weft_error *error)
+{
+    bench *b = device;
+    if (b->broken)
+        return weft_fail(error, WEFT_SYSTEM, "bench stage: axis 2 does not find its reference");
+    b->homings++;
+    b->homed = true;
+    b->first_stay = first_stay;
+    b->view.theta_rad = -1;
+    return WEFT_OK;
+}
+
+static weft_code move_camera(void *device, weft_angles view, bool *moved, weft_error *error)
+{
+    (void)error;
+    bench *b = device;
+    assert_true(b->homed);
+    *moved = view.theta_rad != b->view.theta_rad || view.phi_rad != b->view.phi_rad;
+    b->view = view;
+    b->moves += *moved;
+    return WEFT_OK;
+}
+
+static weft_code move_light(void *device, weft_angles light, weft_error *error)
+{
+    (void)light;
+    (void)error;
+    assert_true(((bench *)device)->homed);
+    return WEFT_OK;
+}
+
+static weft_code power(void *device, bool on, weft_error *error)
+{
+    (void)error;
+    ((bench *)device)->light_on = on;
+    return WEFT_OK;
+}
+
+static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
+                        weft_error *error)
+{
+    (void)frame;
+    (void)error;
+    assert_true(((bench *)device)->light_on);
+    double value = fmin(BLACK + 1e5 * exposure_s, (1 << BITS) - 1);
+    for (int i = 0; i < SIZE * SIZE * 3; i++)
+        samples[i] = (uint16_t)value;
+    *read_back_s = exposure_s;
+    return WEFT_OK;
+}
+
+static weft_rig rig_of(bench *b)
+{
+    weft_rig rig = {.name = "bench",
+                    .sample = "a piece of paper",
+                    .identity = "{\"lens\":\"75 mm\"}",
+                    .settings = weft_rig_settings_default(),
+                    .camera = {b, expose},
+                    .stage = {b, home, move_camera, move_light},
+                    .light = {b, power}};
+    rig.settings.width_px = rig.settings.height_px = SIZE;
+    rig.settings.focal_length_px = 440;
+    return rig;
+}
+
+static weft_code run(weft_rig *rig, weft_capture_summary *summary, weft_error *error)
+{
+    const weft_capture_request request = {"session", "plan.csv"};
+    weft_capture capture;
+    scratch_store("plan.csv", plan, sizeof plan - 1);
+    WEFT_TRY(weft_capture_begin(&request, rig, NULL, &capture, error));
+    weft_code code = weft_capture_take(&capture, NULL, NULL, error);
+    *summary = capture.summary;
+    weft_capture_end(&capture);
+    return code;
+}
+
+static void remove_session(void)
+{
+    assert_int_equal(system("rm -rf session"), 0);
+}
+
+static void the_session_remembers_what_the_rig_says_of_itself(void **state)
+{
+    (void)state;
+    bench b = {0};
+    weft_rig rig = rig_of(&b);
+    weft_capture_summary summary;
+    weft_session session;
+    assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
+    assert_int_equal(summary.taken, SHOTS);
+    assert_int_equal(b.moves, 2);
+    assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
+    assert_string_equal(session.rig, "bench");
+    assert_string_equal(session.sample, "a piece of paper");
+    assert_string_equal(session.rig_settings, "{\"lens\":\"75 mm\"}");
+    for (int shot = 0; shot < SHOTS; shot++)
+        assert_int_equal(session.record[shot].stay, shot / 2);
+    weft_session_free(&session);
+    remove_session();
+}
+
+static void the_stage_is_homed_once_and_told_how_many_stays_there_were(void **state)
+{
+    (void)state;
+    bench b = {.first_stay = -1};
+    weft_rig rig = rig_of(&b);
+    weft_capture_summary summary;
+    assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
+    assert_int_equal(b.homings, 1);
+    assert_int_equal(b.first_stay, 0);
+    /* Nothing is left to do: no axis moves. */
+    assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
+    assert_int_equal(b.homings, 1);
+    assert_int_equal(system("find session -name '*tv040*.tif' -delete"), 0);
+    assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
+    assert_int_equal(summary.taken, 2);
+    assert_int_equal(b.homings, 2);
+    assert_int_equal(b.first_stay, 2);
+    remove_session();
+}
+
+static void a_stage_that_cannot_be_homed_ends_the_run_with_its_message(void **state)
+{
+    (void)state;
+    bench b = {.broken = true};
+    weft_rig rig = rig_of(&b);
+    weft_capture_summary summary;
+    weft_error error = {0};
+    assert_int_equal(run(&rig, &summary, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "axis 2"));
+    assert_int_equal(summary.taken, 0);
+    remove_session();
+}
+
+static void another_rig_does_not_continue_a_session(void **state)
+{
+    (void)state;
+    bench b = {0};
+    weft_rig rig = rig_of(&b);
+    weft_capture_summary summary;
+    weft_error error = {0};
+    assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
+    rig.identity = "{\"lens\":\"50 mm\"}";
+    assert_int_equal(run(&rig, &summary, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "another 'lens'"));
+    rig = rig_of(&b);
+    rig.name = "dome";
+    assert_int_equal(run(&rig, &summary, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "with the rig 'bench', not 'dome'"));
+    remove_session();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_session_remembers_what_the_rig_says_of_itself),
+        cmocka_unit_test(the_stage_is_homed_once_and_told_how_many_stays_there_were),
+        cmocka_unit_test(a_stage_that_cannot_be_homed_ends_the_run_with_its_message),
+        cmocka_unit_test(another_rig_does_not_continue_a_session),
+    };
+    return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
+}
