@@ -1,6 +1,6 @@
 /* Marching cubes over a periodic grid (Lorensen and Cline 1987, cases as in geometry/yarn/cube_cases.h). */
 #include "geometry/yarn/cube_cases.h"
-#include "geometry/yarn/field.h"
+#include "geometry/yarn/solid_field.h"
 #include "geometry/yarn/tile_mesh.h"
 
 #include <stdbool.h>

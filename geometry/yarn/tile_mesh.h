@@ -21,9 +21,9 @@ typedef struct weft_tile_mesh {
     uint32_t (*triangle)[3]; /* anticlockwise seen from outside */
 } weft_tile_mesh;
 
-/* Polygonises the implicit surface of a stitch (geometry/yarn/field.h) by marching cubes on a grid of `resolution`
- * cells across the width of the tile (0: that of the stitch). Deterministic for any number of threads. `path` names the
- * stitch in messages. Errors: WEFT_BAD_INPUT for a grid too large, WEFT_SYSTEM. */
+/* Polygonises the implicit surface of a stitch (geometry/yarn/solid_field.h) by marching cubes on a grid of
+ * `resolution` cells across the width of the tile (0: that of the stitch). Deterministic for any number of threads.
+ * `path` names the stitch in messages. Errors: WEFT_BAD_INPUT for a grid too large, WEFT_SYSTEM. */
 weft_code weft_tile_mesh_create(const weft_stitch *stitch, int resolution, const char *path, weft_tile_mesh *mesh,
                                 weft_error *error);
 void weft_tile_mesh_free(weft_tile_mesh *mesh);

@@ -3,7 +3,7 @@
 #ifndef WEFT_STUDY_BARD_TEXEL_TABLE_H
 #define WEFT_STUDY_BARD_TEXEL_TABLE_H
 
-#include "study/bard/photographs.h"
+#include "study/bard/table_photographs.h"
 
 /* The table of a texel. Owned by one thread, used for one texel after the other. */
 typedef struct weft_bard_texel {

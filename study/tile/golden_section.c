@@ -1,4 +1,4 @@
-#include "study/tile/search.h"
+#include "study/tile/search_steps.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
  * transform. The waves along each axis are made orthonormal over the texels there are, so that what the pictures owe to
  * one is not counted for another where the material holds no whole number of tiles: a least-squares fit of the Fourier
  * series of the tile, exact where nothing is masked: masked texels count as what stands for them. */
-#include "study/tile/search.h"
+#include "study/tile/search_steps.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  *
  * That is computed by the theorem of Wiener and Khinchin, padded so that it does not wrap, of the values and of the
  * masks: their quotient is the mean product of the pairs that are both valid (Padfield 2012). */
-#include "study/tile/search.h"
+#include "study/tile/search_steps.h"
 
 #include "study/tile/fourier.h"
 

@@ -1,4 +1,4 @@
-#include "study/tile/search.h"
+#include "study/tile/search_steps.h"
 
 #include "study/tile/fourier.h"
 #include "study/tile/mean.h"

@@ -1,6 +1,6 @@
 #include "study/tile/tile.h"
 
-#include "study/tile/search.h"
+#include "study/tile/search_steps.h"
 
 #include <math.h>
 

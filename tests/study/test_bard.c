@@ -1,8 +1,8 @@
 /* weft bard on datasets whose truth is known. */
 #include "btf/direction/direction.h"
 #include "fixture.h"
-#include "study/bard/photographs.h"
 #include "study/bard/predict.h"
+#include "study/bard/table_photographs.h"
 #include "tests/support/run_weft.h"
 
 #include <stdio.h>

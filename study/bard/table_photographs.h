@@ -1,6 +1,6 @@
 /* Which photographs of a dataset make the table of BARD, and what every image takes from them. Private to the room. */
-#ifndef WEFT_STUDY_BARD_PHOTOGRAPHS_H
-#define WEFT_STUDY_BARD_PHOTOGRAPHS_H
+#ifndef WEFT_STUDY_BARD_TABLE_PHOTOGRAPHS_H
+#define WEFT_STUDY_BARD_TABLE_PHOTOGRAPHS_H
 
 #include "btf/dataset/dataset.h"
 #include "reflectance/bard/bard.h"

@@ -1,4 +1,4 @@
-#include "study/bard/photographs.h"
+#include "study/bard/table_photographs.h"
 
 #include "btf/direction/direction.h"
 

@@ -1,6 +1,6 @@
 /* The steps of the search for a tile: its size, the size more exactly, and where it begins. Private to the room. */
-#ifndef WEFT_STUDY_TILE_SEARCH_H
-#define WEFT_STUDY_TILE_SEARCH_H
+#ifndef WEFT_STUDY_TILE_SEARCH_STEPS_H
+#define WEFT_STUDY_TILE_SEARCH_STEPS_H
 
 #include "study/tile/textured_pictures.h"
 #include "study/tile/tile.h"

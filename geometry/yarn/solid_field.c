@@ -1,4 +1,4 @@
-#include "geometry/yarn/field.h"
+#include "geometry/yarn/solid_field.h"
 
 #include <stdbool.h>
 
