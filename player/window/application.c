@@ -1,6 +1,6 @@
-#include "base/clock.h"
 #include "player/window/panel.h"
 
+#include "base/clock.h"
 #include "player/window/keys.h"
 #include "player/window/ui_bridge.h"
 

@@ -1,5 +1,7 @@
-#include "base/clock.h"
 #include "player/window/application_state.h"
+
+#include "base/clock.h"
+#include "player/window/scene_part.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 #include "player/window/scene_loader.h"
 
 #include "btf/file_kind.h"
+#include "player/window/scene_part.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_PLAYER_WINDOW_SCENE_LOADER_H
 #define WEFT_PLAYER_WINDOW_SCENE_LOADER_H
 
-#include "player/window/scene_part.h"
+#include "player/settings/request.h"
 
 typedef struct weft_scene_loader weft_scene_loader;
 

@@ -1,6 +1,4 @@
 /* Files of a scene that arrive, are dropped, are broken, and change while a player shows them. */
-#include "capture/settings.h"
-
 #include "player/gl/gl.h"
 #include "player/window/scene_loader.h"
 #include "stage.h"
@@ -11,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { WIDTH = 64, HEIGHT = 48 };
+enum { WIDTH = 64, HEIGHT = 48, CLOTH_MM = 100 };
 
 typedef struct fixture {
     stage *stage;
@@ -69,8 +67,7 @@ static fixture *open_scene_as(const char *material, const char *dataset, weft_ra
     f->request.settings.raw_format = format;
     f->request.settings.material = material ? strdup(material) : NULL;
     f->request.settings.dataset = dataset ? strdup(dataset) : NULL;
-    expect_ok(weft_scene_loader_create(&f->request, weft_rig_settings_default().opening_mm, &f->loader, &error),
-              &error);
+    expect_ok(weft_scene_loader_create(&f->request, CLOTH_MM, &f->loader, &error), &error);
     expect_ok(weft_scene_loader_attach(f->loader, f->stage->player, &error), &error);
     return f;
 }
