@@ -8,6 +8,7 @@
 #include "compress/run/given_frames.h"
 #include "compress/run/group_sums.h"
 #include "compress/texel/texel.h"
+#include "tests/support/alternation.h"
 
 #include <argp.h>
 #include <math.h>

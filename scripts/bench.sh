@@ -17,7 +17,7 @@ heading() {
     printf '\n== %s\n' "$*"
 }
 
-cmake --build "$build" --target bench_reflectance bench_fit bench_large_dataset bench_compress bench_player bench_raw_formats bench_aliasing bench_truth bench_paper weft
+cmake --build "$build" --target benches weft
 
 heading "Evaluations a second of the models, one core"
 "$build/bench/bench_reflectance"

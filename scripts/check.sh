@@ -1,6 +1,6 @@
 #!/bin/sh
 # Checks what a reviewer would check. Every part runs, whatever the others found; the last lines say which failed.
-# Usage: check.sh [PART...]    all parts, or some of: format includes docs sanitizers threads tidy tidy-changed
+# Usage: check.sh [PART...]    all parts, or some of: format includes docs benches sanitizers threads tidy tidy-changed
 set -u
 cd "$(dirname "$0")/.."
 jobs=$(nproc)
@@ -15,6 +15,11 @@ includes() {
 
 docs() {
     scripts/check-docs.sh
+}
+
+# The benches, which no test builds.
+benches() {
+    cmake --preset release -Wno-dev --log-level=WARNING >/dev/null && cmake --build --preset release --target benches
 }
 
 # Every test under AddressSanitizer and UndefinedBehaviorSanitizer.
@@ -50,7 +55,7 @@ tidy_changed() {
 }
 
 failed=""
-for part in "${@:-format includes docs sanitizers threads tidy}"; do
+for part in "${@:-format includes docs benches sanitizers threads tidy}"; do
     for name in $part; do
         printf '\n== %s\n' "$name"
         $(printf %s "$name" | tr - _) || failed="$failed $name"

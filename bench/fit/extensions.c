@@ -1,5 +1,6 @@
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"
+#include "tests/support/alternation.h"
 
 typedef struct variant {
     const char *name;

@@ -1,4 +1,5 @@
 /* Speed and quality of the fit, against general solvers on the same texels (docs/notes/benchmarks.md). */
+#include "base/processor.h"
 #include "bench/fit/sections.h"
 
 #include <argp.h>

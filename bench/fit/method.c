@@ -1,6 +1,7 @@
 #include "bench/fit/method.h"
 
 #include "bench/fit/statistics.h"
+#include "tests/support/alternation.h"
 
 #ifdef WEFT_HAVE_CERES
 #include "bench/fit/ceres_bridge.h"

@@ -5,6 +5,7 @@
 #include "base/processor.h"
 #include "btf/direction/direction.h"
 #include "compress/fit/fit.h"
+#include "tests/support/alternation.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <float.h>

@@ -1,4 +1,5 @@
 /* Fits of one texel: truth recovered, joint against alternation, half the samples, another order of the images. */
+#include "tests/support/alternation.h"
 #include "texel_fixture.h"
 
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 #include "texel_fixture.h"
 
 #include "compress/texel/pack.h"
+#include "tests/support/alternation.h"
 
 #include <float.h>
 #include <stdlib.h>

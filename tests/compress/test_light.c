@@ -3,6 +3,7 @@
 
 #include "compress/fit/light.h"
 #include "compress/texel/pack.h"
+#include "tests/support/alternation.h"
 
 #include <stdlib.h>
 #include <string.h>

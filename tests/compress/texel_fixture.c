@@ -1,4 +1,5 @@
 #include "texel_fixture.h"
+#include "tests/support/alternation.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,7 @@
 /* The reference fit: Daubert et al. 2001, section 5, sample by sample in double. Slow on purpose: nothing in it is
  * clever. */
-#include "compress/fit/fit.h"
+#include "tests/support/alternation.h"
+
 #include "compress/fit/normal.h"
 
 #include <math.h>
