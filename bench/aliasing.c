@@ -4,7 +4,7 @@
 #include "../tests/player/aliasing.h"
 #include "../tests/player/stage.h"
 
-#include "base/colour.h"
+#include "base/picture/colour.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "bench/measure.h"
 
 #include "base/clock.h"
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * frames by the wall and by the GPU's own timestamps, and the mean processor time. Usage: bench_player [NAME.weft]
  * [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
 #include "player/draw/player.h"
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 #include "bench/measure.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"

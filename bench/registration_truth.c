@@ -1,6 +1,6 @@
 /* How far a registered session of the virtual rig is from its ground truth, by ring of views: its warps, and its
  * reflectance. Usage: bench_truth SESSION DATASET.btf.h5 SESSION.truth.h5 */
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 #include "btf/session/session.h"
 #include "tests/support/ground_truth.h"
 

@@ -1,7 +1,7 @@
 #include "capture/photograph_writer.h"
 
 #include "base/atomic_file.h"
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "capture/file_crc.h"
 
 #include <limits.h>

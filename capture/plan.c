@@ -1,6 +1,6 @@
 #include "capture/plan.h"
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "capture/settings.h"
 
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "cli/command.h"
 #include "base/clock.h"
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 
 #include <stdarg.h>
 #include <stdio.h>

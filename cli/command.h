@@ -2,9 +2,9 @@
 #ifndef WEFT_CLI_COMMAND_H
 #define WEFT_CLI_COMMAND_H
 
-#include "base/option.h"
 #include "base/progress.h"
 #include "base/status.h"
+#include "base/text/option.h"
 
 typedef struct weft_common_options {
     bool quiet, json;

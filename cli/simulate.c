@@ -1,4 +1,4 @@
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "btf/direction/direction.h"
 #include "cli/arguments.h"
 #include "geometry/acquisition/acquisition.h"

@@ -109,11 +109,14 @@ function(weft_room room)
     weft_show_headers(${target} ${room} "${room_SHOWS}" "${room_FOLDERS}")
 endfunction()
 
-# weft_stage(NAME): weft_NAME_stage is all rooms under one top folder, and those that they use.
+# weft_stage(NAME): weft_NAME_stage is all rooms under one top folder, and those that they use, and all of base.
 function(weft_stage name)
     get_property(targets DIRECTORY ${CMAKE_SOURCE_DIR}/${name} PROPERTY BUILDSYSTEM_TARGETS)
     list(FILTER targets INCLUDE REGEX "^weft_${name}")
     add_library(weft_${name}_stage INTERFACE)
+    if(NOT name STREQUAL base)
+        target_link_libraries(weft_${name}_stage INTERFACE weft_base_stage)
+    endif()
     foreach(target ${targets})
         get_target_property(type ${target} TYPE)
         if(type STREQUAL "STATIC_LIBRARY")

@@ -2,7 +2,7 @@
 #ifndef WEFT_IMPORT_COLLECTION_H
 #define WEFT_IMPORT_COLLECTION_H
 
-#include "base/lines.h"
+#include "base/text/lines.h"
 #include "btf/dataset/dataset.h"
 
 typedef struct weft_photograph {

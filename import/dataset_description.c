@@ -1,6 +1,6 @@
 #include "import/dataset_description.h"
 
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "import/decode.h"
 
-#include "base/colour.h"
-#include "base/image.h"
+#include "base/picture/colour.h"
+#include "base/picture/image.h"
 
 #include <math.h>
 #include <stdlib.h>

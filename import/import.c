@@ -1,6 +1,6 @@
 #include "import/import.h"
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "import/dataset_description.h"
 #include "import/decode.h"
 #include "import/readers.h"

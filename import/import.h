@@ -7,8 +7,8 @@
 #ifndef WEFT_IMPORT_IMPORT_H
 #define WEFT_IMPORT_IMPORT_H
 
-#include "base/lines.h"
 #include "base/progress.h"
+#include "base/text/lines.h"
 #include "btf/dataset/dataset.h"
 
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 #include "import/far_photograph.h"
 #include "import/readers.h"
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

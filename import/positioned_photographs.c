@@ -2,7 +2,7 @@
  * (Guo et al. 2020): centimetres, one line a photograph, origin at the centre of the photographed square. */
 #include "import/readers.h"
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "registration/photographs.h"
 
-#include "base/image.h"
+#include "base/picture/image.h"
 
 #include <limits.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "registration/white_estimate.h"
 
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 #include "bench/fit/arithmetic_floor.h"
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"

@@ -1,5 +1,5 @@
+#include "base/numeric/statistics.h"
 #include "base/processor.h"
-#include "base/statistics.h"
 #include "bench/fit/sections.h"
 #include "bench/fit/statistics.h"
 

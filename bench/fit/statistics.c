@@ -1,7 +1,7 @@
 #include "bench/fit/statistics.h"
 
 #include "base/clock.h"
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
 
 double thread_microseconds(void)
 {

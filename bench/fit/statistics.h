@@ -7,7 +7,7 @@ double thread_microseconds(void);
 
 double mean_of(const double *values, int count);
 
-/* The relative RMSE (base/error_summary.h) with this residual where the samples have this energy. */
+/* The relative RMSE (base/numeric/error_summary.h) with this residual where the samples have this energy. */
 double relative_rmse(double residual, double energy);
 
 /* Share of the values at or below `limit`. */

@@ -7,8 +7,8 @@
 #ifndef WEFT_BTF_MATERIAL_MATERIAL_H
 #define WEFT_BTF_MATERIAL_MATERIAL_H
 
-#include "base/error_summary.h"
 #include "base/half.h"
+#include "base/numeric/error_summary.h"
 #include "base/status.h"
 #include "btf/direction/frame.h"
 #include "btf/material/table_basis.h"

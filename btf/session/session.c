@@ -1,7 +1,7 @@
 #include "btf/session/session.h"
 
 #include "base/atomic_file.h"
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 #include "btf/session/journal.h"
 
 #include <limits.h>

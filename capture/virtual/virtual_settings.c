@@ -1,6 +1,6 @@
 #include "capture/virtual/virtual_settings.h"
 
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 #include "geometry/light/stitch_sample.h"
 
 #include <string.h>

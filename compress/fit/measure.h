@@ -1,9 +1,9 @@
-/* The summary of errors (base/error_summary.h) of a material over very many samples in bounded memory: sums in order,
- * quantiles by histogram. */
+/* The summary of errors (base/numeric/error_summary.h) of a material over very many samples in bounded memory: sums in
+ * order, quantiles by histogram. */
 #ifndef WEFT_COMPRESS_FIT_MEASURE_H
 #define WEFT_COMPRESS_FIT_MEASURE_H
 
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
 #include "base/status.h"
 
 #include <stdbool.h>

@@ -5,7 +5,7 @@
 #ifndef WEFT_COMPRESS_FIT_NORMAL_H
 #define WEFT_COMPRESS_FIT_NORMAL_H
 
-#include "base/quadratic_program.h"
+#include "base/numeric/quadratic_program.h"
 #include "compress/fit/fit.h"
 #include "compress/fit/gram.h"
 

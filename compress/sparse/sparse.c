@@ -1,6 +1,6 @@
 #include "compress/sparse/sparse.h"
 
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
 #include "compress/sparse/search.h"
 
 #include <math.h>

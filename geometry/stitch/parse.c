@@ -1,5 +1,5 @@
 /* The grammar of a stitch file (docs/reference/stitch-format.md). */
-#include "base/block_parser.h"
+#include "base/text/block_parser.h"
 #include "geometry/stitch/syntax.h"
 
 #include <stdlib.h>

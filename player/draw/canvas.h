@@ -2,7 +2,7 @@
 #ifndef WEFT_PLAYER_DRAW_CANVAS_H
 #define WEFT_PLAYER_DRAW_CANVAS_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "player/gl/gl.h"
 #include "player/scene/scene.h"
 

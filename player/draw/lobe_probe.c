@@ -1,6 +1,6 @@
 #include "player/draw/lobe_probe.h"
 
-#include "base/colour.h"
+#include "base/picture/colour.h"
 #include "player/draw/player_parts.h"
 
 #include <math.h>

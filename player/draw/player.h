@@ -7,7 +7,7 @@
 #ifndef WEFT_PLAYER_DRAW_PLAYER_H
 #define WEFT_PLAYER_DRAW_PLAYER_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"

@@ -2,7 +2,7 @@
 #ifndef WEFT_PLAYER_GL_LABEL_H
 #define WEFT_PLAYER_GL_LABEL_H
 
-#include "base/letters.h"
+#include "base/picture/letters.h"
 #include "player/gl/gl.h"
 
 #include <stdbool.h>

@@ -8,7 +8,7 @@
 #ifndef WEFT_PLAYER_SCENE_ENVIRONMENT_H
 #define WEFT_PLAYER_SCENE_ENVIRONMENT_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "base/vector.h"
 
 enum { WEFT_ENVIRONMENT_REGIONS = 48, WEFT_ENVIRONMENT_PARTS = 128 };

@@ -1,6 +1,6 @@
 #include "player/scene/false_colour.h"
 
-#include "base/colour.h"
+#include "base/picture/colour.h"
 
 const float weft_level_palette[WEFT_LEVEL_COLOURS][3] = {
     {0.9f, 0.9f, 0.9f},  {0.2f, 0.45f, 0.9f},   {0.15f, 0.7f, 0.45f},

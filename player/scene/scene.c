@@ -1,6 +1,6 @@
 #include "player/scene/scene.h"
 
-#include "base/colour.h"
+#include "base/picture/colour.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_PLAYER_SCENE_SCENE_H
 #define WEFT_PLAYER_SCENE_SCENE_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "btf/direction/direction.h"
 #include "player/scene/orbit.h"
 

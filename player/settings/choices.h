@@ -3,7 +3,7 @@
 #ifndef WEFT_PLAYER_SETTINGS_CHOICES_H
 #define WEFT_PLAYER_SETTINGS_CHOICES_H
 
-#include "base/option.h"
+#include "base/text/option.h"
 
 typedef weft_code weft_choice(const weft_option *option, const char *text, void *request, weft_error *error);
 

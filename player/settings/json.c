@@ -1,6 +1,6 @@
 #include "player/settings/json.h"
 
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 #include "btf/direction/direction.h"
 
 #include <limits.h>

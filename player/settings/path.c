@@ -1,6 +1,6 @@
 #include "player/settings/path.h"
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 
 #include <math.h>
 #include <stddef.h>

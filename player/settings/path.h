@@ -13,7 +13,7 @@ typedef struct weft_path {
     bool given[WEFT_PATH_VALUE_COUNT];      /* the table has a column for it */
 } weft_path;
 
-/* Reads a CSV file (base/csv.h) with a line of names: time_s, and any of azimuth_deg, elevation_deg, distance,
+/* Reads a CSV file (base/text/csv.h) with a line of names: time_s, and any of azimuth_deg, elevation_deg, distance,
  * pan_right, pan_up (of the camera), light_theta_deg, light_phi_deg (of the key light), exposure,
  * environment_turn_deg. The caller frees with weft_path_free. Errors: WEFT_BAD_INPUT naming file, line and column for
  * a column that is not known, a number out of range or times that do not increase; WEFT_SYSTEM. */

@@ -3,7 +3,7 @@
 #ifndef WEFT_PLAYER_SETTINGS_SCHEMA_H
 #define WEFT_PLAYER_SETTINGS_SCHEMA_H
 
-#include "base/option.h"
+#include "base/text/option.h"
 
 /* A table ends with {0}. */
 typedef struct weft_setting {

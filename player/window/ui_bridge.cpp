@@ -1,6 +1,6 @@
 #include "player/window/ui_bridge.h"
 
-#include "base/font_file.h"
+#include "base/picture/font_file.h"
 
 #include <imgui/backends/imgui_impl_glfw.h>
 #include <imgui/backends/imgui_impl_opengl3.h>

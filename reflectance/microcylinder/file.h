@@ -2,7 +2,7 @@
 #ifndef WEFT_REFLECTANCE_MICROCYLINDER_FILE_H
 #define WEFT_REFLECTANCE_MICROCYLINDER_FILE_H
 
-#include "base/block_parser.h"
+#include "base/text/block_parser.h"
 #include "reflectance/microcylinder/microcylinder.h"
 
 typedef struct weft_microcylinder_description {

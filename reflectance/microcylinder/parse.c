@@ -1,6 +1,6 @@
 /* The grammar of a microcylinder file (docs/reference/microcylinder-format.md), made of the blocks of weave files. */
-#include "base/block_parser.h"
-#include "base/text_file.h"
+#include "base/text/block_parser.h"
+#include "base/text/text_file.h"
 #include "btf/direction/direction.h"
 #include "reflectance/microcylinder/file.h"
 

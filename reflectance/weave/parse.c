@@ -1,5 +1,5 @@
 /* The grammar of a weave file (docs/reference/weave-format.md). Blocks do not nest, so neither does the parser. */
-#include "base/block_parser.h"
+#include "base/text/block_parser.h"
 #include "reflectance/weave/syntax.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "base/text_file.h"
+#include "base/text/text_file.h"
 #include "reflectance/weave/syntax.h"
 
 #include <stdlib.h>

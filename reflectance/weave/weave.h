@@ -3,8 +3,8 @@
 #ifndef WEFT_REFLECTANCE_WEAVE_WEAVE_H
 #define WEFT_REFLECTANCE_WEAVE_WEAVE_H
 
-#include "base/block_parser.h"
 #include "base/status.h"
+#include "base/text/block_parser.h"
 #include "reflectance/woven/woven.h"
 
 #include <stdint.h>

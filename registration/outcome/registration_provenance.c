@@ -1,6 +1,6 @@
 #include "registration/outcome/outcome.h"
 
-#include "base/json_text.h"
+#include "base/text/json_text.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "registration/pose/normal_equations.h"
 
-#include "base/cholesky.h"
+#include "base/numeric/cholesky.h"
 
 #include <string.h>
 

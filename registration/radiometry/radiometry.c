@@ -1,6 +1,6 @@
 #include "registration/radiometry/radiometry.h"
 
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

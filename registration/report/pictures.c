@@ -1,9 +1,9 @@
 #include "registration/report/report.h"
 
 #include "base/atomic_file.h"
-#include "base/colour.h"
-#include "base/image.h"
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
+#include "base/picture/colour.h"
+#include "base/picture/image.h"
 
 #include <limits.h>
 #include <stdio.h>

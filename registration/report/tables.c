@@ -1,6 +1,6 @@
 #include "registration/report/tables.h"
 
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_STUDY_COMPARE_CONTENDER_H
 #define WEFT_STUDY_COMPARE_CONTENDER_H
 
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
 #include "study/model/model.h"

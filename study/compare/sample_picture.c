@@ -1,7 +1,7 @@
 #include "study/compare/sample_picture.h"
 
-#include "base/colour.h"
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
+#include "base/picture/colour.h"
 
 #include <math.h>
 #include <stdlib.h>

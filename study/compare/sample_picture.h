@@ -2,7 +2,7 @@
 #ifndef WEFT_STUDY_COMPARE_SAMPLE_PICTURE_H
 #define WEFT_STUDY_COMPARE_SAMPLE_PICTURE_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 
 /* Factor that brings the 99th percentile of the unmasked values of `image` to 0.9; 1 for a black image. `mask`
  * [height][width] may be NULL. */

@@ -2,8 +2,8 @@
 #ifndef WEFT_STUDY_COMPARE_SCENES_H
 #define WEFT_STUDY_COMPARE_SCENES_H
 
-#include "base/error_summary.h"
-#include "base/image.h"
+#include "base/numeric/error_summary.h"
+#include "base/picture/image.h"
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"

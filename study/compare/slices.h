@@ -3,7 +3,7 @@
 #ifndef WEFT_STUDY_COMPARE_SLICES_H
 #define WEFT_STUDY_COMPARE_SLICES_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "btf/dataset/dataset.h"
 #include "study/compare/contender.h"
 

@@ -2,8 +2,8 @@
 #ifndef WEFT_STUDY_ERROR_IMAGE_PAIR_H
 #define WEFT_STUDY_ERROR_IMAGE_PAIR_H
 
-#include "base/error_summary.h"
-#include "base/image.h"
+#include "base/numeric/error_summary.h"
+#include "base/picture/image.h"
 #include "btf/dataset/dataset.h"
 #include "study/error/predictor.h"
 

@@ -7,7 +7,7 @@
 enum { WEFT_SCENE_ERROR_SIZE = 256 };
 
 /* A line such as "from raw: compressed 4.2 % (median 3.1, 80th percentile 8.0; PSNR 33.1 dB)" with the error
- * (base/error_summary.h) of every model that is shown, over the lit pixels of the mesh; "" where the player
+ * (base/numeric/error_summary.h) of every model that is shown, over the lit pixels of the mesh; "" where the player
  * has no dataset or shows no model. width x height: of the whole picture. Errors: those of drawing. */
 weft_code weft_scene_error_describe(weft_player *player, const weft_scene *scene, int width, int height,
                                     char text[WEFT_SCENE_ERROR_SIZE], weft_error *error);

@@ -2,7 +2,7 @@
 #ifndef WEFT_STUDY_ERROR_VISIBLE_ERROR_H
 #define WEFT_STUDY_ERROR_VISIBLE_ERROR_H
 
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
 #include "player/draw/player.h"
 
 /* Whether a pixel shows the mesh with light on it. Pure. */

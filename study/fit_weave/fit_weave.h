@@ -3,7 +3,7 @@
 #ifndef WEFT_STUDY_FIT_WEAVE_FIT_WEAVE_H
 #define WEFT_STUDY_FIT_WEAVE_FIT_WEAVE_H
 
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
 #include "reflectance/weave/weave.h"
 #include "study/fit_weave/mean_brdf.h"
 #include "study/tile/tile.h"

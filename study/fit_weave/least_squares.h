@@ -1,5 +1,5 @@
 /* Small least-squares problems with bounds: non-linear ones by Ceres Solver (trust region, Levenberg-Marquardt), linear
- * ones by base/quadratic_program.h. Ceres stops early where a linear solution lies on a bound. */
+ * ones by base/numeric/quadratic_program.h. Ceres stops early where a linear solution lies on a bound. */
 #ifndef WEFT_STUDY_FIT_WEAVE_LEAST_SQUARES_H
 #define WEFT_STUDY_FIT_WEAVE_LEAST_SQUARES_H
 

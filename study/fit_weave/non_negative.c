@@ -1,5 +1,5 @@
 /* Non-negative least squares, by the normal equations of columns of unit length. */
-#include "base/quadratic_program.h"
+#include "base/numeric/quadratic_program.h"
 #include "study/fit_weave/least_squares.h"
 
 #include <math.h>

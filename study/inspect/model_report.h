@@ -2,7 +2,7 @@
 #ifndef WEFT_STUDY_INSPECT_MODEL_REPORT_H
 #define WEFT_STUDY_INSPECT_MODEL_REPORT_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "btf/material/material.h"
 
 /* All levels side by side in texels of several pixels, each in the colour of its model (sRGB): its hue says what tables

@@ -1,7 +1,7 @@
 #include "study/inspect/verify.h"
 
 #include "base/atomic_file.h"
-#include "base/image.h"
+#include "base/picture/image.h"
 
 #include <limits.h>
 #include <stdlib.h>

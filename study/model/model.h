@@ -2,8 +2,8 @@
 #ifndef WEFT_STUDY_MODEL_MODEL_H
 #define WEFT_STUDY_MODEL_MODEL_H
 
-#include "base/csv.h"
 #include "base/progress.h"
+#include "base/text/csv.h"
 #include "reflectance/weave/weave.h"
 
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #ifndef WEFT_STUDY_TRUTH_COMPARISON_H
 #define WEFT_STUDY_TRUTH_COMPARISON_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"

@@ -2,8 +2,8 @@
 #ifndef WEFT_STUDY_TRUTH_PICTURE_ERROR_H
 #define WEFT_STUDY_TRUTH_PICTURE_ERROR_H
 
-#include "base/error_summary.h"
-#include "base/image.h"
+#include "base/numeric/error_summary.h"
+#include "base/picture/image.h"
 #include "player/draw/player.h"
 
 /* Pixels along a side of the blocks whose means say how right the tone is, wherever the yarns lie. */

@@ -2,7 +2,7 @@
 #ifndef WEFT_STUDY_TRUTH_TRACE_H
 #define WEFT_STUDY_TRUTH_TRACE_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "base/progress.h"
 #include "geometry/drape/draped_cloth.h"
 #include "player/mesh/mesh.h"

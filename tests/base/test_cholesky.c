@@ -1,4 +1,4 @@
-#include "base/cholesky.h"
+#include "base/numeric/cholesky.h"
 #include "tests/reflectance/random.h"
 #include "tests/support/cmocka_all.h"
 

@@ -1,4 +1,4 @@
-#include "base/csv.h"
+#include "base/text/csv.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* The measure of error against numbers worked out by hand. */
 #include "tests/support/cmocka_all.h"
 
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* Atomic files and the image bridge: what is written is whole or absent. */
 #include "base/atomic_file.h"
-#include "base/image.h"
+#include "base/picture/image.h"
 
 #include <dirent.h>
 #include <math.h>

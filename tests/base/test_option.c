@@ -1,5 +1,5 @@
 /* Options read from text: each kind, and what it refuses. */
-#include "base/option.h"
+#include "base/text/option.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "base/quadratic_program.h"
+#include "base/numeric/quadratic_program.h"
 #include "tests/reflectance/random.h"
 #include "tests/support/cmocka_all.h"
 

@@ -1,7 +1,7 @@
 /* The rank of a quantile, and values that are not numbers. */
 #include "tests/support/cmocka_all.h"
 
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "btf/direction/direction.h"
 #include "tests/support/cmocka_all.h"
 

@@ -1,5 +1,5 @@
 #include "base/atomic_file.h"
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "btf/session/session.h"
 
 #include <setjmp.h>

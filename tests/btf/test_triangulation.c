@@ -1,5 +1,5 @@
 /* Built twice: in double, and in single precision. */
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "btf/direction/direction.h"
 #include "btf/direction/triangulation.h"
 #include "tests/support/cmocka_all.h"

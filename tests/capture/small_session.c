@@ -1,6 +1,6 @@
 #include "tests/capture/small_session.h"
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "capture/file_crc.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"

@@ -1,4 +1,4 @@
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "tests/capture/small_session.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"

@@ -1,7 +1,7 @@
 #include "capture/virtual/ground_truth.h"
 
-#include "base/image.h"
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
+#include "base/picture/image.h"
 #include "tests/capture/small_session.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"

@@ -1,5 +1,5 @@
 /* eval, info, verify and import as a user runs them. */
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "btf/material/material.h"
 #include "tests/support/run_weft.h"
 

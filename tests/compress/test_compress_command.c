@@ -2,7 +2,7 @@
 #include "tests/support/cmocka_all.h"
 
 #include "base/atomic_file.h"
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "btf/material/material.h"
 #include "tests/support/run_weft.h"
 #include "tests/support/synthetic_dataset.h"

@@ -1,5 +1,5 @@
 /* Percentiles by histogram against sorted values. */
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 #include "tests/support/cmocka_all.h"
 
 #include "compress/fit/measure.h"

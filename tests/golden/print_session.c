@@ -1,4 +1,4 @@
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "btf/direction/direction.h"
 #include "btf/session/session.h"
 #include "tests/golden/print.h"

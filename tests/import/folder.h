@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_IMPORT_FOLDER_H
 #define WEFT_TESTS_IMPORT_FOLDER_H
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "btf/dataset/dataset.h"
 #include "import/import.h"
 

@@ -1,4 +1,4 @@
-#include "base/colour.h"
+#include "base/picture/colour.h"
 #include "folder.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "stage.h"
 
 #include "../support/keep_modules.h"
-#include "base/colour.h"
+#include "base/picture/colour.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Layouts, filters and lights of whole pictures. */
-#include "base/colour.h"
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
+#include "base/picture/colour.h"
 #include "player/scene/false_colour.h"
 #include "stage.h"
 

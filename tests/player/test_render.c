@@ -2,7 +2,7 @@
 #include "stage.h"
 
 #include "base/atomic_file.h"
-#include "base/colour.h"
+#include "base/picture/colour.h"
 
 #include <math.h>
 #include <stdio.h>

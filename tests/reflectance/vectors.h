@@ -2,7 +2,7 @@
 #ifndef WEFT_TESTS_REFLECTANCE_VECTORS_H
 #define WEFT_TESTS_REFLECTANCE_VECTORS_H
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "base/vector.h"
 #include "tests/support/cmocka_all.h"
 

@@ -1,7 +1,7 @@
 #include "plate_session.h"
 
 #include "base/atomic_file.h"
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "plate.h"
 #include "tests/support/cmocka_all.h"
 

@@ -1,6 +1,6 @@
 #include "registration/registration.h"
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "btf/dataset/dataset.h"
 #include "plate_session.h"
 #include "tests/registration/near.h"

@@ -1,6 +1,6 @@
 #include "registration/registration.h"
 
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 #include "btf/dataset/dataset.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/ground_truth.h"

@@ -1,6 +1,6 @@
 #include "registration/pose/refine.h"
 
-#include "base/image.h"
+#include "base/picture/image.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 #include "base/atomic_file.h"
-#include "base/statistics.h"
+#include "base/numeric/statistics.h"
 #include "btf/direction/direction.h"
 #include "fixture.h"
 #include "reflectance/microcylinder/file.h"

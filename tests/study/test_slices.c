@@ -1,4 +1,4 @@
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "btf/direction/direction.h"
 #include "fixture.h"
 #include "study/compare/slices.h"

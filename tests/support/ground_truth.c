@@ -1,6 +1,6 @@
 #include "tests/support/ground_truth.h"
 
-#include "base/error_summary.h"
+#include "base/numeric/error_summary.h"
 
 #include <hdf5.h>
 #include <math.h>
@@ -190,7 +190,7 @@ static void compare_image(const truth *t, const strip *s, int image, truth_error
     }
 }
 
-/* The largest dim reflectance (base/error_summary.h). */
+/* The largest dim reflectance (base/numeric/error_summary.h). */
 static float dim_limit(const truth *t)
 {
     float largest = 0;

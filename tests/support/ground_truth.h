@@ -26,7 +26,7 @@ void truth_free(truth *t);
 double truth_warp_error_texels(const truth *t, const weft_camera *calibrated, int stay, const weft_homography *found,
                                int texels);
 
-/* The relative error of every sample that is not masked and truly not dim (base/error_summary.h). */
+/* The relative error of every sample that is not masked and truly not dim (base/numeric/error_summary.h). */
 typedef struct truth_errors {
     float dim;     /* the largest true reflectance that is dim */
     int capacity;  /* of an image: texels times channels */

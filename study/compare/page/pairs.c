@@ -1,6 +1,6 @@
 #include "study/compare/page/sections.h"
 
-#include "base/colour.h"
+#include "base/picture/colour.h"
 #include "study/compare/sample_picture.h"
 
 #include <stdio.h>

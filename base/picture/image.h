@@ -1,0 +1,61 @@
+/* Images: the one door to OpenImageIO. Row 0 is the top row; samples are interleaved RGB. */
+#ifndef WEFT_BASE_PICTURE_IMAGE_H
+#define WEFT_BASE_PICTURE_IMAGE_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* [height][width][3] floats. Integer files are scaled to 0..1; no colour conversion is done by the
+ * reader and the writer (see base/picture/colour.h). Owned by the caller, freed with weft_image_free. */
+typedef struct weft_image {
+    int width, height;
+    float *pixels;
+} weft_image;
+
+typedef enum weft_image_kind {
+    WEFT_IMAGE_INTEGER, /* 8 or 16 bit per sample: by custom sRGB */
+    WEFT_IMAGE_FLOAT    /* half or float: by custom linear */
+} weft_image_kind;
+
+/* Allocates a black image. Errors: WEFT_SYSTEM. */
+weft_code weft_image_create(int width, int height, weft_image *image, weft_error *error);
+void weft_image_free(weft_image *image);
+
+/* Reads any format OpenImageIO knows; one channel is repeated, alpha is dropped. `kind` may be NULL.
+ * Errors: WEFT_BAD_INPUT for a missing, truncated or unreadable file, or one over 2^28 pixels.
+ * Thread-safe. */
+weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error);
+
+/* Writes atomically; the format follows the extension: .png 8 bit (values clamped to 0..1),
+ * .exr half floats, .tif float. `description` (may be NULL) goes into the file's metadata.
+ * Errors: WEFT_SYSTEM. */
+weft_code weft_image_write(const char *path, const weft_image *image, const char *description, weft_error *error);
+
+/* The same with a text of Weft's own (ASCII) in the attribute "weft:settings": a tEXt chunk of PNG, an attribute of
+ * EXR; TIFF has no place for it. NULL: none. */
+weft_code weft_image_write_settings(const char *path, const weft_image *image, const char *description,
+                                    const char *settings, weft_error *error);
+
+/* The text that weft_image_write_settings wrote, owned by the caller; NULL where the image has none. The pixels are not
+ * read. Errors: WEFT_BAD_INPUT for a file that is no image. */
+weft_code weft_image_read_settings(const char *path, char **settings, weft_error *error);
+
+/* Raw camera values: [height][width][3] 16-bit samples, of which the low `bits` are used; TIFF without
+ * compression, packed to `bits` (10, 12, 14 or 16) on disk. Writes to `path` directly: the caller names it atomically.
+ */
+weft_code weft_photograph_write(const char *path, int width, int height, int bits, const uint16_t *samples,
+                                weft_error *error);
+
+/* Reads a photograph of exactly width x height x 3 into `samples`, as raw camera values of `bits`
+ * bits. Errors: WEFT_BAD_INPUT naming the file for missing, truncated, or another size. Thread-safe. */
+weft_code weft_photograph_read(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,231 @@
+#include "base/atomic_file.h"
+#include "base/picture/image.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+constexpr long long max_pixels = 1ll << 28;
+constexpr const char *settings_name = "weft:settings";
+constexpr const char *no_time = "0000:00:00 00:00:00";
+
+/* One line of OpenImageIO's last message. */
+std::string first_line(const std::string &text)
+{
+    return text.substr(0, text.find('\n'));
+}
+
+weft_code unreadable(weft_error *error, const char *path, const std::string &why)
+{
+    std::string line = first_line(why);
+    return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path,
+                     line.empty() ? "damaged, or of no known format" : line.c_str());
+}
+
+std::unique_ptr<OIIO::ImageInput> open_input(const char *path, weft_code *code, weft_error *error)
+{
+    auto input = OIIO::ImageInput::open(path);
+    *code = input ? WEFT_OK : unreadable(error, path, OIIO::geterror());
+    return input;
+}
+
+weft_code read_floats(OIIO::ImageInput &input, const char *path, weft_image *image, weft_error *error)
+{
+    const OIIO::ImageSpec &spec = input.spec();
+    int channels = spec.nchannels < 3 ? 1 : 3;
+    size_t pixel_count = size_t(spec.width) * size_t(spec.height);
+    WEFT_TRY(weft_image_create(spec.width, spec.height, image, error));
+    if (input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, image->pixels, 3 * sizeof(float)))
+        for (size_t i = 0; channels == 1 && i < pixel_count; i++)
+            image->pixels[3 * i + 1] = image->pixels[3 * i + 2] = image->pixels[3 * i];
+    else {
+        weft_image_free(image);
+        return unreadable(error, path, input.geterror());
+    }
+    return WEFT_OK;
+}
+
+weft_code read_image(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+{
+    weft_code code;
+    auto input = open_input(path, &code, error);
+    WEFT_TRY(code);
+    const OIIO::ImageSpec &spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.depth > 1 ||
+        (long long)spec.width * spec.height > max_pixels)
+        return weft_fail(error, WEFT_BAD_INPUT, "image '%s' has an unusable size: %d x %d x %d, %d channels", path,
+                         spec.width, spec.height, spec.depth, spec.nchannels);
+    if (kind)
+        *kind = spec.format.is_floating_point() ? WEFT_IMAGE_FLOAT : WEFT_IMAGE_INTEGER;
+    return read_floats(*input, path, image, error);
+}
+
+weft_code read_settings(const char *path, char **settings, weft_error *error)
+{
+    weft_code code;
+    auto input = open_input(path, &code, error);
+    WEFT_TRY(code);
+    *settings = nullptr;
+    const OIIO::ParamValue *found = input->spec().find_attribute(settings_name, OIIO::TypeDesc::STRING);
+    if (!found)
+        return WEFT_OK;
+    *settings = strdup(found->get_ustring().c_str());
+    return *settings ? WEFT_OK : weft_fail_memory(error, path, found->get_ustring().size());
+}
+
+bool has_extension(const std::string &path, const char *extension)
+{
+    size_t length = strlen(extension);
+    return path.size() >= length && strcasecmp(path.c_str() + path.size() - length, extension) == 0;
+}
+
+OIIO::TypeDesc type_for(const std::string &path)
+{
+    if (has_extension(path, ".exr"))
+        return OIIO::TypeDesc::HALF;
+    if (has_extension(path, ".tif") || has_extension(path, ".tiff"))
+        return OIIO::TypeDesc::FLOAT;
+    return OIIO::TypeDesc::UINT8;
+}
+
+using encoded_bytes = std::vector<unsigned char>;
+
+/* Encodes into memory, because the library keeps silent where a disk is full. */
+weft_code encode(const char *path, const OIIO::ImageSpec &spec, const OIIO::TypeDesc &type, const void *pixels,
+                 encoded_bytes *bytes, weft_error *error)
+{
+    OIIO::Filesystem::IOVecOutput memory;
+    auto output = OIIO::ImageOutput::create(path);
+    if (!output || !output->supports("ioproxy") || !output->set_ioproxy(&memory))
+        return weft_fail(error, WEFT_BAD_USAGE, "cannot write image '%s': use .png, .exr or .tif", path);
+    if (!output->open(path, spec) || !output->write_image(type, pixels) || !output->close())
+        return weft_fail(error, WEFT_SYSTEM, "cannot write image '%s': %s", path,
+                         first_line(output->geterror()).c_str());
+    *bytes = memory.buffer();
+    return WEFT_OK;
+}
+
+weft_code write_image(const char *path, const weft_image *image, const char *description, const char *settings,
+                      weft_error *error)
+{
+    OIIO::TypeDesc type = type_for(path);
+    OIIO::ImageSpec spec(image->width, image->height, 3, type);
+    spec.attribute("oiio:ColorSpace", type == OIIO::TypeDesc::UINT8 ? "sRGB" : "linear");
+    if (description)
+        spec.attribute("ImageDescription", description);
+    /* Else EXR and TIFF carry the time of day, and the same picture never has the same bytes twice. */
+    spec.attribute("DateTime", no_time);
+    if (settings)
+        spec.attribute(settings_name, settings);
+    encoded_bytes bytes;
+    WEFT_TRY(encode(path, spec, OIIO::TypeDesc::FLOAT, image->pixels, &bytes, error));
+    return weft_write_file(path, bytes.data(), bytes.size(), error);
+}
+
+weft_code write_photograph(const char *path, int width, int height, int bits, const uint16_t *samples,
+                           weft_error *error)
+{
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT16);
+    spec.attribute("oiio:BitsPerSample", bits);
+    spec.attribute("oiio:ColorSpace", "linear");
+    spec.attribute("compression", "none");
+    spec.attribute("tiff:RowsPerStrip", height);
+    spec.attribute("DateTime", no_time);
+    /* OpenImageIO packs the high bits of 16-bit samples. */
+    std::vector<uint16_t> shifted(size_t(width) * size_t(height) * 3);
+    for (size_t i = 0; i < shifted.size(); i++)
+        shifted[i] = uint16_t(samples[i] << (16 - bits) | samples[i] >> (2 * bits - 16));
+    encoded_bytes bytes;
+    WEFT_TRY(encode(path, spec, OIIO::TypeDesc::UINT16, shifted.data(), &bytes, error));
+    return weft_write_new_file(path, bytes.data(), bytes.size(), error);
+}
+
+weft_code read_photograph(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error)
+{
+    weft_code code;
+    auto input = open_input(path, &code, error);
+    WEFT_TRY(code);
+    const OIIO::ImageSpec &spec = input->spec();
+    if (spec.width != width || spec.height != height || spec.nchannels != 3)
+        return weft_fail(error, WEFT_BAD_INPUT, "photograph '%s' is %d x %d with %d channels, not %d x %d with 3", path,
+                         spec.width, spec.height, spec.nchannels, width, height);
+    /* Depths that TIFF does not pack are stored in 16 bits. */
+    int stored_bits = spec.get_int_attribute("oiio:BitsPerSample", int(8 * spec.format.basesize()));
+    if (stored_bits != bits && stored_bits != 16)
+        return weft_fail(error, WEFT_BAD_INPUT, "photograph '%s' has %d bits a sample, not %d", path, stored_bits,
+                         bits);
+    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT16, samples))
+        return unreadable(error, path, input->geterror());
+    size_t count = size_t(width) * size_t(height) * 3;
+    for (size_t i = 0; i < count; i++)
+        samples[i] = uint16_t(samples[i] >> (16 - bits));
+    return WEFT_OK;
+}
+
+/* No C++ exception leaves the bridge. */
+template <typename Action> weft_code guarded(const char *path, weft_error *error, Action action)
+{
+    try {
+        return action();
+    } catch (const std::bad_alloc &) {
+        return weft_fail_memory(error, path, 0);
+    } catch (const std::exception &exception) {
+        return weft_fail(error, WEFT_BAD_INPUT, "image '%s': %s", path, first_line(exception.what()).c_str());
+    }
+}
+
+} // namespace
+
+weft_code weft_image_create(int width, int height, weft_image *image, weft_error *error)
+{
+    size_t bytes = size_t(width) * size_t(height) * 3 * sizeof(float);
+    *image = weft_image{width, height, static_cast<float *>(calloc(1, bytes))};
+    return image->pixels ? WEFT_OK : weft_fail_memory(error, "image", bytes);
+}
+
+void weft_image_free(weft_image *image)
+{
+    free(image->pixels);
+    *image = weft_image{0, 0, nullptr};
+}
+
+weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+{
+    return guarded(path, error, [&] { return read_image(path, image, kind, error); });
+}
+
+weft_code weft_image_write(const char *path, const weft_image *image, const char *description, weft_error *error)
+{
+    return weft_image_write_settings(path, image, description, nullptr, error);
+}
+
+weft_code weft_image_write_settings(const char *path, const weft_image *image, const char *description,
+                                    const char *settings, weft_error *error)
+{
+    return guarded(path, error, [&] { return write_image(path, image, description, settings, error); });
+}
+
+weft_code weft_image_read_settings(const char *path, char **settings, weft_error *error)
+{
+    return guarded(path, error, [&] { return read_settings(path, settings, error); });
+}
+
+weft_code weft_photograph_write(const char *path, int width, int height, int bits, const uint16_t *samples,
+                                weft_error *error)
+{
+    return guarded(path, error, [&] { return write_photograph(path, width, height, bits, samples, error); });
+}
+
+weft_code weft_photograph_read(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error)
+{
+    return guarded(path, error, [&] { return read_photograph(path, width, height, bits, samples, error); });
+}

@@ -1,0 +1,50 @@
+/* A report: one HTML page with pictures beside it, in a folder. All reports of Weft look alike. Besides what the
+ * functions below write, its style knows
+ *
+ *     <div class="tiles">          the few numbers that matter most, by weft_page_tile
+ *     <p class="note">             an explanation, smaller
+ *     <div class="row">            figures side by side
+ *     <div class="gallery">        cards; each is a <figure> with a <div> of up to three pictures and a <figcaption>
+ *     <table class="long">         many rows and columns: smaller, and the heading stays in sight
+ *     <td class="text">            a cell of words, at the left; a table's first column is at the left anyway
+ *     <tr class="bad">, "weak"     a row that reports a failure, or something to look at; also <figure class="bad">
+ *     <svg class="chart">          as wide as the page */
+#ifndef WEFT_BASE_TEXT_PAGE_H
+#define WEFT_BASE_TEXT_PAGE_H
+
+#include "base/picture/image.h"
+#include "base/status.h"
+
+#include <stdio.h>
+
+/* A page being made. `html` takes markup; text from outside goes through weft_page_text. Freed by finish or abandon. */
+typedef struct weft_page {
+    char *folder;
+    FILE *html;
+    char *bytes; /* what was written to html so far, after a flush */
+    size_t size;
+} weft_page;
+
+/* Makes the folder (an existing one is fine) and begins the page. Errors: WEFT_SYSTEM. */
+weft_code weft_page_begin(const char *folder, const char *title, weft_page *page, weft_error *error);
+
+/* Writes text in which nothing is markup: & < > " and ' are escaped, so that it may also stand in an attribute, in
+ * quotation marks of either kind. */
+void weft_page_text(weft_page *page, const char *text);
+
+/* Writes NAME.png (values 0..1 as encoded) into the folder and a figure with a caption (text) that shows it `width`
+ * pixels wide. */
+weft_code weft_page_picture(weft_page *page, const char *name, const weft_image *image, int width, const char *caption,
+                            weft_error *error);
+
+/* A large number or word, formatted, with what it says below it (text); stands in <div class="tiles">. */
+void weft_page_tile(weft_page *page, const char *label, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* A row of a table of two columns: text and a formatted number or text. */
+void weft_page_fact(weft_page *page, const char *name, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Writes index.html atomically: the page exists once all its pictures do. Frees the page, also on failure. */
+weft_code weft_page_finish(weft_page *page, weft_error *error);
+void weft_page_abandon(weft_page *page);
+
+#endif
