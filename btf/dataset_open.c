@@ -42,9 +42,11 @@ static bool is_scalar(hid_t space)
     return space >= 0 && H5Sget_simple_extent_npoints(space) == 1;
 }
 
-/* The memory type of a string is the file's own, so that character sets and padding agree. NULL on failure. */
+/* The memory type of a string is the file's own, so that character sets and padding agree. NULL on failure, with ENOMEM
+ * in errno where memory is short. */
 static char *read_string(hid_t object, hid_t type, read_function *read)
 {
+    errno = 0;
     if (H5Tget_class(type) != H5T_STRING)
         return NULL;
     char *text = NULL;
@@ -77,6 +79,8 @@ static weft_code read_text_attribute(const weft_dataset *dataset, const char *na
     weft_code code = WEFT_OK;
     if (value && strlen(value) < MAX_NAME)
         snprintf(text, MAX_NAME, "%s", value);
+    else if (!value && errno == ENOMEM)
+        code = weft_fail_memory(error, name, MAX_NAME);
     else
         code = fail(dataset, error, "cannot read attribute", name);
     free(value);
@@ -245,9 +249,12 @@ static weft_code read_provenance(weft_dataset *dataset, weft_error *error)
         return fail(dataset, error, "cannot open", "provenance");
     hid_t space = H5Dget_space(object), type = H5Dget_type(object);
     char *text = is_scalar(space) && type >= 0 ? read_string(object, type, read_whole_dataset) : NULL;
+    bool is_short = !text && errno == ENOMEM;
     H5Tclose(type);
     H5Sclose(space);
     H5Dclose(object);
+    if (is_short)
+        return weft_fail_memory(error, "provenance", MAX_PROVENANCE);
     if (!text)
         return fail(dataset, error, "cannot read", "provenance");
     free(dataset->layout.provenance);

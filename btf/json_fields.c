@@ -36,24 +36,16 @@ static int list_count(const weft_json_field *field, const char *base)
 static json_t *list_of(const weft_json_field *field, const char *base)
 {
     json_t *list = json_array();
-    for (int i = 0; list && i < list_count(field, base); i++) {
-        if (json_array_append_new(list, value_of(field->part, base + field->offset + (size_t)i * field->stride)) != 0) {
-            json_decref(list);
-            list = NULL;
-        }
-    }
+    for (int i = 0; list && i < list_count(field, base); i++)
+        weft_json_append(&list, value_of(field->part, base + field->offset + (size_t)i * field->stride));
     return list;
 }
 
 static json_t *object_of(const weft_json_field *table, const char *base)
 {
     json_t *object = json_object();
-    for (const weft_json_field *field = table; object && field->name; field++) {
-        if (json_object_set_new(object, field->name, value_of(field, base)) != 0) {
-            json_decref(object);
-            object = NULL;
-        }
-    }
+    for (const weft_json_field *field = table; object && field->name; field++)
+        weft_json_put(&object, field->name, value_of(field, base));
     return object;
 }
 
@@ -88,10 +80,11 @@ static json_t *value_of(const weft_json_field *field, const char *base)
 weft_code weft_json_write_fields(const weft_json_field *table, const void *structure, json_t **object,
                                  weft_error *error)
 {
+    errno = 0;
     *object = object_of(table, structure);
     if (*object)
         return WEFT_OK;
-    return weft_fail(error, WEFT_BAD_USAGE, "a value cannot be written as JSON: a number is not finite");
+    return weft_json_fail(error, WEFT_BAD_USAGE, "a value cannot be written as JSON: a number is not finite");
 }
 
 /* ---- Reading ---- */

@@ -18,9 +18,8 @@ typedef struct virtual_rig {
     weft_pose pose;
     weft_vec3 light; /* plate frame, mm */
     weft_virtual_view seen;
-    bool seen_valid;     /* whether `seen` belongs to this stay */
-    float *radiance;     /* [height][width][3] under full power */
-    bool radiance_valid; /* whether `radiance` belongs to this stay and light */
+    bool seen_valid; /* whether `seen` belongs to this stay */
+    float *radiance; /* [height][width][3] under full power, where the light is placed */
 } virtual_rig;
 
 /* ---- Stage ---- */
@@ -36,18 +35,33 @@ static weft_code move_camera(void *device, weft_angles view, bool *moved, weft_e
     rig->stay = rig->next_stay++;
     rig->view = view;
     rig->pose = weft_virtual_world_pose(&rig->world, view, rig->stay);
-    rig->seen_valid = rig->radiance_valid = rig->light_placed = false;
+    rig->seen_valid = rig->light_placed = false;
     return WEFT_OK;
 }
 
+/* What the camera sees from where it stands, under a light that stands, too. */
+static weft_code look(virtual_rig *rig, weft_error *error)
+{
+    if (!rig->seen_valid) {
+        weft_virtual_view_free(&rig->seen);
+        WEFT_TRY(weft_virtual_view_make(&rig->optics, rig->target, rig->sample, &rig->pose, &rig->seen, error));
+        rig->seen_valid = true;
+    }
+    bool shadowed = weft_virtual_world_shadowed(&rig->world, &rig->pose, rig->light);
+    weft_virtual_view_light(&rig->seen, rig->sample, rig->light, rig->world.settings.light_distance_mm,
+                            shadowed ? 0 : 1, rig->radiance);
+    return WEFT_OK;
+}
+
+/* The view is made here, not when it is photographed: an exposure that fails is repeated, a lack of memory is not. */
 static weft_code move_light(void *device, weft_angles light, weft_error *error)
 {
     virtual_rig *rig = device;
     if (!rig->homed)
         return weft_fail(error, WEFT_SYSTEM, "virtual stage: the axes are not homed");
     rig->light = weft_virtual_world_light(&rig->world, light, rig->stay);
+    WEFT_TRY(look(rig, error));
     rig->light_placed = true;
-    rig->radiance_valid = false;
     return WEFT_OK;
 }
 
@@ -63,24 +77,6 @@ static weft_code power_light(void *device, bool on, weft_error *error)
 
 /* ---- Camera ---- */
 
-static weft_code look(virtual_rig *rig, weft_error *error)
-{
-    if (!rig->homed || !rig->light_placed)
-        return weft_fail(error, WEFT_SYSTEM, "virtual camera: camera and light have not been driven anywhere");
-    if (!rig->seen_valid) {
-        weft_virtual_view_free(&rig->seen);
-        WEFT_TRY(weft_virtual_view_make(&rig->optics, rig->target, rig->sample, &rig->pose, &rig->seen, error));
-        rig->seen_valid = true;
-    }
-    if (!rig->radiance_valid) {
-        bool shadowed = weft_virtual_world_shadowed(&rig->world, &rig->pose, rig->light);
-        weft_virtual_view_light(&rig->seen, rig->sample, rig->light, rig->world.settings.light_distance_mm,
-                                shadowed ? 0 : 1, rig->radiance);
-        rig->radiance_valid = true;
-    }
-    return WEFT_OK;
-}
-
 /* Shutters are timed in microseconds. */
 static double shutter_time(double exposure_s)
 {
@@ -95,7 +91,8 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
     uint64_t seed = rig->world.seed;
     if (weft_random_uniform(seed, WEFT_RANDOM_FAULT, frame) < settings->timeout_probability)
         return weft_fail(error, WEFT_SYSTEM, "virtual camera: frame %llu timed out", (unsigned long long)frame);
-    WEFT_TRY(look(rig, error));
+    if (!rig->light_placed)
+        return weft_fail(error, WEFT_SYSTEM, "virtual camera: camera and light have not been driven anywhere");
     *read_back_s = shutter_time(exposure_s);
     double drift = 1 + settings->light_power_drift * weft_random_normal(seed, WEFT_RANDOM_POWER, frame);
     double gain = rig->light_on ? settings->sensitivity_electrons * *read_back_s * drift : 0;

@@ -162,7 +162,7 @@ char *weft_rig_settings_text(const weft_rig_settings *settings, uint64_t seed, c
                   weft_json_text(sample_file, strlen(sample_file)), "sample_crc32", (json_int_t)sample_crc32);
     for (int i = 0; root && i < SETTING_COUNT; i++) {
         double value = *place_of((weft_rig_settings *)settings, &table[i]);
-        json_object_set_new(root, table[i].name, table[i].whole ? json_integer((json_int_t)value) : json_real(value));
+        weft_json_put(&root, table[i].name, table[i].whole ? json_integer((json_int_t)value) : json_real(value));
     }
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     json_decref(root);

@@ -13,7 +13,7 @@ int command_info(int argc, char **argv)
     json_t *description;
     weft_code code = weft_inspect(path, &description, &error);
     if (code == WEFT_OK)
-        describe(&common, "info", description);
+        code = describe(&common, "info", description, &error);
     json_decref(description);
     return command_exit("info", &common, code, &error);
 }

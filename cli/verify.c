@@ -15,10 +15,10 @@ int command_verify(int argc, char **argv)
     weft_error error = {0};
     json_t *description;
     weft_code code = weft_verify(path, &progress, &description, &error);
-    if (code == WEFT_OK) {
-        describe(&common, "verify", description);
+    if (code == WEFT_OK)
+        code = describe(&common, "verify", description, &error);
+    if (code == WEFT_OK)
         command_say(&common, "sound");
-    }
     json_decref(description);
     return command_exit("verify", &common, code, &error);
 }

@@ -7,7 +7,8 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
-option(WEFT_SANITIZE "AddressSanitizer and UndefinedBehaviorSanitizer in every target" OFF)
+set(WEFT_SANITIZE "" CACHE STRING "In every target: 'address' (AddressSanitizer and UndefinedBehaviorSanitizer) or 'thread' (ThreadSanitizer)")
+set_property(CACHE WEFT_SANITIZE PROPERTY STRINGS "" address thread)
 
 add_library(weft_options INTERFACE)
 target_include_directories(weft_options INTERFACE ${CMAKE_SOURCE_DIR})
@@ -15,9 +16,14 @@ target_compile_definitions(weft_options INTERFACE _GNU_SOURCE WEFT_VERSION="${PR
 target_compile_options(weft_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wvla -Werror
     $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes> -fno-math-errno)
 target_link_libraries(weft_options INTERFACE m)
-if(WEFT_SANITIZE)
+if(WEFT_SANITIZE STREQUAL "address")
     target_compile_options(weft_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(weft_options INTERFACE -fsanitize=address,undefined)
+elseif(WEFT_SANITIZE STREQUAL "thread")
+    target_compile_options(weft_options INTERFACE -fsanitize=thread -fno-omit-frame-pointer)
+    target_link_options(weft_options INTERFACE -fsanitize=thread)
+elseif(WEFT_SANITIZE)
+    message(FATAL_ERROR "WEFT_SANITIZE is 'address' or 'thread', not '${WEFT_SANITIZE}'")
 endif()
 
 find_package(PkgConfig REQUIRED)
@@ -78,4 +84,14 @@ function(weft_test name)
         WEFT_SHARED="${CMAKE_SOURCE_DIR}/../shared")
     add_test(NAME ${name} COMMAND test_${name} WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
     set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 LABELS "${test_LABELS}")
+endfunction()
+
+# weft_threads_test(NAME...): tests, of weft_test, of what starts threads of its own. They also run under ThreadSanitizer
+# (preset tsan), whose build needs no more than the target threads_tests.
+add_custom_target(threads_tests)
+function(weft_threads_test)
+    foreach(name ${ARGN})
+        set_property(TEST ${name} APPEND PROPERTY LABELS threads)
+        add_dependencies(threads_tests test_${name})
+    endforeach()
 endfunction()

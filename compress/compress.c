@@ -1,6 +1,7 @@
 #include "compress/compress.h"
 
 #include "btf/dataset_fingerprint.h"
+#include "btf/json_text.h"
 #include "btf/material_models.h"
 #include "btf/processor.h"
 #include "compress/budget.h"
@@ -11,7 +12,6 @@
 #include "compress/table_pca.h"
 
 #include <inttypes.h>
-#include <jansson.h>
 #include <malloc.h>
 #include <omp.h>
 #include <stdio.h>
@@ -130,19 +130,19 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
         "masked_samples", (json_int_t)report->masked_count, "texels", (json_int_t)report->texel_count, "empty_texels",
         (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,
         "retro_reflective_starts", (double)report->second_start_count / texels);
-    if (fit && options->weights == WEFT_WEIGHTS_SCREEN && report->model != WEFT_COMPRESS_SPARSE)
-        json_object_set_new(fit, "weights", json_string("screen"));
-    if (fit && options->target_error > 0) {
-        json_object_set_new(fit, "target_error", json_real(options->target_error));
-        json_object_set_new(fit, "texels_above_target", json_integer((json_int_t)report->missed_texel_count));
+    if (options->weights == WEFT_WEIGHTS_SCREEN && report->model != WEFT_COMPRESS_SPARSE)
+        weft_json_put(&fit, "weights", json_string("screen"));
+    if (options->target_error > 0) {
+        weft_json_put(&fit, "target_error", json_real(options->target_error));
+        weft_json_put(&fit, "texels_above_target", json_integer((json_int_t)report->missed_texel_count));
     }
-    if (fit && options->budget_bytes > 0)
-        json_object_set_new(fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
-    if (fit && report->table_components > 0)
-        json_object_set_new(fit, "table_components", json_integer(report->table_components));
-    if (fit && report->model == WEFT_COMPRESS_SPARSE) {
-        json_object_set_new(fit, "largest_exponent", json_real(setting->largest_exponent));
-        json_object_set_new(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
+    if (options->budget_bytes > 0)
+        weft_json_put(&fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
+    if (report->table_components > 0)
+        weft_json_put(&fit, "table_components", json_integer(report->table_components));
+    if (report->model == WEFT_COMPRESS_SPARSE) {
+        weft_json_put(&fit, "largest_exponent", json_real(setting->largest_exponent));
+        weft_json_put(&fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
     }
     return fit;
 }
@@ -156,7 +156,7 @@ static weft_code write_metadata(const weft_dataset_layout *layout, const weft_da
     weft_checksum_print(fingerprint->layout, layout_text);
     weft_checksum_print(fingerprint->samples, samples_text);
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
-    json_t *object = json_pack("{s:o*, s:{s:s, s:s}, s:o*}", "provenance", provenance, "dataset", "layout", layout_text,
+    json_t *object = json_pack("{s:o, s:{s:s, s:s}, s:o}", "provenance", provenance, "dataset", "layout", layout_text,
                                "samples", samples_text, "fit", fit);
     char *text = object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
     json_decref(object);
@@ -212,19 +212,23 @@ typedef struct fitting {
 } fitting;
 
 /* Of the metadata, at most: its numbers may be longer than those of the provenance that they come from. */
-static uint64_t metadata_bytes(const weft_dataset_layout *layout)
+static weft_code metadata_bytes(const weft_dataset_layout *layout, uint64_t *bytes, weft_error *error)
 {
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
-    uint64_t bytes = METADATA_BYTES + (provenance ? json_dumpb(provenance, NULL, 0, JSON_COMPACT) : 0);
+    size_t size = provenance ? json_dumpb(provenance, NULL, 0, JSON_COMPACT) : 0;
     json_decref(provenance);
-    return bytes;
+    if (size == 0)
+        return weft_fail_memory(error, "provenance", strlen(layout->provenance));
+    *bytes = METADATA_BYTES + size;
+    return WEFT_OK;
 }
 
 /* With a target or a budget: which model each texel has is part of the material. */
 static weft_code fit_chosen(fitting *of, const weft_texel_source *source, const weft_dense_job *job,
                             weft_material *material, weft_dense_result *result, weft_error *error)
 {
-    weft_budget_plan plan = {.bytes = of->options->budget_bytes, .reserve = metadata_bytes(source->layout)};
+    weft_budget_plan plan = {.bytes = of->options->budget_bytes};
+    WEFT_TRY(metadata_bytes(source->layout, &plan.reserve, error));
     if (plan.bytes > 0)
         return weft_budget_fit(of->dataset, source, job, &plan, material, result, error);
     WEFT_TRY(weft_dense_fit(of->dataset, source, job, material, result, error));

@@ -1,5 +1,6 @@
 #include "import/collection.h"
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,12 +14,11 @@ char *weft_join_path(const char *folder, const char *name)
     return asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : path;
 }
 
-static bool folder_holds(const char *folder, const char *name)
+bool weft_folder_holds(const char *folder, const char *name)
 {
-    char *path = weft_join_path(folder, name);
-    bool found = path && access(path, F_OK) == 0;
-    free(path);
-    return found;
+    char path[PATH_MAX];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return access(path, F_OK) == 0;
 }
 
 weft_code weft_collection_add(weft_collection *collection, const char *name, weft_photograph photograph,
@@ -47,16 +47,16 @@ static weft_code check_folder(const char *folder, weft_error *error)
     if (!S_ISDIR(status.st_mode))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a folder of photographs (unpack an archive first)",
                          folder);
-    if (folder_holds(folder, "session.json"))
+    if (weft_folder_holds(folder, "session.json"))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a session of `weft capture`: use `weft register`", folder);
     return WEFT_OK;
 }
 
 static weft_code list_photographs(const char *folder, weft_collection *collection, weft_error *error)
 {
-    if (folder_holds(folder, "camera_pos.txt"))
+    if (weft_folder_holds(folder, "camera_pos.txt"))
         return weft_collection_of_positions(folder, collection, error);
-    if (folder_holds(folder, "directions.csv"))
+    if (weft_folder_holds(folder, "directions.csv"))
         return weft_collection_of_table(folder, collection, error);
     return weft_collection_of_names(folder, collection, error);
 }

@@ -5,6 +5,8 @@
 #include "btf/dataset.h"
 #include "btf/lines.h"
 
+#include <stdbool.h>
+
 typedef struct weft_photograph {
     char *name; /* of the file, relative to the folder; where it is missing, what it should be called */
     int missing;
@@ -45,6 +47,8 @@ weft_code weft_collection_of_names(const char *folder, weft_collection *collecti
 
 /* Names (relative, sorted) of the image files in a folder and the folders in it. Freed with weft_lines_free. */
 weft_code weft_list_images(const char *folder, weft_lines *names, weft_error *error);
+
+bool weft_folder_holds(const char *folder, const char *name);
 
 /* "FOLDER/NAME" in new memory. NULL where memory is short. */
 char *weft_join_path(const char *folder, const char *name);

@@ -1,6 +1,7 @@
 #include "player/settings.h"
 
 #include "btf/json_fields.h"
+#include "btf/json_text.h"
 #include "player/relative_path.h"
 
 #include <limits.h>
@@ -342,12 +343,13 @@ weft_code weft_settings_parse(const char *text, size_t size, const char *source,
 {
     char where[WEFT_MESSAGE_SIZE / 2];
     json_error_t at;
+    errno = 0;
     document d = {VERSION, {0}};
     snprintf(where, sizeof where, "the settings in '%s'", source);
     *settings = d.settings;
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &at);
     if (!root)
-        return weft_fail(error, WEFT_BAD_INPUT, "%s: line %d, column %d: %s", where, at.line, at.column, at.text);
+        return weft_json_fail(error, WEFT_BAD_INPUT, "%s: line %d, column %d: %s", where, at.line, at.column, at.text);
     weft_code code = weft_settings_init(&d.settings, error);
     if (code == WEFT_OK)
         code = weft_json_read_fields(document_fields, root, where, &d, error);

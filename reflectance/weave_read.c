@@ -58,7 +58,8 @@ weft_code weave_read_text(const char *path, char **result, weft_error *error)
 {
     FILE *file = fopen(path, "rb");
     if (!file)
-        return weft_fail(error, WEFT_BAD_INPUT, "cannot read '%s': %s", path, strerror(errno));
+        return weft_fail(error, errno == ENOMEM ? WEFT_SYSTEM : WEFT_BAD_INPUT, "cannot read '%s': %s", path,
+                         strerror(errno));
     char *text = malloc(WEAVE_MAX_BYTES + 2);
     weft_code code = text ? read_stream(file, path, text, error) : weft_fail_memory(error, path, WEAVE_MAX_BYTES + 2);
     fclose(file);

@@ -36,10 +36,11 @@ static void write_tile(FILE *page, const char *value, const char *label)
     fprintf(page, "<div class=\"tile\"><b>%s</b><span>%s</span></div>\n", value, label);
 }
 
-static void write_summary(FILE *page, const weft_session *session, const weft_registration *r)
+static weft_code write_summary(FILE *page, const weft_session *session, const weft_registration *r, weft_error *error)
 {
     char text[64];
-    weft_ring_summary all = weft_ring_summarise(session, r, -1);
+    weft_ring_summary all;
+    WEFT_TRY(weft_ring_summarise(session, r, -1, &all, error));
     fputs("<div class=\"tiles\">\n", page);
     snprintf(text, sizeof text, "%d of %d", r->image_count, session->shot_count);
     write_tile(page, text, "photographs in the dataset");
@@ -54,6 +55,7 @@ static void write_summary(FILE *page, const weft_session *session, const weft_re
     snprintf(text, sizeof text, "%.0f s", r->seconds);
     write_tile(page, text, "time taken");
     fputs("</div>\n", page);
+    return WEFT_OK;
 }
 
 static void write_figure(FILE *page, const weft_registration *r, int stay)
@@ -86,7 +88,8 @@ static void write_gallery(FILE *page, const weft_registration *r)
     fputs("</div>\n", page);
 }
 
-static void write_page(FILE *page, const weft_session *session, const weft_registration *r, const char *dataset)
+static weft_code write_page(FILE *page, const weft_session *session, const weft_registration *r, const char *dataset,
+                            weft_error *error)
 {
     fputs(page_head, page);
     fputs("<h1>Registration of ", page);
@@ -97,13 +100,14 @@ static void write_page(FILE *page, const weft_session *session, const weft_regis
     weft_write_escaped(page, dataset);
     fprintf(page, ", %d &times; %d texels of %.3f mm</p>\n", r->settings.width, r->settings.height,
             session->target.opening_mm / r->settings.width);
-    write_summary(page, session, r);
+    WEFT_TRY(write_summary(page, session, r, error));
     weft_write_faults(page, session, r);
-    weft_write_rings(page, session, r);
-    weft_write_whites(page, session, r);
+    WEFT_TRY(weft_write_rings(page, session, r, error));
+    WEFT_TRY(weft_write_whites(page, session, r, error));
     write_gallery(page, r);
     weft_write_stays(page, session, r);
     fputs("</main></body></html>\n", page);
+    return WEFT_OK;
 }
 
 weft_code weft_report_write_page(const weft_session *session, const weft_registration *registration,
@@ -116,10 +120,12 @@ weft_code weft_report_write_page(const weft_session *session, const weft_registr
     FILE *page = open_memstream(&text, &size);
     if (!page)
         return weft_fail_memory(error, "the report", 1 << 16);
-    write_page(page, session, registration, dataset);
+    weft_code code = write_page(page, session, registration, dataset, error);
     bool broken = ferror(page) != 0;
-    weft_code code = fclose(page) != 0 || broken ? weft_fail_memory(error, "the report", size)
-                                                 : weft_write_file(path, text, size, error);
+    if ((fclose(page) != 0 || broken) && code == WEFT_OK)
+        code = weft_fail_memory(error, "the report", size);
+    if (code == WEFT_OK)
+        code = weft_write_file(path, text, size, error);
     free(text);
     return code;
 }

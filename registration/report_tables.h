@@ -17,8 +17,9 @@ typedef struct weft_ring_summary {
 
 enum { WEFT_RING_COUNT = 6 };
 
-/* ring in [0, WEFT_RING_COUNT), or -1 for all. Pure. */
-weft_ring_summary weft_ring_summarise(const weft_session *session, const weft_registration *registration, int ring);
+/* ring in [0, WEFT_RING_COUNT), or -1 for all. Errors: WEFT_SYSTEM where memory is short. */
+weft_code weft_ring_summarise(const weft_session *session, const weft_registration *registration, int ring,
+                              weft_ring_summary *summary, weft_error *error);
 
 /* "markers + drawing" and the like. Static text. */
 const char *weft_pose_source_name(const weft_view_pose *pose);
@@ -26,10 +27,13 @@ const char *weft_pose_source_name(const weft_view_pose *pose);
 /* Text with the characters that mean something to HTML replaced. */
 void weft_write_escaped(FILE *page, const char *text);
 
-/* Sections of the page, each with its heading; nothing where there is nothing to say. */
+/* Sections of the page, each with its heading; nothing where there is nothing to say. Errors: WEFT_SYSTEM where memory
+ * is short. */
 void weft_write_faults(FILE *page, const weft_session *session, const weft_registration *registration);
-void weft_write_rings(FILE *page, const weft_session *session, const weft_registration *registration);
-void weft_write_whites(FILE *page, const weft_session *session, const weft_registration *registration);
+weft_code weft_write_rings(FILE *page, const weft_session *session, const weft_registration *registration,
+                           weft_error *error);
+weft_code weft_write_whites(FILE *page, const weft_session *session, const weft_registration *registration,
+                            weft_error *error);
 void weft_write_stays(FILE *page, const weft_session *session, const weft_registration *registration);
 
 #endif

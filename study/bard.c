@@ -2,9 +2,9 @@
 
 #include "btf/dataset_blocks.h"
 #include "btf/direction.h"
+#include "btf/json_text.h"
 #include "study/bard_texel.h"
 
-#include <jansson.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -171,7 +171,7 @@ static char *provenance_of(const predicting *pass)
                                    pass->options->map == WEFT_BARD_PRINTED ? "printed" : "in plane", "diffuse_share",
                                    pass->options->diffuse_share, "largest_tilt_deg", report->largest_tilt_deg,
                                    "photographs_used", report->photograph_count, "images", report->image_count);
-    json_object_set_new(provenance, "prediction", prediction);
+    weft_json_put(&provenance, "prediction", prediction);
     char *text = provenance ? json_dumps(provenance, JSON_COMPACT) : NULL;
     json_decref(provenance);
     return text;

@@ -3,6 +3,7 @@
 #include <ceres/ceres.h>
 
 #include <exception>
+#include <new>
 #include <vector>
 
 namespace
@@ -80,6 +81,8 @@ try {
     ceres::Solver::Summary summary;
     ceres::Solve(quiet_options(), &problem, &summary);
     return check(summary, error);
+} catch (const std::bad_alloc &) {
+    return weft_fail_memory(error, "least squares", 0);
 } catch (const std::exception &exception) {
     return weft_fail(error, WEFT_SYSTEM, "least squares: %s", exception.what());
 }

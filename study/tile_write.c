@@ -3,8 +3,8 @@
 #include "study/tile_mean.h"
 
 #include "btf/dataset_blocks.h"
+#include "btf/json_text.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -213,7 +213,7 @@ static char *provenance_of(const averaging *of)
     json_t *made = json_pack("{s[ff] s[ff] s[ff] s[ff] sf}", "size_mm", report->width_mm, report->height_mm,
                              "size_texels", tile->width, tile->height, "corner_texels", tile->left, tile->top, "tiles",
                              report->tiles_x, report->tiles_y, "residual_share", report->residual_share);
-    json_object_set_new(provenance, "tile", made);
+    weft_json_put(&provenance, "tile", made);
     char *text = provenance ? json_dumps(provenance, JSON_COMPACT) : NULL;
     json_decref(provenance);
     return text;

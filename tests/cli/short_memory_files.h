@@ -11,7 +11,7 @@ typedef struct file_list {
     int count;
     struct listed_file {
         char name[FILES_NAME]; /* from the folder on */
-        uint64_t bytes;        /* FNV-1a hash of them */
+        uint64_t bytes;        /* FNV-1a hash of them, but of lines that tell how long something took */
     } file[FILES_MOST];
 } file_list;
 

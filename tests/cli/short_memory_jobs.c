@@ -79,7 +79,7 @@ const short_memory_job short_memory_jobs[] = {
     {"eval-weave", PRINTS, {"eval", WEAVE, "--at", IN "at.csv", "--noise", "3", "-o", "at.csv"}},
     {"eval-microcylinder", PRINTS, {"eval", CLOTH, "--at", IN "at.csv"}},
     {"info-material", PRINTS, {"info", IN "chosen.weft"}},
-    {"info-dataset", PRINTS, {"info", IN "waves.btf.h5"}},
+    {"info-dataset", PRINTS, {"info", IN "waves.btf.h5", "--json"}},
     {"info-session", PRINTS, {"info", IN "session"}},
     {"info-weave", PRINTS, {"info", WEAVE}},
     {"info-stitch", PRINTS, {"info", IN "coarse.stitch"}},
