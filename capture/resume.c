@@ -103,14 +103,12 @@ static bool find_difference(json_t *a, json_t *b, char *name, size_t size)
 
 static weft_code check_settings(const weft_session *wanted, const weft_session *found, weft_error *error)
 {
-    json_error_t ignored;
-    errno = 0;
-    json_t *a = json_loads(wanted->rig_settings, 0, &ignored), *b = json_loads(found->rig_settings, 0, &ignored);
+    json_t *a = NULL, *b = NULL;
     char name[64];
-    weft_code code = WEFT_OK;
-    if (!a || !b)
-        code = weft_json_fail(error, WEFT_BAD_INPUT, "session '%s': its rig settings are not JSON", wanted->folder);
-    else if (find_difference(a, b, name, sizeof name) || find_difference(b, a, name, sizeof name))
+    weft_code code = weft_json_parse(wanted->rig_settings, strlen(wanted->rig_settings), 0, wanted->folder, &a, error);
+    if (code == WEFT_OK)
+        code = weft_json_parse(found->rig_settings, strlen(found->rig_settings), 0, wanted->folder, &b, error);
+    if (code == WEFT_OK && (find_difference(a, b, name, sizeof name) || find_difference(b, a, name, sizeof name)))
         code = weft_fail(error, WEFT_BAD_INPUT,
                          "session '%s' was begun with another '%s'; repeat its settings or choose another folder",
                          wanted->folder, name);

@@ -95,14 +95,15 @@ static json_t *describe_level(const weft_material *material, int k)
 
 static json_t *describe_material(const char *path, const weft_material *material)
 {
-    json_t *levels = json_array();
+    /* First: reading numbers, jansson sets errno to 0. */
+    json_t *metadata = parsed(material->metadata), *levels = json_array();
     for (int i = 0; i < material->level_count; i++)
         weft_json_append(&levels, describe_level(material, i));
     return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
                      file_size(path), "texels", material->level[0].width, material->level[0].height, "lobes",
                      material->lobe_count, "views_in_table", material->view_count, "lights_in_table",
                      material->light_count, "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata",
-                     parsed(material->metadata));
+                     metadata);
 }
 
 static weft_code inspect_material(const char *path, json_t **result, weft_error *error)

@@ -13,12 +13,12 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-double weft_picture_exposure(const weft_image *image, const uint8_t *mask)
+weft_code weft_picture_exposure(const weft_image *image, const uint8_t *mask, double *exposure, weft_error *error)
 {
     size_t texels = (size_t)image->width * (size_t)image->height, count = 0;
     float *value = malloc(3 * texels * sizeof *value);
     if (!value)
-        return 1;
+        return weft_fail_memory(error, "the values of a picture", 3 * texels * sizeof *value);
     for (size_t i = 0; i < 3 * texels; i++) {
         if (!(mask && mask[i / 3]) && isfinite(image->pixels[i]))
             value[count++] = image->pixels[i];
@@ -26,7 +26,8 @@ double weft_picture_exposure(const weft_image *image, const uint8_t *mask)
     qsort(value, count, sizeof *value, ascending);
     double high = count > 0 ? (double)value[(size_t)(0.99 * (double)(count - 1))] : 0;
     free(value);
-    return high > 0 ? 0.9 / high : 1;
+    *exposure = high > 0 ? 0.9 / high : 1;
+    return WEFT_OK;
 }
 
 weft_code weft_picture_encode(const weft_image *linear, const uint8_t *mask, double exposure, weft_image *result,
