@@ -14,8 +14,10 @@ typedef double weft_real;
 
 #define WEFT_PI 3.14159265358979323846
 
-/* Marks a hot loop: compiled for AVX-512, AVX2 and the baseline, chosen when the program starts. */
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+/* Marks a hot loop: compiled for AVX-512, AVX2 and the baseline, chosen when the program starts, which is before the
+ * sanitizers are ready. */
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&               \
+    !defined(__SANITIZE_THREAD__)
 #define WEFT_HOT __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define WEFT_HOT

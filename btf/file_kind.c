@@ -2,10 +2,11 @@
 
 #include "btf/material/format.h"
 
+#include <fcntl.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { HEAD_SIZE = 4096 };
 
@@ -93,12 +94,12 @@ static bool kind_of_word(const char *head, weft_file_kind *kind)
 static bool kind_of_content(const char *path, weft_file_kind *kind)
 {
     char head[HEAD_SIZE + 1] = "";
-    FILE *file = fopen(path, "rb");
-    if (!file)
+    int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0)
         return false;
-    size_t size = fread(head, 1, HEAD_SIZE, file);
-    fclose(file);
-    return kind_of_bytes(head, size, kind) || kind_of_word(head, kind);
+    ssize_t size = read(file, head, HEAD_SIZE);
+    close(file);
+    return size > 0 && (kind_of_bytes(head, (size_t)size, kind) || kind_of_word(head, kind));
 }
 
 weft_code weft_file_kind_of(const char *path, weft_file_kind *kind, weft_error *error)

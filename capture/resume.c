@@ -1,6 +1,7 @@
 #include "capture/resume.h"
 
 #include "base/atomic_file.h"
+#include "base/text/json_text.h"
 #include "capture/file_crc.h"
 
 #include <dirent.h>
@@ -32,16 +33,17 @@ static weft_code lock_folder(const char *folder, int *lock, weft_error *error)
 
 /* ---- New or known ---- */
 
-/* Whether a folder holds something that no capture has left there: hidden files are locks and temporary files. */
-static bool holds_foreign_files(const char *folder)
+/* A folder that holds something no capture has left there is refused: hidden files are locks and temporary files. */
+static weft_code refuse_foreign_files(const char *folder, weft_error *error)
 {
     DIR *listing = opendir(folder);
+    if (!listing)
+        return weft_fail_errno(error, "list folder", folder);
     bool foreign = false;
-    for (struct dirent *entry; listing && (entry = readdir(listing));)
+    for (struct dirent *entry; (entry = readdir(listing));)
         foreign = foreign || entry->d_name[0] != '.';
-    if (listing)
-        closedir(listing);
-    return foreign;
+    closedir(listing);
+    return foreign ? weft_fail(error, WEFT_BAD_INPUT, "folder '%s' is neither empty nor a session", folder) : WEFT_OK;
 }
 
 static weft_code create_or_open(const weft_session *wanted, weft_session *session, weft_error *error)
@@ -49,8 +51,7 @@ static weft_code create_or_open(const weft_session *wanted, weft_session *sessio
     char path[PATH_MAX];
     snprintf(path, sizeof path, "%s/session.json", wanted->folder);
     if (access(path, F_OK) != 0) {
-        if (holds_foreign_files(wanted->folder))
-            return weft_fail(error, WEFT_BAD_INPUT, "folder '%s' is neither empty nor a session", wanted->folder);
+        WEFT_TRY(refuse_foreign_files(wanted->folder, error));
         WEFT_TRY(weft_session_create(wanted, error));
     }
     /* Also a new session is read back, so that it is the same numbers that a later run will work with. */
@@ -101,13 +102,12 @@ static bool find_difference(json_t *a, json_t *b, char *name, size_t size)
 
 static weft_code check_settings(const weft_session *wanted, const weft_session *found, weft_error *error)
 {
-    json_error_t ignored;
-    json_t *a = json_loads(wanted->rig_settings, 0, &ignored), *b = json_loads(found->rig_settings, 0, &ignored);
+    json_t *a = NULL, *b = NULL;
     char name[64];
-    weft_code code = WEFT_OK;
-    if (!a || !b)
-        code = weft_fail(error, WEFT_BAD_INPUT, "session '%s': its rig settings are not JSON", wanted->folder);
-    else if (find_difference(a, b, name, sizeof name) || find_difference(b, a, name, sizeof name))
+    weft_code code = weft_json_parse(wanted->rig_settings, strlen(wanted->rig_settings), 0, wanted->folder, &a, error);
+    if (code == WEFT_OK)
+        code = weft_json_parse(found->rig_settings, strlen(found->rig_settings), 0, wanted->folder, &b, error);
+    if (code == WEFT_OK && (find_difference(a, b, name, sizeof name) || find_difference(b, a, name, sizeof name)))
         code = weft_fail(error, WEFT_BAD_INPUT,
                          "session '%s' was begun with another '%s'; repeat its settings or choose another folder",
                          wanted->folder, name);

@@ -143,11 +143,11 @@ weft_code weft_setting_groups_read(const char *path, const char *rig, const weft
     return code;
 }
 
-void weft_setting_group_write(const weft_setting_group *group, json_t *object)
+void weft_setting_group_write(const weft_setting_group *group, json_t **object)
 {
     for (int i = 0; i < group->count; i++) {
         const weft_rig_setting *setting = &group->setting[i];
         double value = *place_of(group, setting);
-        json_object_set_new(object, setting->name, setting->whole ? json_integer((json_int_t)value) : json_real(value));
+        weft_json_put(object, setting->name, setting->whole ? json_integer((json_int_t)value) : json_real(value));
     }
 }

@@ -46,8 +46,8 @@ typedef struct weft_rig_setting {
 /* The setting of a field of `structure`. */
 #define WEFT_SETTING(structure, field, default_value, least, most, is_whole)                                           \
     {                                                                                                                  \
-        .name = #field, .offset = offsetof(structure, field), .value = default_value, .low = least, .high = most,      \
-        .whole = is_whole                                                                                              \
+        .name = #field, .offset = offsetof(structure, field), .value = (default_value), .low = (least),                \
+        .high = (most), .whole = (is_whole)                                                                            \
     }
 
 /* Settings, and the structure that holds their values (borrowed). A rig has the group below and those that its back
@@ -69,6 +69,6 @@ weft_code weft_setting_groups_read(const char *path, const char *rig, const weft
                                    weft_error *error);
 
 /* Adds every setting to a JSON object. */
-void weft_setting_group_write(const weft_setting_group *group, json_t *object);
+void weft_setting_group_write(const weft_setting_group *group, json_t **object);
 
 #endif

@@ -5,8 +5,8 @@
 
 enum { LINE_SIZE = 1024 };
 
-/* One value on one line: numbers short, strings bare. */
-static void format_value(const json_t *value, char *text, size_t size)
+/* One value on one line: numbers short, strings bare. False where memory is short. */
+static bool format_value(const json_t *value, char *text, size_t size)
 {
     char *dumped = NULL;
     if (json_is_real(value))
@@ -18,7 +18,10 @@ static void format_value(const json_t *value, char *text, size_t size)
                  json_integer_value(json_array_get(value, 1)));
     else if ((dumped = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(6))))
         snprintf(text, size, "%s", dumped);
+    else
+        return false;
     free(dumped);
+    return true;
 }
 
 static bool is_list_of_objects(const json_t *value)
@@ -26,44 +29,54 @@ static bool is_list_of_objects(const json_t *value)
     return json_is_array(value) && json_is_object(json_array_get(value, 0));
 }
 
-static void say_object(const weft_common_options *common, json_t *object, int indent);
+static bool say_object(const weft_common_options *common, json_t *object, int indent);
 
-static void say_member(const weft_common_options *common, const char *name, json_t *value, int indent)
+static bool say_member(const weft_common_options *common, const char *name, json_t *value, int indent)
 {
     if (json_is_object(value)) {
         weft_command_say(common, "%*s%s:", indent, "", name);
-        say_object(common, value, indent + 2);
-    } else if (is_list_of_objects(value)) {
+        return say_object(common, value, indent + 2);
+    }
+    if (is_list_of_objects(value)) {
         for (size_t i = 0; i < json_array_size(value); i++) {
             weft_command_say(common, "%*s%s %zu:", indent, "", name, i);
-            say_object(common, json_array_get(value, i), indent + 2);
+            if (!say_object(common, json_array_get(value, i), indent + 2))
+                return false;
         }
-    } else {
-        char text[LINE_SIZE] = "";
-        format_value(value, text, sizeof text);
-        weft_command_say(common, "%*s%s: %s", indent, "", name, text);
+        return true;
     }
+    char text[LINE_SIZE];
+    if (!format_value(value, text, sizeof text))
+        return false;
+    weft_command_say(common, "%*s%s: %s", indent, "", name, text);
+    return true;
 }
 
-static void say_object(const weft_common_options *common, json_t *object, int indent)
+static bool say_object(const weft_common_options *common, json_t *object, int indent)
 {
     const char *name;
     json_t *value;
-    json_object_foreach (object, name, value)
-        say_member(common, name, value, indent);
+    json_object_foreach (object, name, value) {
+        if (!say_member(common, name, value, indent))
+            return false;
+    }
+    return true;
 }
 
-void weft_command_describe(const weft_common_options *common, const char *event, json_t *object)
+static bool say_event(const weft_common_options *common, const char *event, json_t *object)
 {
-    if (!common->json) {
-        say_object(common, object, 0);
-        return;
-    }
     json_t *whole = json_pack("{s:s}", "event", event);
-    json_object_update(whole, object);
-    char *line = json_dumps(whole, JSON_COMPACT);
-    if (line)
+    char *line = json_object_update(whole, object) == 0 ? json_dumps(whole, JSON_COMPACT) : NULL;
+    bool is_complete = line != NULL;
+    if (is_complete)
         weft_command_event(common, line);
     free(line);
     json_decref(whole);
+    return is_complete;
+}
+
+weft_code weft_command_describe(const weft_common_options *common, const char *event, json_t *object, weft_error *error)
+{
+    bool said = common->json ? say_event(common, event, object) : say_object(common, object, 0);
+    return said ? WEFT_OK : weft_fail_memory(error, "description", 0);
 }

@@ -6,7 +6,9 @@
 
 #include <jansson.h>
 
-/* "name: value" lines, nested objects indented, small arrays on one line; with --json one event {"event":NAME, ...}. */
-void weft_command_describe(const weft_common_options *common, const char *event, json_t *object);
+/* "name: value" lines, nested objects indented, small arrays on one line; with --json one event {"event":NAME, ...}.
+ * Errors: WEFT_SYSTEM where memory is short. */
+weft_code weft_command_describe(const weft_common_options *common, const char *event, json_t *object,
+                                weft_error *error);
 
 #endif

@@ -20,7 +20,7 @@ static int run(int argc, char **argv)
     json_t *description;
     weft_code code = weft_inspect(values.path, &description, &error);
     if (code == WEFT_OK)
-        weft_command_describe(&values.common, "info", description);
+        code = weft_command_describe(&values.common, "info", description, &error);
     json_decref(description);
     return weft_command_exit("info", &values.common, code, &error);
 }

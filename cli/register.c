@@ -52,9 +52,11 @@ static void say_faults(const register_command *command, const weft_session *sess
             r->estimated_whites);
 }
 
-static void say_outcome(const register_command *command, const weft_session *session, const weft_registration *r)
+static weft_code say_outcome(const register_command *command, const weft_session *session, const weft_registration *r,
+                             weft_error *error)
 {
-    weft_ring_summary all = weft_ring_summarise(session, r, -1);
+    weft_ring_summary all;
+    WEFT_TRY(weft_ring_summarise(session, r, -1, &all, error));
     say_faults(command, session, r);
     weft_command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %d of %d stays registered",
                      command->output, r->settings.width, r->settings.height, r->image_count, session->shot_count,
@@ -65,6 +67,7 @@ static void say_outcome(const register_command *command, const weft_session *ses
         all.median_uncertainty, all.worst_uncertainty, 100 * all.saturated);
     if (command->report_folder)
         weft_command_say(&command->common, "report: %s/index.html", command->report_folder);
+    return WEFT_OK;
 }
 
 static int run(int argc, char **argv)
@@ -85,7 +88,7 @@ static int run(int argc, char **argv)
     settings.report_folder = command.report_folder;
     code = weft_register_session(&session, command.output, &settings, &progress, &registration, &error);
     if (code == WEFT_OK) {
-        say_outcome(&command, &session, &registration);
+        code = say_outcome(&command, &session, &registration, &error);
         weft_registration_free(&registration);
     }
     weft_session_free(&session);

@@ -20,10 +20,10 @@ static int run(int argc, char **argv)
     weft_error error = {0};
     json_t *description;
     weft_code code = weft_verify(values.path, &progress, &description, &error);
-    if (code == WEFT_OK) {
-        weft_command_describe(&values.common, "verify", description);
+    if (code == WEFT_OK)
+        code = weft_command_describe(&values.common, "verify", description, &error);
+    if (code == WEFT_OK)
         weft_command_say(&values.common, "sound");
-    }
     json_decref(description);
     return weft_command_exit("verify", &values.common, code, &error);
 }

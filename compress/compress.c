@@ -125,8 +125,8 @@ typedef struct fitting {
 static weft_code fit_chosen(fitting *work, const weft_texel_source *source, const weft_dense_job *job,
                             weft_material *material, weft_dense_result *result, weft_error *error)
 {
-    weft_budget_plan plan = {.bytes = work->options->budget_bytes,
-                             .reserve = weft_compress_metadata_bytes(source->layout)};
+    weft_budget_plan plan = {.bytes = work->options->budget_bytes};
+    WEFT_TRY(weft_compress_metadata_bytes(source->layout, &plan.reserve, error));
     if (plan.bytes > 0)
         return weft_budget_fit(work->dataset, source, job, &plan, material, result, error);
     WEFT_TRY(weft_dense_fit(work->dataset, source, job, material, result, error));

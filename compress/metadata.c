@@ -1,7 +1,9 @@
 #include "compress/metadata.h"
 
-#include <jansson.h>
+#include "base/text/json_text.h"
+
 #include <stdlib.h>
+#include <string.h>
 
 enum { FIT_BYTES = 2048 /* of metadata besides the provenance */ };
 
@@ -11,12 +13,15 @@ const char *weft_compress_model_name(weft_compress_model model)
     return name[model];
 }
 
-uint64_t weft_compress_metadata_bytes(const weft_dataset_layout *layout)
+weft_code weft_compress_metadata_bytes(const weft_dataset_layout *layout, uint64_t *bytes, weft_error *error)
 {
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
-    uint64_t bytes = FIT_BYTES + (provenance ? json_dumpb(provenance, NULL, 0, JSON_COMPACT) : 0);
+    size_t size = provenance ? json_dumpb(provenance, NULL, 0, JSON_COMPACT) : 0;
     json_decref(provenance);
-    return bytes;
+    if (size == 0)
+        return weft_fail_memory(error, "provenance", strlen(layout->provenance));
+    *bytes = FIT_BYTES + size;
+    return WEFT_OK;
 }
 
 static json_t *describe_fit(const weft_compress_options *options, const weft_compress_report *report,
@@ -29,19 +34,19 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
         "masked_samples", (json_int_t)report->masked_count, "texels", (json_int_t)report->texel_count, "empty_texels",
         (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,
         "retro_reflective_starts", (double)report->second_start_count / texels);
-    if (fit && options->weights == WEFT_WEIGHTS_SCREEN && report->model != WEFT_COMPRESS_SPARSE)
-        json_object_set_new(fit, "weights", json_string("screen"));
-    if (fit && options->target_error > 0) {
-        json_object_set_new(fit, "target_error", json_real(options->target_error));
-        json_object_set_new(fit, "texels_above_target", json_integer((json_int_t)report->missed_texel_count));
+    if (options->weights == WEFT_WEIGHTS_SCREEN && report->model != WEFT_COMPRESS_SPARSE)
+        weft_json_put(&fit, "weights", json_string("screen"));
+    if (options->target_error > 0) {
+        weft_json_put(&fit, "target_error", json_real(options->target_error));
+        weft_json_put(&fit, "texels_above_target", json_integer((json_int_t)report->missed_texel_count));
     }
-    if (fit && options->budget_bytes > 0)
-        json_object_set_new(fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
-    if (fit && report->table_components > 0)
-        json_object_set_new(fit, "table_components", json_integer(report->table_components));
-    if (fit && report->model == WEFT_COMPRESS_SPARSE) {
-        json_object_set_new(fit, "largest_exponent", json_real(setting->largest_exponent));
-        json_object_set_new(fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
+    if (options->budget_bytes > 0)
+        weft_json_put(&fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
+    if (report->table_components > 0)
+        weft_json_put(&fit, "table_components", json_integer(report->table_components));
+    if (report->model == WEFT_COMPRESS_SPARSE) {
+        weft_json_put(&fit, "largest_exponent", json_real(setting->largest_exponent));
+        weft_json_put(&fit, "fitted_normals", json_boolean(setting->stiffness < 1e300));
     }
     return fit;
 }
@@ -54,7 +59,7 @@ weft_code weft_compress_describe(const weft_dataset_layout *layout, const weft_c
     weft_checksum_print(fingerprint->layout, layout_text);
     weft_checksum_print(fingerprint->samples, samples_text);
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
-    json_t *object = json_pack("{s:o*, s:{s:s, s:s}, s:o*}", "provenance", provenance, "dataset", "layout", layout_text,
+    json_t *object = json_pack("{s:o, s:{s:s, s:s}, s:o}", "provenance", provenance, "dataset", "layout", layout_text,
                                "samples", samples_text, "fit", describe_fit(options, report, setting));
     char *text = object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
     json_decref(object);

@@ -1,8 +1,10 @@
 #include "import/collection.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 weft_code weft_collection_add(weft_collection *collection, const char *name, weft_photograph photograph,
                               weft_error *error)
@@ -35,4 +37,11 @@ char *weft_join_path(const char *folder, const char *name)
 {
     char *path;
     return asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : path;
+}
+
+bool weft_folder_holds(const char *folder, const char *name)
+{
+    char path[PATH_MAX];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return access(path, F_OK) == 0;
 }

@@ -5,6 +5,8 @@
 #include "base/text/lines.h"
 #include "btf/dataset/dataset.h"
 
+#include <stdbool.h>
+
 typedef struct weft_photograph {
     char *name; /* of the file, relative to the folder; where it is missing, what it should be called */
     int missing;
@@ -28,6 +30,9 @@ void weft_collection_free(weft_collection *collection);
 /* Appends a photograph; `name` is copied. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_collection_add(weft_collection *collection, const char *name, weft_photograph photograph,
                               weft_error *error);
+
+/* Whether there is a file of that name in the folder. */
+bool weft_folder_holds(const char *folder, const char *name);
 
 /* "FOLDER/NAME" in new memory. NULL where memory is short. */
 char *weft_join_path(const char *folder, const char *name);

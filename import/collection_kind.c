@@ -1,17 +1,6 @@
 #include "import/readers.h"
 
-#include <stdbool.h>
-#include <stdlib.h>
 #include <sys/stat.h>
-#include <unistd.h>
-
-static bool folder_holds(const char *folder, const char *name)
-{
-    char *path = weft_join_path(folder, name);
-    bool found = path && access(path, F_OK) == 0;
-    free(path);
-    return found;
-}
 
 static weft_code check_folder(const char *folder, weft_error *error)
 {
@@ -21,16 +10,16 @@ static weft_code check_folder(const char *folder, weft_error *error)
     if (!S_ISDIR(status.st_mode))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a folder of photographs (unpack an archive first)",
                          folder);
-    if (folder_holds(folder, "session.json"))
+    if (weft_folder_holds(folder, "session.json"))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a session of `weft capture`: use `weft register`", folder);
     return WEFT_OK;
 }
 
 static weft_code list_photographs(const char *folder, weft_collection *collection, weft_error *error)
 {
-    if (folder_holds(folder, "camera_pos.txt"))
+    if (weft_folder_holds(folder, "camera_pos.txt"))
         return weft_collection_of_positions(folder, collection, error);
-    if (folder_holds(folder, "directions.csv"))
+    if (weft_folder_holds(folder, "directions.csv"))
         return weft_collection_of_table(folder, collection, error);
     return weft_collection_of_names(folder, collection, error);
 }

@@ -122,7 +122,7 @@ static json_t *photograph_names(const weft_collection *collection)
 {
     json_t *names = json_array();
     for (int i = 0; i < collection->count; i++)
-        json_array_append_new(names, file_name(&collection->photograph[i]));
+        weft_json_append(&names, file_name(&collection->photograph[i]));
     return names;
 }
 

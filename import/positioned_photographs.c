@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const double mm_per_cm = 10;
 
@@ -65,10 +64,7 @@ static bool find_photograph(const char *folder, int index, char name[32])
     static const char *const extension[] = {"png", "jpg", "jpeg", "exr", "tif", "tiff"};
     for (size_t i = 0; i < sizeof extension / sizeof *extension; i++) {
         snprintf(name, 32, "%02d.%s", index, extension[i]);
-        char *path = weft_join_path(folder, name);
-        bool found = path && access(path, F_OK) == 0;
-        free(path);
-        if (found)
+        if (weft_folder_holds(folder, name))
             return true;
     }
     snprintf(name, 32, "%02d.png", index);

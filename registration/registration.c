@@ -246,6 +246,10 @@ static weft_code produce(const weft_session *session, const char *output, const 
         code = run(&w, error);
     if (code == WEFT_OK) {
         provenance = weft_registration_provenance(session, registration);
+        if (!provenance)
+            code = weft_fail_memory(error, "provenance", 0);
+    }
+    if (code == WEFT_OK) {
         weft_dataset_writer *writer = w.rectifier.writer;
         w.rectifier.writer = NULL;
         code = weft_dataset_writer_finish(writer, provenance, error);

@@ -7,10 +7,13 @@
 
 json_t *weft_json_text(const char *text, size_t length)
 {
+    errno = 0;
     json_t *string = json_stringn(text, length);
-    char *ascii = string ? NULL : strndup(text, length);
-    if (!ascii)
+    if (string || errno == ENOMEM)
         return string;
+    char *ascii = strndup(text, length);
+    if (!ascii)
+        return NULL;
     for (char *byte = ascii; *byte; byte++)
         *byte = (unsigned char)*byte < 0x80 ? *byte : '?';
     string = json_string(ascii);
@@ -18,15 +21,42 @@ json_t *weft_json_text(const char *text, size_t length)
     return string;
 }
 
+weft_code weft_json_parse(const char *text, size_t size, size_t flags, const char *path, json_t **root,
+                          weft_error *error)
+{
+    json_error_t where;
+    errno = 0;
+    *root = json_loadb(text, size, flags, &where);
+    if (*root)
+        return WEFT_OK;
+    return weft_json_fail(error, WEFT_BAD_INPUT, "'%s': line %d, column %d: %s", path, where.line, where.column,
+                          where.text);
+}
+
+static void drop_incomplete(json_t **whole, int failure)
+{
+    if (failure == 0)
+        return;
+    json_decref(*whole);
+    *whole = NULL;
+}
+
+void weft_json_put(json_t **object, const char *name, json_t *value)
+{
+    drop_incomplete(object, json_object_set_new(*object, name, value));
+}
+
+void weft_json_append(json_t **list, json_t *value)
+{
+    drop_incomplete(list, json_array_append_new(*list, value));
+}
+
 weft_code weft_json_read(const char *path, size_t limit, json_t **root, weft_error *error)
 {
     char *text = NULL;
     size_t size;
     WEFT_TRY(weft_read_file(path, limit, &text, &size, error));
-    json_error_t where;
-    *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &where);
+    weft_code code = weft_json_parse(text, size, JSON_REJECT_DUPLICATES, path, root, error);
     free(text);
-    if (*root)
-        return WEFT_OK;
-    return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d, column %d: %s", path, where.line, where.column, where.text);
+    return code;
 }

@@ -25,7 +25,8 @@ weft_code weft_text_file_read(const char *path, char **result, weft_error *error
 {
     FILE *file = fopen(path, "rb");
     if (!file)
-        return weft_fail(error, WEFT_BAD_INPUT, "cannot read '%s': %s", path, strerror(errno));
+        return weft_fail(error, errno == ENOMEM ? WEFT_SYSTEM : WEFT_BAD_INPUT, "cannot read '%s': %s", path,
+                         strerror(errno));
     char *text = malloc(WEFT_TEXT_FILE_MAX_BYTES + 2);
     weft_code code =
         text ? read_stream(file, path, text, error) : weft_fail_memory(error, path, WEFT_TEXT_FILE_MAX_BYTES + 2);

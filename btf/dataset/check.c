@@ -1,6 +1,6 @@
+#include "base/text/json_text.h"
 #include "btf/dataset/hdf5.h"
 
-#include <jansson.h>
 #include <stdbool.h>
 
 enum { MAX_SIDE = 65536, MAX_IMAGES = 1 << 24 };
@@ -72,10 +72,11 @@ weft_code weft_dataset_frames_check(const float *frames, size_t count, int row, 
 weft_code weft_dataset_provenance_check(const char *text, const char *path, weft_code code, weft_error *error)
 {
     json_error_t where;
+    errno = 0;
     json_t *object = text ? json_loads(text, 0, &where) : NULL;
     bool valid = json_is_object(object);
     json_decref(object);
-    return valid ? WEFT_OK : weft_fail(error, code, "'%s': provenance is no JSON object", path);
+    return valid ? WEFT_OK : weft_json_fail(error, code, "'%s': provenance is no JSON object", path);
 }
 
 weft_code weft_dataset_layout_check(const weft_dataset_layout *layout, const char *path, weft_code code,

@@ -1,5 +1,7 @@
 #include "btf/dataset/derived.h"
 
+#include "base/text/json_text.h"
+
 #include "base/atomic_file.h"
 
 #include <stdlib.h>
@@ -16,7 +18,7 @@ weft_code weft_derived_dataset_finish(weft_dataset_block_writer *writer, const w
                                       const char *name, json_t *made, weft_error *error)
 {
     json_t *provenance = json_loads(source->provenance, 0, NULL);
-    json_object_set_new(provenance, name, made);
+    weft_json_put(&provenance, name, made);
     char *text = provenance ? json_dumps(provenance, JSON_COMPACT) : NULL;
     json_decref(provenance);
     if (!text) {

@@ -1,7 +1,7 @@
 #include "btf/dataset/fingerprint.h"
+#include "base/text/json_text.h"
 
 #include <inttypes.h>
-#include <jansson.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,7 +69,10 @@ weft_code weft_dataset_fingerprint_compare(weft_dataset *dataset, const char *me
 {
     weft_dataset_fingerprint own;
     warning[0] = '\0';
-    json_t *object = json_loads(metadata, 0, NULL), *origin = json_object_get(object, "dataset");
+    json_t *object = NULL;
+    if (metadata)
+        WEFT_TRY(weft_json_parse(metadata, strlen(metadata), 0, "metadata", &object, error));
+    json_t *origin = json_object_get(object, "dataset");
     weft_code code = origin ? weft_dataset_fingerprint_take(dataset, &own, error) : WEFT_OK;
     if (origin && code == WEFT_OK) {
         bool layout = is_another(origin, "layout", own.layout), samples = is_another(origin, "samples", own.samples);

@@ -43,9 +43,11 @@ static bool is_one(hid_t space, hid_t type, H5T_class_t class)
     return space >= 0 && type >= 0 && H5Sget_simple_extent_npoints(space) == 1 && H5Tget_class(type) == class;
 }
 
-/* The memory type of a string is the file's own, so that character sets and padding agree. NULL on failure. */
+/* The memory type of a string is the file's own, so that character sets and padding agree. NULL on failure, with ENOMEM
+ * in errno where memory is short. */
 static char *read_string(hid_t object, hid_t type, read_function *read)
 {
+    errno = 0;
     char *text = NULL;
     if (H5Tis_variable_str(type) > 0) {
         char *owned_by_hdf5 = NULL;
@@ -76,7 +78,7 @@ static weft_code open_attribute(const weft_dataset *dataset, const char *name, h
 static weft_code read_text_attribute(const weft_dataset *dataset, const char *name, char text[MAX_NAME],
                                      weft_error *error)
 {
-    hid_t attribute;
+    hid_t attribute = H5I_INVALID_HID;
     WEFT_TRY(open_attribute(dataset, name, &attribute, error));
     hid_t space = H5Aget_space(attribute), type = H5Aget_type(attribute);
     char *value = NULL;
@@ -85,6 +87,8 @@ static weft_code read_text_attribute(const weft_dataset *dataset, const char *na
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s': attribute '%s' is not one string", dataset->path, name);
     else if ((value = read_string(attribute, type, read_attribute)) && strlen(value) < MAX_NAME)
         snprintf(text, MAX_NAME, "%s", value);
+    else if (!value && errno == ENOMEM)
+        code = weft_fail_memory(error, name, MAX_NAME);
     else
         code = fail(dataset, error, "cannot read attribute", name);
     free(value);
@@ -96,7 +100,7 @@ static weft_code read_text_attribute(const weft_dataset *dataset, const char *na
 
 static weft_code read_number_attribute(const weft_dataset *dataset, const char *name, double *value, weft_error *error)
 {
-    hid_t attribute;
+    hid_t attribute = H5I_INVALID_HID;
     WEFT_TRY(open_attribute(dataset, name, &attribute, error));
     hid_t space = H5Aget_space(attribute), type = H5Aget_type(attribute);
     weft_code code = WEFT_OK;
@@ -277,7 +281,8 @@ static weft_code read_provenance(weft_dataset *dataset, weft_error *error)
     if (!is_one(space, type, H5T_STRING))
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s': 'provenance' is not one string", dataset->path);
     else if (!(text = read_string(object, type, read_whole_dataset)))
-        code = fail(dataset, error, "cannot read", "provenance");
+        code = errno == ENOMEM ? weft_fail_memory(error, "provenance", MAX_PROVENANCE)
+                               : fail(dataset, error, "cannot read", "provenance");
     H5Tclose(type);
     H5Sclose(space);
     H5Dclose(object);

@@ -2,6 +2,7 @@
 #include "btf/material/compact.h"
 #include "btf/material/table.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -41,9 +42,12 @@ static weft_code read_metadata(const weft_file_image *file, const weft_section *
     material->metadata = text;
     WEFT_TRY(decode(file, section, text, error));
     json_error_t where;
+    errno = 0;
     json_t *object = json_loadb(text, section->decoded_size, 0, &where);
     bool valid = json_is_object(object) && strlen(text) == section->decoded_size;
     json_decref(object);
+    if (!valid && errno == ENOMEM)
+        return weft_fail_memory(error, "metadata", section->decoded_size);
     return valid ? WEFT_OK : weft_fail_section(file, section, error, "no JSON object");
 }
 

@@ -1,7 +1,7 @@
 #include "base/atomic_file.h"
+#include "base/text/json_text.h"
 #include "btf/material/compact.h"
 
-#include <jansson.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -255,10 +255,12 @@ static weft_code check_header(const char *path, const weft_material *material, w
         return weft_fail(error, WEFT_BAD_USAGE, "cannot write '%s': metadata has %zu bytes, at most %d are allowed",
                          path, strlen(material->metadata), WEFT_FORMAT_MAX_METADATA);
     json_error_t where;
+    errno = 0;
     json_t *object = json_loads(material->metadata, 0, &where);
     bool valid = json_is_object(object);
     json_decref(object);
-    return valid ? WEFT_OK : weft_fail(error, WEFT_BAD_USAGE, "cannot write '%s': metadata is no JSON object", path);
+    return valid ? WEFT_OK
+                 : weft_json_fail(error, WEFT_BAD_USAGE, "cannot write '%s': metadata is no JSON object", path);
 }
 
 weft_code weft_material_write(const char *path, const weft_material *material, weft_error *error)

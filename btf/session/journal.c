@@ -1,6 +1,7 @@
 #include "btf/session/journal.h"
 
 #include "base/atomic_file.h"
+#include "base/text/json_text.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -41,13 +42,14 @@ static weft_code read_line(weft_session *session, const char *path, int line, co
                            weft_error *error)
 {
     json_error_t where;
+    errno = 0;
     json_t *json = json_loadb(text, length, 0, &where);
     json_int_t shot = -1;
     weft_shot_record record = {0};
     bool understood = json && unpack_record(json, &shot, &record);
     json_decref(json);
     if (!understood)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d is not a journal line", path, line);
+        return weft_json_fail(error, WEFT_BAD_INPUT, "'%s': line %d is not a journal line", path, line);
     if (shot < 0 || shot >= session->shot_count)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d names shot %lld, the plan has %d", path, line,
                          (long long)shot, session->shot_count);

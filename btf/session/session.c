@@ -41,11 +41,10 @@ static json_t *pack_angles(weft_angles a)
 static json_t *pack_plan(const weft_session *session)
 {
     json_t *plan = json_array();
-    for (int i = 0; i < session->shot_count; i++) {
+    for (int i = 0; plan && i < session->shot_count; i++) {
         const weft_shot *shot = &session->shot[i];
-        json_array_append_new(plan,
-                              json_pack("{so so so}", "light", pack_angles(shot->light), "view",
-                                        pack_angles(shot->view), "light_driven", pack_angles(shot->light_driven)));
+        weft_json_append(&plan, json_pack("{so so so}", "light", pack_angles(shot->light), "view",
+                                          pack_angles(shot->view), "light_driven", pack_angles(shot->light_driven)));
     }
     return plan;
 }
@@ -53,12 +52,15 @@ static json_t *pack_plan(const weft_session *session)
 static json_t *pack_session(const weft_session *s)
 {
     json_error_t ignored;
+    errno = 0;
     json_t *settings = json_loads(s->rig_settings ? s->rig_settings : "{}", 0, &ignored);
+    if (!settings && errno != ENOMEM)
+        settings = json_object();
     return json_pack("{si ss so so so sf sf si si so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
-                     weft_json_text(s->sample, strlen(s->sample)), "rig_settings", settings ? settings : json_object(),
-                     "camera", pack_camera(&s->camera), "camera_distance_mm", s->camera_distance_mm,
-                     "light_distance_mm", s->light_distance_mm, "bits", s->bits, "black_level", s->black_level,
-                     "target", pack_target(&s->target), "plan", pack_plan(s));
+                     weft_json_text(s->sample, strlen(s->sample)), "rig_settings", settings, "camera",
+                     pack_camera(&s->camera), "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
+                     s->light_distance_mm, "bits", s->bits, "black_level", s->black_level, "target",
+                     pack_target(&s->target), "plan", pack_plan(s));
 }
 
 weft_code weft_session_create(const weft_session *session, weft_error *error)
@@ -130,9 +132,10 @@ static weft_code unpack_plan(json_t *plan, const char *path, weft_session *sessi
     session->record = calloc(count, sizeof *session->record);
     if (!session->shot || !session->record)
         return weft_fail_memory(error, "plan", count * sizeof *session->shot);
+    errno = 0;
     for (size_t i = 0; i < count; i++) {
         if (!unpack_shot(json_array_get(plan, i), &session->shot[i]))
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': shot %zu of the plan is malformed", path, i);
+            return weft_json_fail(error, WEFT_BAD_INPUT, "'%s': shot %zu of the plan is malformed", path, i);
     }
     return WEFT_OK;
 }
@@ -181,7 +184,8 @@ static weft_code unpack_fields(json_t *root, const char *path, weft_session *s, 
                        &s->camera_distance_mm, "light_distance_mm", &s->light_distance_mm, "bits", &bits, "black_level",
                        &black_level) != 0 ||
         !unpack_camera(camera, &s->camera, &cause) || !unpack_target(target, &s->target, &cause))
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' lacks a field, or one has the wrong type: %s", path, cause.text);
+        return weft_json_fail(error, WEFT_BAD_INPUT, "'%s' lacks a field, or one has the wrong type: %s", path,
+                              cause.text);
     if (settings && !json_is_object(settings))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'rig_settings' is no object", path);
     s->bits = limited_int(bits);
@@ -192,8 +196,9 @@ static weft_code unpack_fields(json_t *root, const char *path, weft_session *s, 
 static weft_code unpack_session(json_t *root, const char *path, weft_session *s, weft_error *error)
 {
     json_int_t version = 0;
+    errno = 0;
     if (json_unpack(root, "{sI}", "weft_session", &version) != 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no session", path);
+        return weft_json_fail(error, WEFT_BAD_INPUT, "'%s' is no session", path);
     if (version != SESSION_VERSION)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a session of version %lld, this program reads version %d",
                          path, (long long)version, SESSION_VERSION);

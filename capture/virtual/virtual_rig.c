@@ -22,9 +22,8 @@ typedef struct virtual_devices {
     weft_pose pose;
     weft_vec3 light; /* plate frame, mm */
     weft_virtual_view seen;
-    bool seen_valid;     /* whether `seen` belongs to this stay */
-    float *radiance;     /* [height][width][3] under full power */
-    bool radiance_valid; /* whether `radiance` belongs to this stay and light */
+    bool seen_valid; /* whether `seen` belongs to this stay */
+    float *radiance; /* [height][width][3] under full power, where the light is placed */
 } virtual_devices;
 
 /* ---- Stage ---- */
@@ -52,18 +51,34 @@ static weft_code move_camera(void *device, weft_angles view, bool *moved, weft_e
     devices->stay = devices->next_stay++;
     devices->view = view;
     devices->pose = weft_virtual_world_pose(devices->world, view, devices->stay);
-    devices->seen_valid = devices->radiance_valid = devices->light_placed = false;
+    devices->seen_valid = devices->light_placed = false;
     return WEFT_OK;
 }
 
+/* What the camera sees from where it stands, under a light that stands, too. */
+static weft_code look(virtual_devices *devices, weft_error *error)
+{
+    if (!devices->seen_valid) {
+        weft_virtual_view_free(&devices->seen);
+        WEFT_TRY(weft_virtual_view_make(&devices->optics, &devices->target, devices->sample, &devices->pose,
+                                        &devices->seen, error));
+        devices->seen_valid = true;
+    }
+    bool shadowed = weft_virtual_world_shadowed(devices->world, &devices->pose, devices->light);
+    weft_virtual_view_light(&devices->seen, devices->sample, devices->light,
+                            devices->world->settings.rig.light_distance_mm, shadowed ? 0 : 1, devices->radiance);
+    return WEFT_OK;
+}
+
+/* The view is made here, not when it is photographed: an exposure that fails is repeated, a lack of memory is not. */
 static weft_code move_light(void *device, weft_angles light, weft_error *error)
 {
     virtual_devices *devices = device;
     if (!devices->camera_placed)
         return weft_fail(error, WEFT_SYSTEM, "virtual stage: the light moves before the camera");
     devices->light = weft_virtual_world_light(devices->world, light, devices->stay);
+    WEFT_TRY(look(devices, error));
     devices->light_placed = true;
-    devices->radiance_valid = false;
     return WEFT_OK;
 }
 
@@ -79,25 +94,6 @@ static weft_code power_light(void *device, bool on, weft_error *error)
 
 /* ---- Camera ---- */
 
-static weft_code look(virtual_devices *devices, weft_error *error)
-{
-    if (!devices->camera_placed || !devices->light_placed)
-        return weft_fail(error, WEFT_SYSTEM, "virtual camera: camera and light have not been driven anywhere");
-    if (!devices->seen_valid) {
-        weft_virtual_view_free(&devices->seen);
-        WEFT_TRY(weft_virtual_view_make(&devices->optics, &devices->target, devices->sample, &devices->pose,
-                                        &devices->seen, error));
-        devices->seen_valid = true;
-    }
-    if (!devices->radiance_valid) {
-        bool shadowed = weft_virtual_world_shadowed(devices->world, &devices->pose, devices->light);
-        weft_virtual_view_light(&devices->seen, devices->sample, devices->light,
-                                devices->world->settings.rig.light_distance_mm, shadowed ? 0 : 1, devices->radiance);
-        devices->radiance_valid = true;
-    }
-    return WEFT_OK;
-}
-
 /* Shutters are timed in microseconds. */
 static double shutter_time(double exposure_s)
 {
@@ -112,7 +108,8 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
     uint64_t seed = devices->world->seed;
     if (weft_random_uniform(seed, WEFT_RANDOM_FAULT, frame) < settings->timeout_probability)
         return weft_fail(error, WEFT_SYSTEM, "virtual camera: frame %llu timed out", (unsigned long long)frame);
-    WEFT_TRY(look(devices, error));
+    if (!devices->light_placed)
+        return weft_fail(error, WEFT_SYSTEM, "virtual camera: camera and light have not been driven anywhere");
     *read_back_s = shutter_time(exposure_s);
     double drift = 1 + settings->light_power_drift * weft_random_normal(seed, WEFT_RANDOM_POWER, frame);
     double gain = devices->light_on ? settings->sensitivity_electrons * *read_back_s * drift : 0;

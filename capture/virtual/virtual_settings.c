@@ -66,7 +66,7 @@ char *weft_virtual_settings_text(const weft_virtual_settings *settings, uint64_t
         json_pack("{sI so sI}", "seed", (json_int_t)seed, "sample_file",
                   weft_json_text(sample_file, strlen(sample_file)), "sample_crc32", (json_int_t)sample_crc32);
     for (int i = 0; root && i < GROUP_COUNT; i++)
-        weft_setting_group_write(&groups[i], root);
+        weft_setting_group_write(&groups[i], &root);
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     json_decref(root);
     return text;

@@ -1,9 +1,9 @@
 #include "geometry/acquisition/acquisition.h"
 
+#include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
 #include "geometry/acquisition/view_samples.h"
 
-#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -176,12 +176,14 @@ static weft_code prepare(acquisition *a, weft_error *error)
 
 static weft_code finish(acquisition *a, weft_error *error)
 {
+    errno = 0;
     char *text = provenance(a);
     weft_dataset_writer *writer = a->writer;
     a->writer = NULL;
     if (!text) {
+        weft_code failure = weft_json_fail(error, WEFT_BAD_INPUT, "'%s': the name of the stitch is not UTF-8", a->path);
         weft_dataset_writer_abandon(writer);
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': the name of the stitch is not UTF-8", a->path);
+        return failure;
     }
     weft_code code = weft_dataset_writer_finish(writer, text, error);
     free(text);

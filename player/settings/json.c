@@ -82,10 +82,7 @@ static json_t *value_of(const weft_setting *setting, const char *structure)
     for (int i = 0; list && i < count; i++) {
         json_t *element = setting->part ? object_of(setting->part, at + (size_t)i * setting->stride)
                                         : element_of(&setting->option, at + (size_t)i * element_size(setting));
-        if (json_array_append_new(list, element) != 0) {
-            json_decref(list);
-            return NULL;
-        }
+        weft_json_append(&list, element);
     }
     return list;
 }
@@ -109,9 +106,10 @@ static int set_by_key(json_t *object, const char *key, json_t *value)
 
 weft_code weft_settings_write_json(const weft_setting *table, const void *structure, json_t *object, weft_error *error)
 {
+    errno = 0;
     for (const weft_setting *setting = table; setting->key || setting->option.name; setting++)
         if (setting->key && set_by_key(object, setting->key, value_of(setting, structure)) != 0)
-            return weft_fail(error, WEFT_BAD_USAGE, "a value cannot be written as JSON: a number is not finite");
+            return weft_json_fail(error, WEFT_BAD_USAGE, "a value cannot be written as JSON: a number is not finite");
     return WEFT_OK;
 }
 

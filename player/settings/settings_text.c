@@ -1,5 +1,6 @@
 #include "player/settings/settings.h"
 
+#include "base/text/json_text.h"
 #include "player/settings/json.h"
 #include "player/settings/relative_path.h"
 
@@ -128,10 +129,11 @@ weft_code weft_settings_parse(const char *text, size_t size, const char *source,
 {
     json_error_t at;
     *settings = (weft_settings){0};
+    errno = 0;
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &at);
     if (!root)
-        return weft_fail(error, WEFT_BAD_INPUT, "the settings in '%s': line %d, column %d: %s", source, at.line,
-                         at.column, at.text);
+        return weft_json_fail(error, WEFT_BAD_INPUT, "the settings in '%s': line %d, column %d: %s", source, at.line,
+                              at.column, at.text);
     weft_code code = read_settings(root, source, settings, error);
     json_decref(root);
     if (code != WEFT_OK)

@@ -7,7 +7,7 @@
 
 #define LARGE 1e6
 
-enum { MAX_TILE_SIDE = 4096, MAX_CELLS = 1 << 20, MAX_YARNS = 4096 };
+enum { MAX_TILE_SIDE = 4096, MAX_CELLS = 1 << 20 };
 
 /* Numbers of the weave block, as in the file. */
 typedef struct weave_values {
@@ -74,14 +74,14 @@ typedef struct weave_parser {
 
 static weft_code parse_pattern_cell(weave_parser *parser)
 {
-    static const weft_block_field id_field = {.key = "yarn id", .count = 1, .low = 1, .high = MAX_YARNS};
+    static const weft_block_field id_field = {.key = "yarn id", .count = 1, .low = 1, .high = WEFT_WEAVE_MAX_YARNS};
     weft_token token = parser->block.lexer.token;
     double id = 0;
     WEFT_TRY(weft_block_grow(&parser->block, (void **)&parser->weave->pattern, parser->cell_count,
                              &parser->cell_capacity, sizeof *parser->weave->pattern, MAX_CELLS,
                              "cells in the pattern"));
-    if (token.kind == WEFT_TOKEN_NUMBER && token.number != (int)weft_clamp(token.number, 0, MAX_YARNS + 1))
-        return weft_block_fail(&parser->block, "a yarn id is a whole number from 1 to %d", MAX_YARNS);
+    if (token.kind == WEFT_TOKEN_NUMBER && token.number != (int)weft_clamp(token.number, 0, WEFT_WEAVE_MAX_YARNS + 1))
+        return weft_block_fail(&parser->block, "a yarn id is a whole number from 1 to %d", WEFT_WEAVE_MAX_YARNS);
     WEFT_TRY(weft_block_parse_number(&parser->block, &id_field, &id));
     if (id > parser->largest_id) {
         parser->largest_id = (int)id;
@@ -144,7 +144,7 @@ static weft_code parse_yarn(weave_parser *parser)
     unsigned seen = 0;
     weft_weave *weave = parser->weave;
     WEFT_TRY(weft_block_grow(&parser->block, (void **)&weave->yarn, (size_t)weave->yarn_count, &parser->yarn_capacity,
-                             sizeof *weave->yarn, MAX_YARNS, "yarns"));
+                             sizeof *weave->yarn, WEFT_WEAVE_MAX_YARNS, "yarns"));
     WEFT_TRY(weft_block_advance(&parser->block));
     WEFT_TRY(weft_block_expect_symbol(&parser->block, '{'));
     for (bool more = true; more;) {

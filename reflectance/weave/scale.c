@@ -2,9 +2,8 @@
  * five-dimensional quadrature (two directions and the coordinate along or round the yarn) over an additive recurrence.
  */
 #include "reflectance/weave/direction_sequence.h"
+#include "reflectance/weave/syntax.h"
 #include "reflectance/weave/weave.h"
-
-#include <stdlib.h>
 
 enum { DIMENSIONS = 5, BLOCK_POINTS = 4096, MAX_BLOCKS = 256, MIN_BLOCKS = 1, BUDGET_BLOCKS = 1024 };
 
@@ -72,10 +71,7 @@ static double inverse_scale(const kind_of_yarn *kind, int count)
 
 weft_real weft_weave_specular_scale(const weft_weave *weave)
 {
-    kind_of_yarn *kind = calloc((size_t)weave->yarn_count, sizeof *kind);
-    if (!kind)
-        return 0;
+    kind_of_yarn kind[WEFT_WEAVE_MAX_YARNS];
     double inverse = inverse_scale(kind, collect_kinds(weave, kind));
-    free(kind);
     return inverse > 0 ? (weft_real)(1 / inverse) : 0;
 }

@@ -4,6 +4,8 @@
 
 #include "reflectance/weave/weave.h"
 
+enum { WEFT_WEAVE_MAX_YARNS = 4096 };
+
 /* What the text says, all of it checked except whether the model has such segments. Frees what it allocated on failure.
  */
 weft_code weft_weave_parse_text(const char *text, const char *path, const weft_parameter *parameters,

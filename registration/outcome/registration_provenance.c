@@ -14,20 +14,18 @@ static json_t *pack_stay(const weft_session *session, const weft_registration *r
                   "used", r->used[stay], "rests_on", weft_pose_source_name(pose), "markers", pose->marker_count,
                   "marker_rms_px", pose->marker_rms_px, "correlation", pose->correlation, "standard_error_texels",
                   weft_registration_uncertainty_texels(session, r, stay), "shift_mm", pose->shift_mm);
-    if (!packed)
-        return NULL;
-    json_object_set_new(packed, "plate_mm_to_undistorted_pixels",
-                        json_pack("[[fff][fff][fff]]", m[0][0], m[0][1], m[0][2], m[1][0], m[1][1], m[1][2], m[2][0],
-                                  m[2][1], m[2][2]));
+    weft_json_put(&packed, "plate_mm_to_undistorted_pixels",
+                  json_pack("[[fff][fff][fff]]", m[0][0], m[0][1], m[0][2], m[1][0], m[1][1], m[1][2], m[2][0], m[2][1],
+                            m[2][2]));
     if (pose->remark[0])
-        json_object_set_new(packed, "remark", json_string(pose->remark));
+        weft_json_put(&packed, "remark", json_string(pose->remark));
     return packed;
 }
 
 static json_t *pack_session(const weft_session *s)
 {
-    return json_pack("{so ss* ss* sf sf sf si si}", "folder", weft_json_text(s->folder, strlen(s->folder)), "rig",
-                     s->rig, "sample", s->sample, "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
+    return json_pack("{so ss ss sf sf sf si si}", "folder", weft_json_text(s->folder, strlen(s->folder)), "rig", s->rig,
+                     "sample", s->sample, "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
                      s->light_distance_mm, "opening_mm", s->target.opening_mm, "bits", s->bits, "black_level",
                      s->black_level);
 }
@@ -44,7 +42,7 @@ static json_t *pack_faults(const weft_session *session, const weft_registration 
     json_t *faults = json_array();
     for (int shot = 0; shot < session->shot_count; shot++) {
         if (r->fault[shot].reason[0])
-            json_array_append_new(faults, json_pack("{si ss}", "image", shot, "reason", r->fault[shot].reason));
+            weft_json_append(&faults, json_pack("{si ss}", "image", shot, "reason", r->fault[shot].reason));
     }
     return faults;
 }
@@ -53,7 +51,7 @@ char *weft_registration_provenance(const weft_session *session, const weft_regis
 {
     json_t *stays = json_array();
     for (int stay = 0; stay < r->survey.stay_count; stay++)
-        json_array_append_new(stays, pack_stay(session, r, stay));
+        weft_json_append(&stays, pack_stay(session, r, stay));
     json_t *root =
         json_pack("{ss so so s{si si sf sf} si si so so}", "made_by", "weft register " WEFT_VERSION, "session",
                   pack_session(session), "camera", pack_camera(&session->camera), "settings", "width",

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <vector>
 
 namespace
@@ -15,6 +16,8 @@ template <typename Work> weft_code guarded(const char *what, weft_error *error, 
 {
     try {
         return work();
+    } catch (const std::bad_alloc &) {
+        return weft_fail_memory(error, what, 0);
     } catch (const std::exception &failure) {
         return weft_fail(error, WEFT_SYSTEM, "%s failed in OpenCV: %s", what, failure.what());
     } catch (...) {

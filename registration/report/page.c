@@ -5,9 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void write_summary(weft_page *page, const weft_session *session, const weft_registration *r)
+static weft_code write_summary(weft_page *page, const weft_session *session, const weft_registration *r,
+                               weft_error *error)
 {
-    weft_ring_summary all = weft_ring_summarise(session, r, -1);
+    weft_ring_summary all;
+    WEFT_TRY(weft_ring_summarise(session, r, -1, &all, error));
     fputs("<div class=\"tiles\">\n", page->html);
     weft_page_tile(page, "photographs in the dataset", "%d of %d", r->image_count, session->shot_count);
     weft_page_tile(page, "stays of the camera registered", "%d of %d", r->survey.stay_count - r->failed_stays,
@@ -17,6 +19,7 @@ static void write_summary(weft_page *page, const weft_session *session, const we
     weft_page_tile(page, "median shift against the rig's promise", "%.3f mm", all.median_shift_mm);
     weft_page_tile(page, "time taken", "%.0f s", r->seconds);
     fputs("</div>\n", page->html);
+    return WEFT_OK;
 }
 
 static void write_figure(weft_page *page, const weft_registration *r, int stay)
@@ -50,7 +53,8 @@ static void write_gallery(weft_page *page, const weft_registration *r)
     fputs("</div>\n", page->html);
 }
 
-static void write_page(weft_page *page, const weft_session *session, const weft_registration *r, const char *dataset)
+static weft_code write_page(weft_page *page, const weft_session *session, const weft_registration *r,
+                            const char *dataset, weft_error *error)
 {
     fputs("<p class=\"note\">Session ", page->html);
     weft_page_text(page, session->folder);
@@ -58,12 +62,13 @@ static void write_page(weft_page *page, const weft_session *session, const weft_
     weft_page_text(page, dataset);
     fprintf(page->html, ", %d &times; %d texels of %.3f mm</p>\n", r->settings.width, r->settings.height,
             session->target.opening_mm / r->settings.width);
-    write_summary(page, session, r);
+    WEFT_TRY(write_summary(page, session, r, error));
     weft_write_faults(page, session, r);
-    weft_write_rings(page, session, r);
-    weft_write_whites(page, session, r);
+    WEFT_TRY(weft_write_rings(page, session, r, error));
+    WEFT_TRY(weft_write_whites(page, session, r, error));
     write_gallery(page, r);
     weft_write_stays(page, session, r);
+    return WEFT_OK;
 }
 
 weft_code weft_report_write_page(const weft_session *session, const weft_registration *registration,
@@ -76,6 +81,9 @@ weft_code weft_report_write_page(const weft_session *session, const weft_registr
     weft_code code = weft_page_begin(registration->settings.report_folder, title, &page, error);
     free(title);
     WEFT_TRY(code);
-    write_page(&page, session, registration, dataset);
-    return weft_page_finish(&page, error);
+    code = write_page(&page, session, registration, dataset, error);
+    if (code == WEFT_OK)
+        return weft_page_finish(&page, error);
+    weft_page_abandon(&page);
+    return code;
 }

@@ -32,17 +32,20 @@ static weft_code write_picture(const weft_registration *registration, int stay, 
 }
 
 /* The quantile of 0.98 of the finite values; 1 where it is not above 0. */
-static float white_of(const float *value, size_t count)
+static weft_code find_white(const float *value, size_t count, float *white, weft_error *error)
 {
     float *finite = malloc((count + 1) * sizeof *finite);
+    if (!finite)
+        return weft_fail_memory(error, "the values of a picture", count * sizeof *finite);
     size_t finite_count = 0;
-    for (size_t i = 0; finite && i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (isfinite(value[i]))
             finite[finite_count++] = value[i];
     }
-    float white = finite_count ? weft_quantile_of_floats(finite, finite_count, 0.98) : 1;
+    float high = finite_count ? weft_quantile_of_floats(finite, finite_count, 0.98) : 1;
+    *white = high > 0 ? high : 1;
     free(finite);
-    return white > 0 ? white : 1;
+    return WEFT_OK;
 }
 
 /* Where the drawing shows at a pixel. */
@@ -95,7 +98,9 @@ static weft_code write_comparison(const weft_registration *registration, const w
     weft_code code = weft_image_create(camera->width / side, camera->height / side, &overlay, error);
     if (code == WEFT_OK)
         code = weft_image_create(overlay.width, overlay.height, &difference, error);
-    float white = white_of(pictures->average, (size_t)camera->width * (size_t)camera->height);
+    float white = 1;
+    if (code == WEFT_OK)
+        code = find_white(pictures->average, (size_t)camera->width * (size_t)camera->height, &white, error);
     for (int y = 0; code == WEFT_OK && y < overlay.height; y++) {
         for (int x = 0; x < overlay.width; x++) {
             size_t at = (size_t)(y * side + side / 2) * (size_t)camera->width + (size_t)(x * side + side / 2);
@@ -121,8 +126,9 @@ static weft_code write_texels(const weft_registration *registration, int stay, c
     weft_image image = {0};
     int width = registration->settings.width, height = registration->settings.height;
     size_t values = (size_t)width * (size_t)height * 3;
+    float white;
+    WEFT_TRY(find_white(texel, values, &white, error));
     WEFT_TRY(weft_image_create(width, height, &image, error));
-    float white = white_of(texel, values);
     for (size_t i = 0; i < values; i++)
         image.pixels[i] = weft_srgb_of_linear(texel[i] / white);
     weft_code code = write_picture(registration, stay, "texels", &image, error);

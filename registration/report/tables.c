@@ -26,35 +26,36 @@ static double saturated_fraction(const weft_registration *r, int ring)
     return count ? sum / count : 0;
 }
 
-weft_ring_summary weft_ring_summarise(const weft_session *session, const weft_registration *r, int ring)
+weft_code weft_ring_summarise(const weft_session *session, const weft_registration *r, int ring,
+                              weft_ring_summary *summary, weft_error *error)
 {
-    weft_ring_summary summary = {.saturated = saturated_fraction(r, ring)};
+    *summary = (weft_ring_summary){.saturated = saturated_fraction(r, ring)};
     size_t stays = (size_t)r->survey.stay_count;
     double *uncertainty = calloc(3 * stays, sizeof *uncertainty);
     if (!uncertainty)
-        return summary;
+        return weft_fail_memory(error, "the stays of a ring", 3 * stays * sizeof *uncertainty);
     double *correlation = uncertainty + stays, *shift = correlation + stays;
     int count = 0;
     for (int stay = 0; stay < r->survey.stay_count; stay++) {
         if (ring >= 0 && ring_of_stay(r, stay) != ring)
             continue;
-        summary.stays++;
+        summary->stays++;
         if (r->pose[stay].source == WEFT_POSE_FAILED) {
-            summary.failed++;
+            summary->failed++;
             continue;
         }
         uncertainty[count] = weft_registration_uncertainty_texels(session, r, stay);
         correlation[count] = r->pose[stay].correlation;
         shift[count++] = r->pose[stay].shift_mm;
     }
-    summary.median_uncertainty = weft_quantile(uncertainty, count, 0.5);
-    summary.worst_uncertainty = weft_quantile(uncertainty, count, 1);
-    summary.median_correlation = weft_quantile(correlation, count, 0.5);
-    summary.worst_correlation = weft_quantile(correlation, count, 0);
-    summary.median_shift_mm = weft_quantile(shift, count, 0.5);
-    summary.worst_shift_mm = weft_quantile(shift, count, 1);
+    summary->median_uncertainty = weft_quantile(uncertainty, count, 0.5);
+    summary->worst_uncertainty = weft_quantile(uncertainty, count, 1);
+    summary->median_correlation = weft_quantile(correlation, count, 0.5);
+    summary->worst_correlation = weft_quantile(correlation, count, 0);
+    summary->median_shift_mm = weft_quantile(shift, count, 0.5);
+    summary->worst_shift_mm = weft_quantile(shift, count, 1);
     free(uncertainty);
-    return summary;
+    return WEFT_OK;
 }
 
 void weft_write_faults(weft_page *page, const weft_session *session, const weft_registration *r)
@@ -83,7 +84,7 @@ void weft_write_faults(weft_page *page, const weft_session *session, const weft_
     fputs("</table>\n", page->html);
 }
 
-void weft_write_rings(weft_page *page, const weft_session *session, const weft_registration *r)
+weft_code weft_write_rings(weft_page *page, const weft_session *session, const weft_registration *r, weft_error *error)
 {
     fputs(
         "<h2>By ring of views</h2>\n<p>The error is the random one, estimated from what the drawing leaves unexplained "
@@ -95,7 +96,8 @@ void weft_write_rings(weft_page *page, const weft_session *session, const weft_r
         "(%)</th></tr>\n",
         page->html);
     for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
-        weft_ring_summary s = weft_ring_summarise(session, r, ring);
+        weft_ring_summary s;
+        WEFT_TRY(weft_ring_summarise(session, r, ring, &s, error));
         if (s.stays == 0)
             continue;
         fprintf(page->html,
@@ -106,6 +108,7 @@ void weft_write_rings(weft_page *page, const weft_session *session, const weft_r
                 100 * s.saturated);
     }
     fputs("</table>\n", page->html);
+    return WEFT_OK;
 }
 
 static void write_stay(weft_page *page, const weft_session *session, const weft_registration *r, int stay)

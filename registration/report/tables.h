@@ -14,13 +14,17 @@ typedef struct weft_ring_summary {
     double saturated; /* fraction of the samples */
 } weft_ring_summary;
 
-/* ring in [0, WEFT_RING_COUNT), or -1 for all. Pure. */
-weft_ring_summary weft_ring_summarise(const weft_session *session, const weft_registration *registration, int ring);
+/* ring in [0, WEFT_RING_COUNT), or -1 for all. Errors: WEFT_SYSTEM where memory is short. */
+weft_code weft_ring_summarise(const weft_session *session, const weft_registration *registration, int ring,
+                              weft_ring_summary *summary, weft_error *error);
 
-/* Sections of the page, each with its heading; nothing where there is nothing to say. */
+/* Sections of the page, each with its heading; nothing where there is nothing to say. Errors: WEFT_SYSTEM where memory
+ * is short. */
 void weft_write_faults(weft_page *page, const weft_session *session, const weft_registration *registration);
-void weft_write_rings(weft_page *page, const weft_session *session, const weft_registration *registration);
-void weft_write_whites(weft_page *page, const weft_session *session, const weft_registration *registration);
+weft_code weft_write_rings(weft_page *page, const weft_session *session, const weft_registration *registration,
+                           weft_error *error);
+weft_code weft_write_whites(weft_page *page, const weft_session *session, const weft_registration *registration,
+                            weft_error *error);
 void weft_write_stays(weft_page *page, const weft_session *session, const weft_registration *registration);
 
 #endif

@@ -71,12 +71,12 @@ static void write_drift(weft_page *page, const weft_registration *r, double over
     fputs("</svg>\n", page->html);
 }
 
-void weft_write_whites(weft_page *page, const weft_session *session, const weft_registration *r)
+weft_code weft_write_whites(weft_page *page, const weft_session *session, const weft_registration *r, weft_error *error)
 {
     size_t shots = (size_t)session->shot_count;
     double *level = calloc(2 * shots, sizeof *level);
     if (!level)
-        return;
+        return weft_fail_memory(error, "white levels", 2 * shots * sizeof *level);
     double *disagreement = level + shots;
     double overall = weft_quantile(level, collect_levels(session, r, -1, level, disagreement), 0.5);
     fputs("<h2>White reference</h2>\n<p>The white level is the raw value above black, per second of exposure, of a "
@@ -96,4 +96,5 @@ void weft_write_whites(weft_page *page, const weft_session *session, const weft_
     if (overall > 0)
         write_drift(page, r, overall, level);
     free(level);
+    return WEFT_OK;
 }

@@ -137,8 +137,7 @@ static weft_code fill_page(weft_page *page, const weft_dataset_layout *layout, c
     WEFT_TRY(weft_page_truth(page, &comparison->truth, error));
     WEFT_TRY(weft_page_left_out(page, &comparison->left_out, error));
     WEFT_TRY(weft_page_pairs(page, layout, comparison, error));
-    weft_page_numbers(page, layout, material, comparison);
-    return WEFT_OK;
+    return weft_page_numbers(page, layout, material, comparison, error);
 }
 
 static const char *base_name(const char *path)

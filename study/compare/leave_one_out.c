@@ -109,7 +109,7 @@ weft_code weft_leave_one_out_measure(weft_dataset *dataset, const weft_progress 
     uint8_t *held_out = calloc(count, 1);
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
     weft_code code = WEFT_OK;
-    if (!result->photograph || !held_out)
+    if (!result->photograph || !held_out || !provenance)
         code = weft_fail_memory(error, "photographs", count * sizeof(weft_left_out));
     else
         code = leave_out_each(dataset, held_out, provenance, progress, result, error);

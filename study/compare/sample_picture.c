@@ -8,19 +8,20 @@
 
 static const float masked_grey = 0.55f;
 
-double weft_picture_exposure(const weft_image *image, const uint8_t *mask)
+weft_code weft_picture_exposure(const weft_image *image, const uint8_t *mask, double *exposure, weft_error *error)
 {
     size_t texels = (size_t)image->width * (size_t)image->height, count = 0;
     float *value = malloc(3 * texels * sizeof *value);
     if (!value)
-        return 1;
+        return weft_fail_memory(error, "the values of a picture", 3 * texels * sizeof *value);
     for (size_t i = 0; i < 3 * texels; i++) {
         if (!(mask && mask[i / 3]) && isfinite(image->pixels[i]))
             value[count++] = image->pixels[i];
     }
     double high = (double)weft_quantile_of_floats(value, count, 0.99);
     free(value);
-    return high > 0 ? 0.9 / high : 1;
+    *exposure = high > 0 ? 0.9 / high : 1;
+    return WEFT_OK;
 }
 
 weft_code weft_picture_encode(const weft_image *linear, const uint8_t *mask, double exposure, weft_image *result,

@@ -5,8 +5,8 @@
 #include "base/picture/image.h"
 
 /* Factor that brings the 99th percentile of the unmasked values of `image` to 0.9; 1 for a black image. `mask`
- * [height][width] may be NULL. */
-double weft_picture_exposure(const weft_image *image, const uint8_t *mask);
+ * [height][width] may be NULL. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_picture_exposure(const weft_image *image, const uint8_t *mask, double *exposure, weft_error *error);
 
 /* Linear values times `exposure`, sRGB encoded, clamped; masked pixels are grey. `result` is allocated here.
  * Errors: WEFT_SYSTEM for memory. */

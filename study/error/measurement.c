@@ -168,7 +168,7 @@ static weft_code allocate(measuring *pass, weft_error *error)
     pass->mask = malloc(band);
     pass->value = malloc(pass->value_count * sizeof *pass->value);
     pass->view_ring = malloc(pass->value_count);
-    pass->light_ring = malloc(pass->value_count);
+    pass->light_ring = calloc(pass->value_count, 1);
     pass->every_image = malloc((size_t)layout->image_count * sizeof *pass->every_image);
     if (!pass->samples || !pass->mask || !pass->value || !pass->view_ring || !pass->light_ring || !pass->every_image)
         return weft_fail_memory(error, "samples", pass->value_count * (sizeof *pass->value + 2) + 7 * band);

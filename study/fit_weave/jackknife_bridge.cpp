@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <exception>
+#include <new>
 #include <vector>
 
 namespace
@@ -105,6 +106,8 @@ try {
                                                          : total[i] * (cluster_count - 1) / cluster_count;
     }
     return WEFT_OK;
+} catch (const std::bad_alloc &) {
+    return weft_fail_memory(error, "standard errors", 0);
 } catch (const std::exception &exception) {
     return weft_fail(error, WEFT_SYSTEM, "standard errors: %s", exception.what());
 }

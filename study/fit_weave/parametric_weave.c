@@ -15,11 +15,13 @@ static double brightness(weft_rgb value)
 }
 
 /* Any first images of the order are spread evenly over all: multiples of the golden ratio. */
-static void order_images(weft_fit_weave_model *model)
+static weft_code order_images(weft_fit_weave_model *model, weft_error *error)
 {
     int count = model->mean->count, placed = 0;
     char *taken = calloc((size_t)count, 1);
-    for (int i = 0; taken && placed < count; i++) {
+    if (!taken)
+        return weft_fail_memory(error, "the order of the images", (size_t)count);
+    for (int i = 0; placed < count; i++) {
         int image = (int)(fmod((i + 0.5) * 0.61803398874989485, 1.0) * count);
         while (taken[image])
             image = (image + 1) % count;
@@ -27,8 +29,7 @@ static void order_images(weft_fit_weave_model *model)
         model->order[placed++] = image;
     }
     free(taken);
-    for (int i = placed; i < count; i++)
-        model->order[i] = i;
+    return WEFT_OK;
 }
 
 /* In the frame of a sample that has been turned by a small `askew`, to first order. */
@@ -119,7 +120,7 @@ weft_code weft_fit_weave_model_create(const weft_mean_brdf *mean, weft_weave *we
     if (3 * mean->count < 2 * unknowns)
         return weft_fail(error, WEFT_BAD_INPUT, "%d images are too few for the %d unknowns of this weave", mean->count,
                          unknowns);
-    order_images(model);
+    WEFT_TRY(order_images(model, error));
     turn_directions(model, parameters + WEFT_FIT_WEAVE_ASKEW);
     weigh_images(model);
     model->looked_at = mean->count;

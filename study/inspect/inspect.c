@@ -1,6 +1,7 @@
 #include "study/inspect/inspect.h"
 
 #include "base/atomic_file.h"
+#include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
 #include "btf/direction/direction.h"
 #include "btf/file_kind.h"
@@ -16,74 +17,87 @@
 
 static const size_t longest_list = 16;
 
-/* Replaces long lists (of photographs, of views) by how long they are: they are data, not a description. */
-static void shorten_lists(json_t *object)
+/* Replaces long lists (of photographs, of views) by how long they are: they are data, not a description. False where
+ * memory is short. */
+static bool shorten_lists(json_t *object)
 {
     const char *name;
     json_t *value;
     void *next;
+    bool shortened = true;
     json_object_foreach_safe(object, next, name, value)
     {
         if (json_is_object(value))
-            shorten_lists(value);
+            shortened = shorten_lists(value) && shortened;
         else if (json_array_size(value) > longest_list)
-            json_object_set_new(object, name, json_sprintf("%zu entries", json_array_size(value)));
+            shortened = json_object_set_new(object, name, json_sprintf("%zu entries", json_array_size(value))) == 0 &&
+                        shortened;
     }
+    return shortened;
 }
 
-/* A JSON text that came with a file, as an object. */
+/* A JSON text that came with a file, as an object; NULL where memory is short. */
 static json_t *parsed(const char *text)
 {
     json_t *value = json_loads(text, JSON_DECODE_ANY, NULL);
-    shorten_lists(value);
-    return value ? value : json_string("not JSON");
+    if (!value)
+        return errno == ENOMEM ? NULL : json_string("not JSON");
+    if (shorten_lists(value))
+        return value;
+    json_decref(value);
+    return NULL;
 }
 
 /* ---- Material ---- */
 
-/* Texels of a level with each model, by its name; NULL without a map. */
+/* Texels of a level with each model, by its name. */
 static json_t *describe_models(const weft_material *material, int k)
 {
     long count[WEFT_MODEL_CODES];
-    json_t *models = material->has_models ? json_object() : NULL;
+    json_t *models = json_object();
     weft_material_count_models(material, k, count);
     for (int code = 0; code < WEFT_MODEL_CODES; code++) {
         char name[WEFT_MODEL_NAME];
         weft_model_print(weft_model_decode((uint8_t)code), name);
         if (count[code] > 0)
-            json_object_set_new(models, name, json_integer((json_int_t)count[code]));
+            weft_json_put(&models, name, json_integer((json_int_t)count[code]));
     }
     return models;
 }
 
-/* NULL where tables are stored by themselves. */
-static json_t *describe_basis(const weft_table_basis *basis)
+/* Nothing where tables are stored by themselves. */
+static void put_basis(json_t **level, const char *name, const weft_table_basis *basis)
 {
-    return basis ? json_integer(basis->component_count) : NULL;
+    if (basis)
+        weft_json_put(level, name, json_integer(basis->component_count));
 }
 
 static json_t *describe_level(const weft_material *material, int k)
 {
     const weft_material_level *level = &material->level[k];
     const weft_error_summary *e = &level->error;
-    return json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f, s:o*, s:o*, s:o*}", "texels", level->width, level->height,
-                     "median_relative_error", e->median_relative, "percentile80_relative_error",
-                     e->percentile80_relative, "rmse", e->rmse, "relative_rmse", e->relative_rmse, "psnr_db",
-                     isfinite(e->psnr_db) ? e->psnr_db : 0, "components_of_T", describe_basis(level->table_basis),
-                     "components_of_S", describe_basis(level->light_table_basis), "texels_by_model",
-                     describe_models(material, k));
+    json_t *described =
+        json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f}", "texels", level->width, level->height, "median_relative_error",
+                  e->median_relative, "percentile80_relative_error", e->percentile80_relative, "rmse", e->rmse,
+                  "relative_rmse", e->relative_rmse, "psnr_db", isfinite(e->psnr_db) ? e->psnr_db : 0);
+    put_basis(&described, "components_of_T", level->table_basis);
+    put_basis(&described, "components_of_S", level->light_table_basis);
+    if (material->has_models)
+        weft_json_put(&described, "texels_by_model", describe_models(material, k));
+    return described;
 }
 
 static json_t *describe_material(const char *path, const weft_material *material)
 {
-    json_t *levels = json_array();
+    /* First: reading numbers, jansson sets errno to 0. */
+    json_t *metadata = parsed(material->metadata), *levels = json_array();
     for (int i = 0; i < material->level_count; i++)
-        json_array_append_new(levels, describe_level(material, i));
+        weft_json_append(&levels, describe_level(material, i));
     return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
                      (json_int_t)weft_file_bytes(path), "texels", material->level[0].width, material->level[0].height,
                      "lobes", material->lobe_count, "views_in_table", material->view_count, "lights_in_table",
                      material->light_count, "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata",
-                     parsed(material->metadata));
+                     metadata);
 }
 
 static weft_code inspect_material(const char *path, json_t **result, weft_error *error)
@@ -155,9 +169,11 @@ static weft_code inspect_weave(const char *path, json_t **result, weft_error *er
     weft_weave weave;
     char warning[WEFT_MESSAGE_SIZE] = "";
     WEFT_TRY(weft_weave_read(path, NULL, 0, &weave, warning, error));
-    *result = json_pack("{s:s, s:s, s:s, s:[ii], s:i, s:f, s:s*}", "file", path, "kind", "weave", "name", weave.name,
+    *result = json_pack("{s:s, s:s, s:s, s:[ii], s:i, s:f}", "file", path, "kind", "weave", "name", weave.name,
                         "tile_cells", weave.tile_width, weave.tile_height, "yarns", weave.yarn_count, "specular_scale",
-                        weave.specular_scale, "warning", warning[0] ? warning : NULL);
+                        weave.specular_scale);
+    if (warning[0])
+        weft_json_put(result, "warning", json_string(warning));
     weft_weave_free(&weave);
     return WEFT_OK;
 }
@@ -204,6 +220,7 @@ static weft_code inspect_any(const char *path, const weft_progress *progress, bo
     *result = NULL;
     weft_file_kind kind;
     WEFT_TRY(weft_file_kind_of(path, &kind, error));
+    errno = 0;
     weft_code code;
     if (kind == WEFT_FILE_MATERIAL)
         code = inspect_material(path, result, error);
@@ -221,7 +238,7 @@ static weft_code inspect_any(const char *path, const weft_progress *progress, bo
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is none of .btf.h5, .weft, .wv, .mc, .stitch or a session folder",
                          path);
     if (code == WEFT_OK && !*result)
-        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' cannot be described: its texts are not UTF-8", path);
+        code = weft_json_fail(error, WEFT_BAD_INPUT, "'%s' cannot be described: its texts are not UTF-8", path);
     if (code != WEFT_OK) {
         json_decref(*result);
         *result = NULL;

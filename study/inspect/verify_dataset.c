@@ -66,6 +66,7 @@ weft_code weft_verify_dataset(weft_dataset *dataset, const weft_progress *progre
     json_t *verified = json_pack("{s:I, s:I, s:I, s:I}", "valid_samples", (json_int_t)counts.valid, "missing",
                                  (json_int_t)counts.missing, "saturated", (json_int_t)counts.saturated, "shadowed",
                                  (json_int_t)counts.shadowed);
-    json_object_set_new(description, "verified", verified);
+    if (json_object_set_new(description, "verified", verified) != 0 && code == WEFT_OK)
+        code = weft_fail_memory(error, "description", 0);
     return code;
 }

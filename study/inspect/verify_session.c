@@ -48,6 +48,8 @@ weft_code weft_verify_session(const weft_session *session, const weft_progress *
         weft_progress_report(progress, "checking photographs", i + 1, session->shot_count);
     }
     free(pixels);
-    json_object_set_new(description, "verified", json_pack("{s:i}", "photographs", checked));
+    if (json_object_set_new(description, "verified", json_pack("{s:i}", "photographs", checked)) != 0 &&
+        code == WEFT_OK)
+        code = weft_fail_memory(error, "description", 0);
     return code;
 }

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include <exception>
+#include <new>
 
 extern "C" weft_code weft_fourier_transform(double *values, int width, int height, int inverse, weft_error *error)
 {
@@ -12,6 +13,8 @@ extern "C" weft_code weft_fourier_transform(double *values, int width, int heigh
         if (all.ptr<double>() != values)
             return weft_fail(error, WEFT_SYSTEM, "OpenCV moved a Fourier transform of %d x %d", width, height);
         return WEFT_OK;
+    } catch (const std::bad_alloc &) {
+        return weft_fail_memory(error, "Fourier transform", 0);
     } catch (const std::exception &failure) {
         return weft_fail(error, WEFT_SYSTEM, "Fourier transform of %d x %d failed: %s", width, height, failure.what());
     } catch (...) {

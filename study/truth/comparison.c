@@ -61,9 +61,12 @@ static void put_away(truth_stage *stage)
 /* ---- What the dataset says of itself ---- */
 
 /* As many bounces as the simulation followed, and whether it was one of this stitch. */
-static void read_provenance(const weft_dataset_layout *layout, const weft_stitch *stitch, weft_traced_truth *truth)
+static weft_code read_provenance(const weft_dataset_layout *layout, const weft_stitch *stitch, weft_traced_truth *truth,
+                                 weft_error *error)
 {
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
+    if (!provenance)
+        return weft_fail_memory(error, "provenance", strlen(layout->provenance));
     const char *name = json_string_value(json_object_get(provenance, "stitch"));
     const json_t *bounces = json_object_get(provenance, "bounces");
     json_int_t count = json_integer_value(bounces);
@@ -74,6 +77,7 @@ static void read_provenance(const weft_dataset_layout *layout, const weft_stitch
         snprintf(truth->warning, sizeof truth->warning,
                  "the dataset was simulated from '%.100s', the truth is traced from '%.100s'", name, stitch->name);
     json_decref(provenance);
+    return WEFT_OK;
 }
 
 /* ---- The cloth ---- */
@@ -127,7 +131,7 @@ static weft_code prepare(truth_stage *stage, const weft_traced_request *request,
                          weft_traced_truth *truth, weft_error *error)
 {
     WEFT_TRY(weft_stitch_read(request->stitch, &stage->stitch, error));
-    read_provenance(weft_dataset_get_layout(request->dataset), &stage->stitch, truth);
+    WEFT_TRY(read_provenance(weft_dataset_get_layout(request->dataset), &stage->stitch, truth, error));
     WEFT_TRY(polygonise(stage, request->stitch, truth, error));
     WEFT_TRY(lay_cloth(stage, error));
     snprintf(truth->stitch, sizeof truth->stitch, "%s", stage->stitch.name);

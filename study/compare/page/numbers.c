@@ -158,23 +158,31 @@ static void print_sizes(weft_page *page, const weft_comparison *comparison)
 }
 
 /* What the material says of its fit. */
-static void print_fit(weft_page *page, const weft_material *material)
+static weft_code print_fit(weft_page *page, const weft_material *material, weft_error *error)
 {
     json_t *metadata = json_loads(material->metadata, 0, NULL);
+    if (!metadata)
+        return weft_fail_memory(error, "metadata", strlen(material->metadata));
     const char *name;
     json_t *value;
+    weft_code code = WEFT_OK;
     fputs("<h2>Fit</h2>\n<table>\n", page->html);
     weft_page_fact(page, "lobes", "%d", material->lobe_count);
     weft_page_fact(page, "views in the table", "%d", material->view_count);
     json_object_foreach (json_object_get(metadata, "fit"), name, value) {
         if (strcmp(name, "lobes") == 0)
             continue;
-        char *text = json_is_string(value) ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(4));
-        weft_page_fact(page, name, "%s", text ? text : json_string_value(value));
+        const char *bare = json_string_value(value);
+        char *text = bare ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(4));
+        if (!bare && !text)
+            code = weft_fail_memory(error, name, 0);
+        else
+            weft_page_fact(page, name, "%s", bare ? bare : text);
         free(text);
     }
     fputs("</table>\n", page->html);
     json_decref(metadata);
+    return code;
 }
 
 static void print_times(weft_page *page, const weft_scenes *scenes)
@@ -208,13 +216,14 @@ static void print_masks(weft_page *page, const weft_measurement *measurement)
     fputs("</table>\n", page->html);
 }
 
-void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
-                       const weft_comparison *comparison)
+weft_code weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
+                            const weft_comparison *comparison, weft_error *error)
 {
     print_levels(page, material);
     print_directions(page, layout, &comparison->model[0].texture);
     print_sizes(page, comparison);
-    print_fit(page, material);
+    WEFT_TRY(print_fit(page, material, error));
     print_times(page, &comparison->scenes);
     print_masks(page, &comparison->model[0].texture);
+    return WEFT_OK;
 }

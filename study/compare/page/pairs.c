@@ -25,7 +25,8 @@ static weft_code put_picture(weft_page *page, const char *name, const char *what
 weft_code weft_page_pair(weft_page *page, const char *name, const weft_image_pair *pair, const char *caption,
                          weft_error *error)
 {
-    double exposure = weft_picture_exposure(&pair->sample, pair->mask);
+    double exposure;
+    WEFT_TRY(weft_picture_exposure(&pair->sample, pair->mask, &exposure, error));
     fputs("<h3>", page->html);
     weft_page_text(page, caption);
     fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);
@@ -71,8 +72,9 @@ static void explain_pictures(weft_page *page)
 static weft_code put_models(weft_page *page, int index, const weft_comparison *comparison, weft_error *error)
 {
     const weft_image_pair *photograph = &comparison->model[0].texture.pair[index];
-    double exposure = weft_picture_exposure(&photograph->sample, photograph->mask);
+    double exposure;
     char name[32], caption[64];
+    WEFT_TRY(weft_picture_exposure(&photograph->sample, photograph->mask, &exposure, error));
     weft_image picture;
     snprintf(name, sizeof name, "texels-%d", index);
     fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);

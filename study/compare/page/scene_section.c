@@ -36,7 +36,8 @@ static weft_code put_difference(weft_page *page, int index, const weft_scene_pic
 static weft_code put_scene(weft_page *page, int index, const weft_scenes *scenes, weft_error *error)
 {
     const weft_scene_pictures *scene = &scenes->scene[index];
-    double exposure = weft_picture_exposure(&scene->picture[WEFT_MODE_RAW], NULL);
+    double exposure;
+    WEFT_TRY(weft_picture_exposure(&scene->picture[WEFT_MODE_RAW], NULL, &exposure, error));
     fputs("<h3>", page->html);
     weft_page_text(page, scene->caption);
     fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);

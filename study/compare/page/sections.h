@@ -27,9 +27,9 @@ void weft_page_models(weft_page *page, const weft_comparison *comparison);
 /* A row of hemispheres for the data and for each model; writes slices.csv and slices-ROW.png. */
 weft_code weft_page_slices(weft_page *page, const weft_slices *slices, weft_error *error);
 
-/* Error of the levels as stored, error over all and by ring as measured, sizes, times, masks. */
-void weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
-                       const weft_comparison *comparison);
+/* Error of the levels as stored, error over all and by ring as measured, sizes, times, masks. Errors: WEFT_SYSTEM. */
+weft_code weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, const weft_material *material,
+                            const weft_comparison *comparison, weft_error *error);
 
 /* Every scene in every mode, and the differences to the dataset. Errors: WEFT_SYSTEM from writing pictures. */
 weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_error *error);

@@ -70,9 +70,9 @@ static weft_code data_exposure(const weft_slices *slices, uint8_t *mask, double 
 {
     weft_image data;
     WEFT_TRY(weft_slices_picture(slices, 0, DISC, &data, mask, error));
-    *exposure = weft_picture_exposure(&data, mask);
+    weft_code code = weft_picture_exposure(&data, mask, exposure, error);
     weft_image_free(&data);
-    return WEFT_OK;
+    return code;
 }
 
 static weft_code put_rows(weft_page *page, const weft_slices *slices, uint8_t *mask, weft_error *error)

@@ -56,7 +56,9 @@ static weft_code put_scene(weft_page *page, int index, const weft_traced_truth *
     static const char *const what[WEFT_TRUTH_LIGHTS] = {"all light", "light of the cloth near by"};
     static const char *const file[WEFT_TRUTH_LIGHTS] = {"all", "near"};
     const weft_truth_scene *scene = &truth->scene[index];
-    double exposure = weft_picture_exposure(&scene->under[WEFT_TRUTH_ALL].picture[WEFT_TRUTH_TRACED], NULL);
+    const weft_image *traced = &scene->under[WEFT_TRUTH_ALL].picture[WEFT_TRUTH_TRACED];
+    double exposure;
+    WEFT_TRY(weft_picture_exposure(traced, NULL, &exposure, error));
     for (int light = 0; light < WEFT_TRUTH_LIGHTS; light++) {
         char row[32];
         snprintf(row, sizeof row, "truth-%d-%s", index, file[light]);
