@@ -83,11 +83,14 @@ weft_code weft_load_post(weft_load *load, weft_load_piece handed, weft_error *er
 {
     weft_loader *loader = load->loader;
     piece *added = malloc(sizeof *added);
-    bool given_up = !added;
+    if (!added) {
+        handed.release(handed.data);
+        return weft_fail_memory(error, "load", sizeof *added);
+    }
     pthread_mutex_lock(&loader->mutex);
-    while (!given_up && !is_given_up(load) && loader->bytes_waiting > most_bytes_waiting)
+    while (!is_given_up(load) && loader->bytes_waiting > most_bytes_waiting)
         pthread_cond_wait(&loader->taken, &loader->mutex);
-    given_up = given_up || is_given_up(load);
+    bool given_up = is_given_up(load);
     if (!given_up) {
         *added = (piece){handed, load, NULL};
         *loader->end_of_pieces = added;

@@ -62,8 +62,17 @@ static void leave(int code)
     _exit(code);
 }
 
+/* The parser of arguments ends a command by exit(), which comes here before it comes to those libraries. */
+static void leave_early(int code, void *unused)
+{
+    (void)unused;
+    fflush(NULL);
+    _exit(code);
+}
+
 static void *call_main(void *context)
 {
+    on_exit(leave_early, NULL);
     const short_memory_job *job = context;
     char *argument[SHORT_MEMORY_ARGUMENTS + 5] = {"weft"};
     int count = 1;
