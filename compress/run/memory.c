@@ -82,7 +82,8 @@ uint64_t weft_memory_resident(void)
     return resident * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
-uint64_t weft_memory_allocated(void)
+/* Bytes that malloc has handed out and not got back, touched or not. */
+static uint64_t allocated_bytes(void)
 {
     struct mallinfo2 info = mallinfo2();
     return info.uordblks + info.hblkhd;
@@ -90,12 +91,12 @@ uint64_t weft_memory_allocated(void)
 
 weft_memory_budget weft_memory_budget_begin(uint64_t limit)
 {
-    uint64_t resident = weft_memory_resident(), allocated = weft_memory_allocated();
+    uint64_t resident = weft_memory_resident(), allocated = allocated_bytes();
     return (weft_memory_budget){.limit = limit > 0 ? limit : weft_memory_default(),
                                 .overhead = resident > allocated ? resident - allocated : 0};
 }
 
 uint64_t weft_memory_budget_taken(const weft_memory_budget *budget)
 {
-    return budget->overhead + weft_memory_allocated();
+    return budget->overhead + allocated_bytes();
 }

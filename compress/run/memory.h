@@ -11,9 +11,6 @@ uint64_t weft_memory_default(void);
 /* Bytes of the process in physical memory. 0 where /proc is missing. */
 uint64_t weft_memory_resident(void);
 
-/* Bytes that malloc has handed out and not got back, touched or not. */
-uint64_t weft_memory_allocated(void);
-
 /* How much memory a computation may take. */
 typedef struct weft_memory_budget {
     uint64_t limit;    /* of the whole process */

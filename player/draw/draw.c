@@ -20,7 +20,7 @@ static double sequence_of(const weft_player *p, long frame)
     return fmod((frame < 0 ? (double)p->frames_drawn : (double)frame) * golden_ratio, 1);
 }
 
-void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane)
+static void set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane)
 {
     weft_orbit_axes ray = weft_orbit_rays(&scene->orbit, pane->width, pane->height,
                                           pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height);
@@ -33,7 +33,7 @@ void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pa
 void weft_player_set_point(const weft_player *p, GLuint program, const weft_scene *scene, const weft_pane *pane,
                            const weft_layer *layer)
 {
-    weft_player_set_rays(program, scene, pane);
+    set_rays(program, scene, pane);
     set_lights(p, program, scene, pane->sampling.frame);
     weft_gl_set_float(program, "sequence", sequence_of(p, pane->sampling.frame));
     weft_layer_bind(layer, program);
@@ -132,7 +132,7 @@ static void draw_background(const weft_player *p, const weft_scene *scene, const
     glDisable(GL_BLEND);
     glUseProgram(program);
     if (has_map) {
-        weft_player_set_rays(program, scene, pane);
+        set_rays(program, scene, pane);
         weft_gl_bind(program, "map", 0, GL_TEXTURE_2D, p->environment_map);
         weft_gl_set_float(program, "strength", scene->environment_strength * scene->exposure);
         weft_gl_set_float(program, "turn", scene->environment_turn_rad / (2 * WEFT_PI));

@@ -63,9 +63,6 @@ weft_code weft_player_draw_layers(weft_player *player, const weft_scene *scene, 
 void weft_player_set_point(const weft_player *player, GLuint program, const weft_scene *scene, const weft_pane *pane,
                            const weft_layer *layer);
 
-/* Its rays alone. */
-void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane);
-
 /* Runs the program in use on every pixel of the layer that shows the mesh, and on no other: a triangle at the far end
  * of the depth range passes where something is nearer. `target` is the framebuffer that is bound, with 24 bits of
  * depth. */

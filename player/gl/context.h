@@ -48,7 +48,6 @@ void weft_window_close(weft_window *window);
 void weft_window_set_full_screen(weft_window *window, bool full);
 /* Size of the framebuffer in pixels; 0 x 0 while minimised. */
 void weft_window_size(const weft_window *window, int *width, int *height);
-void weft_window_set_title(weft_window *window, const char *title);
 /* Shows what was drawn into framebuffer 0. */
 void weft_window_show(weft_window *window);
 

@@ -172,11 +172,6 @@ void weft_window_size(const weft_window *window, int *width, int *height)
     glfwGetFramebufferSize(window->handle, width, height);
 }
 
-void weft_window_set_title(weft_window *window, const char *title)
-{
-    glfwSetWindowTitle(window->handle, title);
-}
-
 void weft_window_show(weft_window *window)
 {
     glfwSwapBuffers(window->handle);

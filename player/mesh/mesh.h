@@ -51,9 +51,6 @@ void weft_mesh_index_grid(weft_mesh *mesh, int columns, int rows);
 /* The square [-1/2, 1/2]^2 in z = 0, u along x, v along y. */
 weft_code weft_mesh_plane(weft_mesh *mesh, weft_error *error);
 
-/* Radius 1/2; u runs along the equator by arc length, v along the meridians. */
-weft_code weft_mesh_sphere(weft_mesh *mesh, weft_error *error);
-
 /* A square cloth of side 1 laid over a round table and left to hang, simulated by position-based dynamics (Mueller et
  * al. 2007) with small steps. Texture coordinates are lengths on the cloth. The same on every call. */
 weft_code weft_mesh_drape(weft_mesh *mesh, weft_error *error);

@@ -16,7 +16,8 @@ weft_code weft_mesh_plane(weft_mesh *mesh, weft_error *error)
     return WEFT_OK;
 }
 
-weft_code weft_mesh_sphere(weft_mesh *mesh, weft_error *error)
+/* Radius 1/2; u runs along the equator by arc length, v along the meridians. */
+static weft_code make_sphere(weft_mesh *mesh, weft_error *error)
 {
     enum { COLUMNS = 129, ROWS = 65 };
     const double radius = 0.5;
@@ -47,7 +48,7 @@ weft_code weft_mesh_open(const char *name, weft_mesh *mesh, weft_error *error)
     if (strcmp(name, "plane") == 0)
         return weft_mesh_plane(mesh, error);
     if (strcmp(name, "sphere") == 0)
-        return weft_mesh_sphere(mesh, error);
+        return make_sphere(mesh, error);
     if (strcmp(name, "drape") == 0)
         return weft_mesh_drape(mesh, error);
     return weft_mesh_read_obj(name, mesh, error);

@@ -5,10 +5,11 @@
 #include <math.h>
 #include <stddef.h>
 
+const char *const weft_mode_words[] = {"raw", "compressed", "analytic", NULL};
+
 const char *weft_mode_name(weft_mode mode)
 {
-    static const char *const name[WEFT_MODE_COUNT] = {"raw", "compressed", "analytic"};
-    return name[mode];
+    return weft_mode_words[mode];
 }
 
 weft_scene weft_scene_default(void)

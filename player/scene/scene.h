@@ -10,7 +10,10 @@
 
 typedef enum weft_mode { WEFT_MODE_RAW, WEFT_MODE_COMPRESSED, WEFT_MODE_ANALYTIC, WEFT_MODE_COUNT } weft_mode;
 
-/* "raw", "compressed", "analytic". Pure. */
+/* "raw", "compressed", "analytic" and NULL, in the order of weft_mode. */
+extern const char *const weft_mode_words[];
+
+/* One of them. Pure. */
 const char *weft_mode_name(weft_mode mode);
 
 /* How the modes share the picture. PANES: side by side with one camera. WIPE: pane[0] left of the divider, pane[1]

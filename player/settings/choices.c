@@ -39,7 +39,7 @@ static weft_code take_mode(weft_scene_request *request, int mode, weft_error *er
 
 weft_code weft_choose_modes(const weft_option *option, const char *text, void *target, weft_error *error)
 {
-    static const char *const words[] = {"raw", "compressed", "analytic", "split", NULL};
+    const char *const words[] = {weft_mode_words[0], weft_mode_words[1], weft_mode_words[2], "split", NULL};
     weft_scene_request *request = target;
     request->has_modes = true;
     request->settings.scene.pane_count = 0;

@@ -10,7 +10,6 @@ _Static_assert(sizeof(weft_mode) == sizeof(int) && sizeof(weft_layout) == sizeof
 
 enum { SHOWN = 1, MESH_AND_CAMERA, LIGHT, EVALUATION };
 
-static const char *const mode_words[] = {"raw", "compressed", "analytic", NULL};
 static const char *const layout_words[] = {"panes", "wipe", "difference", NULL};
 static const char *const level_words[] = {"trilinear", "nearest", "none", "fixed", NULL};
 static const char *const filter_words[] = {"auto", "exact", "stochastic", NULL};
@@ -173,7 +172,7 @@ static const weft_setting schema[] = {
     ARRAY(
         WEFT_MODE_COUNT, "view.modes",
         OPTION("mode", "MODE[,MODE...]", SHOWN, "raw, compressed, analytic: one pane each; split: all that are given"),
-        CHOICE(scene.pane, mode_words), .read = weft_choose_modes),
+        CHOICE(scene.pane, weft_mode_words), .read = weft_choose_modes),
     SETTING("view.panes", WHOLE(scene.pane_count, 1, WEFT_MODE_COUNT)),
     SETTING("view.divider", OPTION("divider", "X", SHOWN, "Where a wipe changes, 0 (left) to 1 (default: 0.5)"),
             NUMBER(scene.divider, 0, 1)),

@@ -43,7 +43,8 @@ static void pan(weft_interaction *i, double x, double y)
     weft_orbit_pan(orbit, -radii * x, radii * y);
 }
 
-void weft_interaction_turn_light(weft_angles *light, double phi_rad, double theta_rad)
+/* theta is limited to what a light may have. */
+static void turn_light(weft_angles *light, double phi_rad, double theta_rad)
 {
     light->phi_rad = fmod(light->phi_rad + phi_rad, 2 * WEFT_PI);
     light->theta_rad = weft_clamp(light->theta_rad + theta_rad, 0, lowest_light_rad);
@@ -54,7 +55,7 @@ static void move_light(weft_interaction *i, double phi_rad, double theta_rad)
 {
     weft_scene *scene = &i->scene;
     if (scene->light_count > 0)
-        weft_interaction_turn_light(&scene->light[0].direction, phi_rad, theta_rad);
+        turn_light(&scene->light[0].direction, phi_rad, theta_rad);
     else
         scene->environment_turn_rad = remainder(scene->environment_turn_rad + phi_rad, 2 * WEFT_PI);
 }

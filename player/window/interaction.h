@@ -52,7 +52,4 @@ void weft_interaction_end_peek(weft_interaction *interaction);
 /* As a drag would turn the cloth, or the light where plain drags move that. */
 void weft_interaction_turn(weft_interaction *interaction, double across_rad, double down_rad);
 
-/* Angle of `theta` limited to what a light may have. */
-void weft_interaction_turn_light(weft_angles *light, double phi_rad, double theta_rad);
-
 #endif

@@ -399,11 +399,6 @@ bool weft_ui_colour(const char *label, double rgb[3])
     return changed;
 }
 
-void weft_ui_progress(double share, const char *text)
-{
-    ImGui::ProgressBar((float)share, ImVec2(-1, 0), text);
-}
-
 weft_ui_area weft_ui_here(void)
 {
     const ImVec2 corner = ImGui::GetCursorScreenPos(), pointer = ImGui::GetIO().MousePos;
@@ -431,12 +426,6 @@ void weft_ui_ring(double x, double y, double radius, double thickness, uint32_t 
 {
     ImGui::GetWindowDrawList()->AddCircle(ImVec2((float)x, (float)y), (float)radius, colour_of(colour), 64,
                                           (float)thickness);
-}
-
-void weft_ui_line(double x0, double y0, double x1, double y1, double thickness, uint32_t colour)
-{
-    ImGui::GetWindowDrawList()->AddLine(ImVec2((float)x0, (float)y0), ImVec2((float)x1, (float)y1), colour_of(colour),
-                                        (float)thickness);
 }
 
 void weft_ui_label(double x, double y, uint32_t colour, const char *text)

@@ -78,7 +78,6 @@ bool weft_ui_whole_input(const char *label, int *value, int low, int high);
 /* One of `count` names, side by side; those with allowed[i] false cannot be chosen (NULL: all can). */
 bool weft_ui_choice(const char *label, int *value, const char *const *name, const bool *allowed, int count);
 bool weft_ui_colour(const char *label, double rgb[3]);
-void weft_ui_progress(double share, const char *text);
 
 /* ---- Drawing within a panel ---- */
 
@@ -96,7 +95,6 @@ void weft_ui_picture(unsigned texture, double width, double height);
 /* Colours are 0xRRGGBBAA. */
 void weft_ui_disc(double x, double y, double radius, uint32_t colour);
 void weft_ui_ring(double x, double y, double radius, double thickness, uint32_t colour);
-void weft_ui_line(double x0, double y0, double x1, double y1, double thickness, uint32_t colour);
 void weft_ui_label(double x, double y, uint32_t colour, const char *text);
 
 #ifdef __cplusplus
