@@ -2,7 +2,7 @@
  * (docs/notes/benchmarks.md). */
 #include "compress/compress.h"
 #include "base/clock.h"
-#include "btf/dataset/blocks.h"
+#include "btf/dataset/write_blocks.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <argp.h>

@@ -1,6 +1,6 @@
 /* Writes a large dataset of invented cloth for timing the whole job: `weft compress` from the page cache, with limits
  * on memory and with kills (docs/reference/compression.md, "Large datasets"). */
-#include "btf/dataset/blocks.h"
+#include "btf/dataset/write_blocks.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <math.h>

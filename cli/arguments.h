@@ -3,7 +3,7 @@
 #define WEFT_CLI_ARGUMENTS_H
 
 #include "cli/command.h"
-#include "player/settings/request.h"
+#include "player/settings/scene_options.h"
 
 /* What the values of a command begin with that shows a scene. */
 typedef struct weft_scene_values {

@@ -10,7 +10,7 @@
 #include "compress/run/memory.h"
 #include "compress/run/opacity.h"
 #include "compress/run/table_pca.h"
-#include "compress/sparse/material.h"
+#include "compress/sparse/sparse_material.h"
 
 #include <inttypes.h>
 #include <malloc.h>

@@ -2,7 +2,7 @@
 #ifndef WEFT_BTF_DATASET_DERIVED_H
 #define WEFT_BTF_DATASET_DERIVED_H
 
-#include "btf/dataset/blocks.h"
+#include "btf/dataset/write_blocks.h"
 
 #include <jansson.h>
 

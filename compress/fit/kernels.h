@@ -3,7 +3,7 @@
 #define WEFT_COMPRESS_FIT_KERNELS_H
 
 #include "base/processor.h"
-#include "compress/fit/measure.h"
+#include "compress/fit/error_tally.h"
 #include "compress/fit/normal.h"
 
 /* Sums over the samples of a view and a light, [light_count][view_stride], of a model f without T and S: <f|f> and

@@ -2,7 +2,7 @@
 
 #include "base/processor.h"
 #include "compress/run/fitted.h"
-#include "compress/run/pyramid.h"
+#include "compress/run/mip_pyramid.h"
 
 #include <omp.h>
 #include <pthread.h>

@@ -1,6 +1,6 @@
 #include "compress/run/fitted.h"
 
-#include "compress/run/pyramid.h"
+#include "compress/run/mip_pyramid.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #define WEFT_COMPRESS_TEXEL_PARTS_H
 
 #include "compress/fit/kernels.h"
-#include "compress/fit/light.h"
+#include "compress/fit/light_table.h"
 #include "compress/texel/texel.h"
 
 struct weft_texel_fitter {

@@ -2,7 +2,7 @@
 #ifndef WEFT_COMPRESS_TEXEL_TEXEL_H
 #define WEFT_COMPRESS_TEXEL_TEXEL_H
 
-#include "compress/fit/measure.h"
+#include "compress/fit/error_tally.h"
 #include "compress/texel/candidate.h"
 #include "compress/texel/frame_search.h"
 #include "compress/texel/pack.h"

@@ -1,6 +1,6 @@
 #include "geometry/light/illumination.h"
 
-#include "geometry/light/path.h"
+#include "geometry/light/light_path.h"
 #include "geometry/light/sample_sequence.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "player/settings/choices.h"
 
-#include "player/settings/request.h"
+#include "player/settings/scene_options.h"
 
 #include <math.h>
 #include <stdio.h>

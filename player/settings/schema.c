@@ -1,7 +1,7 @@
 #include "player/settings/schema.h"
 
 #include "player/settings/choices.h"
-#include "player/settings/request.h"
+#include "player/settings/scene_options.h"
 
 _Static_assert(sizeof(weft_mode) == sizeof(int) && sizeof(weft_layout) == sizeof(int) &&
                    sizeof(weft_level_choice) == sizeof(int) && sizeof(weft_filter) == sizeof(int) &&

@@ -17,7 +17,7 @@ typedef struct weft_setting {
 } weft_setting;
 
 /* The groups of the help are numbered from 1; offsets are those in weft_settings and in weft_scene_request
- * (player/settings/request.h), which begins with that. Static storage. */
+ * (player/settings/scene_options.h), which begins with that. Static storage. */
 const weft_setting *weft_settings_schema(void);
 
 /* The title of a group; NULL beyond the last. */

@@ -2,7 +2,7 @@
 #ifndef WEFT_PLAYER_SETTINGS_SEQUENCE_H
 #define WEFT_PLAYER_SETTINGS_SEQUENCE_H
 
-#include "player/settings/path.h"
+#include "player/settings/key_frames.h"
 #include "player/settings/settings.h"
 
 /* Whether the name holds exactly one place for a number, %d or %04d, and no other '%'. Pure. */

@@ -2,7 +2,7 @@
 #ifndef WEFT_PLAYER_WINDOW_SCENE_LOADER_H
 #define WEFT_PLAYER_WINDOW_SCENE_LOADER_H
 
-#include "player/settings/request.h"
+#include "player/settings/scene_options.h"
 
 typedef struct weft_scene_loader weft_scene_loader;
 

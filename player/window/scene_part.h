@@ -2,7 +2,7 @@
 #ifndef WEFT_PLAYER_WINDOW_SCENE_PART_H
 #define WEFT_PLAYER_WINDOW_SCENE_PART_H
 
-#include "player/settings/request.h"
+#include "player/settings/scene_options.h"
 #include "player/window/loader.h"
 #include "reflectance/weave/weave.h"
 

@@ -2,7 +2,7 @@
 #ifndef WEFT_REGISTRATION_REPORT_TABLES_H
 #define WEFT_REGISTRATION_REPORT_TABLES_H
 
-#include "base/text/page.h"
+#include "base/text/html_page.h"
 #include "registration/outcome/outcome.h"
 
 /* The stays of one ring of views (as in ubo81: 0, 15 .. 75 degrees; the nearest counts). */

@@ -1,6 +1,6 @@
 #include "study/fit_weave/mean_brdf.h"
 
-#include "btf/dataset/walk.h"
+#include "btf/dataset/read_blocks.h"
 
 #include <math.h>
 #include <stdlib.h>

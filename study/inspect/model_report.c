@@ -1,7 +1,7 @@
 #include "study/inspect/model_report.h"
 
 #include "base/picture/letters.h"
-#include "base/text/page.h"
+#include "base/text/html_page.h"
 #include "btf/material/models.h"
 #include "player/texture/mip_layout.h"
 

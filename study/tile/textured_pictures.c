@@ -1,6 +1,6 @@
 #include "study/tile/textured_pictures.h"
 
-#include "btf/dataset/walk.h"
+#include "btf/dataset/read_blocks.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 #include "btf/dataset/derived.h"
-#include "btf/dataset/walk.h"
+#include "btf/dataset/read_blocks.h"
 #include "study/tile/mean.h"
 #include "study/tile/tile.h"
 

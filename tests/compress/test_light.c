@@ -1,7 +1,7 @@
 /* The light table. */
 #include "texel_fixture.h"
 
-#include "compress/fit/light.h"
+#include "compress/fit/light_table.h"
 #include "compress/texel/pack.h"
 #include "tests/support/alternation.h"
 

@@ -4,7 +4,7 @@
 #include "btf/dataset/fingerprint.h"
 #include "compress/run/checkpoint.h"
 #include "compress/run/memory.h"
-#include "compress/run/pyramid.h"
+#include "compress/run/mip_pyramid.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/tiny_dataset.h"
 

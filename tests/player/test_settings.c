@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "player/settings/relative_path.h"
-#include "player/settings/request.h"
+#include "player/settings/scene_options.h"
 #include "settings_text.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"

@@ -2,7 +2,7 @@
 #ifndef WEFT_STUDY_COMPARE_PAGE_SECTIONS_H
 #define WEFT_STUDY_COMPARE_PAGE_SECTIONS_H
 
-#include "base/text/page.h"
+#include "base/text/html_page.h"
 #include "study/compare/compare.h"
 
 enum { WEFT_REPRESENTATIVE_COUNT = 4 };

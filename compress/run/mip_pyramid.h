@@ -1,7 +1,7 @@
 /* The sums of samples behind the mip levels of one block, and behind the unfinished groups above it. Sums are always
  * those of the four groups below, added in the order of a Z, so that the size of the blocks leaves no trace in them. */
-#ifndef WEFT_COMPRESS_RUN_PYRAMID_H
-#define WEFT_COMPRESS_RUN_PYRAMID_H
+#ifndef WEFT_COMPRESS_RUN_MIP_PYRAMID_H
+#define WEFT_COMPRESS_RUN_MIP_PYRAMID_H
 
 #include "base/thread_pool.h"
 #include "btf/material/material.h"

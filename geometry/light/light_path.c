@@ -1,4 +1,4 @@
-#include "geometry/light/path.h"
+#include "geometry/light/light_path.h"
 
 #include "btf/direction/frame.h"
 #include "geometry/light/path_step.h"

@@ -1,7 +1,7 @@
 /* The summary of errors (base/numeric/error_summary.h) of a material over very many samples in bounded memory: sums in
  * order, quantiles by histogram. */
-#ifndef WEFT_COMPRESS_FIT_MEASURE_H
-#define WEFT_COMPRESS_FIT_MEASURE_H
+#ifndef WEFT_COMPRESS_FIT_ERROR_TALLY_H
+#define WEFT_COMPRESS_FIT_ERROR_TALLY_H
 
 #include "base/numeric/error_summary.h"
 #include "base/status.h"

@@ -1,7 +1,7 @@
-#include "btf/dataset/walk.h"
+#include "btf/dataset/read_blocks.h"
 
 #include "base/integers.h"
-#include "btf/dataset/blocks.h"
+#include "btf/dataset/write_blocks.h"
 
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-#include "compress/fit/measure.h"
+#include "compress/fit/error_tally.h"
 
 #include <math.h>
 #include <stdlib.h>

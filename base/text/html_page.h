@@ -9,8 +9,8 @@
  *     <td class="text">            a cell of words, at the left; a table's first column is at the left anyway
  *     <tr class="bad">, "weak"     a row that reports a failure, or something to look at; also <figure class="bad">
  *     <svg class="chart">          as wide as the page */
-#ifndef WEFT_BASE_TEXT_PAGE_H
-#define WEFT_BASE_TEXT_PAGE_H
+#ifndef WEFT_BASE_TEXT_HTML_PAGE_H
+#define WEFT_BASE_TEXT_HTML_PAGE_H
 
 #include "base/picture/image.h"
 #include "base/status.h"

@@ -4,8 +4,8 @@
  * S stands beside the cosine, so that a fit with S is a fit of samples whose cosine has been scaled by it: everything
  * in compress/fit/fit.h and compress/texel/pack.h takes such samples. Lights need labels (weft_bundle.light_count > 0).
  * All functions are pure and thread-safe. */
-#ifndef WEFT_COMPRESS_FIT_LIGHT_H
-#define WEFT_COMPRESS_FIT_LIGHT_H
+#ifndef WEFT_COMPRESS_FIT_LIGHT_TABLE_H
+#define WEFT_COMPRESS_FIT_LIGHT_TABLE_H
 
 #include "compress/fit/fit.h"
 #include "compress/fit/kernels.h"

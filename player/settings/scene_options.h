@@ -1,6 +1,6 @@
 /* The scene that a command line asks for: options in any order, and the settings that they come to. */
-#ifndef WEFT_PLAYER_SETTINGS_REQUEST_H
-#define WEFT_PLAYER_SETTINGS_REQUEST_H
+#ifndef WEFT_PLAYER_SETTINGS_SCENE_OPTIONS_H
+#define WEFT_PLAYER_SETTINGS_SCENE_OPTIONS_H
 
 #include "player/settings/schema.h"
 #include "player/settings/settings.h"

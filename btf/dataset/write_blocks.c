@@ -1,4 +1,4 @@
-#include "btf/dataset/blocks.h"
+#include "btf/dataset/write_blocks.h"
 
 #include "base/atomic_file.h"
 #include "btf/dataset/create.h"

@@ -1,6 +1,6 @@
 /* The sparse model as a material. */
-#ifndef WEFT_COMPRESS_SPARSE_MATERIAL_H
-#define WEFT_COMPRESS_SPARSE_MATERIAL_H
+#ifndef WEFT_COMPRESS_SPARSE_SPARSE_MATERIAL_H
+#define WEFT_COMPRESS_SPARSE_SPARSE_MATERIAL_H
 
 #include "base/progress.h"
 #include "compress/sparse/sparse.h"

@@ -2,7 +2,7 @@
 #include "tests/support/cmocka_all.h"
 
 #include "base/atomic_file.h"
-#include "base/text/page.h"
+#include "base/text/html_page.h"
 #include "tests/support/scratch_folder.h"
 
 #include <stdlib.h>

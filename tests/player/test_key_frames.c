@@ -1,4 +1,4 @@
-#include "player/settings/path.h"
+#include "player/settings/key_frames.h"
 
 #include "base/atomic_file.h"
 #include "tests/support/cmocka_all.h"

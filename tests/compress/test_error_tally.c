@@ -2,7 +2,7 @@
 #include "base/numeric/statistics.h"
 #include "tests/support/cmocka_all.h"
 
-#include "compress/fit/measure.h"
+#include "compress/fit/error_tally.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "compress/run/pyramid.h"
+#include "compress/run/mip_pyramid.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

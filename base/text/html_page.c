@@ -1,4 +1,4 @@
-#include "base/text/page.h"
+#include "base/text/html_page.h"
 
 #include "base/atomic_file.h"
 

@@ -1,6 +1,6 @@
-/* Reading a whole dataset block by block. Private to study/. */
-#ifndef WEFT_BTF_DATASET_WALK_H
-#define WEFT_BTF_DATASET_WALK_H
+/* Reading a whole dataset block by block. */
+#ifndef WEFT_BTF_DATASET_READ_BLOCKS_H
+#define WEFT_BTF_DATASET_READ_BLOCKS_H
 
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"

@@ -1,4 +1,4 @@
-#include "player/settings/request.h"
+#include "player/settings/scene_options.h"
 
 #include <stdlib.h>
 #include <string.h>

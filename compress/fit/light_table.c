@@ -1,4 +1,4 @@
-#include "compress/fit/light.h"
+#include "compress/fit/light_table.h"
 
 #include "compress/fit/workspace.h"
 

@@ -1,8 +1,8 @@
 /* Writing a dataset block of texels by block of texels: for what is computed from another dataset, texel by texel.
  * Keeps one block in memory and needs no scratch file (btf/dataset/dataset.h has the writer that takes whole images).
  */
-#ifndef WEFT_BTF_DATASET_BLOCKS_H
-#define WEFT_BTF_DATASET_BLOCKS_H
+#ifndef WEFT_BTF_DATASET_WRITE_BLOCKS_H
+#define WEFT_BTF_DATASET_WRITE_BLOCKS_H
 
 #include "btf/dataset/dataset.h"
 

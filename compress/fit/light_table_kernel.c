@@ -1,4 +1,4 @@
-/* T and S of a given model, in turn: see compress/fit/light.h. A view a lane; a light a row. */
+/* T and S of a given model, in turn: see compress/fit/light_table.h. A view a lane; a light a row. */
 #include "base/lanes.h"
 #include "compress/fit/kernels.h"
 

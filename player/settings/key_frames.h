@@ -1,6 +1,6 @@
 /* A path of camera and light through time: key frames in a table, and what lies between them. */
-#ifndef WEFT_PLAYER_SETTINGS_PATH_H
-#define WEFT_PLAYER_SETTINGS_PATH_H
+#ifndef WEFT_PLAYER_SETTINGS_KEY_FRAMES_H
+#define WEFT_PLAYER_SETTINGS_KEY_FRAMES_H
 
 #include "player/scene/scene.h"
 

@@ -1,4 +1,4 @@
-#include "player/settings/path.h"
+#include "player/settings/key_frames.h"
 
 #include "base/text/csv.h"
 

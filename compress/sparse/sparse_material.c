@@ -1,4 +1,4 @@
-#include "compress/sparse/material.h"
+#include "compress/sparse/sparse_material.h"
 
 #include <math.h>
 #include <stdlib.h>

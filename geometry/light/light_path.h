@@ -1,6 +1,6 @@
 /* Paths of light through endless cloth, from the camera on (Kajiya 1986). Private to the room. */
-#ifndef WEFT_GEOMETRY_LIGHT_PATH_H
-#define WEFT_GEOMETRY_LIGHT_PATH_H
+#ifndef WEFT_GEOMETRY_LIGHT_LIGHT_PATH_H
+#define WEFT_GEOMETRY_LIGHT_LIGHT_PATH_H
 
 #include "geometry/light/ray_scene.h"
 #include "geometry/yarn/fibre.h"
