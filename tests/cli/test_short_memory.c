@@ -4,7 +4,8 @@
  * Usage: test_short_memory inputs                    makes the folder 'inputs', which the jobs read
  *        test_short_memory [--more|--every] [JOB...] these jobs or subcommands, or all
  * The first allocation of every third site fails (short_memory.h), alone; with --more that of each site, and also the
- * last of each, with all that follow it; with --every the n-th of all alone, n = 1, 2, 3 ... until a run ends in which none failed. */
+ * last of each, with all that follow it; with --every the n-th of all alone, n = 1, 2, 3 ... until a run ends in which
+ * none failed. */
 #include "tests/cli/short_memory.h"
 #include "tests/cli/short_memory_files.h"
 #include "tests/cli/short_memory_jobs.h"
