@@ -143,6 +143,12 @@ static void say_model(const compress_command *command, const weft_dataset_layout
     weft_command_say(common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
                      100.0 * (double)report->turned_frame_count / (double)report->texel_count,
                      100.0 * (double)report->second_start_count / (double)report->texel_count);
+    if (report->held_texel_count > 0)
+        weft_command_say(common, "held to %d times their brightest sample: %ld of %ld texels", WEFT_BRIGHTEST_MULTIPLE,
+                         report->held_texel_count, report->texel_count);
+    if (report->stepped_down_count > 0)
+        weft_command_say(common, "served better by fewer lobes: %ld of %ld texels", report->stepped_down_count,
+                         report->texel_count);
 }
 
 static void say_target(const compress_command *command, const weft_compress_report *report)
