@@ -1,5 +1,5 @@
 /* Where the light of the virtual rig stands, told from the brightness of the white patches in its photographs. What is
- * expected is worked out here from the settings (docs/guide/capture.md); nothing of capture/virtual/world.c,
+ * expected is worked out here from the settings (docs/reference/session-format.md); nothing of capture/virtual/world.c,
  * from which rig and ground truth both take their light, is called. */
 #include "capture/virtual/random.h"
 #include "capture/virtual/virtual_rig.h"
