@@ -100,10 +100,18 @@ try() {
     echo "$verdict"
 }
 
+# What a reader needs to know of a fault that was not caught.
+explain() {
+    printf '               %s\n' "$(field Fault "$1")"
+    [ "$2" != 'does not build' ] || grep -m 1 -E 'error:' "$work/log" | cut -c1-160
+}
+
 faults=$(list_faults "$@")
 for fault in $faults; do
-    [ -n "$(field Fault "$fault")" ] && [ -n "$(field 'Caught by' "$fault")" ] ||
-        { echo "$fault: needs a line 'Fault: ...' and a line 'Caught by: TEST'" >&2; exit 1; }
+    if [ -z "$(field Fault "$fault")" ] || [ -z "$(field 'Caught by' "$fault")" ]; then
+        echo "$fault: needs a line 'Fault: ...' and a line 'Caught by: TEST'" >&2
+        exit 1
+    fi
 done
 copy_tree
 # shellcheck disable=SC2086
@@ -116,10 +124,11 @@ for fault in $faults; do
     verdict=$(try "$fault")
     echo "$verdict" >>"$work/verdicts"
     printf '%-14s %4d s  %-52s %s\n' "$verdict" $(($(date +%s) - start)) "${fault#tests/mutants/}" "$(field 'Caught by' "$fault")"
-    [ "$verdict" = caught ] || printf '               %s\n' "$(field Fault "$fault")"
+    [ "$verdict" = caught ] || explain "$fault" "$verdict"
 done
 all=$(grep -c . "$work/verdicts" || true)
 caught=$(grep -cx caught "$work/verdicts" || true)
-printf '%d faults: %d caught, %d survived, %d do not apply, build or name a test; %d s\n' "$all" "$caught" \
-    "$(grep -cx SURVIVED "$work/verdicts" || true)" "$((all - caught - $(grep -cx SURVIVED "$work/verdicts" || true)))" $(($(date +%s) - began))
+survived=$(grep -cx SURVIVED "$work/verdicts" || true)
+printf '%d faults: %d caught, %d survived, %d do not apply, build or name a test; %d s\n' "$all" "$caught" "$survived" \
+    $((all - caught - survived)) $(($(date +%s) - began))
 [ "$caught" = "$all" ]
