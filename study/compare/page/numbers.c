@@ -211,8 +211,8 @@ static void print_masks(weft_page *page, const weft_measurement *measurement)
     weft_page_fact(page, "missing", "%ld (%.2f %%)", measurement->missing, percent * (double)measurement->missing);
     weft_page_fact(page, "saturated", "%ld (%.2f %%)", measurement->saturated,
                    percent * (double)measurement->saturated);
-    weft_page_fact(page, "shadowed by the rig", "%ld (%.2f %%)", measurement->shadowed,
-                   percent * (double)measurement->shadowed);
+    weft_page_fact(page, "masked for other reasons", "%ld (%.2f %%)", measurement->other,
+                   percent * (double)measurement->other);
     fputs("</table>\n", page->html);
 }
 
