@@ -125,11 +125,11 @@ static void options_that_change_nothing_are_named(void **state)
     char said[RUN_WEFT_SAID];
     write_few_images(1, 81);
     expect_weft("compress few.btf.h5 -o few.weft --light-table on", 0, "--light-table changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --tables pca:2", 0, "--tables changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --frames given", 0, "--frames given is that of the surface");
     assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --weights screen --max-exponent 9", said), 0);
     assert_null(strstr(said, "changes nothing"));
     write_few_images(1, 12);
+    expect_weft("compress few.btf.h5 -o few.weft --tables pca:2", 0, "--tables changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --light-table on", 0, "--light-table changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --weights screen", 0, "--weights changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --frames off", 0, "--frames changes nothing");
