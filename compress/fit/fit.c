@@ -5,8 +5,12 @@
 
 weft_fit_options weft_fit_default_options(void)
 {
-    return (weft_fit_options){
-        .lobe_count = 2, .table = true, .max_exponent = 8192, .tolerance = 1e-3, .max_passes = 40};
+    return (weft_fit_options){.lobe_count = 2,
+                              .table = true,
+                              .max_exponent = 8192,
+                              .max_amplitude = WEFT_LARGEST_AMPLITUDE,
+                              .tolerance = 1e-3,
+                              .max_passes = 40};
 }
 
 int weft_fit_affordable_lobes(const weft_bundle *bundle, const weft_samples *samples, int wanted, bool table)

@@ -27,12 +27,13 @@ typedef struct weft_fit {
 } weft_fit;
 
 typedef struct weft_fit_options {
-    int lobe_count;      /* 0..3 */
-    bool table;          /* fit T; else T = 1 */
-    bool fit_frame;      /* let the joint fit rotate the frame */
-    bool coarse;         /* look at a quarter of the lights of each view only */
-    double max_exponent; /* N <= this; cloth stays below 512, retro-reflective tape wants thousands */
-    double tolerance;    /* stop when a step lowers the residual by less than this fraction */
+    int lobe_count;       /* 0..3 */
+    bool table;           /* fit T; else T = 1 */
+    bool fit_frame;       /* let the joint fit rotate the frame */
+    bool coarse;          /* look at a quarter of the lights of each view only */
+    double max_exponent;  /* N <= this; cloth stays below 512, retro-reflective tape wants thousands */
+    double max_amplitude; /* rho and each A <= this, in the scaled units of weft_samples */
+    double tolerance;     /* stop when a step lowers the residual by less than this fraction */
     int max_passes;
 } weft_fit_options;
 

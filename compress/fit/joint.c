@@ -51,7 +51,7 @@ static void step_bounds(const weft_fit *fit, const weft_fit_options *options, in
         const weft_fit_lobe *lobe = &fit->lobe[i];
         int at = 1 + 4 * i, next = 1;
         low[at] = -0.9 * lobe->amplitude;
-        high[at] = fmax(0, WEFT_LARGEST_AMPLITUDE - lobe->amplitude);
+        high[at] = fmax(0, options->max_amplitude - lobe->amplitude);
         for (int k = 0; k < 3; k++) {
             if (k == weft_lobe_fixed(lobe))
                 continue;

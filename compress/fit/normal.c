@@ -76,16 +76,17 @@ typedef struct linear_state {
     double residual, h[WEFT_LINEAR_MAX * WEFT_LINEAR_MAX], g[WEFT_LINEAR_MAX];
 } linear_state;
 
-/* Gauss-Newton, the amplitudes no lower than `least` and no higher than can be believed; false where it promises no
+/* Gauss-Newton, the amplitudes no lower than `least` and none higher than `most`; false where it promises no
  * more than `least_gain`. */
-static bool linear_step(const linear_state *now, int n, const double *least, double least_gain, weft_linear *next)
+static bool linear_step(const linear_state *now, int n, const double *least, double most, double least_gain,
+                        weft_linear *next)
 {
     double h[WEFT_LINEAR_MAX * WEFT_LINEAR_MAX], low[WEFT_LINEAR_MAX], high[WEFT_LINEAR_MAX];
     double d[WEFT_LINEAR_MAX] = {0}, trace = 0;
     memcpy(h, now->h, sizeof h);
     for (int j = 0; j < n; j++) {
         low[j] = fmin(0, (j ? least[j - 1] : 0) - now->linear.x[j]);
-        high[j] = fmax(0, WEFT_LARGEST_AMPLITUDE - now->linear.x[j]);
+        high[j] = fmax(0, most - now->linear.x[j]);
         trace += h[j * n + j];
     }
     for (int j = 0; j < n; j++)
@@ -107,7 +108,7 @@ void weft_trial_solve_linear(const weft_bundle *bundle, bool with_table, const d
     now.residual = kernels->linear_normal(bundle, trial, with_table, &now.linear, now.h, now.g);
     for (int round = 0; round < LINEAR_ROUNDS; round++) {
         double least_gain = round == 0 ? 0 : LINEAR_TOLERANCE * now.residual;
-        if (!linear_step(&now, trial->fit.lobe_count + 1, least, least_gain, &next.linear))
+        if (!linear_step(&now, trial->fit.lobe_count + 1, least, trial->most, least_gain, &next.linear))
             break;
         next.residual = kernels->linear_normal(bundle, trial, with_table, &next.linear, next.h, next.g);
         if (!(next.residual < now.residual))

@@ -43,6 +43,7 @@ static inline int weft_linear_gram(int j, int k)
 /* A point of the search after its pass: the sums, and where they were taken. Arrays by view are [view_stride]. */
 typedef struct weft_trial {
     const weft_fit_kernels *kernels;
+    double most;                      /* that rho and each A may be */
     weft_fit fit;                     /* shapes and frame of the pass; rho and A are moved by weft_trial_solve_linear */
     weft_linear at;                   /* rho and A of the pass */
     weft_gram_point point;            /* the same, and the shapes */

@@ -91,6 +91,7 @@ void weft_workspace_pass(const weft_bundle *bundle, const weft_samples *samples,
         for (int view = 0; view < bundle->view_count; view++)
             trial->pass_table[view] = 1;
     }
+    trial->most = options->max_amplitude;
     trial->point = weft_gram_point_of_fit(&trial->fit);
     /* The digest must use the very numbers of the pass. */
     trial->fit.diffuse = (double)trial->point.diffuse;

@@ -63,6 +63,6 @@ void weft_texel_refit(weft_texel_fitter *fitter, const weft_material *from, int 
                               &fitter->now.as_read[channel], code, &fitter->now.packed[channel]);
         fitter->now.as_read[channel] =
             weft_unpack(&fitter->now.packed[channel], options.lobe_count, &frame, fitter->samples.scale);
-        weft_texel_hold(fitter, channel, false);
+        weft_texel_hold(fitter, channel, NULL);
     }
 }

@@ -7,6 +7,7 @@
 
 #define COARSE_RAD 1.0
 #define FINE_RAD 0.07
+#define FOR_ROUNDING 0.97
 
 /* ---- What it needs ---- */
 
@@ -85,7 +86,21 @@ static void lower_terms(weft_texel_fitter *fitter, int channel, double share)
     *fit = weft_unpack(&fitter->now.packed[channel], fit->lobe_count, &frame, fitter->samples.scale);
 }
 
-void weft_texel_hold(weft_texel_fitter *fitter, int channel, bool may_lower_table)
+/* Fits again; no term may be brighter than `most`. */
+static void fit_dimmer(weft_texel_fitter *fitter, int channel, const weft_fit_options *options, double most)
+{
+    weft_fit *fit = &fitter->now.as_read[channel], dimmer;
+    weft_fit_options own = *options;
+    weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
+    uint8_t *code = fitter->now.code + (size_t)channel * (size_t)fitter->bundle.view_count;
+    own.max_amplitude = most;
+    weft_fit_cold(&fitter->bundle, &lit, channel, &own, fitter->workspace, &fit->frame, &dimmer, fitter->table);
+    weft_pack_channel(&fitter->bundle, &lit, channel, &own, fitter->workspace, &dimmer, fitter->table,
+                      &fitter->now.packed[channel], code);
+    *fit = weft_unpack(&fitter->now.packed[channel], own.lobe_count, &dimmer.frame, fitter->samples.scale);
+}
+
+void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_options *options)
 {
     weft_peak most = fitter->most[channel];
     weft_fit *fit = &fitter->now.as_read[channel];
@@ -96,9 +111,16 @@ void weft_texel_hold(weft_texel_fitter *fitter, int channel, bool may_lower_tabl
     if (!exceeds(peak, most))
         return;
     fitter->now.held = true;
-    if (may_lower_table) {
+    if (options && options->table) {
         lower_table(fitter, channel, most);
         return;
+    }
+    /* Terms may add up. */
+    double term = FOR_ROUNDING * fmin(most.r, most.f);
+    for (int round = 0; round < 4 && options && options->lobe_count > 0 && exceeds(peak, most); round++) {
+        fit_dimmer(fitter, channel, options, term);
+        peak = weft_peak_of_fit(&fitter->net[1], fit, &tables);
+        term *= 0.75;
     }
     /* A half float of C errs by N 2^-12 in C^N: once more where rounding has undone it. */
     for (int round = 1; round <= 4 && exceeds(peak, most); round++) {

@@ -149,16 +149,16 @@ static void code_table(const weft_bundle *bundle, const weft_trial *trial, const
     }
 }
 
-/* rho and the lobes that are not frozen, solved for again with the table as it will be read. `scale` is what they took
- * over from T: where one view alone needs a large T, they far exceed the bound of the fit. */
+/* rho and the lobes that are not frozen, solved for again with the table as it will be read, each at most `most`: the
+ * bound of the fit times what they took over from T, for where one view alone needs a large T they far exceed it. */
 static void solve_rest(const weft_bundle *bundle, const weft_trial *trial, const double *decoded, unsigned frozen,
-                       double scale, weft_fit *rounded)
+                       double most, weft_fit *rounded)
 {
     double low[WEFT_LINEAR_MAX] = {0}, high[WEFT_LINEAR_MAX];
     for (int j = 0; j <= rounded->lobe_count; j++) {
         bool fixed = j > 0 && (frozen >> (j - 1) & 1);
         low[j] = fixed ? rounded->lobe[j - 1].amplitude : 0;
-        high[j] = fixed ? low[j] : WEFT_LARGEST_AMPLITUDE * fmax(scale, 1);
+        high[j] = fixed ? low[j] : most;
     }
     weft_trial_solve_given_table(bundle, trial, decoded, low, high, rounded);
 }
@@ -191,7 +191,7 @@ void weft_pack_channel(const weft_bundle *bundle, const weft_samples *samples, i
     }
     if (options->table)
         code_table(bundle, trial, &rounded, code, decoded);
-    solve_rest(bundle, trial, decoded, frozen, scale, &rounded);
+    solve_rest(bundle, trial, decoded, frozen, options->max_amplitude * fmax(scale, 1), &rounded);
     weft_pack_rounded(&rounded, samples->scale, packed);
 }
 
@@ -217,6 +217,6 @@ void weft_pack_given_table(const weft_bundle *bundle, const weft_samples *sample
     trial->fit = rounded;
     weft_workspace_pass(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, decoded),
                         trial);
-    solve_rest(bundle, trial, decoded, frozen, scale_of_terms(fit), &rounded);
+    solve_rest(bundle, trial, decoded, frozen, WEFT_LARGEST_AMPLITUDE * fmax(scale_of_terms(fit), 1), &rounded);
     weft_pack_rounded(&rounded, samples->scale, packed);
 }

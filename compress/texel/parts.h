@@ -74,9 +74,10 @@ void weft_texel_hold_free(weft_texel_fitter *fitter);
 /* Finds from the samples how bright the texel may be. */
 void weft_texel_limit(weft_texel_fitter *fitter);
 
-/* Holds a channel of the last model, fitted and packed, to that limit everywhere on the hemisphere: lowers T of the
- * views that it would glare in or between; where T is not to be touched, all terms. */
-void weft_texel_hold(weft_texel_fitter *fitter, int channel, bool may_lower_table);
+/* Holds a channel of the last model, fitted and packed, to that limit everywhere on the hemisphere. Lowers T of the
+ * views that it would glare in or between. Without T, fits again with lobes that may not be so bright. Lowers all terms
+ * where that does not suffice, or where nothing is to be fitted: `options`, those of the fit, is then NULL. */
+void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_options *options);
 
 /* Squared error of the last model as it will be read, by the weights that it was fitted with. */
 double weft_texel_weighted_error(weft_texel_fitter *fitter);

@@ -133,7 +133,7 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
         weft_unpack(&fitter->now.packed[channel], options->lobe_count, frame, fitter->samples.scale);
     if (options->table)
         weft_texel_limit_unseen(fitter, channel);
-    weft_texel_hold(fitter, channel, options->table);
+    weft_texel_hold(fitter, channel, options);
 }
 
 /* The grey fit, without S, that a model begins from. */
@@ -236,7 +236,7 @@ static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, c
     fit_from(fitter, whole, fitter->light_count > 0, start);
     state.least = weft_texel_weighted_error(fitter);
     state.is_sure = !fitter->now.held && fitter->samples.valid_count > MANY_SAMPLES &&
-                      state.least < BARELY_MORE * fitter->now.residual;
+                    state.least < BARELY_MORE * fitter->now.residual;
     try_all_smaller(fitter, whole, given, &state);
     return state.stepped_down;
 }
