@@ -34,7 +34,8 @@ Spine segment_spine(Segment segment, float umax)
     float shape = (1.0 + segment.kappa) + segment.kappa * (cosine / sine);
     float end = shape < 0.0 ? (1.0 + segment.kappa) * (cosine + sine) * (cosine - shape * sine)
                             : cosine * cosine + shape * shape * sine * sine;
-    float half_length = 0.5 * (segment.size - segment.width * sine);
+    // Not below 0: the sine of a shader may be the larger one by rounding.
+    float half_length = 0.5 * max(segment.size - segment.width * sine, 0.0);
     return Spine(umax, sine, cosine, shape, half_length / sine * sqrt(end));
 }
 
