@@ -1,7 +1,7 @@
 # Two commands do everything: `make demo` and `make test`. The build itself is CMake's.
 build := build/release
 
-.PHONY: demo test program build check bench numerics packages clean
+.PHONY: demo test program build check mutants bench numerics packages clean
 
 demo: program
 	scripts/demo.sh $(build)/cli/weft demo-out
@@ -23,6 +23,10 @@ packages:
 check:
 	scripts/install-packages.sh check
 	scripts/check.sh
+
+# Puts known faults into a copy of the program and expects the tests to fail: all faults, or those of the stages ROOMS.
+mutants: packages
+	scripts/mutants.sh $(ROOMS)
 
 # TEXELS and SIZE make it shorter or longer (scripts/bench.sh).
 bench:

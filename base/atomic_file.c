@@ -97,17 +97,31 @@ static int sync_path(const char *path, int flags)
     return result;
 }
 
-weft_code weft_atomic_file_commit(weft_atomic_file *file, weft_error *error)
+weft_code weft_sync_file(const char *path, weft_error *error)
+{
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    int result = descriptor < 0 ? -1 : fdatasync(descriptor), saved = errno;
+    if (descriptor >= 0)
+        close(descriptor);
+    errno = saved;
+    return result == 0 ? WEFT_OK : weft_fail_errno(error, "sync", path);
+}
+
+void weft_sync_folder_of(const char *path)
 {
     char folder[PATH_MAX];
-    folder_of(file->final_path, folder);
+    folder_of(path, folder);
+    sync_path(folder, O_RDONLY | O_DIRECTORY);
+}
+
+weft_code weft_atomic_file_commit(weft_atomic_file *file, weft_error *error)
+{
     weft_code code = WEFT_OK;
     if (sync_path(file->temporary_path, O_RDONLY) != 0 || rename(file->temporary_path, file->final_path) != 0) {
         code = weft_fail_errno(error, "write", file->final_path);
         unlink(file->temporary_path);
     } else {
-        /* Not every file system can sync a folder; the rename itself has already succeeded. */
-        sync_path(folder, O_RDONLY | O_DIRECTORY);
+        weft_sync_folder_of(file->final_path);
     }
     forget(file);
     return code;

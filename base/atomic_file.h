@@ -37,6 +37,13 @@ weft_code weft_write_file(const char *path, const void *bytes, size_t size, weft
  * removed. Errors: WEFT_SYSTEM. */
 weft_code weft_write_new_file(const char *path, const void *bytes, size_t size, weft_error *error);
 
+/* Waits until the contents of a file are on the disk. Its name may not be: see weft_sync_folder_of. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_sync_file(const char *path, weft_error *error);
+
+/* Waits until the names in the folder of `path` are on the disk. Not every file system can; nothing is said then. */
+void weft_sync_folder_of(const char *path);
+
 /* Reads a whole file. *bytes is NUL-terminated beyond *size, owned by the caller (free). Errors:
  * WEFT_BAD_INPUT where the file is missing, a folder, or larger than `limit` bytes. */
 weft_code weft_read_file(const char *path, size_t limit, char **bytes, size_t *size, weft_error *error);

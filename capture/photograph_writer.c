@@ -18,6 +18,7 @@ struct weft_photograph_writer {
     pthread_cond_t changed;
     bool busy, closing; /* a photograph is waiting or being written; no more will come */
     int shot;
+    int unsynced_shot; /* one of the stay whose names and journal lines may not be on the disk; -1: none */
     weft_shot_record record;
     weft_code code;
     weft_error error;
@@ -32,13 +33,32 @@ static weft_code make_folder_of(const char *path, weft_error *error)
     return weft_make_folder(folder, error);
 }
 
-/* Nothing is synced to disk here: a photograph that a power cut has damaged does not match the journal, and resuming
- * takes it again. */
+/* The photographs of the last stay are on the disk already; now their names are, and then the journal that has them. */
+static weft_code sync_stay(weft_photograph_writer *writer, weft_error *error)
+{
+    char path[PATH_MAX];
+    if (writer->unsynced_shot < 0)
+        return WEFT_OK;
+    weft_session_photograph_path(writer->session, writer->unsynced_shot, path, sizeof path);
+    writer->unsynced_shot = -1;
+    weft_sync_folder_of(path);
+    return weft_session_sync(writer->session, error);
+}
+
+static bool begins_stay(const weft_photograph_writer *writer)
+{
+    int before = writer->unsynced_shot;
+    return before >= 0 && writer->session->record[before].stay != writer->record.stay;
+}
+
+/* A photograph is synced before the journal names it. */
 static weft_code store(weft_photograph_writer *writer, weft_error *error)
 {
     weft_session *session = writer->session;
     const weft_camera *camera = &session->camera;
     char path[PATH_MAX], temporary[PATH_MAX];
+    if (begins_stay(writer))
+        WEFT_TRY(sync_stay(writer, error));
     weft_session_photograph_path(session, writer->shot, path, sizeof path);
     snprintf(temporary, sizeof temporary, "%s/.photograph.tif", session->folder);
     WEFT_TRY(make_folder_of(path, error));
@@ -46,9 +66,12 @@ static weft_code store(weft_photograph_writer *writer, weft_error *error)
     weft_shot_record record = writer->record;
     record.taken = true;
     WEFT_TRY(weft_file_crc(temporary, &record.bytes, &record.crc32, error));
+    WEFT_TRY(weft_sync_file(temporary, error));
     if (rename(temporary, path) != 0)
         return weft_fail_errno(error, "write", path);
-    return weft_session_append(session, writer->shot, &record, error);
+    WEFT_TRY(weft_session_append(session, writer->shot, &record, error));
+    writer->unsynced_shot = writer->shot;
+    return WEFT_OK;
 }
 
 static void remove_temporary(const weft_session *session)
@@ -102,6 +125,7 @@ weft_code weft_photograph_writer_start(weft_session *session, weft_photograph_wr
         return weft_fail_memory(error, "photograph writer", sizeof *writer);
     size_t bytes = (size_t)session->camera.width * (size_t)session->camera.height * 3 * sizeof(uint16_t);
     writer->session = session;
+    writer->unsynced_shot = -1;
     pthread_mutex_init(&writer->mutex, NULL);
     pthread_cond_init(&writer->changed, NULL);
     writer->filling = malloc(bytes);
@@ -158,6 +182,12 @@ weft_code weft_photograph_writer_finish(weft_photograph_writer *writer, weft_err
     pthread_cond_broadcast(&writer->changed);
     pthread_mutex_unlock(&writer->mutex);
     pthread_join(writer->thread, NULL);
+    weft_error last = {0};
+    weft_code synced = sync_stay(writer, &last);
+    if (writer->code == WEFT_OK) {
+        writer->code = synced;
+        writer->error = last;
+    }
     weft_code code = failure_of(writer, error);
     free_writer(writer);
     return code;

@@ -189,6 +189,7 @@ weft_code weft_session_hold(const weft_session *wanted, const weft_progress *pro
 {
     *held = (weft_held_session){.lock = -1};
     WEFT_TRY(weft_make_folder(wanted->folder, error));
+    weft_sync_folder_of(wanted->folder);
     weft_code code = hold(wanted, progress, held, error);
     if (code != WEFT_OK)
         weft_held_session_release(held);

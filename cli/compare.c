@@ -43,6 +43,10 @@ static weft_code check(void *values, weft_error *error)
     const weft_compare_options *o = &((compare_command *)values)->options;
     if (o->fit && !o->weave)
         return weft_fail(error, WEFT_BAD_USAGE, "--fit needs --weave, where the fit starts");
+    if (o->tiles_u > 0 && !o->weave)
+        return weft_fail(error, WEFT_BAD_USAGE, "--tiles needs --weave CLOTH.wv");
+    if (o->truth_paths > 0 && !o->truth)
+        return weft_fail(error, WEFT_BAD_USAGE, "--paths needs --truth FILE.stitch");
     return WEFT_OK;
 }
 
@@ -95,10 +99,13 @@ static void say_weave(const weft_common_options *common, const weft_comparison *
     weft_command_say(common, "analytic: the %s '%s', %s",
                      comparison->weave_is_threads ? "microcylinder cloth" : "weave", comparison->weave_name,
                      comparison->weave_origin);
+    const weft_error_summary *before = &comparison->fit.before, *after = &comparison->fit.after;
     if (comparison->fit.image_count > 0)
-        weft_command_say(
-            common, "analytic before the fit, mean BRDF: median relative error %.2f %%, 80th percentile %.2f %%",
-            100 * comparison->fit.before.median_relative, 100 * comparison->fit.before.percentile80_relative);
+        weft_command_say(common,
+                         "analytic, mean BRDF that the fit saw: median relative error %.2f %% before the fit, %.2f %% "
+                         "after, 80th percentile %.2f %% and %.2f %%",
+                         100 * before->median_relative, 100 * after->median_relative,
+                         100 * before->percentile80_relative, 100 * after->percentile80_relative);
 }
 
 static void say_numbers(const compare_command *command, const weft_comparison *comparison)
@@ -126,8 +133,10 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
 
 static int run(int argc, char **argv)
 {
-    compare_command command = {.options.truth_paths = WEFT_TRUTH_DEFAULT_PATHS};
+    compare_command command = {0};
     weft_arguments_parse(&weft_command_compare, argc, argv, &command);
+    if (command.options.truth_paths == 0)
+        command.options.truth_paths = WEFT_TRUTH_DEFAULT_PATHS;
     weft_progress progress = weft_command_progress(&command.common);
     weft_comparison comparison;
     weft_error error = {0};

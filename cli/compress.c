@@ -115,18 +115,34 @@ static weft_code check(void *values, weft_error *error)
     return WEFT_OK;
 }
 
-static void say_model(const compress_command *command, const weft_dataset_layout *layout,
-                      const weft_compress_report *report)
+/* What a model for few images makes nothing of. */
+static void say_idle(const weft_common_options *common, const weft_compress_options *given)
+{
+    const weft_compress_options usual = weft_compress_default_options();
+    if (given->weights != usual.weights)
+        weft_command_say(common, "with so few images --weights changes nothing");
+    if (given->frames != usual.frames)
+        weft_command_say(common, "with so few images --frames changes nothing");
+    if (given->max_exponent < usual.max_exponent || given->max_exponent > usual.max_exponent)
+        weft_command_say(common, "with so few images --max-exponent changes nothing");
+}
+
+static void say_model(const compress_command *command, const weft_dataset *dataset, const weft_compress_report *report)
 {
     const weft_common_options *common = &command->common;
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     const char *table = report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "";
     weft_command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height,
                      layout->image_count, report->lobe_count, table,
                      report->light_count > 0 ? " and a light table" : "");
     if (command->options.table_components > 0 && report->table_components == 0)
         weft_command_say(common, "these images carry no tables: --tables changes nothing");
-    if (command->options.weights != WEFT_WEIGHTS_EVEN && report->model == WEFT_COMPRESS_SPARSE)
-        weft_command_say(common, "with so few images --weights changes nothing");
+    if (command->options.light_table && report->light_count == 0)
+        weft_command_say(common, "these images carry no light table: --light-table changes nothing");
+    if (report->model == WEFT_COMPRESS_SPARSE)
+        say_idle(common, &command->options);
+    else if (command->options.frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(dataset))
+        weft_command_say(common, "the dataset gives no frames: --frames given is that of the surface");
     if (report->model == WEFT_COMPRESS_SPARSE)
         weft_command_say(common,
                          "%d images cannot carry lobes in every texel: exponents and normals are shared with the "
@@ -143,6 +159,12 @@ static void say_model(const compress_command *command, const weft_dataset_layout
     weft_command_say(common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
                      100.0 * (double)report->turned_frame_count / (double)report->texel_count,
                      100.0 * (double)report->second_start_count / (double)report->texel_count);
+    if (report->held_texel_count > 0)
+        weft_command_say(common, "held to %d times their brightest sample: %ld of %ld texels", WEFT_BRIGHTEST_MULTIPLE,
+                         report->held_texel_count, report->texel_count);
+    if (report->stepped_down_count > 0)
+        weft_command_say(common, "served better by fewer lobes: %ld of %ld texels", report->stepped_down_count,
+                         report->texel_count);
 }
 
 static void say_target(const compress_command *command, const weft_compress_report *report)
@@ -215,7 +237,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     if (code == WEFT_OK) {
         const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
         unlink(partial_path);
-        say_model(command, layout, &report);
+        say_model(command, dataset, &report);
         say_target(command, &report);
         say_errors(&command->common, &material);
         say_sizes(command, layout, &report);

@@ -5,11 +5,13 @@
 #include "player/window/scene_loader.h"
 #include "study/error/scene_error.h"
 
+enum { DEFAULT_FPS = 25 };
+
 typedef struct render_command {
     weft_scene_values values;
     const char *output;
-    const char *path_file; /* of a sequence, or NULL */
-    double frames_per_second;
+    const char *path_file;    /* of a sequence, or NULL */
+    double frames_per_second; /* 0: not given */
     weft_path path;
 } render_command;
 
@@ -24,9 +26,41 @@ static const weft_option option_table[] = {
     {0},
 };
 
+/* Refuses options that would do nothing for want of another. In a window what they want may come later. */
+static weft_code refuse_idle(const render_command *command, weft_error *error)
+{
+    const weft_scene_request *request = &command->values.scene;
+    const weft_settings *s = &request->settings;
+    const struct {
+        const char *option;
+        bool works;
+        const char *wanted;
+    } row[] = {
+        {"raw-format", s->dataset, "--raw NAME.btf.h5"},
+        {"tiles", s->weave, "--weave CLOTH.wv"},
+        {"noise", s->weave || s->scene.noise_seed == 0, "--weave CLOTH.wv"},
+        {"lobes-on", s->material, "NAME.weft"},
+        {"tables", s->material, "NAME.weft"},
+        {"table-bits", s->material, "NAME.weft"},
+        {"environment-turn", s->environment, "--environment MAP.hdr"},
+        {"environment-strength", s->environment, "--environment MAP.hdr"},
+        {"environment-reference", s->environment, "--environment MAP.hdr"},
+        {"divider", s->scene.layout == WEFT_LAYOUT_WIPE, "--layout wipe"},
+        {"shadows", s->scene.light_count > 0 || !s->scene.shadows, "a --light"},
+        {"tone", !weft_settings_is_linear(command->output), "-o OUT.png: other pictures are linear"},
+    };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+        if (weft_scene_request_has(request, row[i].option) && !row[i].works)
+            return weft_fail(error, WEFT_BAD_USAGE, "--%s needs %s", row[i].option, row[i].wanted);
+    if (command->frames_per_second > 0 && !command->path_file)
+        return weft_fail(error, WEFT_BAD_USAGE, "--fps needs --path PATH.csv");
+    return WEFT_OK;
+}
+
 static weft_code check(void *values, weft_error *error)
 {
     const render_command *command = values;
+    WEFT_TRY(refuse_idle(command, error));
     if (command->path_file && !weft_sequence_is_pattern(command->output))
         return weft_fail(error, WEFT_BAD_USAGE,
                          "--path needs one place for a number in -o, as in frame-%%04d.png, not '%s'", command->output);
@@ -59,8 +93,9 @@ static weft_code draw(render_command *command, weft_player *player, weft_error *
     WEFT_TRY(weft_scene_load(scene, weft_rig_settings_default().opening_mm, player, &progress, &log, error));
     if (!command->path_file)
         return draw_picture(command, player, error);
-    return weft_sequence_draw(command->output, &command->path, command->frames_per_second, &scene->settings, player,
-                              &progress, error);
+    double frames_per_second = command->frames_per_second > 0 ? command->frames_per_second : DEFAULT_FPS;
+    return weft_sequence_draw(command->output, &command->path, frames_per_second, &scene->settings, player, &progress,
+                              error);
 }
 
 static weft_code render(render_command *command, weft_error *error)
@@ -82,7 +117,7 @@ static weft_code render(render_command *command, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    render_command command = {.frames_per_second = 25};
+    render_command command = {0};
     weft_arguments_parse(&weft_command_render, argc, argv, &command);
     weft_error error = {0};
     weft_code code = render(&command, &error);

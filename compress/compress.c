@@ -235,6 +235,8 @@ static weft_code fit_material(fitting *work, weft_material *material, weft_compr
     report->turned_frame_count = work->counts.turned;
     report->second_start_count = work->counts.second_start;
     report->missed_texel_count = work->counts.missed;
+    report->held_texel_count = work->counts.held;
+    report->stepped_down_count = work->counts.stepped_down;
     report->sample_count =
         (long)layout->width * layout->height * weft_compress_options_count_images(work->options, layout);
     return weft_compress_describe(layout, work->options, report, &work->fingerprint, &work->setting, material, error);

@@ -24,6 +24,8 @@ typedef struct weft_compress_report {
     long turned_frame_count; /* texels whose frame was fitted rather than the surface's own */
     long second_start_count; /* texels whose fit began with a lobe thrown back to the light rather than mirrored */
     long missed_texel_count; /* that no model brings to the target error */
+    long held_texel_count;   /* that would have exceeded WEFT_BRIGHTEST_MULTIPLE */
+    long stepped_down_count; /* that fewer lobes serve better than all */
     double seconds;
     long block_count;         /* of a dense model */
     long resumed_block_count; /* of these, taken from the checkpoint */

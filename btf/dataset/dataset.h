@@ -25,11 +25,10 @@ typedef enum weft_distance {
     WEFT_NEAR /* positions in mm, origin at the centre of the material, frame as in base/vector.h */
 } weft_distance;
 
-/* Why a sample cannot be used (bits); 0 is a valid sample. */
+/* Why a sample cannot be used (bits); 0 is a valid sample. One with another bit, which only others write, is not. */
 enum {
-    WEFT_MASK_MISSING = 1,   /* no photograph, or its view could not be registered */
-    WEFT_MASK_SATURATED = 2, /* the sensor clipped */
-    WEFT_MASK_SHADOWED = 4   /* the rig stood in the light or in the view */
+    WEFT_MASK_MISSING = 1,  /* no photograph, or its view could not be registered */
+    WEFT_MASK_SATURATED = 2 /* the sensor clipped */
 };
 
 /* Everything but the samples. */

@@ -111,6 +111,14 @@ static int append_text(const char *path, const char *text, size_t length)
     return written < 0 ? -1 : 0;
 }
 
+weft_code weft_session_sync(const weft_session *session, weft_error *error)
+{
+    char path[PATH_MAX];
+    journal_path(session, path);
+    weft_sync_folder_of(path);
+    return weft_sync_file(path, error);
+}
+
 weft_code weft_session_append(weft_session *session, int shot, const weft_shot_record *record, weft_error *error)
 {
     char path[PATH_MAX], line[256];

@@ -62,4 +62,8 @@ void weft_session_photograph_path(const weft_session *session, int shot, char *p
  * crash is removed first. Errors: WEFT_SYSTEM. */
 weft_code weft_session_append(weft_session *session, int shot, const weft_shot_record *record, weft_error *error);
 
+/* Waits until the lines of the journal, and the names in the folder of the session, are on the disk. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_session_sync(const weft_session *session, weft_error *error);
+
 #endif

@@ -114,3 +114,29 @@ void WEFT_KERNEL(weft_gather_compare)(const weft_bundle *bundle, const weft_samp
     sums->square_error += scale * square_error;
     sums->count += samples->valid_count;
 }
+
+WEFT_INLINE float largest_of(lanes x)
+{
+    float largest = x[0];
+    for (int i = 1; i < LANES; i++)
+        largest = x[i] > largest ? x[i] : largest;
+    return largest;
+}
+
+void WEFT_KERNEL(weft_gather_brightest)(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r,
+                                        float *f, float *cosine)
+{
+    lanes most_r = {0}, most_f = {0}, most_cosine = {0};
+    for (int at = 0; at < bundle->sample_count; at += LANES) {
+        lanes own = lanes_load(samples->cosine + at), light = lanes_load(bundle->light[2] + at);
+        lane_bits valid = own > 0.0f;
+        lanes value =
+            lanes_where(valid, lanes_load(samples->value[channel] + at) / lanes_select(valid, own, lanes_of(1)));
+        most_r = lanes_max(most_r, value * light);
+        most_f = lanes_max(most_f, value);
+        most_cosine = lanes_max(most_cosine, lanes_where(valid, light));
+    }
+    *r = largest_of(most_r);
+    *f = largest_of(most_f);
+    *cosine = largest_of(most_cosine);
+}

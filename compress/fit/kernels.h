@@ -29,6 +29,9 @@ struct weft_fit_kernels {
      * table [view_stride] leaves of them. */
     void (*compare)(const weft_bundle *bundle, const weft_samples *samples, int channel, const float *model,
                     const float *table, weft_error_sums *sums);
+    /* The largest sample r of a channel, r / cos(theta_light), and the largest such cosine, of samples that count. */
+    void (*brightest)(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r, float *f,
+                      float *cosine);
     /* k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [sample_count]. */
     void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
     /* The linear rows of a trial from its sums at `point`, and their totals. Returns the sum of <f|f> without T. */
@@ -56,6 +59,8 @@ struct weft_fit_kernels {
     void weft_gather_weigh_##set(const weft_bundle *bundle, weft_samples *samples);                                    \
     void weft_gather_compare_##set(const weft_bundle *bundle, const weft_samples *samples, int channel,                \
                                    const float *model, const float *table, weft_error_sums *sums);                     \
+    void weft_gather_brightest_##set(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r,    \
+                                     float *f, float *cosine);                                                         \
     void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \
                                   float *result);                                                                      \
     double weft_linear_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                     \

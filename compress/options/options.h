@@ -8,6 +8,11 @@
 #include <stdbool.h>
 
 /* What an error of a sample counts for. */
+/* No value of a texel exceeds so many times its brightest sample, whatever the light and the view: neither r, which has
+ * the cosine of the light, beside the brightest r as it would be under the highest light of the samples, nor f beside
+ * the brightest f. */
+enum { WEFT_BRIGHTEST_MULTIPLE = 4 };
+
 typedef enum weft_sample_weights {
     WEFT_WEIGHTS_EVEN,  /* alike, as in least squares */
     WEFT_WEIGHTS_SCREEN /* less the brighter the sample, about as little as a screen shows of it */

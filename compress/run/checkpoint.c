@@ -10,7 +10,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-enum { MAX_IDENTITY = 4096, VERSION = 1 };
+enum { MAX_IDENTITY = 4096, VERSION = 2 };
 
 static const char magic[8] = {'W', 'E', 'F', 'T', 'P', 'A', 'R', 'T'};
 

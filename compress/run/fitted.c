@@ -101,6 +101,8 @@ void weft_fitted_add_counts(weft_texel_counts *to, const weft_texel_counts *from
     to->turned += from->turned;
     to->second_start += from->second_start;
     to->missed += from->missed;
+    to->held += from->held;
+    to->stepped_down += from->stepped_down;
 }
 
 void weft_fitted_end_block(weft_fitted *fitted)

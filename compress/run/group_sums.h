@@ -10,7 +10,7 @@
 /* A group is [4 * image_count] floats: the sums [image_count][3], then the counts [image_count]. */
 
 /* The group of one texel: samples [image_count][3], mask [image_count]. Images with held_out[image] != 0 (NULL: none)
- * count nothing. Returns the number of masked samples among the others. Denormal samples need denormals on. */
+ * count nothing. Returns the number of masked samples among the others. */
 long weft_group_of_texel(const weft_half *samples, const uint8_t *mask, const uint8_t *held_out, size_t image_count,
                          float *group);
 

@@ -1,5 +1,7 @@
 #include "compress/sparse/field.h"
 
+#include "base/integers.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -74,6 +76,8 @@ weft_code weft_sparse_field_read(weft_dataset *dataset, const uint8_t *held_out,
     for (int image = 0; image < layout->image_count; image++)
         images += !(held_out && held_out[image]);
     WEFT_TRY(allocate(layout->width, layout->height, images, field, error));
+    field->whole_width = layout->width;
+    field->whole_height = layout->height;
     size_t samples = (size_t)layout->width * (size_t)layout->image_count;
     weft_half *half = malloc(3 * samples * sizeof *half);
     uint8_t *mask = malloc(samples);
@@ -97,28 +101,35 @@ static void unit_in_place(float *direction)
     store_direction(unit, direction);
 }
 
+/* Texels of level 0 that texel (x, y) stands for. */
+static float texels_in(const weft_sparse_field *field, int x, int y)
+{
+    int left = x << field->level, top = y << field->level, side = 1 << field->level;
+    return (float)(weft_smaller(side, field->whole_width - left) * weft_smaller(side, field->whole_height - top));
+}
+
 /* Mean over the children of one sample; weights count, directions do not depend on them. */
 static void halve_sample(const weft_sparse_field *field, int x, int y, int image, const weft_sparse_field *half,
                          size_t at)
 {
-    int children = 0;
-    float weight = 0, sum[3] = {0};
+    float texels = 0, weight = 0, sum[3] = {0};
     for (int row = 2 * y; row < 2 * y + 2 && row < field->height; row++) {
         for (int column = 2 * x; column < 2 * x + 2 && column < field->width; column++) {
             size_t texel = (size_t)row * (size_t)field->width + (size_t)column;
             size_t from = texel * (size_t)field->image_count + (size_t)image;
+            float own = texels_in(field, column, row), valid = own * field->weight[from];
             for (size_t k = 0; k < 3; k++) {
-                half->light[3 * at + k] += field->light[3 * from + k];
-                half->view[3 * at + k] += field->view[3 * from + k];
-                sum[k] += field->weight[from] * field->value[3 * from + k];
+                half->light[3 * at + k] += own * field->light[3 * from + k];
+                half->view[3 * at + k] += own * field->view[3 * from + k];
+                sum[k] += valid * field->value[3 * from + k];
             }
-            weight += field->weight[from];
-            children++;
+            weight += valid;
+            texels += own;
         }
     }
     unit_in_place(half->light + 3 * at);
     unit_in_place(half->view + 3 * at);
-    half->weight[at] = weight / (float)children;
+    half->weight[at] = weight / texels;
     for (size_t k = 0; k < 3; k++)
         half->value[3 * at + k] = weight > 0 ? sum[k] / weight : 0;
 }
@@ -126,6 +137,9 @@ static void halve_sample(const weft_sparse_field *field, int x, int y, int image
 weft_code weft_sparse_field_halve(const weft_sparse_field *field, weft_sparse_field *half, weft_error *error)
 {
     WEFT_TRY(allocate((field->width + 1) / 2, (field->height + 1) / 2, field->image_count, half, error));
+    half->level = field->level + 1;
+    half->whole_width = field->whole_width;
+    half->whole_height = field->whole_height;
     size_t at = 0;
     for (int y = 0; y < half->height; y++) {
         for (int x = 0; x < half->width; x++) {

@@ -8,9 +8,10 @@
  * it. */
 typedef struct weft_sparse_field {
     int width, height, image_count;
-    float *light, *view; /* x 3: unit directions */
-    float *value;        /* x 3: reflectance times cosine */
-    float *weight;       /* 0: not to be used; the share of valid texels in a group */
+    int level, whole_width, whole_height; /* the mip level, and the texels of level 0 */
+    float *light, *view;                  /* x 3: unit directions */
+    float *value;                         /* x 3: reflectance times cosine */
+    float *weight;                        /* 0: not to be used; the share of valid texels in a group */
 } weft_sparse_field;
 
 /* Reads a whole dataset; *masked_count receives the samples that cannot be used. Errors: those of reading, WEFT_SYSTEM
@@ -18,7 +19,8 @@ typedef struct weft_sparse_field {
 weft_code weft_sparse_field_read(weft_dataset *dataset, const uint8_t *held_out, weft_sparse_field *field,
                                  long *masked_count, weft_error *error);
 
-/* The field of the next mip level: means over groups of 2 x 2 texels. */
+/* The field of the next mip level: means over groups of 2 x 2 texels, each of which counts as the texels of level 0
+ * that it stands for (fewer at the right and lower edge). */
 weft_code weft_sparse_field_halve(const weft_sparse_field *field, weft_sparse_field *half, weft_error *error);
 
 void weft_sparse_field_free(weft_sparse_field *field);

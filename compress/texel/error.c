@@ -28,10 +28,28 @@ weft_samples weft_texel_samples_as_lit(weft_texel_fitter *fitter, int channel)
 {
     if (fitter->light_count == 0)
         return fitter->samples;
-    const uint8_t *code = fitter->light_code + (size_t)channel * (size_t)fitter->light_count;
+    const uint8_t *code = fitter->now.light_code + (size_t)channel * (size_t)fitter->light_count;
     for (int l = 0; l < fitter->light_count; l++)
         fitter->decoded_light[l] = weft_table_of_code(code[l]);
     return weft_light_apply(&fitter->bundle, &fitter->samples, fitter->decoded_light, fitter->lights.cosine);
+}
+
+double weft_texel_weighted_error(weft_texel_fitter *fitter)
+{
+    const weft_bundle *bundle = &fitter->bundle;
+    double sum = 0;
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
+        const uint8_t *code = fitter->now.code + (size_t)channel * (size_t)bundle->view_count;
+        weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
+        const float *model = weft_fit_evaluate(bundle, &lit, fitter->workspace, &fitter->now.as_read[channel]);
+        for (int view = 0; view < bundle->view_count; view++)
+            fitter->decoded[view] = (float)weft_table_of_code(code[view]);
+        for (int i = 0; i < bundle->sample_count; i++) {
+            float error = fitter->samples.value[channel][i] - fitter->decoded[bundle->view_of[i]] * model[i];
+            sum += (double)(error * error);
+        }
+    }
+    return sum;
 }
 
 weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied)
@@ -39,9 +57,9 @@ weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied)
     const weft_bundle *bundle = &fitter->bundle;
     weft_error_sums sums = {0};
     for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
-        const uint8_t *code = fitter->code + (size_t)channel * (size_t)bundle->view_count;
+        const uint8_t *code = fitter->now.code + (size_t)channel * (size_t)bundle->view_count;
         weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
-        const float *model = weft_fit_evaluate(bundle, &lit, fitter->workspace, &fitter->as_read[channel]);
+        const float *model = weft_fit_evaluate(bundle, &lit, fitter->workspace, &fitter->now.as_read[channel]);
         for (int view = 0; view < bundle->view_count; view++)
             fitter->decoded[view] = (float)weft_table_of_code(code[view]);
         fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, &sums);

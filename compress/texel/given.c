@@ -9,18 +9,18 @@ static void load_channel(weft_texel_fitter *fitter, const weft_candidate *from, 
     const weft_material *material = from->material;
     size_t texels = (size_t)level->width * (size_t)level->height, c = (size_t)channel;
     size_t views = (size_t)fitter->bundle.view_count, lights = (size_t)fitter->light_count;
-    weft_packed *packed = &fitter->packed[channel];
+    weft_packed *packed = &fitter->now.packed[channel];
     packed->diffuse = level->diffuse[4 * texel + c];
     for (size_t i = 0; i < (size_t)material->lobe_count; i++)
         memcpy(packed->lobe[i], level->lobe + 4 * ((3 * i + c) * texels + texel), sizeof packed->lobe[i]);
-    fitter->as_read[channel] = weft_unpack(packed, material->lobe_count, frame, fitter->samples.scale);
+    fitter->now.as_read[channel] = weft_unpack(packed, material->lobe_count, frame, fitter->samples.scale);
     for (size_t view = 0; view < views; view++)
-        fitter->code[c * views + view] =
+        fitter->now.code[c * views + view] =
             level->table
                 ? weft_table_code_rounded(level->table[4 * (view * texels + texel) + c], from->parts.table_bits)
                 : 255;
     for (size_t l = 0; l < lights; l++)
-        fitter->light_code[c * lights + l] =
+        fitter->now.light_code[c * lights + l] =
             level->light_table ? weft_table_code_rounded(level->light_table[4 * (l * texels + texel) + c],
                                                          from->parts.light_table_bits)
                                : 255;
@@ -51,17 +51,18 @@ void weft_texel_refit(weft_texel_fitter *fitter, const weft_material *from, int 
     weft_frame frame = weft_frame_decode(at->frame + 3 * texel);
     weft_fit_options options = fitter->source->options;
     options.lobe_count = from->lobe_count;
-    memcpy(fitter->frame, at->frame + 3 * texel, sizeof fitter->frame);
-    fitter->turns = fitter->second_start = false;
+    memcpy(fitter->now.frame, at->frame + 3 * texel, sizeof fitter->now.frame);
+    fitter->now.turns = fitter->now.second_start = fitter->now.held = false;
     for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
-        const uint8_t *code = fitter->code + (size_t)channel * (size_t)fitter->bundle.view_count;
+        const uint8_t *code = fitter->now.code + (size_t)channel * (size_t)fitter->bundle.view_count;
         load_channel(fitter, &whole, at, texel, channel, &frame);
         if (!(fitter->samples.energy[channel] > 0))
             continue;
         weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
-        weft_pack_given_table(&fitter->bundle, &lit, channel, &options, fitter->workspace, &fitter->as_read[channel],
-                              code, &fitter->packed[channel]);
-        fitter->as_read[channel] =
-            weft_unpack(&fitter->packed[channel], options.lobe_count, &frame, fitter->samples.scale);
+        weft_pack_given_table(&fitter->bundle, &lit, channel, &options, fitter->workspace,
+                              &fitter->now.as_read[channel], code, &fitter->now.packed[channel]);
+        fitter->now.as_read[channel] =
+            weft_unpack(&fitter->now.packed[channel], options.lobe_count, &frame, fitter->samples.scale);
+        weft_texel_hold(fitter, channel, false);
     }
 }

@@ -12,8 +12,9 @@ weft_code weft_texel_light_create(weft_texel_fitter *fitter, weft_error *error)
     size_t lights = (size_t)fitter->bundle.light_count, views = (size_t)fitter->bundle.view_count;
     fitter->light_count = fitter->bundle.light_count;
     fitter->light = calloc(3 * lights + views, sizeof *fitter->light);
-    fitter->light_code = calloc(2 * WEFT_CHANNELS * lights + 1, 1);
-    if (!fitter->light || !fitter->light_code)
+    fitter->now.light_code = calloc(WEFT_CHANNELS * lights + 1, 1);
+    fitter->kept.light_code = calloc(WEFT_CHANNELS * lights + 1, 1);
+    if (!fitter->light || !fitter->now.light_code || !fitter->kept.light_code)
         return weft_fail_memory(error, "light table of a texel", (3 * lights + views) * sizeof *fitter->light);
     fitter->decoded_light = fitter->light + lights;
     fitter->grey_light = fitter->decoded_light + lights;
@@ -25,7 +26,8 @@ void weft_texel_light_free(weft_texel_fitter *fitter)
 {
     weft_light_workspace_free(&fitter->lights);
     free(fitter->light);
-    free(fitter->light_code);
+    free(fitter->now.light_code);
+    free(fitter->kept.light_code);
 }
 
 const weft_grey_fit *weft_texel_light_start(weft_texel_fitter *fitter, const weft_fit_options *options,
@@ -45,7 +47,7 @@ const weft_grey_fit *weft_texel_light_start(weft_texel_fitter *fitter, const wef
 void weft_texel_light_refine(weft_texel_fitter *fitter, const weft_fit_options *options, int channel, weft_fit *fit)
 {
     const weft_bundle *bundle = &fitter->bundle;
-    uint8_t *code = fitter->light_code + (size_t)channel * (size_t)fitter->light_count;
+    uint8_t *code = fitter->now.light_code + (size_t)channel * (size_t)fitter->light_count;
     weft_fit_options once = *options;
     double largest = 0;
     memcpy(fitter->light, fitter->grey_light, (size_t)fitter->light_count * sizeof *fitter->light);

@@ -24,15 +24,20 @@ weft_code weft_texel_fitter_create(const weft_texel_source *source, weft_texel_f
     if (code == WEFT_OK) {
         fitter->table = calloc(2 * views, sizeof *fitter->table);
         fitter->seen = calloc(views, sizeof *fitter->seen);
-        fitter->code = calloc(2 * WEFT_CHANNELS * views, 1);
+        fitter->now.code = calloc(WEFT_CHANNELS * views, 1);
+        fitter->kept.code = calloc(WEFT_CHANNELS * views, 1);
+        fitter->factor = calloc(2 * views, sizeof *fitter->factor);
         fitter->decoded = calloc(views, sizeof *fitter->decoded);
-        if (!fitter->table || !fitter->seen || !fitter->code || !fitter->decoded)
+        if (!fitter->table || !fitter->seen || !fitter->now.code || !fitter->kept.code || !fitter->factor ||
+            !fitter->decoded)
             code = weft_fail_memory(error, "view tables of a texel", views * sizeof *fitter->table);
     }
     if (code == WEFT_OK)
         code = weft_frame_search_create(source->layout->view_count, &fitter->frames, error);
     if (code == WEFT_OK && source->light_table)
         code = weft_texel_light_create(fitter, error);
+    if (code == WEFT_OK)
+        code = weft_texel_hold_create(fitter, error);
     if (code != WEFT_OK) {
         weft_texel_fitter_free(fitter);
         return code;
@@ -52,7 +57,10 @@ void weft_texel_fitter_free(weft_texel_fitter *fitter)
     weft_frame_search_free(&fitter->frames);
     free(fitter->table);
     free(fitter->seen);
-    free(fitter->code);
+    free(fitter->now.code);
+    free(fitter->kept.code);
+    free(fitter->factor);
+    weft_texel_hold_free(fitter);
     free(fitter->decoded);
     weft_texel_light_free(fitter);
     free(fitter);
@@ -92,11 +100,11 @@ void weft_texel_store(weft_material *material, int level, int x, int y, int chan
 static void store_model(const weft_texel_fitter *fitter, weft_material *material, int level, int x, int y)
 {
     size_t texel = (size_t)y * (size_t)material->level[level].width + (size_t)x;
-    memcpy(material->level[level].frame + 3 * texel, fitter->frame, sizeof fitter->frame);
+    memcpy(material->level[level].frame + 3 * texel, fitter->now.frame, sizeof fitter->now.frame);
     for (int channel = 0; channel < WEFT_CHANNELS; channel++)
-        weft_texel_store(material, level, x, y, channel, &fitter->packed[channel],
-                         fitter->code + (size_t)channel * (size_t)fitter->bundle.view_count,
-                         fitter->light_count ? fitter->light_code + channel * fitter->light_count : NULL);
+        weft_texel_store(material, level, x, y, channel, &fitter->now.packed[channel],
+                         fitter->now.code + (size_t)channel * (size_t)fitter->bundle.view_count,
+                         fitter->light_count ? fitter->now.light_code + channel * fitter->light_count : NULL);
 }
 
 /* ---- One model ---- */
@@ -105,39 +113,132 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
                         const weft_grey_fit *start, const weft_frame *frame)
 {
     size_t views = (size_t)fitter->bundle.view_count;
-    uint8_t *code = fitter->code + (size_t)channel * views;
+    uint8_t *code = fitter->now.code + (size_t)channel * views;
     weft_fit fit = start->fit;
     fit.frame = *frame;
     memcpy(fitter->table, start->table, views * sizeof *fitter->table);
     memset(code, 255, views);
     if (fitter->light_count > 0)
-        memset(fitter->light_code + (size_t)channel * (size_t)fitter->light_count, 255, (size_t)fitter->light_count);
+        memset(fitter->now.light_code + (size_t)channel * (size_t)fitter->light_count, 255,
+               (size_t)fitter->light_count);
     if (light)
         weft_texel_light_refine(fitter, options, channel, &fit);
     else
         weft_fit_refine(&fitter->bundle, &fitter->samples, channel, options, fitter->workspace, &fit, fitter->table);
+    fitter->now.residual += fit.residual;
     weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
     weft_pack_channel(&fitter->bundle, &lit, channel, options, fitter->workspace, &fit, fitter->table,
-                      &fitter->packed[channel], code);
-    fitter->as_read[channel] = weft_unpack(&fitter->packed[channel], options->lobe_count, frame, fitter->samples.scale);
+                      &fitter->now.packed[channel], code);
+    fitter->now.as_read[channel] =
+        weft_unpack(&fitter->now.packed[channel], options->lobe_count, frame, fitter->samples.scale);
     if (options->table)
         weft_texel_limit_unseen(fitter, channel);
+    weft_texel_hold(fitter, channel, options->table);
 }
 
-/* Fits and packs one model, with S or without; `fitter` holds the result. */
-static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given)
+/* The grey fit, without S, that a model begins from. */
+static const weft_grey_fit *find_start(weft_texel_fitter *fitter, const weft_fit_options *options,
+                                       const weft_frame *given)
 {
     weft_frame_request request = {fitter->source->frames, given, *options};
-    const weft_grey_fit *start =
-        weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+    return weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+}
+
+/* Fits and packs one model, with S or without, from its start; `fitter` holds the result. */
+static void fit_from(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_grey_fit *start)
+{
     if (light)
         start = weft_texel_light_start(fitter, options, start);
-    fitter->turns = start == &fitter->frames.turned ||
-                    (light && options->lobe_count > 0 && fitter->source->frames == WEFT_FRAMES_FITTED);
-    fitter->second_start = start->fit.start > 0;
-    weft_frame frame = weft_pack_frame(&start->fit.frame, fitter->frame);
+    fitter->now.turns = start == &fitter->frames.turned ||
+                        (light && options->lobe_count > 0 && fitter->source->frames == WEFT_FRAMES_FITTED);
+    fitter->now.second_start = start->fit.start > 0;
+    fitter->now.held = false;
+    fitter->now.residual = 0;
+    weft_frame frame = weft_pack_frame(&start->fit.frame, fitter->now.frame);
     for (int channel = 0; channel < WEFT_CHANNELS; channel++)
         fit_channel(fitter, options, light, channel, start, &frame);
+}
+
+static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given)
+{
+    fit_from(fitter, options, light, find_start(fitter, options, given));
+}
+
+/* ---- The best model ---- */
+
+/* A fit may end in a lesser minimum than that of a smaller model, rounding may spoil it, and it may have been held. Not
+ * so, as far as was ever seen, where there are so many samples, the grey fit leaves so much less than that of the
+ * smaller model, and rounding cost next to nothing. */
+enum { MANY_SAMPLES = 2000 };
+#define CLEARLY_LESS 0.97
+#define BARELY_MORE 1.01
+
+static void swap_results(weft_texel_fitter *fitter)
+{
+    weft_texel_result now = fitter->now;
+    fitter->now = fitter->kept;
+    fitter->kept = now;
+}
+
+/* A model of the texel and what the last ones of its kind left. */
+typedef struct contest {
+    double least;      /* squared error of the best, as it will be read */
+    double grey;       /* of the grey fit that the whole model began from */
+    bool is_sure;      /* that only a grey fit which leaves about as much needs a look */
+    bool stepped_down; /* the best is not the whole model */
+} contest;
+
+/* Fits a smaller model if it may serve better, and keeps the better one. */
+static void try_smaller(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given,
+                        contest *state)
+{
+    const weft_grey_fit *start = find_start(fitter, options, given);
+    if (state->is_sure && state->grey < CLEARLY_LESS * start->fit.residual)
+        return;
+    swap_results(fitter);
+    fit_from(fitter, options, light, start);
+    double own = weft_texel_weighted_error(fitter);
+    if (own < state->least) {
+        state->least = own;
+        state->stepped_down = true;
+    } else {
+        swap_results(fitter);
+    }
+}
+
+/* Without S, without T and with fewer lobes. A grey fit says nothing of S. */
+static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given,
+                            contest *state)
+{
+    bool light = fitter->light_count > 0;
+    weft_fit_options options = *whole;
+    for (options.lobe_count = whole->lobe_count; options.lobe_count >= 0; options.lobe_count--) {
+        for (int with_table = whole->table; with_table >= 0; with_table--) {
+            for (int with_light = light; with_light >= 0; with_light--) {
+                bool is_whole =
+                    options.lobe_count == whole->lobe_count && with_table == whole->table && with_light == light;
+                bool is_few = fitter->samples.valid_count <= MANY_SAMPLES;
+                if (is_whole || (!is_few && (with_table != whole->table || with_light != light)))
+                    continue;
+                options.table = with_table;
+                try_smaller(fitter, &options, with_light, given, state);
+            }
+        }
+    }
+}
+
+/* Fits the whole model, and the smaller ones that may serve better; the best stays. Returns whether that is not the
+ * whole one. */
+static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
+{
+    const weft_grey_fit *start = find_start(fitter, whole, given);
+    contest state = {.grey = start->fit.residual};
+    fit_from(fitter, whole, fitter->light_count > 0, start);
+    state.least = weft_texel_weighted_error(fitter);
+    state.is_sure = !fitter->now.held && fitter->samples.valid_count > MANY_SAMPLES &&
+                      state.least < BARELY_MORE * fitter->now.residual;
+    try_all_smaller(fitter, whole, given, &state);
+    return state.stepped_down;
 }
 
 /* ---- The model that suffices ---- */
@@ -169,13 +270,13 @@ static void spare_bits(weft_texel_fitter *fitter)
 {
     size_t codes = WEFT_CHANNELS * (size_t)fitter->bundle.view_count;
     size_t light_codes = WEFT_CHANNELS * (size_t)fitter->light_count;
-    uint8_t *whole = fitter->code + codes, *whole_light = fitter->light_code + light_codes;
-    memcpy(whole, fitter->code, codes);
+    uint8_t *whole = fitter->kept.code, *whole_light = fitter->kept.light_code;
+    memcpy(whole, fitter->now.code, codes);
     if (light_codes > 0)
-        memcpy(whole_light, fitter->light_code, light_codes);
+        memcpy(whole_light, fitter->now.light_code, light_codes);
     for (int bits = 4; bits <= 8; bits += 2) {
-        round_codes(whole, codes, bits, fitter->code);
-        round_codes(whole_light, light_codes, bits, fitter->light_code);
+        round_codes(whole, codes, bits, fitter->now.code);
+        round_codes(whole_light, light_codes, bits, fitter->now.light_code);
         if (bits == 8 || meets_target(fitter))
             return;
     }
@@ -231,6 +332,7 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         weft_error_sums_add(&counts->sums, &judged);
         return;
     }
+    weft_texel_limit(fitter);
     weft_fit_options whole = whole_model(fitter);
     weft_frame frame;
     const weft_frame *given = find_given(fitter->source->given, level, x, y, &frame);
@@ -240,10 +342,11 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
     else if (fitter->source->target_error > 0)
         counts->missed += !fit_smallest(fitter, &whole, given);
     else
-        fit_model(fitter, &whole, fitter->light_count > 0, given);
+        counts->stepped_down += fit_best(fitter, &whole, given);
     weft_error_sums sums = weft_texel_measure(fitter, weft_texel_is_tallied(&material->level[level], x, y));
     weft_error_sums_add(&counts->sums, &sums);
     store_model(fitter, material, level, x, y);
-    counts->turned += fitter->turns;
-    counts->second_start += fitter->second_start;
+    counts->held += fitter->now.held;
+    counts->turned += fitter->now.turns;
+    counts->second_start += fitter->now.second_start;
 }

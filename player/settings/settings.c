@@ -84,12 +84,17 @@ double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh
 
 /* ---- Pictures ---- */
 
+bool weft_settings_is_linear(const char *path)
+{
+    return has_extension(path, ".exr") || has_extension(path, ".tif") || has_extension(path, ".tiff");
+}
+
 static weft_code draw(const char *path, weft_player *player, const weft_settings *settings, const char *text,
                       const weft_progress *progress, weft_error *error)
 {
     weft_image image = {0};
     weft_scene scene = settings->scene;
-    bool is_linear = has_extension(path, ".exr") || has_extension(path, ".tif") || has_extension(path, ".tiff");
+    bool is_linear = weft_settings_is_linear(path);
     /* Linear differences are numbers, and the scale would cover some. */
     scene.labels &= !(is_linear && scene.layout == WEFT_LAYOUT_DIFFERENCE);
     WEFT_TRY(weft_player_picture(player, &scene, settings->width, settings->height, settings->samples, progress, &image,

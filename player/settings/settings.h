@@ -50,6 +50,9 @@ weft_code weft_settings_check_files(const weft_settings *settings, const char *s
  * material_width_mm wide on it (once across the plane, unless the plane has a size), else what the scene says. Pure. */
 double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm);
 
+/* Whether a picture of this name holds linear values, which no tone bends. Pure. */
+bool weft_settings_is_linear(const char *path);
+
 /* Draws the picture and writes it with its settings: .png as the screen shows it, .exr linear (.tif too, but without
  * settings) and without the scale of a difference. It is drawn from what the written text says, so that the text gives
  * the same picture bit for bit. What `player` shows must be what the settings name. Atomic. Errors: those of

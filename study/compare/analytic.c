@@ -40,6 +40,9 @@ static weft_code open_threads(const weft_compare_options *options, weft_compared
     if (options->fit)
         return weft_fail(error, WEFT_BAD_USAGE, "'%s' is microcylinder cloth: only a weave (.wv) is fitted",
                          options->weave);
+    if (options->tiles_u > 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is microcylinder cloth: only a weave (.wv) has tiles",
+                         options->weave);
     WEFT_TRY(weft_microcylinder_read(weave->path, NULL, 0, &weave->threads, error));
     memcpy(comparison->weave_name, weave->threads.name, sizeof comparison->weave_name);
     snprintf(comparison->weave_origin, sizeof comparison->weave_origin, "as its file gives it, the same at all texels");

@@ -36,7 +36,7 @@ static void count_masks(const measuring *pass, int rows)
     for (long i = 0; i < count; i++) {
         measurement->missing += (pass->mask[i] & WEFT_MASK_MISSING) != 0;
         measurement->saturated += (pass->mask[i] & WEFT_MASK_SATURATED) != 0;
-        measurement->shadowed += (pass->mask[i] & WEFT_MASK_SHADOWED) != 0;
+        measurement->other += (pass->mask[i] & ~(WEFT_MASK_MISSING | WEFT_MASK_SATURATED)) != 0;
     }
 }
 

@@ -14,8 +14,8 @@ typedef struct weft_measurement {
     long texel_count;      /* texels whose samples were measured */
     weft_error_summary all;
     weft_error_summary by_view[WEFT_RING_COUNT],
-        by_light[WEFT_RING_COUNT];                   /* rings of ubo81: theta nearest 0, 15, .. 75 degrees */
-    long sample_count, missing, saturated, shadowed; /* texels times images, and how many of them are masked and why */
+        by_light[WEFT_RING_COUNT];                /* rings of ubo81: theta nearest 0, 15, .. 75 degrees */
+    long sample_count, missing, saturated, other; /* texels times images, and how many of them are masked and why */
 } weft_measurement;
 
 /* Measures the error over all texels, or over an even choice of them where the samples would be more than about two

@@ -6,7 +6,7 @@
 
 /* What the mask says, in samples of a texel in an image. */
 typedef struct mask_counts {
-    long valid, missing, saturated, shadowed;
+    long valid, missing, saturated, other;
 } mask_counts;
 
 static void count_masks(const uint8_t *mask, size_t count, mask_counts *counts)
@@ -15,7 +15,7 @@ static void count_masks(const uint8_t *mask, size_t count, mask_counts *counts)
         counts->valid += mask[i] == 0;
         counts->missing += (mask[i] & WEFT_MASK_MISSING) != 0;
         counts->saturated += (mask[i] & WEFT_MASK_SATURATED) != 0;
-        counts->shadowed += (mask[i] & WEFT_MASK_SHADOWED) != 0;
+        counts->other += (mask[i] & ~(WEFT_MASK_MISSING | WEFT_MASK_SATURATED)) != 0;
     }
 }
 
@@ -64,8 +64,8 @@ weft_code weft_verify_dataset(weft_dataset *dataset, const weft_progress *progre
     free(b.opacity);
     free(b.frames);
     json_t *verified = json_pack("{s:I, s:I, s:I, s:I}", "valid_samples", (json_int_t)counts.valid, "missing",
-                                 (json_int_t)counts.missing, "saturated", (json_int_t)counts.saturated, "shadowed",
-                                 (json_int_t)counts.shadowed);
+                                 (json_int_t)counts.missing, "saturated", (json_int_t)counts.saturated,
+                                 "masked_otherwise", (json_int_t)counts.other);
     if (json_object_set_new(description, "verified", verified) != 0 && code == WEFT_OK)
         code = weft_fail_memory(error, "description", 0);
     return code;

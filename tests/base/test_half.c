@@ -1,4 +1,5 @@
 #include "base/half.h"
+#include "base/processor.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>
@@ -66,6 +67,26 @@ static void extreme_floats_become_zero_infinity_or_nan(void **state)
     assert_true(is_nan_half(weft_half_of_float(NAN)));
 }
 
+/* Conversions of floats that are no denormals themselves. */
+static weft_half there_and_back[HALF_COUNT];
+static float value[HALF_COUNT];
+
+static void denormals_off_change_no_conversion(void **state)
+{
+    (void)state;
+    unsigned before = weft_denormals_off();
+    for (unsigned half = 0; half < HALF_COUNT; half++) {
+        value[half] = weft_float_of_half((weft_half)half);
+        there_and_back[half] = weft_half_of_float(value[half]);
+    }
+    weft_denormals_restore(before);
+    for (unsigned half = 0; half < HALF_COUNT; half++) {
+        assert_true(is_nan_half(half) ? isnan(value[half]) && is_nan_half(there_and_back[half])
+                                      : value[half] == weft_float_of_half((weft_half)half));
+        assert_true(is_nan_half(half) || there_and_back[half] == half);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -73,6 +94,7 @@ int main(void)
         cmocka_unit_test(every_half_survives_a_round_trip),
         cmocka_unit_test(conversion_rounds_to_nearest_even),
         cmocka_unit_test(extreme_floats_become_zero_infinity_or_nan),
+        cmocka_unit_test(denormals_off_change_no_conversion),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

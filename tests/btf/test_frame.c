@@ -54,6 +54,18 @@ static void azimuth_turns_the_tangent_towards_the_bitangent(void **state)
     assert_true(weft_length(weft_subtract(frame.bitangent, weft_vec3_of(-1, 0, 0))) < 1e-15);
 }
 
+static void frames_of_vectors_are_right_handed_and_keep_their_normal(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 44; i++) {
+        weft_vec3 normal = tilted(i * 3 % 90, i * 47 % 360), tangent = tilted(90 - i % 60, i * 71 % 360);
+        weft_frame frame = weft_frame_of_vectors(weft_scale(normal, 3), tangent);
+        assert_orthonormal(&frame);
+        assert_true(angle_between(frame.normal, normal) < 1e-7);
+        assert_true(weft_dot(frame.tangent, tangent) > 0);
+    }
+}
+
 static void a_normal_along_x_starts_from_y(void **state)
 {
     (void)state;
@@ -111,6 +123,7 @@ int main(void)
         cmocka_unit_test(frames_survive_coding_to_a_few_hundredths_of_a_degree),
         cmocka_unit_test(codes_of_zero_are_the_frame_of_the_surface),
         cmocka_unit_test(azimuth_turns_the_tangent_towards_the_bitangent),
+        cmocka_unit_test(frames_of_vectors_are_right_handed_and_keep_their_normal),
         cmocka_unit_test(a_normal_along_x_starts_from_y),
         cmocka_unit_test(an_average_tangent_does_not_know_signs),
         cmocka_unit_test(an_average_normal_weighs_and_stays_above_the_horizon),

@@ -4,6 +4,7 @@
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -189,9 +190,29 @@ static void a_small_file_that_expands_enormously_is_refused(void **state)
     free(bytes);
 }
 
+static void fewer_bits_take_the_nearest_code(void **state)
+{
+    (void)state;
+    for (int bits = 4; bits <= 8; bits += 2) {
+        int steps = (1 << bits) - 1;
+        for (int code = 0; code <= 255; code++) {
+            int rounded = weft_table_code_rounded((uint8_t)code, bits), least = 255;
+            bool known = false;
+            for (int i = 0; i <= steps; i++) {
+                int candidate = (int)lround(255.0 * i / steps);
+                known |= candidate == rounded;
+                least = abs(candidate - code) < least ? abs(candidate - code) : least;
+            }
+            assert_true(known);
+            assert_int_equal(abs(rounded - code), least);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fewer_bits_take_the_nearest_code),
         cmocka_unit_test(only_what_texels_have_is_stored_and_all_reads_back),
         cmocka_unit_test(a_texel_without_t_keeps_its_holes),
         cmocka_unit_test(a_map_that_does_not_fit_the_sections_is_refused),

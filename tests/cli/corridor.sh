@@ -72,7 +72,7 @@ expect_says "fitted to this dataset, the mean of 32 images" compare cloth.btf.h5
 # That of the whole material counts the texels beside the frame, too: the true weave has 0.87 of the error of the start.
 awk "BEGIN { exit !($(error_of_analytic) < 0.9 * $before) }" || fail "the fitted weave compares no better than its start"
 cmp fitted.wv report/fitted.wv || fail "compare --fit and fit-weave find different weaves"
-grep -q "Before the fit" report/index.html || fail "the page does not say what the fit changed"
+grep -q "before the fit" report/index.html || fail "the page does not say what the fit changed"
 expect_error 2 "--weave" compare cloth.btf.h5 cloth.weft --fit -o report
 expect_error 1 "absent.wv" fit-weave cloth.btf.h5 --weave absent.wv -o none.wv
 expect_error 1 "cloth.weft" fit-weave cloth.weft --weave start.wv -o none.wv

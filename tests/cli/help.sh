@@ -41,6 +41,8 @@ expect_error 2 "would overwrite" render cloth.weft --environment same.exr -o ./s
 expect_error 2 "--size needs WxH" register session -o no.btf.h5 --size 64
 expect_error 2 "--tiles needs two numbers above 0" render --weave cloth.wv --tiles 0,3 -o no.png
 expect_error 2 "--tiles needs two numbers above 0" compare a.btf.h5 a.weft --tiles 2,-1 -o report
+expect_error 2 "--tiles needs --weave" compare a.btf.h5 a.weft --tiles 2,1 -o report
+expect_error 2 "--paths needs --truth" compare a.btf.h5 a.weft --paths 16 -o report
 expect_error 2 "--obj-tiles needs WxH" simulate cloth.stitch --obj cloth.obj --obj-tiles 2,1
 for seed in 0 -1 2147483648; do
     for command in "eval cloth.wv --at directions.csv" "render --weave cloth.wv -o no.png" "play --weave cloth.wv"; do

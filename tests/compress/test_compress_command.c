@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/picture/image.h"
+#include "btf/direction/direction.h"
 #include "btf/material/material.h"
 #include "tests/support/run_weft.h"
 #include "tests/support/synthetic_dataset.h"
@@ -102,6 +103,41 @@ static void wrong_usage_is_2(void **state)
     expect_weft("compress --help", 0, "Example: weft compress");
 }
 
+/* `views` views of `lights` directions each. */
+static void write_few_images(int views, int lights)
+{
+    weft_dataset_layout layout = {
+        .width = 2, .height = 2, .image_count = views * lights, .view_count = views, .texel_pitch_mm = 0.1};
+    assert_int_equal(weft_dataset_layout_allocate(&layout, NULL), WEFT_OK);
+    for (int image = 0; image < layout.image_count; image++) {
+        layout.view[image / lights] = weft_direction_of_angles(weft_ubo81_angles(image / lights));
+        layout.light[image] = weft_direction_of_angles(weft_ubo81_angles(image % lights));
+        layout.view_of_image[image] = image / lights;
+    }
+    synthetic_dataset_write("few.btf.h5", &layout, fill_yarn);
+    weft_dataset_layout_free(&layout);
+}
+
+/* What the images cannot carry is said, and all else is done. */
+static void options_that_change_nothing_are_named(void **state)
+{
+    (void)state;
+    char said[RUN_WEFT_SAID];
+    write_few_images(1, 81);
+    expect_weft("compress few.btf.h5 -o few.weft --light-table on", 0, "--light-table changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --frames given", 0, "--frames given is that of the surface");
+    assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --weights screen --max-exponent 9", said), 0);
+    assert_null(strstr(said, "changes nothing"));
+    write_few_images(1, 12);
+    expect_weft("compress few.btf.h5 -o few.weft --tables pca:2", 0, "--tables changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --light-table on", 0, "--light-table changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --weights screen", 0, "--weights changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --frames off", 0, "--frames changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --max-exponent 9", 0, "--max-exponent changes nothing");
+    assert_int_equal(run_weft("", "compress command.btf.h5 -o few.weft --light-table on", said), 0);
+    assert_null(strstr(said, "changes nothing"));
+}
+
 static void bad_input_is_1_and_leaves_nothing(void **state)
 {
     (void)state;
@@ -136,6 +172,7 @@ int main(void)
         cmocka_unit_test(a_target_error_says_how_many_texels_miss_it),
         cmocka_unit_test(a_budget_is_kept_and_reported_in_a_picture),
         cmocka_unit_test(wrong_usage_is_2),
+        cmocka_unit_test(options_that_change_nothing_are_named),
         cmocka_unit_test(bad_input_is_1_and_leaves_nothing),
         cmocka_unit_test(a_full_disk_is_3_and_leaves_nothing),
     };

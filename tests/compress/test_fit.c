@@ -118,6 +118,27 @@ static void a_turned_frame_is_found(void **state)
     assert_true(weft_dot(free.frame.normal, turned.normal) > cos(weft_rad_of_deg(1)));
 }
 
+/* A mirror that is sharper than what is allowed. */
+static void no_exponent_exceeds_the_largest_one_asked_for(void **state)
+{
+    texel_fixture *fixture = *state;
+    texel_fixture_fill(fixture, SYNTHETIC_WARD, 0, 0);
+    for (int image = 0; image < fixture->layout.image_count; image++) {
+        weft_vec3 l = fixture->layout.light[image], v = fixture->layout.view[fixture->layout.view_of_image[image]];
+        double base = -l.x * v.x - l.y * v.y + l.z * v.z;
+        for (int k = 0; k < 3; k++)
+            fixture->sum[3 * image + k] = (float)(l.z * (0.2 + (base > 0 ? pow(base, 300) : 0)));
+    }
+    texel_fixture_gather(fixture);
+    weft_fit_options options = options_of(1, true);
+    for (options.max_exponent = 16; options.max_exponent < 200; options.max_exponent *= 3) {
+        weft_fit fit;
+        fit_cold(fixture, 0, &options, &fit);
+        double exponent = exp(fit.lobe[0].log_exponent);
+        assert_true(exponent <= options.max_exponent * (1 + 1e-9) && exponent > 0.9 * options.max_exponent);
+    }
+}
+
 static void joint_fit_is_never_worse_than_alternation(void **state)
 {
     texel_fixture *fixture = *state;
@@ -288,6 +309,7 @@ int main(void)
         cmocka_unit_test(one_lobe_without_table_is_recovered_exactly),
         cmocka_unit_test(light_thrown_back_along_the_surface_is_fitted),
         cmocka_unit_test(a_turned_frame_is_found),
+        cmocka_unit_test(no_exponent_exceeds_the_largest_one_asked_for),
         cmocka_unit_test(joint_fit_is_never_worse_than_alternation),
         cmocka_unit_test(reported_residual_is_that_of_the_samples_in_double),
         cmocka_unit_test(more_freedom_never_hurts),

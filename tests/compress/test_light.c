@@ -126,6 +126,55 @@ static void it_keeps_a_moderate_contrast_between_views(void **state)
     free_fits(&fits);
 }
 
+/* A highlight where the half vector is nearly perpendicular to (1, y, z). */
+typedef struct band {
+    bool hard; /* its edges; else Gaussian */
+    double y, z, width, dark;
+} band;
+
+static void fill_band(texel_fixture *fixture, const band *b)
+{
+    const weft_vec3 along = weft_unit(weft_vec3_of(1, b->y, b->z));
+    for (int image = 0; image < fixture->layout.image_count; image++) {
+        weft_vec3 l = fixture->layout.light[image], v = fixture->layout.view[fixture->layout.view_of_image[image]];
+        double away = weft_dot(weft_unit(weft_add(l, v)), along) / b->width;
+        double value = b->hard ? (fabs(away) < 1 ? 1 : b->dark) : exp(-away * away) + b->dark;
+        fixture->count[image] = 1;
+        for (int k = 0; k < 3; k++)
+            fixture->sum[3 * image + k] = (float)(l.z * value);
+    }
+    texel_fixture_gather(fixture);
+}
+
+static int ascending(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Without the bound on the contrast the median of these is above 2, and some are above 4. */
+static void most_bands_keep_a_moderate_contrast(void **state)
+{
+    static const band bands[] = {
+        {true, 0.49, 0.15, 0.143, 0.0015},  {false, 0.21, 0.51, 0.127, 0.0006},  {true, -0.38, 0.15, 0.128, 0.0015},
+        {true, -0.85, 0.04, 0.075, 0.0055}, {false, -0.52, 0.35, 0.145, 0.0002}, {false, 0.16, 0.47, 0.162, 0.0001},
+        {false, 0.34, 0.09, 0.157, 0.0084}, {true, -0.25, 0.02, 0.164, 0.0016},  {true, -0.37, 0.24, 0.143, 0.0001},
+    };
+    enum { COUNT = sizeof bands / sizeof *bands };
+    texel_fixture *fixture = *state;
+    double loss[COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        fill_band(fixture, &bands[i]);
+        both_fits fits = fit_both(fixture, 1e-4, true, true);
+        loss[i] = loss_at_contrast(fixture, &fits);
+        free_fits(&fits);
+    }
+    qsort(loss, COUNT, sizeof *loss, ascending);
+    print_message("clamped %.3f times the squared error in the median, %.3f at worst\n", loss[COUNT / 2],
+                  loss[COUNT - 1]);
+    assert_true(loss[COUNT / 2] < 1.3);
+}
+
 enum { LIGHTS = 7, VIEWS = 32 };
 
 /* One round of T, then of S, in double. */
@@ -239,6 +288,8 @@ int main(void)
                                         texel_fixture_teardown),
         cmocka_unit_test_setup_teardown(with_it_the_frame_turns_once_more, texel_fixture_setup, texel_fixture_teardown),
         cmocka_unit_test_setup_teardown(it_keeps_a_moderate_contrast_between_views, texel_fixture_setup,
+                                        texel_fixture_teardown),
+        cmocka_unit_test_setup_teardown(most_bands_keep_a_moderate_contrast, texel_fixture_setup,
                                         texel_fixture_teardown),
         cmocka_unit_test(every_instruction_set_solves_for_T_and_S_alike),
         cmocka_unit_test_setup_teardown(a_separable_texel_is_explained_to_the_end, texel_fixture_setup,

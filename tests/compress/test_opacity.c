@@ -5,6 +5,7 @@
 #include "compress/compress.h"
 #include "reflectance/lafortune/lafortune.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -77,6 +78,20 @@ static double mean_covered(int k, int x, int y, int view)
     return sum / count;
 }
 
+/* The same of the codes of level 0, which are whole numbers. */
+static double mean_code(int k, int x, int y, int view)
+{
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        if (i % WIDTH >> k != x || i / WIDTH >> k != y)
+            continue;
+        sum += floor(255 * covered(i % WIDTH, i / WIDTH, view) + 0.5);
+        count++;
+    }
+    return sum / count;
+}
+
 static void reflectance_and_opacity_of_a_level_are_means_of_the_same_texels(void **state)
 {
     (void)state;
@@ -99,6 +114,7 @@ static void reflectance_and_opacity_of_a_level_are_means_of_the_same_texels(void
             weft_rgba value =
                 weft_material_texel(&material, &directions, k, x, y, weft_vec3_of(0, 0, 1), material.view[view]);
             assert_float_equal(value.a, expected, 1 / 255.0);
+            assert_float_equal(255 * value.a, mean_code(k, x, y, view), 0.5 + 1e-6);
             assert_float_equal(value.g, cloth * expected, 0.01);
         }
     }

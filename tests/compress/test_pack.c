@@ -36,6 +36,22 @@ static void rounding_costs_less_than_a_hundredth_of_the_error(void **state)
     }
 }
 
+static void a_table_entry_gets_the_nearest_code(void **state)
+{
+    (void)state;
+    for (int code = 0; code <= 255; code++) {
+        double t = code / 255.0 * (code / 255.0);
+        assert_int_equal(weft_code_of_table(t), code);
+        assert_float_equal(weft_table_of_code((uint8_t)code), t, 1e-15);
+        /* A little to either side of halfway to the next. */
+        double below = (code + 0.49) / 255, above = (code + 0.51) / 255;
+        assert_int_equal(weft_code_of_table(below * below), code);
+        assert_int_equal(weft_code_of_table(above * above), code < 255 ? code + 1 : 255);
+    }
+    assert_int_equal(weft_code_of_table(-1), 0);
+    assert_int_equal(weft_code_of_table(1e9), 255);
+}
+
 static void fill_mirror(texel_fixture *fixture, double exponent)
 {
     for (int image = 0; image < fixture->layout.image_count; image++) {
@@ -147,6 +163,7 @@ static void frames_survive_packing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_table_entry_gets_the_nearest_code),
         cmocka_unit_test(rounding_costs_less_than_a_hundredth_of_the_error),
         cmocka_unit_test(sharp_lobes_survive_half_floats),
         cmocka_unit_test(largest_table_entry_uses_the_whole_range),

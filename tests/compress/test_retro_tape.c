@@ -1,5 +1,4 @@
 /* A measured retro-reflective tape: two peaks, one of which points back at the light, a degree or two wide. */
-#include "base/clock.h"
 #include "texel_fixture.h"
 
 #include <stdio.h>
@@ -135,17 +134,14 @@ static void peaks_are_where_they_were_measured(void **state)
     assert_float_equal(value_at(fixture, 0, -15), 10.809, 1e-3);
 }
 
-/* The best of 150 starts of a general solver, and the shortest time of another fitter (ALTA). */
-static void lobes_come_within_a_percent_of_the_best_known_in_less_than_40_ms(void **state)
+/* The best of 150 starts of a general solver. What it costs is for bench/ to say. */
+static void lobes_come_within_a_percent_of_the_best_known(void **state)
 {
     static const double best_known[] = {0.7156, 0.3884, 0.3737};
     for (int i = 0; i < (int)(sizeof best_known / sizeof *best_known); i++) {
         weft_fit_options options = options_of(i + 1, 8192);
         weft_fit fit;
-        double before = weft_clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-        double error = fit_cold(*state, &options, &fit);
-        assert_true(weft_clock_seconds(CLOCK_THREAD_CPUTIME_ID) - before < 0.04);
-        assert_true(error < 1.01 * best_known[i]);
+        assert_true(fit_cold(*state, &options, &fit) < 1.01 * best_known[i]);
     }
 }
 
@@ -185,7 +181,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(peaks_are_where_they_were_measured),
-        cmocka_unit_test(lobes_come_within_a_percent_of_the_best_known_in_less_than_40_ms),
+        cmocka_unit_test(lobes_come_within_a_percent_of_the_best_known),
         cmocka_unit_test(one_of_two_lobes_points_back_at_the_light),
         cmocka_unit_test(a_bound_of_512_is_too_low_for_tape),
         cmocka_unit_test(a_table_of_three_views_does_not_hurt),

@@ -1,6 +1,7 @@
 /* The parts of compressing out of core, each by itself. */
 #include "tests/support/cmocka_all.h"
 
+#include "base/processor.h"
 #include "btf/dataset/fingerprint.h"
 #include "compress/run/checkpoint.h"
 #include "compress/run/memory.h"
@@ -165,6 +166,28 @@ static void masked_samples_are_counted_and_do_not_count(void **state)
         for (size_t k = 0; k < 3; k++)
             assert_true(group[3 * i + k] == (counts ? weft_float_of_half(all_samples[3 * i + k]) : 0.0f));
     }
+}
+
+enum { FINITE_HALVES = 0x7c00 };
+
+/* Every half float, by every instruction set that this processor has. */
+static void denormals_off_lose_no_sample(void **state)
+{
+    (void)state;
+    static weft_half samples[3 * FINITE_HALVES];
+    static uint8_t mask[FINITE_HALVES];
+    static float group[4 * FINITE_HALVES];
+    for (size_t i = 0; i < 3 * FINITE_HALVES; i++)
+        samples[i] = (weft_half)(i % FINITE_HALVES);
+    for (int set = 0; set <= (int)weft_processor_best(); set++) {
+        setenv("WEFT_ISA", weft_instruction_set_name((weft_instruction_set)set), 1);
+        unsigned before = weft_denormals_off();
+        weft_group_of_texel(samples, mask, NULL, FINITE_HALVES, group);
+        weft_denormals_restore(before);
+        for (size_t i = 0; i < 3 * FINITE_HALVES; i++)
+            assert_true(group[i] == weft_float_of_half(samples[i]));
+    }
+    unsetenv("WEFT_ISA");
 }
 
 /* ---- Threads ---- */
@@ -378,6 +401,7 @@ int main(void)
         cmocka_unit_test(a_plan_covers_each_texel_and_finishes_each_group_once),
         cmocka_unit_test(sums_do_not_depend_on_the_blocks),
         cmocka_unit_test(masked_samples_are_counted_and_do_not_count),
+        cmocka_unit_test(denormals_off_lose_no_sample),
         cmocka_unit_test(a_crew_does_every_item_once),
         cmocka_unit_test(blocks_come_in_order_and_whole),
         cmocka_unit_test(an_error_of_reading_reaches_the_caller),

@@ -75,12 +75,37 @@ static void the_diffuse_term_reflects_its_albedo(void **state)
     assert_true(fabs(albedo(fibre, at_angles(40, 20)) - 0.7) < 1e-4);
 }
 
+/* Reflectance of unpolarised light (Fresnel 1823). */
+static double fresnel(double cosine, double index)
+{
+    double inside = sqrt(1 - (1 - cosine * cosine) / (index * index));
+    double across = (cosine - index * inside) / (cosine + index * inside);
+    double along_plane = (index * cosine - inside) / (index * cosine + inside);
+    return (across * across + along_plane * along_plane) / 2;
+}
+
+/* In the mirror direction along the fibre: Fresnel's reflectance over 4 cos^2, times the peak of a normalised Gaussian.
+ */
+static void the_peak_of_the_highlight_is_what_its_definition_says(void **state)
+{
+    (void)state;
+    const double width = 0.1, index = 1.55, specular = 0.8;
+    weft_fibre fibre = {{0, 0, 0}, {specular, specular, specular}, width, index};
+    for (int theta = 0; theta <= 75; theta += 15) {
+        double cosine = cos(weft_rad_of_deg(theta));
+        double expected = specular * fresnel(cosine, index) / (sqrt(WEFT_PI) * width) / (4 * cosine * cosine);
+        double seen = luminance(fibre, at_angles(theta, 0), at_angles(theta, 180));
+        assert_true(fabs(seen / expected - 1) < 1e-9);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exchanging_light_and_view_changes_nothing),
         cmocka_unit_test(the_highlight_lies_across_the_fibre),
         cmocka_unit_test(the_highlight_reflects_less_than_arrives),
+        cmocka_unit_test(the_peak_of_the_highlight_is_what_its_definition_says),
         cmocka_unit_test(the_diffuse_term_reflects_its_albedo),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -73,7 +73,7 @@ static void valid_samples_lose_the_cosine_of_their_light(void **state)
 static void a_masked_sample_takes_the_nearest_valid_light_of_its_view(void **state)
 {
     (void)state;
-    const uint8_t none[IMAGES] = {0}, mask[IMAGES] = {WEFT_MASK_SATURATED, 0, 0, 0, WEFT_MASK_SHADOWED, 0};
+    const uint8_t none[IMAGES] = {0}, mask[IMAGES] = {WEFT_MASK_SATURATED, 0, 0, 0, 4, 0};
     float value[3 * IMAGES];
     weft_dataset *dataset = make_dataset(none);
     fill(dataset, mask, value);

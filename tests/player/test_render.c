@@ -296,6 +296,34 @@ static void wrong_usage_is_exit_code_2(void **state)
     assert_int_not_equal(access("a.png", F_OK), 0);
 }
 
+static void options_that_would_do_nothing_are_refused(void **state)
+{
+    (void)state;
+    static const char *const idle[][2] = {
+        {"cloth.weft --raw-format bc6h", "--raw-format needs --raw"},
+        {"cloth.weft --tiles 2,2", "--tiles needs --weave"},
+        {"cloth.weft --noise 3", "--noise needs --weave"},
+        {"--weave $WEAVES/cotton_denim.wv --lobes-on 1", "--lobes-on needs NAME.weft"},
+        {"--weave $WEAVES/cotton_denim.wv --tables view", "--tables needs NAME.weft"},
+        {"--weave $WEAVES/cotton_denim.wv --table-bits 4", "--table-bits needs NAME.weft"},
+        {"cloth.weft --environment-turn 30", "needs --environment"},
+        {"cloth.weft --environment-strength 2", "needs --environment"},
+        {"cloth.weft --environment-reference", "needs --environment"},
+        {"cloth.weft --divider 0.3", "--divider needs --layout wipe"},
+        {"cloth.weft --environment sky.exr --light none --shadows", "--shadows needs a --light"},
+        {"cloth.weft --fps 12", "--fps needs --path"},
+    };
+    char arguments[256];
+    for (size_t i = 0; i < sizeof idle / sizeof *idle; i++) {
+        snprintf(arguments, sizeof arguments, "$WEFT render %s -o a.png", idle[i][0]);
+        assert_int_equal(run(arguments), WEFT_BAD_USAGE);
+        expect_said(idle[i][1]);
+    }
+    assert_int_equal(run("$WEFT render cloth.weft --tone soft -o a.exr"), WEFT_BAD_USAGE);
+    expect_said("--tone needs -o OUT.png");
+    assert_int_not_equal(access("a.png", F_OK), 0);
+}
+
 static void bad_files_are_exit_code_1_and_leave_no_picture(void **state)
 {
     (void)state;
@@ -343,6 +371,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_sequence_on_a_full_disk_stops_with_whole_pictures),
         cmocka_unit_test(the_reference_of_an_environment_tells_its_error),
         cmocka_unit_test(wrong_usage_is_exit_code_2),
+        cmocka_unit_test(options_that_would_do_nothing_are_refused),
         cmocka_unit_test(bad_files_are_exit_code_1_and_leave_no_picture),
         cmocka_unit_test(a_failing_system_is_exit_code_3_and_leaves_no_picture),
     };

@@ -52,17 +52,43 @@ static weft_rgba evaluate_material(void *context, const weft_surface_sample *at)
     return lit((weft_rgb){value.r, value.g, value.b}, light, value.a);
 }
 
-static void compare_material(void **state, const char *what, int lobes, int views, int lights, weft_scene scene)
+/* Multiplies a material by `gain`: rho by it, C by gain^(1/N). */
+static void darken(weft_material *material, double gain)
+{
+    for (int k = 0; k < material->level_count; k++) {
+        weft_material_level *level = &material->level[k];
+        size_t texels = (size_t)level->width * (size_t)level->height;
+        for (size_t i = 0; i < 4 * texels; i++)
+            level->diffuse[i] = weft_half_of_float(weft_float_of_half(level->diffuse[i]) * (float)gain);
+        for (size_t i = 0; i < 3 * (size_t)material->lobe_count * texels; i++) {
+            weft_half *code = level->lobe + 4 * i;
+            double factor = pow(gain, 1 / (double)weft_float_of_half(code[3]));
+            for (int c = 0; c < 3; c++)
+                code[c] = weft_half_of_float(weft_float_of_half(code[c]) * (float)factor);
+        }
+    }
+}
+
+/* Draws a material made darker by `gain`, at an exposure that makes up for it. */
+static void compare_dark_material(void **state, const char *what, double gain, int lobes, int views, int lights,
+                                  weft_scene scene)
 {
     stage *s = *state;
     weft_error error = {0};
     material_model model = {0};
     stage_material(20, 13, lobes, views, lights, &model.material);
+    darken(&model.material, gain);
+    scene.exposure /= gain;
     expect_ok(weft_table_directions_create(&model.material, &model.directions, &error), &error);
     expect_ok(weft_player_set_material(s->player, &model.material, &error), &error);
     expect_small(what, stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_material, &model));
     weft_table_directions_free(&model.directions);
     weft_material_free(&model.material);
+}
+
+static void compare_material(void **state, const char *what, int lobes, int views, int lights, weft_scene scene)
+{
+    compare_dark_material(state, what, 1, lobes, views, lights, scene);
 }
 
 static void compressed_equals_c_with_two_lobes_and_81_views(void **state)
@@ -103,6 +129,13 @@ static void compressed_equals_c_with_a_light_table(void **state)
     scene.light[0].direction = (weft_angles){weft_rad_of_deg(70), weft_rad_of_deg(200)};
     scene.repeat = 37;
     compare_material(state, "81 views, 60 lights, minified", 2, 81, 60, scene);
+}
+
+/* Half floats below 6.1e-5 are subnormal. */
+static void compressed_equals_c_in_the_dark(void **state)
+{
+    compare_dark_material(state, "1e-4 as bright", 1e-4, 2, 81, 0, weft_scene_default());
+    compare_dark_material(state, "1e-6 as bright", 1e-6, 0, 0, 0, weft_scene_default());
 }
 
 /* ---- Raw ---- */
@@ -391,6 +424,7 @@ int main(void)
         cmocka_unit_test(compressed_equals_c_under_grazing_light_from_behind),
         cmocka_unit_test(compressed_equals_c_without_lobes_or_table),
         cmocka_unit_test(compressed_equals_c_with_a_light_table),
+        cmocka_unit_test(compressed_equals_c_in_the_dark),
         cmocka_unit_test(raw_equals_c_interpolation_in_views_and_lights),
         cmocka_unit_test(raw_with_a_shared_exponent_equals_c_too),
         cmocka_unit_test(the_last_raw_level_is_the_mean_of_all_texels),

@@ -5,12 +5,15 @@
 
 extern const char twin_glsl_spherical_gaussian[];
 
-/* a = (mean 1, width 1, mean 2, width 2); b, c = directions and, in w, a gain and a distance. */
+/* A mean beyond half a turn is no direction. a = (mean 1, width 1, mean 2, width 2); b, c = directions and, in w, a
+ * gain and a distance. */
 static const char twin_source[] = "vec4 twin(sampler2D table, vec4 a, vec4 b, vec4 c)\n"
                                   "{\n"
                                   "    CircularLobe lobe = circular_product(a.x, a.y, a.z, a.w);\n"
                                   "    GaussianSplit split = spherical_gaussian_split(b.xyz, c.xyz, a.y);\n"
                                   "    vec2 turned = vec2(cos(lobe.mean), sin(lobe.mean));\n"
+                                  "    if (abs(lobe.mean) > 3.14160)\n"
+                                  "        turned = vec2(9.0);\n"
                                   "    if (texelFetch(table, ivec2(0), 0).r > 0.5)\n"
                                   "        return vec4(turned, lobe.width, lobe.scale);\n"
                                   "    return vec4(spherical_gaussian(b.xyz, c.xyz, a.y), split.phi_width,\n"

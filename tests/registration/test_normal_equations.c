@@ -44,6 +44,7 @@ static void merged_parts_equal_the_whole(void **state)
     weft_normal_equations_merge(&sum, &part);
     assert_near(sum.matrix[1][0], 2 * whole.matrix[1][0], 1e-12);
     assert_near(sum.right[1], 2 * whole.right[1], 1e-9);
+    assert_near(sum.squares, 2 * whole.squares, 1e-9);
     assert_near(sum.weights, 2 * whole.weights, 1e-12);
 }
 

@@ -198,7 +198,7 @@ static void write_tilted(double tilt_deg, int view_count)
     expect_ok(weft_dataset_writer_create(input, &layout, &writer, &error), &error);
     /* Without its first photograph texel (1, 0) is complete and texel (0, 0) empty under the high light. */
     for (int i = 0; i < layout.image_count; i++) {
-        const uint8_t mask[2] = {i % 2 ? 0 : WEFT_MASK_SHADOWED, 0};
+        const uint8_t mask[2] = {i % 2 ? 0 : WEFT_MASK_MISSING, 0};
         expect_ok(weft_dataset_writer_put_image(writer, i, samples, mask, &error), &error);
     }
     expect_ok(weft_dataset_writer_finish(writer, NULL, &error), &error);

@@ -43,6 +43,30 @@ static void a_dataset_says_what_it_holds_and_what_is_masked(void **state)
     unlink("inspect.btf.h5");
 }
 
+/* Bits that Weft does not write make a sample invalid all the same, and are counted. */
+static void a_mask_of_others_is_taken(void **state)
+{
+    (void)state;
+    const uint8_t mask[2] = {4, 4 + WEFT_MASK_SATURATED};
+    const weft_half samples[6] = {0};
+    weft_dataset_layout layout = {.width = 2, .height = 1, .image_count = 1, .view_count = 1, .texel_pitch_mm = 1};
+    weft_dataset_writer *writer;
+    json_t *description;
+    weft_error error = {0};
+    expect_ok(weft_dataset_layout_allocate(&layout, &error), &error);
+    layout.light[0] = layout.view[0] = weft_vec3_of(0, 0, 1);
+    expect_ok(weft_dataset_writer_create("inspect.btf.h5", &layout, &writer, &error), &error);
+    expect_ok(weft_dataset_writer_put_image(writer, 0, samples, mask, &error), &error);
+    expect_ok(weft_dataset_writer_finish(writer, NULL, &error), &error);
+    weft_dataset_layout_free(&layout);
+    expect_ok(weft_verify("inspect.btf.h5", NULL, &description, &error), &error);
+    assert_int_equal(number_in(description, "verified", "valid_samples"), 0);
+    assert_int_equal(number_in(description, "verified", "saturated"), 1);
+    assert_int_equal(number_in(description, "verified", "masked_otherwise"), 2);
+    json_decref(description);
+    unlink("inspect.btf.h5");
+}
+
 static void expect_refusal(const char *path)
 {
     json_t *description;
@@ -112,6 +136,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dataset_says_what_it_holds_and_what_is_masked),
+        cmocka_unit_test(a_mask_of_others_is_taken),
         cmocka_unit_test(a_cut_dataset_is_refused),
         cmocka_unit_test(a_material_with_a_flipped_bit_is_refused),
         cmocka_unit_test(a_material_with_infinite_light_is_refused),

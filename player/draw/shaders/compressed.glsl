@@ -54,12 +54,14 @@ vec2 fractions_of(uint word)
     return vec2(ivec2(int(word) << 16, int(word)) >> 16) * (1.0 / 32767.0);
 }
 
-// Two half floats, the lower half first (unpackHalf2x16 is not in GLSL 3.30). Their exponent and fraction are moved to
-// those of a float, whose exponent is then 112 too small.
+// Two half floats, the lower half first (unpackHalf2x16 is not in GLSL 3.30). A subnormal one counts steps of 2^-24: as a
+// subnormal float it would be lost on devices that take those for 0.
 vec2 halves_of(uint word)
 {
-    ivec2 bits = ivec2(int(word) << 16, int(word)) >> 3;
-    return intBitsToFloat(bits & int(0x8fffe000u)) * 5.192296858534828e33;
+    ivec2 bits = ivec2(int(word) << 16, int(word)) >> 16, magnitude = bits & 0x7fff;
+    vec2 normal = intBitsToFloat((magnitude << 13) + 0x38000000), steps = vec2(magnitude) * 5.9604644775390625e-8;
+    vec2 value = mix(normal, steps, lessThan(magnitude, ivec2(0x400)));
+    return intBitsToFloat(floatBitsToInt(value) | (bits & int(0x80000000u)));
 }
 
 // `texel` is its middle, in sizes of the texture.

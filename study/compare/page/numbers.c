@@ -56,12 +56,14 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
                 "corner and %.2f above it)",
                 layout->corner_u, layout->corner_v);
     fputs(".", page->html);
+    const weft_error_summary *before = &comparison->fit.before, *after = &comparison->fit.after;
     if (comparison->fit.image_count > 0)
-        fprintf(
-            page->html,
-            " Before the fit the relative error of its mean BRDF was %.2f %% (median) and %.2f %% (80th percentile); "
-            "<a href=\"fitted.wv\">fitted.wv</a> is the fitted weave.",
-            100 * comparison->fit.before.median_relative, 100 * comparison->fit.before.percentile80_relative);
+        fprintf(page->html,
+                " The relative error of the mean BRDF that the fit saw was %.2f %% (median) and %.2f %% (80th "
+                "percentile) before the fit, and is %.2f %% and %.2f %% after it; the table has that of the whole "
+                "material. <a href=\"fitted.wv\">fitted.wv</a> is the fitted weave.",
+                100 * before->median_relative, 100 * before->percentile80_relative, 100 * after->median_relative,
+                100 * after->percentile80_relative);
 }
 
 static void print_model_error(weft_page *page, const char *name, const weft_error_summary *e)
@@ -211,8 +213,8 @@ static void print_masks(weft_page *page, const weft_measurement *measurement)
     weft_page_fact(page, "missing", "%ld (%.2f %%)", measurement->missing, percent * (double)measurement->missing);
     weft_page_fact(page, "saturated", "%ld (%.2f %%)", measurement->saturated,
                    percent * (double)measurement->saturated);
-    weft_page_fact(page, "shadowed by the rig", "%ld (%.2f %%)", measurement->shadowed,
-                   percent * (double)measurement->shadowed);
+    weft_page_fact(page, "masked for other reasons", "%ld (%.2f %%)", measurement->other,
+                   percent * (double)measurement->other);
     fputs("</table>\n", page->html);
 }
 

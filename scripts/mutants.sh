@@ -1,0 +1,134 @@
+#!/bin/sh
+# Puts one fault after another into a copy of the tree and expects the test that the fault names to fail. The checkout is only read.
+# Usage: mutants.sh [ROOM|PATCH...]    all faults of tests/mutants, those of some of its folders, or some of its files
+# Exit code 1 where a fault survives, no longer applies, does not build, or names a test that does not pass without it.
+# docs/guide/mutants.md says what a fault looks like.
+set -eu
+cd "$(dirname "$0")/.."
+work=$PWD/build/mutants
+tree=$work/tree
+build=$work/build
+limit_s=120
+began=$(date +%s)
+
+# The faults that the arguments name, one a line.
+list_faults() {
+    [ $# -gt 0 ] || set -- tests/mutants
+    for name in "$@"; do
+        [ -e "$name" ] || name=tests/mutants/$name
+        [ -e "$name" ] || { echo "there is neither a fault nor a room '$name'" >&2; return 2; }
+        find "$name" -name '*.patch' | sort
+    done
+}
+
+# field NAME PATCH: the rest of the line "NAME: ..." above the difference.
+field() {
+    sed -n "/^--- /q; s/^$1: *//p" "$2"
+}
+
+# The copy gets what differs, so that later runs build little. Times are not copied: a fault that an interrupted run has left
+# behind is then older than what undoes it.
+copy_tree() {
+    mkdir -p "$tree"
+    git ls-files -co --exclude-standard | sort >"$work/files"
+    while read -r file; do
+        if [ -f "$file" ] && ! cmp -s "$file" "$tree/$file"; then
+            mkdir -p "$(dirname "$tree/$file")"
+            cp "$file" "$tree/$file"
+        fi
+    done <"$work/files"
+    (cd "$tree" && find . -type f | sed 's|^\./||' | sort) | comm -13 "$work/files" - | while read -r file; do rm "$tree/$file"; done
+}
+
+# Targets of tests: test_NAME, unless the fault names another.
+targets_of() {
+    for fault in "$@"; do
+        target=$(field Builds "$fault")
+        echo "${target:-test_$(field 'Caught by' "$fault")}"
+    done | sort -u
+}
+
+build() {
+    cmake --build "$build" --target "$@" >"$work/log" 2>&1
+}
+
+# Says how a test ended: passed, failed, or missing where it was skipped or does not exist.
+outcome_of() {
+    ctest --test-dir "$build" -R "^$1\$" --timeout "$limit_s" >"$work/log" 2>&1 || true
+    if grep -qE '\*\*\*(Failed|Timeout|Exception)' "$work/log"; then
+        echo failed
+    elif grep -q ' Passed ' "$work/log"; then
+        echo passed
+    else
+        echo missing
+    fi
+}
+
+# Builds and runs all named tests without any fault: only then does a failure tell something.
+expect_health() {
+    cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -Wno-dev --log-level=WARNING >/dev/null
+    # shellcheck disable=SC2046
+    if ! build $(targets_of "$@"); then
+        grep -E 'error|ninja:' "$work/log" >&2
+        echo "the tree does not build without a fault" >&2
+        return 1
+    fi
+    for test in $(for fault in "$@"; do field 'Caught by' "$fault"; done | sort -u); do
+        ended=$(outcome_of "$test")
+        [ "$ended" = passed ] || { echo "$test does not pass without a fault: $ended" >&2; return 1; }
+    done
+}
+
+change() {
+    patch -d "$tree" -p1 -F0 -s -r - --no-backup-if-mismatch "$@" >/dev/null 2>&1
+}
+
+# Says what became of a fault.
+try() {
+    change --dry-run <"$1" || { echo "does not apply"; return; }
+    change <"$1"
+    if ! build "$(targets_of "$1")"; then
+        verdict="does not build"
+    else
+        case $(outcome_of "$(field 'Caught by' "$1")") in
+        failed) verdict=caught ;;
+        passed) verdict=SURVIVED ;;
+        *) verdict="names no test" ;;
+        esac
+    fi
+    change -R <"$1"
+    echo "$verdict"
+}
+
+# What a reader needs to know of a fault that was not caught.
+explain() {
+    printf '               %s\n' "$(field Fault "$1")"
+    [ "$2" != 'does not build' ] || grep -m 1 -E 'error:' "$work/log" | cut -c1-160
+}
+
+faults=$(list_faults "$@")
+for fault in $faults; do
+    if [ -z "$(field Fault "$fault")" ] || [ -z "$(field 'Caught by' "$fault")" ]; then
+        echo "$fault: needs a line 'Fault: ...' and a line 'Caught by: TEST'" >&2
+        exit 1
+    fi
+done
+copy_tree
+# shellcheck disable=SC2086
+expect_health $faults
+printf 'ready after %d s\n' $(($(date +%s) - began))
+
+: >"$work/verdicts"
+for fault in $faults; do
+    start=$(date +%s)
+    verdict=$(try "$fault")
+    echo "$verdict" >>"$work/verdicts"
+    printf '%-14s %4d s  %-52s %s\n' "$verdict" $(($(date +%s) - start)) "${fault#tests/mutants/}" "$(field 'Caught by' "$fault")"
+    [ "$verdict" = caught ] || explain "$fault" "$verdict"
+done
+all=$(grep -c . "$work/verdicts" || true)
+caught=$(grep -cx caught "$work/verdicts" || true)
+survived=$(grep -cx SURVIVED "$work/verdicts" || true)
+printf '%d faults: %d caught, %d survived, %d do not apply, build or name a test; %d s\n' "$all" "$caught" "$survived" \
+    $((all - caught - survived)) $(($(date +%s) - began))
+[ "$caught" = "$all" ]
