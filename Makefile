@@ -1,7 +1,7 @@
 # Two commands do everything: `make demo` and `make test`. The build itself is CMake's.
 build := build/release
 
-.PHONY: demo test program build check mutants bench packages clean
+.PHONY: demo test program build check mutants bench numerics packages clean
 
 demo: program
 	scripts/demo.sh $(build)/cli/weft demo-out
@@ -33,6 +33,10 @@ bench:
 	scripts/install-packages.sh bench
 	$(MAKE) build
 	scripts/bench.sh $(build) $(or $(TEXELS),100) $(or $(SIZE),64)
+
+# Worst-case errors of every model, by search against binary128: remakes the tables of docs/notes/numerics.md.
+numerics: build
+	scripts/numerics.sh $(build) $(or $(EVALUATIONS),3000)
 
 clean:
 	rm -rf build demo-out

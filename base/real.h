@@ -1,18 +1,23 @@
-/* The floating-point type of the pure functions. `double` by default; the same sources
- * compiled with WEFT_REAL_IS_FLOAT give the single-precision library, whose results are
- * what a GPU can be expected to reach. The two must not be linked into one program. */
+/* The floating-point type of the pure functions. `double` by default. The same sources compiled with
+ * WEFT_REAL_IS_FLOAT give the single-precision library, whose results are what a GPU can be expected to reach, and with
+ * WEFT_REAL_IS_QUAD (binary128, in software) the one that measures the rounding of the others. No two of them may share
+ * the names of their functions: they must not be linked into one program, unless as shared libraries that hide them. */
 #ifndef WEFT_BASE_REAL_H
 #define WEFT_BASE_REAL_H
 
-#ifdef WEFT_REAL_IS_FLOAT
+#if defined(WEFT_REAL_IS_FLOAT)
 typedef float weft_real;
 #define WEFT_REAL_EPSILON 6e-8
+#define WEFT_PI 3.14159265358979323846
+#elif defined(WEFT_REAL_IS_QUAD)
+__extension__ typedef _Float128 weft_real;
+#define WEFT_REAL_EPSILON 1e-34
+#define WEFT_PI (__extension__ 3.14159265358979323846264338327950288f128)
 #else
 typedef double weft_real;
 #define WEFT_REAL_EPSILON 2e-16
-#endif
-
 #define WEFT_PI 3.14159265358979323846
+#endif
 
 /* Marks a hot loop: compiled for AVX-512, AVX2 and the baseline, chosen when the program starts, which is before the
  * sanitizers are ready. */

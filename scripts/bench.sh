@@ -22,6 +22,11 @@ cmake --build "$build" --target benches weft
 heading "Evaluations a second of the models, one core"
 "$build/bench/bench_reflectance"
 
+if [ -e "$build/bench/numerics/bench_numerics" ]; then
+    heading "Worst-case errors of the models against binary128"
+    "$build/bench/numerics/bench_numerics" 2000
+fi
+
 heading "Fits of a texel against general solvers, one core"
 "$build/bench/bench_fit" --texels "$texels"
 if [ -e "$demo.btf.h5" ]; then

@@ -131,14 +131,22 @@ static weft_barycentric nearest_on_arc(const border_arc *arc, weft_vec3 query, w
     return (weft_barycentric){{arc->corner[nearer], -1, -1}, {1, 0, 0}};
 }
 
+static bool is_end(const weft_barycentric *at)
+{
+    return at->index[1] < 0;
+}
+
+/* Beside a corner its distance and that of a foot on an arc differ by the square of what lies between them. Within
+ * rounding the foot counts, which is never farther than the end of its arc. */
 static weft_barycentric find_border(const weft_triangulation *t, weft_vec3 query)
 {
+    const weft_real rounding = 16 * (weft_real)WEFT_REAL_EPSILON;
     weft_real nearest;
     weft_barycentric at = nearest_on_arc(&t->arc[0], query, &nearest);
     for (int i = 1; i < t->arc_count; i++) {
         weft_real distance;
         weft_barycentric candidate = nearest_on_arc(&t->arc[i], query, &distance);
-        if (distance < nearest) {
+        if (distance + (is_end(&candidate) - is_end(&at)) * rounding < nearest) {
             nearest = distance;
             at = candidate;
         }

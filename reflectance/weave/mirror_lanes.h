@@ -103,7 +103,9 @@ WEFT_INLINE lane_spine lanes_spine(lanes kappa, lanes width, lanes length, lanes
     lanes hyperbola = (1 + kappa) * (s.cos_umax + s.sin_umax) * (s.cos_umax - s.shape * s.sin_umax);
     lanes ellipse = s.cos_umax * s.cos_umax + s.shape * s.shape * s.sin_umax * s.sin_umax;
     lanes end = lanes_select(s.shape < 0.0f, hyperbola, ellipse);
-    s.scale = 0.5f * (length - width * s.sin_umax) / s.sin_umax * lanes_sqrt(end);
+    /* Not below 0: sin umax may be the larger one by rounding. */
+    lanes half_length = 0.5f * lanes_max(length - width * s.sin_umax, lanes_of(0));
+    s.scale = half_length / s.sin_umax * lanes_sqrt(end);
     return s;
 }
 

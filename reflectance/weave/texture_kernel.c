@@ -46,9 +46,9 @@ WEFT_INLINE lanes staple_texture(const lane_segment *s)
 
 WEFT_INLINE lanes fade(lanes delta, lanes umax, lanes u)
 {
-    lanes c = (lanes_abs(u) - (1 - delta) * umax) / (delta * umax);
-    c = lanes_max(lanes_min(c, lanes_of(1)), lanes_of(0));
-    return lanes_select(delta > 0.0f, 1 - c * c * (3 - 2 * c), lanes_of(1));
+    lanes inside = (umax - lanes_abs(u)) / (delta * umax);
+    inside = lanes_max(lanes_min(inside, lanes_of(1)), lanes_of(0));
+    return lanes_select(delta > 0.0f, inside * inside * (3 - 2 * inside), lanes_of(1));
 }
 
 /* R of a spine that ends at radius_share umax, constant beyond. */

@@ -92,13 +92,14 @@ static inline weft_real yarn_area(const weft_segment *segment, weft_real radius,
     return yarn_radius * (radius + yarn_radius * cos_v);
 }
 
-/* Fade of a filament toward the ends of the segment (eq. 9). */
+/* Fade of a filament toward the ends of the segment (eq. 9), by the distance to the end: 1 - step(c) = step(1 - c),
+ * which does not cancel where the fade ends. */
 static inline weft_real filament_fade(weft_real delta, weft_real umax, weft_real u)
 {
     if (!(delta > 0))
         return 1;
-    weft_real c = weft_clamp((fabs(u) - (1 - delta) * umax) / (delta * umax), 0, 1);
-    return 1 - c * c * (3 - 2 * c);
+    weft_real inside = weft_clamp((umax - fabs(u)) / (delta * umax), 0, 1);
+    return inside * inside * (3 - 2 * inside);
 }
 
 #endif

@@ -69,7 +69,7 @@ weft_spine weft_segment_spine(const weft_segment *segment, weft_real umax)
     umax = fmin(umax, (weft_real)(WEFT_PI / 2));
     weft_spine spine = {.umax = umax, .sin_umax = sin(umax), .cos_umax = fmax(cos(umax), 0)};
     spine.shape = (1 + segment->kappa) + segment->kappa * (spine.cos_umax / spine.sin_umax);
-    weft_real half_length = (segment->length - segment->width * spine.sin_umax) / 2;
+    weft_real half_length = fmax(segment->length - segment->width * spine.sin_umax, 0) / 2;
     weft_real end = end_factor(segment->kappa, spine.shape, spine.sin_umax, spine.cos_umax);
     spine.scale = half_length / spine.sin_umax * sqrt(end);
     return spine;

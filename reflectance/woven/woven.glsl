@@ -34,7 +34,8 @@ Spine segment_spine(Segment segment, float umax)
     float shape = (1.0 + segment.kappa) + segment.kappa * (cosine / sine);
     float end = shape < 0.0 ? (1.0 + segment.kappa) * (cosine + sine) * (cosine - shape * sine)
                             : cosine * cosine + shape * shape * sine * sine;
-    float half_length = 0.5 * (segment.size - segment.width * sine);
+    // Not below 0: the sine of a shader may be the larger one by rounding.
+    float half_length = 0.5 * max(segment.size - segment.width * sine, 0.0);
     return Spine(umax, sine, cosine, shape, half_length / sine * sqrt(end));
 }
 
@@ -101,12 +102,13 @@ float yarn_area(Segment segment, float radius, float cos_v)
     return yarn_radius * (radius + yarn_radius * cos_v);
 }
 
+// By the distance to the end, which does not cancel where the fade ends.
 float filament_fade(float delta, float umax, float u)
 {
     if (!(delta > 0.0))
         return 1.0;
-    float c = clamp((abs(u) - (1.0 - delta) * umax) / (delta * umax), 0.0, 1.0);
-    return 1.0 - c * c * (3.0 - 2.0 * c);
+    float inside = clamp((umax - abs(u)) / (delta * umax), 0.0, 1.0);
+    return inside * inside * (3.0 - 2.0 * inside);
 }
 
 bool inside_band(float x, float centre, float width, float rectangle)

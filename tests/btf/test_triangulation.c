@@ -264,6 +264,44 @@ static void any_query_has_weights_that_sum_to_one(void **state)
     weft_triangulation_free(triangulation);
 }
 
+/* The share of the second end of an arc at the foot of `query` on it, by solid angles, in double. */
+static double share_on_arc(weft_vec3 a, weft_vec3 b, weft_vec3 query)
+{
+    const double A[3] = {a.x, a.y, a.z}, B[3] = {b.x, b.y, b.z}, q[3] = {query.x, query.y, query.z};
+    double aa = 0, bb = 0, ab = 0, aq = 0, bq = 0;
+    for (int i = 0; i < 3; i++) {
+        aa += A[i] * A[i];
+        bb += B[i] * B[i];
+        ab += A[i] * B[i];
+        aq += A[i] * q[i];
+        bq += B[i] * q[i];
+    }
+    double of_a = bb * aq - ab * bq, of_b = aa * bq - ab * aq;
+    return of_b / (of_a + of_b);
+}
+
+/* There the distances to a foot on an arc and to its end differ by less than rounding. */
+static void weights_next_to_a_corner_of_the_border_are_those_of_the_foot(void **state)
+{
+    (void)state;
+    weft_vec3 direction[WEFT_UBO81_COUNT];
+    for (int i = 0; i < WEFT_UBO81_COUNT; i++)
+        direction[i] = weft_direction_of_angles(weft_ubo81_angles(i));
+    weft_triangulation *t = triangulate(direction, WEFT_UBO81_COUNT);
+    enum { RING = 57, CORNERS = 24, STEPS = 100 };
+    for (int i = 0; i < CORNERS * STEPS; i++) {
+        int corner = i / STEPS, next = RING + (corner + 1) % CORNERS;
+        weft_real phi_deg = 15 * (weft_real)corner + (weft_real)(i % STEPS) / 100;
+        weft_vec3 query = weft_direction_of_angles((weft_angles){weft_rad_of_deg(89), weft_rad_of_deg(phi_deg)});
+        weft_barycentric at = weft_triangulation_lookup(t, query);
+        double expected = fmax(share_on_arc(direction[RING + corner], direction[next], query), 0), share = 0;
+        for (int k = 0; k < 3; k++)
+            share += at.index[k] == next ? (double)at.weight[k] : 0;
+        assert_float_equal(share, expected, 64 * (double)WEFT_REAL_EPSILON);
+    }
+    weft_triangulation_free(t);
+}
+
 static void bad_directions_are_refused_with_their_number(void **state)
 {
     (void)state;
@@ -293,6 +331,7 @@ int main(void)
         cmocka_unit_test(a_great_circle_becomes_a_chain_of_arcs),
         cmocka_unit_test(repeated_directions_are_merged_with_the_first),
         cmocka_unit_test(any_query_has_weights_that_sum_to_one),
+        cmocka_unit_test(weights_next_to_a_corner_of_the_border_are_those_of_the_foot),
         cmocka_unit_test(bad_directions_are_refused_with_their_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -161,6 +161,26 @@ static void frozen_radius_is_that_of_the_shorter_spine(void **state)
     assert_true(beyond > 1000);
 }
 
+/* Eq. 9 by the distance to the end, from double: s^2 (3 - 2 s). There the printed 1 - c^2 (3 - 2 c) is all rounding in
+ * single precision. */
+static void fade_keeps_its_digits_to_the_end_of_the_yarn(void **state)
+{
+    (void)state;
+    const weft_real tilt[] = {(weft_real)0.3, (weft_real)0.39, (weft_real)0.399, (weft_real)0.3999};
+    weft_segment faded = {.alpha = 1, .beta = 2, .delta = 1, .umax = (weft_real)0.4, .width = 1, .length = 3};
+    faded.highlight_width = 1;
+    weft_segment plain = faded;
+    plain.delta = 0;
+    for (int i = 0; i < 4; i++) {
+        weft_vec3 light = weft_unit(weft_vec3_of((weft_real)0.1, sin(tilt[i]), cos(tilt[i])));
+        double u = atan2((double)light.y, (double)light.z), inside = ((double)faded.umax - u) / (double)faded.umax;
+        double ratio = (double)weft_yarn_highlight(&faded, 0, light, light).integrand /
+                       (double)weft_yarn_highlight(&plain, 0, light, light).integrand;
+        double expected = inside * inside * (3 - 2 * inside);
+        assert_float_equal(ratio, expected, expected * 8 * (double)WEFT_REAL_EPSILON / inside);
+    }
+}
+
 static void mean_of_a_texture_with_frozen_radius_is_the_reflectance(void **state)
 {
     (void)state;
@@ -280,6 +300,7 @@ int main(void)
         cmocka_unit_test(mean_of_the_texture_is_the_reflectance),
         cmocka_unit_test(small_twist_tends_to_the_filament),
         cmocka_unit_test(frozen_radius_is_that_of_the_shorter_spine),
+        cmocka_unit_test(fade_keeps_its_digits_to_the_end_of_the_yarn),
         cmocka_unit_test(mean_of_a_texture_with_frozen_radius_is_the_reflectance),
         cmocka_unit_test(a_spine_that_ends_in_a_spike_keeps_its_length),
         cmocka_unit_test(directions_that_are_no_directions_give_no_light),

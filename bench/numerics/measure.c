@@ -1,0 +1,122 @@
+#include "bench/numerics/measure.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+/* Below these a value has no relative accuracy, as it is no normal number or about to become one. */
+static const double least_single = 1e-30, least_double = 1e-290;
+
+/* An error larger than this may be a jump of the function. */
+static const double suspicious = 1e-3;
+
+static numerics_value exact(numerics_id id, const double *argument)
+{
+    return numerics_quad.function[id](argument);
+}
+
+static double difference(numerics_value a, numerics_value b)
+{
+    return fabs(a.high - b.high + (a.low - b.low));
+}
+
+/* ---- Arguments moved by rounding ---- */
+
+/* Each number up or down by a relative amount; the bits of `pattern` choose (its multiples spread them). */
+static void move_arguments(const double *from, int count, unsigned pattern, double amount, double *to)
+{
+    uint64_t bits = (pattern + 1) * 0x9e3779b97f4a7c15u;
+    bits ^= bits >> 29;
+    for (int i = 0; i < count; i++)
+        to[i] = from[i] * (bits >> i & 1 ? 1 + amount : 1 - amount);
+}
+
+/* What one rounding of each argument does to the exact value: the largest change over a few patterns of signs. */
+static double rounding_spread(numerics_id id, const double *argument, int count, double roundoff, numerics_value value)
+{
+    enum { PATTERNS = 6 };
+    double moved[NUMERICS_MAX_ARGUMENTS], spread = 0;
+    /* A double next to the argument is its neighbour: a relative change of one roundoff may be lost. */
+    double amount = roundoff < DBL_EPSILON ? DBL_EPSILON : roundoff;
+    for (unsigned i = 0; i < PATTERNS; i++) {
+        move_arguments(argument, count, i, amount, moved);
+        spread = fmax(spread, difference(exact(id, moved), value));
+    }
+    return spread;
+}
+
+/* ---- Jumps ---- */
+
+/* Whether the exact function still changes by half of its difference between two places when these are next to each
+ * other; the arguments lie in doubles, so that is where the search between them ends. */
+static bool jumps_between(numerics_id id, const double *a, const double *b, int count)
+{
+    enum { HALVINGS = 48 };
+    double low[NUMERICS_MAX_ARGUMENTS], high[NUMERICS_MAX_ARGUMENTS], middle[NUMERICS_MAX_ARGUMENTS];
+    memcpy(low, a, (size_t)count * sizeof *a);
+    memcpy(high, b, (size_t)count * sizeof *b);
+    numerics_value at_low = exact(id, low), at_high = exact(id, high);
+    double whole = difference(at_low, at_high);
+    for (int i = 0; i < HALVINGS; i++) {
+        for (int k = 0; k < count; k++)
+            middle[k] = (low[k] + high[k]) / 2;
+        numerics_value at_middle = exact(id, middle);
+        bool nearer_low = difference(at_middle, at_low) < difference(at_middle, at_high);
+        memcpy(nearer_low ? low : high, middle, (size_t)count * sizeof *middle);
+        *(nearer_low ? &at_low : &at_high) = at_middle;
+    }
+    return difference(at_low, at_high) > whole / 2;
+}
+
+/* Whether the value is the exact one of the other side of a jump that lies within rounding of the arguments. */
+static bool is_other_side(numerics_id id, const double *argument, int count, double roundoff, numerics_value value,
+                          double error)
+{
+    enum { PATTERNS = 24 };
+    double moved[NUMERICS_MAX_ARGUMENTS];
+    for (unsigned i = 0; i < PATTERNS; i++) {
+        double amount = roundoff * (i % 3 == 0 ? 2 : i % 3 == 1 ? 8 : 32);
+        move_arguments(argument, count, i, amount, moved);
+        numerics_value there = exact(id, moved);
+        if (difference(there, value) < error / 2 && jumps_between(id, argument, moved, count))
+            return true;
+    }
+    return false;
+}
+
+/* Widths of Gaussians are infinite where these are constant, and count as that above this. */
+static bool counts_as_infinite(numerics_id id, double value)
+{
+    return (id == NUMERICS_PRODUCT_WIDTH || id == NUMERICS_SPLIT_WIDTH) && value > 1e15;
+}
+
+numerics_error numerics_error_of_value(const numerics_set *set, numerics_id id, const double *argument, int count,
+                                       numerics_value value, bool with_growth)
+{
+    numerics_value expected = exact(id, argument);
+    if (counts_as_infinite(id, expected.high) && value.high > 1e14)
+        return (numerics_error){0};
+    numerics_error error = {.broken = !isfinite(value.high) || value.high < 0};
+    if (error.broken)
+        return error;
+    double size = difference(value, expected), least = set->single ? least_single : least_double;
+    double typical = fmax(fmax(fabs(expected.high), expected.scale * 1e-3), least), relative = size / typical;
+    if (relative > suspicious && is_other_side(id, argument, count, set->roundoff, value, size)) {
+        error.jump = true;
+        return error;
+    }
+    error.size[NUMERICS_RELATIVE] = relative;
+    error.size[NUMERICS_ABSOLUTE] = size;
+    if (with_growth) {
+        double spread = rounding_spread(id, argument, count, set->roundoff, expected);
+        error.size[NUMERICS_GROWTH] = size / (spread + set->roundoff * typical);
+    }
+    return error;
+}
+
+numerics_error numerics_error_at(const numerics_set *set, numerics_id id, const double *argument, int count,
+                                 bool with_growth)
+{
+    return numerics_error_of_value(set, id, argument, count, set->function[id](argument), with_growth);
+}
