@@ -26,6 +26,7 @@
 #include <unistd.h>
 
 #if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/common_interface_defs.h>
 #include <sanitizer/lsan_interface.h>
 #endif
 
@@ -115,6 +116,9 @@ static void run(const short_memory_job *job, const char *folder, short_memory_or
     fflush(NULL);
     pid_t child = fork();
     if (child == 0) {
+#if defined(__SANITIZE_ADDRESS__)
+        __sanitizer_set_report_fd((void *)(intptr_t)dup(STDERR_FILENO)); /* not into what the program says */
+#endif
         dup2(said, STDERR_FILENO);
         dup2(printed, STDOUT_FILENO);
         run_in_child(job, folder, order);
