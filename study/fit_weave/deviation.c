@@ -71,30 +71,33 @@ static weft_code combine(const weft_linearised *solution, const clusters *of, in
     return WEFT_OK;
 }
 
-static weft_code linearise(weft_fit_weave_model *model, const double *parameters, double *residuals,
-                           weft_linearised *solution, weft_error *error)
+static void linearise(weft_fit_weave_model *model, const double *parameters, double *residuals,
+                      weft_linearised *solution)
 {
     weft_least_squares problem = weft_fit_weave_problem(model);
     double *jacobian = residuals + problem.residual_count;
     *solution = (weft_linearised){problem.residual_count, problem.parameter_count, residuals, jacobian};
-    return weft_least_squares_linearise(&problem, parameters, residuals, jacobian, error);
+    double *scratch = jacobian + (size_t)problem.residual_count * (size_t)problem.parameter_count;
+    weft_least_squares_linearise(&problem, parameters, residuals, jacobian, scratch);
 }
 
 weft_code weft_fit_weave_deviation(weft_fit_weave_model *model, const double *parameters, double *deviation,
                                    weft_error *error)
 {
     weft_fit_weave_look_at(model, model->mean->count);
-    size_t size = 3 * (size_t)model->looked_at * (size_t)(model->parameter_count + 1) * sizeof(double);
+    /* Residuals, their derivatives, and what it takes to find these. */
+    size_t rows = 3 * (size_t)model->looked_at, columns = (size_t)model->parameter_count;
+    size_t size = (rows * (columns + 1) + columns + rows) * sizeof(double);
     double *residuals = malloc(size);
     if (!residuals)
         return weft_fail_memory(error, "derivatives", size);
     clusters of;
     weft_linearised solution;
     weft_code code = make_clusters(model, &of, error);
-    if (code == WEFT_OK)
-        code = linearise(model, parameters, residuals, &solution, error);
-    if (code == WEFT_OK)
+    if (code == WEFT_OK) {
+        linearise(model, parameters, residuals, &solution);
         code = combine(&solution, &of, model->mean->count, deviation, error);
+    }
     free_clusters(&of);
     free(residuals);
     return code;

@@ -2,7 +2,6 @@
 #include "study/fit_weave/least_squares.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Of a parameter, or of a hundredth of its range where it is smaller. Batches of woven reflectance are exact to about
@@ -30,19 +29,15 @@ static void differentiate(const weft_least_squares *problem, int i, double *move
         jacobian[(size_t)row * (size_t)problem->parameter_count + (size_t)i] = (other[row] - residuals[row]) / step;
 }
 
-weft_code weft_least_squares_linearise(const weft_least_squares *problem, const double *parameters, double *residuals,
-                                       double *jacobian, weft_error *error)
+void weft_least_squares_linearise(const weft_least_squares *problem, const double *parameters, double *residuals,
+                                  double *jacobian, double *scratch)
 {
     size_t columns = (size_t)problem->parameter_count, rows = (size_t)problem->residual_count;
-    double *moved = malloc((columns + rows) * sizeof *moved);
-    if (!moved)
-        return weft_fail_memory(error, "derivatives", (columns + rows) * sizeof *moved);
+    double *moved = scratch;
     memcpy(moved, parameters, columns * sizeof *moved);
     memset(jacobian, 0, rows * columns * sizeof *jacobian);
     problem->residuals(problem->context, parameters, residuals);
     for (int i = 0; i < problem->parameter_count; i++)
         if (problem->low[i] < problem->high[i])
             differentiate(problem, i, moved, moved + columns, residuals, jacobian);
-    free(moved);
-    return WEFT_OK;
 }

@@ -25,9 +25,9 @@ typedef struct weft_least_squares {
 weft_code weft_least_squares_solve(const weft_least_squares *problem, double *parameters, weft_error *error);
 
 /* The same differences: residuals [residual_count] at `parameters`, and their derivatives [residual_count]
- * [parameter_count], 0 for what is held. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_least_squares_linearise(const weft_least_squares *problem, const double *parameters, double *residuals,
-                                       double *jacobian, weft_error *error);
+ * [parameter_count], 0 for what is held. `scratch` [parameter_count + residual_count]. */
+void weft_least_squares_linearise(const weft_least_squares *problem, const double *parameters, double *residuals,
+                                  double *jacobian, double *scratch);
 
 /* x >= 0 [columns] that minimises |A x - b|^2, A [rows][columns], at most WEFT_QUADRATIC_PROGRAM_MAX columns. The x of
  * a zero column is 0. Pure. Errors: WEFT_SYSTEM where a number is not finite or overflows. */

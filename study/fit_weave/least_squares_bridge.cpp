@@ -17,7 +17,8 @@ bool is_held(const weft_least_squares *problem, int i)
 class difference_cost final : public ceres::CostFunction
 {
   public:
-    difference_cost(const weft_least_squares *given, bool *memory_is_short) : problem(given), is_short(memory_is_short)
+    explicit difference_cost(const weft_least_squares *given)
+        : problem(given), scratch((size_t)given->parameter_count + (size_t)given->residual_count)
     {
         mutable_parameter_block_sizes()->push_back(given->parameter_count);
         set_num_residuals(given->residual_count);
@@ -25,18 +26,16 @@ class difference_cost final : public ceres::CostFunction
 
     bool Evaluate(double const *const *parameters, double *residuals, double **jacobians) const override
     {
-        if (jacobians && jacobians[0]) {
-            *is_short =
-                weft_least_squares_linearise(problem, parameters[0], residuals, jacobians[0], nullptr) != WEFT_OK;
-            return !*is_short;
-        }
-        problem->residuals(problem->context, parameters[0], residuals);
+        if (jacobians && jacobians[0])
+            weft_least_squares_linearise(problem, parameters[0], residuals, jacobians[0], scratch.data());
+        else
+            problem->residuals(problem->context, parameters[0], residuals);
         return true;
     }
 
   private:
     const weft_least_squares *problem;
-    bool *is_short; /* Ceres Solver only hears that an evaluation failed */
+    mutable std::vector<double> scratch;
 };
 
 ceres::Solver::Options quiet_options()
@@ -80,13 +79,10 @@ void constrain(ceres::Problem &problem, const weft_least_squares *given, double 
 weft_code weft_least_squares_solve(const weft_least_squares *given, double *parameters, weft_error *error)
 try {
     ceres::Problem problem;
-    bool is_short = false;
-    problem.AddResidualBlock(new difference_cost(given, &is_short), nullptr, parameters);
+    problem.AddResidualBlock(new difference_cost(given), nullptr, parameters);
     constrain(problem, given, parameters);
     ceres::Solver::Summary summary;
     ceres::Solve(quiet_options(), &problem, &summary);
-    if (is_short)
-        return weft_fail_memory(error, "least squares", 0);
     return check(summary, error);
 } catch (const std::bad_alloc &) {
     return weft_fail_memory(error, "least squares", 0);
