@@ -82,7 +82,7 @@ const short_memory_job short_memory_jobs[] = {
      ALL_OR_NOTHING,
      8,
      {"render", IN "small.weft", "--raw", IN "small.btf.h5", "--weave", IN "plain.wv", "--mode", "split", "--size",
-      "64x32", "--samples", "1", "--environment", IN "sky.exr", "--shadows", "-o", "picture.png"}},
+      "64x32", "--samples", "1", "--environment", IN "sky.exr", "--shadows", "--light", "30,40", "-o", "picture.png"}},
     {"render-again", ALL_OR_NOTHING, 8, {"render", "--settings", IN "small.png", "-o", "picture.exr"}},
     {"eval-material", PRINTS, 1, {"eval", IN "small.weft", "--at", IN "at.csv"}},
     {"eval-dataset", PRINTS, 1, {"eval", IN "small.btf.h5", "--at", IN "at.csv"}},

@@ -88,6 +88,14 @@ static double bright_at_the_rim(int image, weft_vec3 light, weft_vec3 view)
     return light.z * (0.05 + pow(1 - view.z, 6) * (1 + dice())) + 0.001 * dice();
 }
 
+/* What cloth does towards the rim, and more: T takes it up, and goes on from the last ring with a lobe that grows. */
+static double sheen_that_grows(int image, weft_vec3 light, weft_vec3 view)
+{
+    (void)image;
+    double grows = exp(7 * (1 - view.z)) * pow(1 - light.z, 2);
+    return light.z * (0.05 + 0.2 * needle(light, view, 8) * grows) * (0.9 + 0.2 * dice());
+}
+
 /* ---- Where they were taken ---- */
 
 typedef weft_code arrangement(weft_dataset_layout *layout);
@@ -270,6 +278,7 @@ ADVERSARY(two_lights_are_bright, whole_grid, two_bright_lights)
 ADVERSARY(sharper_than_any_exponent, whole_grid, sharp)
 ADVERSARY(highlights_are_clipped, whole_grid, clipped)
 ADVERSARY(rims_are_bright, whole_grid, bright_at_the_rim)
+ADVERSARY(sheen_grows_beyond_the_last_ring, whole_grid, sheen_that_grows)
 ADVERSARY(one_view_of_a_photograph, one_view, photographed)
 ADVERSARY(one_view_of_noise, one_view, noise_only)
 ADVERSARY(one_low_light, one_light, noise_only)
@@ -294,6 +303,7 @@ int main(void)
         cmocka_unit_test(pairs_are_repeated),
         cmocka_unit_test(pairs_are_scattered),
         cmocka_unit_test(scattered_noise),
+        cmocka_unit_test(sheen_grows_beyond_the_last_ring),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
