@@ -302,6 +302,16 @@ static bool fit_smallest(weft_texel_fitter *fitter, const weft_fit_options *whol
     return false;
 }
 
+/* Where no model meets the target, the best is as good as any. */
+static void fit_to_target(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given,
+                          weft_texel_counts *counts)
+{
+    if (fit_smallest(fitter, whole, given))
+        return;
+    counts->missed++;
+    counts->stepped_down += fit_best(fitter, whole, given);
+}
+
 /* The frame that a texel is given; NULL where there is none. */
 static const weft_frame *find_given(const weft_material *given, int level, int x, int y, weft_frame *frame)
 {
@@ -340,7 +350,7 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         weft_texel_refit(fitter, fitter->source->tables, level,
                          (size_t)y * (size_t)material->level[level].width + (size_t)x);
     else if (fitter->source->target_error > 0)
-        counts->missed += !fit_smallest(fitter, &whole, given);
+        fit_to_target(fitter, &whole, given, counts);
     else
         counts->stepped_down += fit_best(fitter, &whole, given);
     weft_error_sums sums = weft_texel_measure(fitter, weft_texel_is_tallied(&material->level[level], x, y));

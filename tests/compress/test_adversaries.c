@@ -233,6 +233,23 @@ static double error_of(weft_dataset *dataset, const weft_compress_options *optio
     return left;
 }
 
+/* Where every texel has a model of its own: by a target, and by a budget of half of what the whole would take. */
+static void check_choices(weft_dataset *dataset, const char *name)
+{
+    weft_compress_options options = weft_compress_default_options();
+    double by_target, by_budget;
+    options.levels = false;
+    options.lobe_count = 3;
+    options.light_table = true;
+    options.target_error = 0.05;
+    error_of(dataset, &options, &by_target);
+    options.target_error = 0;
+    options.budget_bytes = 8000;
+    error_of(dataset, &options, &by_budget);
+    printf("%s: by target %.2f, by budget %.2f of the limit\n", name, by_target, by_budget);
+    assert_true(by_target <= ROUNDING && by_budget <= ROUNDING);
+}
+
 static void check(const char *name, arrangement *arrange, brightness *brightness_of)
 {
     weft_dataset_layout layout;
@@ -261,6 +278,7 @@ static void check(const char *name, arrangement *arrange, brightness *brightness
             before = left;
         }
     }
+    check_choices(dataset, name);
     weft_dataset_close(dataset);
     remove("adversary.btf.h5");
 }
