@@ -34,16 +34,23 @@ weft_samples weft_texel_samples_as_lit(weft_texel_fitter *fitter, int channel)
     return weft_light_apply(&fitter->bundle, &fitter->samples, fitter->decoded_light, fitter->lights.cosine);
 }
 
+/* The model of a channel at its samples, without T; T as it will be read goes into fitter->decoded. */
+static const float *predict(weft_texel_fitter *fitter, int channel)
+{
+    const weft_bundle *bundle = &fitter->bundle;
+    const uint8_t *code = fitter->now.code + (size_t)channel * (size_t)bundle->view_count;
+    weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
+    for (int view = 0; view < bundle->view_count; view++)
+        fitter->decoded[view] = (float)weft_table_of_code(code[view]);
+    return weft_fit_evaluate(bundle, &lit, fitter->workspace, &fitter->now.as_read[channel]);
+}
+
 double weft_texel_weighted_error(weft_texel_fitter *fitter)
 {
     const weft_bundle *bundle = &fitter->bundle;
     double sum = 0;
     for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
-        const uint8_t *code = fitter->now.code + (size_t)channel * (size_t)bundle->view_count;
-        weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
-        const float *model = weft_fit_evaluate(bundle, &lit, fitter->workspace, &fitter->now.as_read[channel]);
-        for (int view = 0; view < bundle->view_count; view++)
-            fitter->decoded[view] = (float)weft_table_of_code(code[view]);
+        const float *model = predict(fitter, channel);
         for (int i = 0; i < bundle->sample_count; i++) {
             float error = fitter->samples.value[channel][i] - fitter->decoded[bundle->view_of[i]] * model[i];
             sum += (double)(error * error);
@@ -57,11 +64,7 @@ weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied)
     const weft_bundle *bundle = &fitter->bundle;
     weft_error_sums sums = {0};
     for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
-        const uint8_t *code = fitter->now.code + (size_t)channel * (size_t)bundle->view_count;
-        weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
-        const float *model = weft_fit_evaluate(bundle, &lit, fitter->workspace, &fitter->now.as_read[channel]);
-        for (int view = 0; view < bundle->view_count; view++)
-            fitter->decoded[view] = (float)weft_table_of_code(code[view]);
+        const float *model = predict(fitter, channel);
         fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, &sums);
         if (tallied)
             tally_channel(fitter, channel, model, fitter->decoded);
