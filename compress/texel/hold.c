@@ -7,6 +7,7 @@
 
 #define COARSE_RAD 1.0
 #define FINE_RAD 0.07
+#define FINE_RAD_OF_ONE 0.14 /* where T is the same everywhere: half the time, the same texels held */
 #define FOR_ROUNDING 0.97
 
 /* ---- What it needs ---- */
@@ -14,8 +15,12 @@
 weft_code weft_texel_hold_create(weft_texel_fitter *fitter, weft_error *error)
 {
     const weft_bundle *bundle = &fitter->bundle;
-    WEFT_TRY(weft_peak_net_create(bundle->view, bundle->view_count, COARSE_RAD, &fitter->net[0], error));
-    WEFT_TRY(weft_peak_net_create(bundle->view, bundle->view_count, FINE_RAD, &fitter->net[1], error));
+    /* Without T all views are alike, however many there are. */
+    const weft_vec3 any = {0, 0, 1}, *view = fitter->source->options.table ? bundle->view : &any;
+    int view_count = fitter->source->options.table ? bundle->view_count : 1;
+    WEFT_TRY(weft_peak_net_create(view, view_count, COARSE_RAD, &fitter->net[0], error));
+    WEFT_TRY(
+        weft_peak_net_create(view, view_count, view_count > 1 ? FINE_RAD : FINE_RAD_OF_ONE, &fitter->net[1], error));
     if (fitter->light_count == 0)
         return WEFT_OK;
     return weft_peak_lights_create(bundle->distinct, fitter->light_count, &fitter->peak_lights, error);
@@ -47,15 +52,16 @@ static weft_peak_tables decode_tables(weft_texel_fitter *fitter, int channel)
 {
     int views = fitter->bundle.view_count;
     const uint8_t *code = fitter->now.code + (size_t)channel * (size_t)views;
+    const double *table = fitter->source->options.table ? fitter->factor : NULL;
     for (int view = 0; view < views; view++)
         fitter->factor[view] = weft_table_of_code(code[view]);
     if (fitter->light_count == 0)
-        return (weft_peak_tables){fitter->factor, NULL};
+        return (weft_peak_tables){table, NULL};
     const uint8_t *light = fitter->now.light_code + (size_t)channel * (size_t)fitter->light_count;
     for (int l = 0; l < fitter->light_count; l++)
         fitter->decoded_light[l] = weft_table_of_code(light[l]);
     weft_peak_lights_set(&fitter->peak_lights, fitter->decoded_light);
-    return (weft_peak_tables){fitter->factor, &fitter->peak_lights};
+    return (weft_peak_tables){table, &fitter->peak_lights};
 }
 
 static bool exceeds(weft_peak peak, weft_peak most)
@@ -100,16 +106,22 @@ static void fit_dimmer(weft_texel_fitter *fitter, int channel, const weft_fit_op
     *fit = weft_unpack(&fitter->now.packed[channel], own.lobe_count, &dimmer.frame, fitter->samples.scale);
 }
 
+bool weft_texel_exceeds(weft_texel_fitter *fitter, int channel)
+{
+    weft_peak_tables tables = decode_tables(fitter, channel);
+    const weft_fit *fit = &fitter->now.as_read[channel];
+    return exceeds(weft_peak_of_fit(&fitter->net[0], fit, &tables), fitter->most[channel]) &&
+           exceeds(weft_peak_of_fit(&fitter->net[1], fit, &tables), fitter->most[channel]);
+}
+
 void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_options *options)
 {
     weft_peak most = fitter->most[channel];
     weft_fit *fit = &fitter->now.as_read[channel];
+    if (!weft_texel_exceeds(fitter, channel))
+        return;
     weft_peak_tables tables = decode_tables(fitter, channel);
-    if (!exceeds(weft_peak_of_fit(&fitter->net[0], fit, &tables), most))
-        return;
     weft_peak peak = weft_peak_of_fit(&fitter->net[1], fit, &tables);
-    if (!exceeds(peak, most))
-        return;
     fitter->now.held = true;
     if (options && options->table) {
         lower_table(fitter, channel, most);

@@ -79,6 +79,9 @@ void weft_texel_limit(weft_texel_fitter *fitter);
  * where that does not suffice, or where nothing is to be fitted: `options`, those of the fit, is then NULL. */
 void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_options *options);
 
+/* Whether a channel of the last model, T and S as their codes are now, exceeds that limit. */
+bool weft_texel_exceeds(weft_texel_fitter *fitter, int channel);
+
 /* Squared error of the last model as it will be read, by the weights that it was fitted with. */
 double weft_texel_weighted_error(weft_texel_fitter *fitter);
 

@@ -265,6 +265,15 @@ static void round_codes(const uint8_t *whole, size_t count, int bits, uint8_t *r
         rounded[i] = weft_table_code_rounded(whole[i], bits);
 }
 
+/* A code that is rounded up makes its view brighter. */
+static bool exceeds_limit(weft_texel_fitter *fitter)
+{
+    bool any = false;
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+        any = any || weft_texel_exceeds(fitter, channel);
+    return any;
+}
+
 /* The fewest bits of T and S with which a model that meets the target still does. */
 static void spare_bits(weft_texel_fitter *fitter)
 {
@@ -277,7 +286,7 @@ static void spare_bits(weft_texel_fitter *fitter)
     for (int bits = 4; bits <= 8; bits += 2) {
         round_codes(whole, codes, bits, fitter->now.code);
         round_codes(whole_light, light_codes, bits, fitter->now.light_code);
-        if (bits == 8 || meets_target(fitter))
+        if (bits == 8 || (meets_target(fitter) && !exceeds_limit(fitter)))
             return;
     }
 }
