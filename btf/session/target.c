@@ -12,6 +12,8 @@ static const double marker_center[8][2] = {{38, 0},  {27, 27},   {0, 38},  {-27,
                                            {-38, 0}, {-27, -27}, {0, -38}, {27, -27}};
 static const double reference_center[4][2] = {{22.5, 0}, {0, 22.5}, {-22.5, 0}, {0, -22.5}};
 static const double reference_across = 7, reference_along = 13;
+static const double sheet_width = 124, sheet_height = 168;
+static const double ball_place[WEFT_TARGET_BALL_COUNT][2] = {{-54, 76}, {54, -76}}, pin_place[2] = {54, 76};
 
 /* The 4 x 4 cells of the ArUco markers 0..7 of DICT_4X4_50: rows from the top, most significant bit first, 1 = white.
  */
@@ -20,6 +22,11 @@ static const uint16_t marker_cells[8] = {0xb532, 0x0f9a, 0x332d, 0x9946, 0x549e,
 weft_target weft_target_for_opening(double opening_mm)
 {
     return (weft_target){opening_mm, 0.95, 0.80, 0.04};
+}
+
+weft_target weft_target_printed(double opening_mm)
+{
+    return (weft_target){opening_mm, 0.85, 0.85, 0.05};
 }
 
 double weft_target_radius_mm(const weft_target *target)
@@ -32,6 +39,27 @@ static weft_rectangle centred_rectangle(const weft_target *target, const double 
     double unit = target->opening_mm / unit_count;
     return (weft_rectangle){(center[0] - width / 2) * unit, (center[1] - height / 2) * unit,
                             (center[0] + width / 2) * unit, (center[1] + height / 2) * unit};
+}
+
+weft_rectangle weft_target_sheet(const weft_target *target)
+{
+    return centred_rectangle(target, (const double[2]){0, 0}, sheet_width, sheet_height);
+}
+
+static void scaled_place(const weft_target *target, const double place[2], double place_mm[2])
+{
+    for (int axis = 0; axis < 2; axis++)
+        place_mm[axis] = place[axis] * target->opening_mm / unit_count;
+}
+
+void weft_target_ball(const weft_target *target, int index, double place_mm[2])
+{
+    scaled_place(target, ball_place[index], place_mm);
+}
+
+void weft_target_pin(const weft_target *target, double place_mm[2])
+{
+    scaled_place(target, pin_place, place_mm);
 }
 
 weft_rectangle weft_target_marker(const weft_target *target, int id)

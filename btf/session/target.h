@@ -18,15 +18,20 @@ typedef enum weft_target_region {
     WEFT_TARGET_OUTSIDE    /* off the plate: black */
 } weft_target_region;
 
-enum { WEFT_TARGET_MARKER_COUNT = 8, WEFT_TARGET_REFERENCE_COUNT = 4 };
+enum { WEFT_TARGET_MARKER_COUNT = 8, WEFT_TARGET_REFERENCE_COUNT = 4, WEFT_TARGET_BALL_COUNT = 2 };
 
 /* Axis-aligned rectangle, mm. */
 typedef struct weft_rectangle {
     double x0, y0, x1, y1;
 } weft_rectangle;
 
-/* The target that Weft prints, for an opening of the given side. Pure, as all functions here. */
+/* The plate of a rig, for an opening of the given side: its patches are a white standard. Pure, as all functions here.
+ */
 weft_target weft_target_for_opening(double opening_mm);
+
+/* The same drawing as a sheet of plain paper out of a printer: its patches are bare paper. The reflectances are typical
+ * of office paper and of toner. Papers differ by some 5 %. */
+weft_target weft_target_printed(double opening_mm);
 
 double weft_target_radius_mm(const weft_target *target);
 
@@ -37,6 +42,15 @@ double weft_target_reflectance(const weft_target *target, double x_mm, double y_
 
 /* Outline of marker `id` in [0, WEFT_TARGET_MARKER_COUNT), upright (its top edge toward +y). */
 weft_rectangle weft_target_marker(const weft_target *target, int id);
+
+/* A sheet holds the plate in its middle, and things that tell the light in its corners: two mirror balls in opposite
+ * ones, and a pin. Its sides are 124 and 168 32nds of the opening's. */
+weft_rectangle weft_target_sheet(const weft_target *target);
+
+/* Where ball `index` in [0, WEFT_TARGET_BALL_COUNT) touches the sheet, and where the pin stands upright: x and y, mm.
+ */
+void weft_target_ball(const weft_target *target, int index, double place_mm[2]);
+void weft_target_pin(const weft_target *target, double place_mm[2]);
 
 /* Outline of reference patch `index` in [0, WEFT_TARGET_REFERENCE_COUNT). */
 weft_rectangle weft_target_reference(const weft_target *target, int index);
