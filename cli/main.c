@@ -13,6 +13,7 @@ static const struct {
     {"Photographs and geometry to a dataset:", &weft_command_capture},
     {NULL, &weft_command_simulate},
     {NULL, &weft_command_register},
+    {NULL, &weft_command_photographs},
     {NULL, &weft_command_import},
     {NULL, &weft_command_tile},
     {NULL, &weft_command_bard},

@@ -1,6 +1,7 @@
 #include "import/far_photograph.h"
 #include "import/readers.h"
 
+#include "base/text/image_list.h"
 #include "base/text/csv.h"
 
 #include <stdbool.h>

@@ -8,6 +8,10 @@
 
 #include "btf/direction/direction.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct weft_camera {
     int width, height;     /* pixels */
     double fx, fy, cx, cy; /* focal lengths and principal point, pixels */
@@ -50,4 +54,7 @@ weft_pixel weft_camera_undistort(const weft_camera *camera, weft_pixel distorted
 /* Relative response at a pixel of the photograph, 1 on the axis. */
 double weft_camera_vignetting(const weft_camera *camera, weft_pixel distorted);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

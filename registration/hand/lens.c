@@ -1,0 +1,179 @@
+#include "registration/hand/lens.h"
+
+#include "base/numeric/statistics.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* As many directions as this, 10 degrees apart and not all from above, tell focal length and distortion. */
+enum { views_enough = 6 };
+static const double distinct_deg = 10, steepest_at_least_deg = 25;
+
+/* A photograph whose corners lie this many times further off than the median is of another lens, or of a bent sheet. */
+static const double outlier_ratio = 4, outlier_floor = 4e-4; /* the latter as a share of the longer side */
+
+static const double film_diagonal_mm = 43.2666;
+
+/* Memory of one fit: the used photographs, packed. */
+typedef struct packing {
+    int count, *index;
+    weft_plate_view *view;
+    weft_pose *pose;
+    double *rms_px;
+} packing;
+
+static void packing_free(packing *p)
+{
+    free(p->index);
+    free(p->view);
+    free(p->pose);
+    free(p->rms_px);
+}
+
+static weft_code pack(const weft_hand_photograph *photograph, int count, packing *p, weft_error *error)
+{
+    size_t n = (size_t)count;
+    *p = (packing){0, calloc(n, sizeof(int)), calloc(n, sizeof(weft_plate_view)), calloc(n, sizeof(weft_pose)),
+                   calloc(n, sizeof(double))};
+    if (!p->index || !p->view || !p->pose || !p->rms_px) {
+        packing_free(p);
+        return weft_fail_memory(error, "poses", n * 200);
+    }
+    for (int i = 0; i < count; i++) {
+        if (!weft_hand_used(&photograph[i]))
+            continue;
+        p->index[p->count] = i;
+        p->view[p->count++] = (weft_plate_view){photograph[i].corner_count, (const double(*)[2])photograph[i].plate,
+                                                (const double(*)[2])photograph[i].seen};
+    }
+    return WEFT_OK;
+}
+
+static weft_code fit(weft_hand_photograph *photograph, int count, weft_lens_knowledge knowledge, weft_camera *camera,
+                     weft_error *error)
+{
+    packing p;
+    WEFT_TRY(pack(photograph, count, &p, error));
+    weft_code code = weft_opencv_fit_lens(p.view, p.count, knowledge, camera, p.pose, p.rms_px, error);
+    for (int i = 0; code == WEFT_OK && i < p.count; i++) {
+        photograph[p.index[i]].pose = p.pose[i];
+        photograph[p.index[i]].corner_rms_px = p.rms_px[i];
+    }
+    packing_free(&p);
+    return code;
+}
+
+/* Focal length in pixels from what the camera wrote; 0 where it wrote none. */
+static double written_focal_length(const weft_hand_photograph *photograph, int count, int width, int height)
+{
+    for (int i = 0; i < count; i++) {
+        if (weft_hand_used(&photograph[i]) && photograph[i].exif.focal_length_35mm > 0)
+            return photograph[i].exif.focal_length_35mm / film_diagonal_mm * hypot(width, height);
+    }
+    return 0;
+}
+
+static weft_camera ideal_camera(int width, int height, double focal_length)
+{
+    return (weft_camera){.width = width,
+                         .height = height,
+                         .fx = focal_length,
+                         .fy = focal_length,
+                         .cx = (width - 1) / 2.0,
+                         .cy = (height - 1) / 2.0};
+}
+
+static weft_vec3 view_of(const weft_hand_photograph *p)
+{
+    return weft_unit(weft_pose_camera_position(&p->pose));
+}
+
+/* Distinct views, found greedily; *steepest receives the largest angle from the normal, degrees. */
+static int count_views(const weft_hand_photograph *photograph, int count, double *steepest)
+{
+    int distinct = 0;
+    *steepest = 0;
+    for (int i = 0; i < count; i++) {
+        bool is_new = weft_hand_used(&photograph[i]);
+        if (is_new)
+            *steepest = fmax(*steepest, weft_deg_of_rad(acos(view_of(&photograph[i]).z)));
+        for (int k = 0; is_new && k < i; k++)
+            is_new = !weft_hand_used(&photograph[k]) ||
+                     weft_dot(view_of(&photograph[i]), view_of(&photograph[k])) < cos(weft_rad_of_deg(distinct_deg));
+        distinct += is_new;
+    }
+    return distinct;
+}
+
+/* Gives photographs that do not fit a remark; returns how many. */
+static int leave_out(weft_hand_photograph *photograph, int count, const weft_camera *camera)
+{
+    double *rms = malloc((size_t)count * sizeof *rms);
+    int used = 0, left_out = 0;
+    for (int i = 0; rms && i < count; i++) {
+        if (weft_hand_used(&photograph[i]))
+            rms[used++] = photograph[i].corner_rms_px;
+    }
+    double median = rms ? weft_quantile(rms, (size_t)used, 0.5) : INFINITY;
+    double limit = fmax(outlier_ratio * median, outlier_floor * fmax(camera->width, camera->height));
+    for (int i = 0; i < count; i++) {
+        weft_hand_photograph *p = &photograph[i];
+        if (!weft_hand_used(p) || p->corner_rms_px <= limit)
+            continue;
+        snprintf(
+            p->remark, sizeof p->remark,
+            "its markers lie %.1f pixels off (median of all: %.2f): the sheet is bent, or it moved, or the lens was "
+            "another",
+            p->corner_rms_px, median);
+        left_out++;
+    }
+    free(rms);
+    return left_out;
+}
+
+static double rms_of(const weft_hand_photograph *photograph, int count)
+{
+    double squares = 0, corners = 0;
+    for (int i = 0; i < count; i++) {
+        if (!weft_hand_used(&photograph[i]))
+            continue;
+        squares += photograph[i].corner_rms_px * photograph[i].corner_rms_px * photograph[i].corner_count;
+        corners += photograph[i].corner_count;
+    }
+    return corners > 0 ? sqrt(squares / corners) : 0;
+}
+
+/* Fits with ideal optics first, to see how many distinct views there are. */
+static weft_code fit_unknown(weft_hand_photograph *photograph, int count, int width, int height,
+                             weft_lens_estimate *lens, weft_error *error)
+{
+    double written = written_focal_length(photograph, count, width, height), steepest;
+    double guess = written > 0 ? written : 1.2 * fmax(width, height);
+    lens->camera = ideal_camera(width, height, guess);
+    WEFT_TRY(fit(photograph, count, WEFT_LENS_FOCAL_ONLY, &lens->camera, error));
+    lens->distinct_views = count_views(photograph, count, &steepest);
+    lens->knowledge = lens->distinct_views >= views_enough && steepest >= steepest_at_least_deg ? WEFT_LENS_UNKNOWN
+                                                                                                : WEFT_LENS_FOCAL_ONLY;
+    if (lens->knowledge == WEFT_LENS_FOCAL_ONLY && !(written > 0))
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "the target is seen from %d directions only, and the photographs do not say their focal "
+                         "length: take some from other sides, or give a lens file (--lens)",
+                         lens->distinct_views);
+    return WEFT_OK;
+}
+
+weft_code weft_lens_estimate_from(weft_hand_photograph *photograph, int count, int width, int height,
+                                  const weft_camera *known, weft_lens_estimate *lens, weft_error *error)
+{
+    *lens = (weft_lens_estimate){.knowledge = WEFT_LENS_KNOWN};
+    if (known)
+        lens->camera = *known;
+    else
+        WEFT_TRY(fit_unknown(photograph, count, width, height, lens, error));
+    do {
+        WEFT_TRY(fit(photograph, count, lens->knowledge, &lens->camera, error));
+    } while (leave_out(photograph, count, &lens->camera) > 0);
+    lens->rms_px = rms_of(photograph, count);
+    return WEFT_OK;
+}
