@@ -4,6 +4,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -185,7 +186,8 @@ void note(OIIO::ImageSpec *spec, const weft_camera_notes *notes)
     spec->attribute("DateTime", notes->date);
     spec->attribute("Exif:DateTimeOriginal", notes->date);
     spec->attribute("Orientation", notes->orientation);
-    spec->attribute("ExposureTime", float(notes->exposure_s));
+    /* One over a whole number, which OpenImageIO 2.4 turns into one over nothing. */
+    spec->attribute("ExposureTime", std::nextafter(float(notes->exposure_s), 0.0f));
     spec->attribute("FNumber", float(notes->f_number));
     spec->attribute("Exif:PhotographicSensitivity", int(notes->iso + 0.5));
     spec->attribute("Exif:FocalLength", float(notes->focal_length_mm));

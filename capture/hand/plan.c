@@ -58,7 +58,7 @@ static weft_snap_lens lens_of(const weft_snap_request *request)
                            .sensor_width_mm = 23.5,
                            .focal_length_mm = request->focal_length_mm,
                            .rim_mm = 24,
-                           .rim_radius_mm = 24 * 13.1 / request->focal_length_mm};
+                           .rim_radius_mm = 24 * 14.5 / request->focal_length_mm};
     lens.image_distance_mm = lens.focal_length_mm * (1 + between(&d, -0.02, 0.03));
     lens.axis_x = 0.5 * (lens.width - 1) + between(&d, -0.004, 0.004) * lens.width;
     lens.axis_y = 0.5 * (lens.height - 1) + between(&d, -0.004, 0.004) * lens.width;
@@ -160,14 +160,25 @@ static weft_pose stand_back(const weft_snap_request *request, const weft_snap_le
     return look_at(eye_of(a, far), a->at, a->phi, a->roll, a->orientation);
 }
 
-/* From which side a picture is nearest: upright or level. */
-static int better_orientation(const weft_snap_request *request, const weft_snap_lens *lens, aim a, int upright)
+/* A person turns the camera until the sheet fits best: level or upright, and rolled as far as the horizon does not tell
+ * (it does where the view is slant). */
+static void fit_frame(const weft_snap_request *request, const weft_snap_lens *lens, int upright, aim *a)
 {
-    a.orientation = 1;
-    weft_pose level = stand_back(request, lens, &a);
-    a.orientation = upright;
-    weft_pose portrait = stand_back(request, lens, &a);
-    return portrait.translation.z < level.translation.z ? upright : 1;
+    enum { ROLLS = 7 };
+    double nearest = INFINITY, roll = a->roll, most = WEFT_PI / 4 * pow(cos(a->theta), 4);
+    aim best = *a;
+    for (int i = 0; i < 2 * ROLLS; i++) {
+        aim tried = *a;
+        tried.orientation = i < ROLLS ? 1 : upright;
+        tried.roll = most * (2.0 * (i % ROLLS) / (ROLLS - 1) - 1);
+        weft_pose pose = stand_back(request, lens, &tried);
+        if (pose.translation.z < nearest) {
+            nearest = pose.translation.z;
+            best = tried;
+        }
+    }
+    best.roll += roll;
+    *a = best;
 }
 
 static weft_pose free_pose(const weft_snap_request *request, const weft_snap_lens *lens, dice *d, int *orientation)
@@ -175,11 +186,12 @@ static weft_pose free_pose(const weft_snap_request *request, const weft_snap_len
     double size = request->opening_mm * 4;
     /* Solid angle for solid angle, but a person takes more from above than that. */
     double cosine = 1 - pow(between(d, 0, 1), 1.2) * (1 - cos(request->max_view_rad));
-    aim a = {.theta = acos(cosine), .phi = between(d, 0, 2 * WEFT_PI), .roll = normal(d, 0.09)};
+    aim a = {.theta = acos(cosine), .phi = between(d, 0, 2 * WEFT_PI), .roll = normal(d, 0.05)};
     a.fill = between(d, 0.84, 0.95);
     a.at = weft_vec3_of(normal(d, 0.02 * size), normal(d, 0.02 * size), 0);
     int upright = between(d, 0, 1) < 0.7 ? 6 : 8;
-    *orientation = a.orientation = better_orientation(request, lens, a, upright);
+    fit_frame(request, lens, upright, &a);
+    *orientation = a.orientation;
     return stand_back(request, lens, &a);
 }
 
@@ -237,6 +249,18 @@ static weft_snap_lamp lamp_at(const weft_snap_request *request, weft_vec3 at)
 
 /* ---- Exposure ---- */
 
+/* What a camera calls a step in thirds of a power of two: ISO 126 is 125, 1/101.6 s is 1/100 s. */
+static double engraved(double value)
+{
+    static const double name[] = {1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.4, 8, 10};
+    double decade = pow(10, floor(log10(value) + 1e-9)), nearest = 1;
+    for (size_t i = 1; i < sizeof name / sizeof *name; i++) {
+        if (fabs(log(value / decade / name[i])) < fabs(log(value / decade / nearest)))
+            nearest = name[i];
+    }
+    return nearest * decade;
+}
+
 /* The next of the steps in thirds of a power of two. */
 static double third_stop(double value)
 {
@@ -255,6 +279,8 @@ static weft_snap_exposure expose(const weft_snap_request *request, const weft_sn
         e.seconds = third_stop(fmin(wanted / weft_snap_gain(1, e.f_number, e.iso), slowest));
     e.iso = weft_clamp(100 * third_stop(wanted / weft_snap_gain(e.seconds, e.f_number, 100)), 100, 6400);
     e.gain = weft_snap_gain(e.seconds, e.f_number, e.iso) * (1 + normal(d, 0.004));
+    e.seconds = 1 / engraved(1 / e.seconds);
+    e.iso = engraved(e.iso);
     e.white_balance[0] = 1 / lamp->colour.r * lamp->colour.g * (1 + normal(d, request->white_balance));
     e.white_balance[1] = 1;
     e.white_balance[2] = 1 / lamp->colour.b * lamp->colour.g * (1 + normal(d, request->white_balance));
@@ -380,7 +406,9 @@ static void plan_shot(const weft_snap_request *request, int photograph, weft_sna
         plan_free(request, &d, shot);
     shot->exposure = expose(request, &shot->lamp, &d);
     double depth = shot->pose.translation.z;
-    focus(request, depth * (1 + normal(&d, 0.01)), shot->exposure.f_number, &shot->lens);
+    dice focusing = request->set == WEFT_SNAP_TRIPOD ? dice_of(request->seed, -5) : d;
+    focus(request, depth * (1 + normal(&focusing, 0.01)), shot->exposure.f_number, &shot->lens);
+    d.next += 2;
     shot->hand_shadow = between(&d, 0, 1) < request->hand_shadows;
     place_hand(&d, shot);
     spoil(&d, shot);

@@ -3,7 +3,7 @@
 #include "capture/virtual/random.h"
 
 /* A block of pixels is treated alike. */
-enum { BLOCK = 8, EDGE_RAYS = 24, CONTENT_RAYS = 12, SOLID_RAYS = 32 };
+enum { BLOCK = 8, EDGE_RAYS = 24, CONTENT_RAYS = 12, SOLID_RAYS = 32, FIRST_RAYS = 8 };
 
 /* The filter before a sensor splits every ray into four, so far apart (pixels). */
 static const double split = 0.35;
@@ -75,21 +75,40 @@ static weft_rgb look_along(const view *v, const weft_snap_ray *ray, const weft_s
     return weft_snap_scene_shade(v->scene, point, weft_scale(ray->along, -1), chance, kind->shaded);
 }
 
+/* Whether the first rays of a pixel agree so well that more would say the same. */
+static bool is_settled(const double *green, int count)
+{
+    double low = green[0], high = green[0];
+    for (int i = 1; i < count; i++) {
+        low = fmin(low, green[i]);
+        high = fmax(high, green[i]);
+    }
+    return high - low <= 0.02 * high;
+}
+
+/* The mean of `ray_count` rays, or of the first ones where those agree. */
 static weft_rgb trace_pixel(const view *v, int x, int y, int ray_count, const block_kind *kind)
 {
     uint64_t pixel = (uint64_t)y * (uint64_t)v->lens->width + (uint64_t)x;
     uint64_t bits = weft_random_bits(v->seed, WEFT_RANDOM_PIXEL, pixel);
     weft_rgb total = {0, 0, 0};
-    for (int i = 0; i < ray_count; i++) {
+    double green[FIRST_RAYS];
+    int traced = 0;
+    while (traced < ray_count && !(traced == FIRST_RAYS && is_settled(green, FIRST_RAYS))) {
         double sample[6];
         weft_snap_ray ray;
-        sample_of(bits, i, sample);
-        if (!ray_of(v, x, y, sample, i, &ray))
-            continue;
-        weft_snap_chance chance = {{sample[4], sample[5]}, bits, (uint32_t)i};
-        total = plus(total, look_along(v, &ray, &chance, kind), 1);
+        weft_rgb seen = {0, 0, 0};
+        sample_of(bits, traced, sample);
+        if (ray_of(v, x, y, sample, traced, &ray)) {
+            weft_snap_chance chance = {{sample[4], sample[5]}, bits, (uint32_t)traced};
+            seen = look_along(v, &ray, &chance, kind);
+        }
+        if (traced < FIRST_RAYS)
+            green[traced] = seen.g;
+        total = plus(total, seen, 1);
+        traced++;
     }
-    return plus((weft_rgb){0, 0, 0}, total, weft_snap_lens_obliquity(v->lens, x, y) / ray_count);
+    return plus((weft_rgb){0, 0, 0}, total, weft_snap_lens_obliquity(v->lens, x, y) / traced);
 }
 
 /* ---- Pixels ---- */
