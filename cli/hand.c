@@ -44,7 +44,7 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_NUMBER, .offset = PLACE(hand_shadows), .low = 0, .high = 100, .divisor = 100},
     {"gloss", .argument = "PERCENT", .help = "Of light that paper and ink reflect in a highlight (default: 0)",
      .kind = WEFT_OPTION_NUMBER, .offset = PLACE(gloss), .low = 0, .high = 20, .divisor = 100},
-    {"window", .argument = "LUMINANCE", .help = "Of the window of the dark room, cd/m^2 (default: 15)",
+    {"window", .argument = "LUMINANCE", .help = "Of the window of the dark room, cd/m^2 (default: 100)",
      .kind = WEFT_OPTION_NUMBER, .offset = PLACE(window), .low = 0, .high = 10000},
     {"white-balance", .argument = "PERCENT", .help = "By which the gains of red and blue change (default: 0)",
      .kind = WEFT_OPTION_NUMBER, .offset = PLACE(white_balance), .low = 0, .high = 20, .divisor = 100},

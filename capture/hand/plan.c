@@ -35,7 +35,7 @@ weft_snap_request weft_snap_request_default(void)
                                .focal_length_mm = 35,
                                .max_view_rad = weft_rad_of_deg(65),
                                .lamp_radius_mm = 12,
-                               .window = 15,
+                               .window = 100,
                                .white_balance = 0,
                                .truth_size = 64};
 }
@@ -234,7 +234,7 @@ static weft_snap_lamp flash_of(const weft_snap_request *request, const weft_snap
                             .axis = {f[0], f[1], f[2]},
                             .is_disc = true,
                             .radius_mm = request->lamp_radius_mm,
-                            .intensity_cd = 900,
+                            .intensity_cd = 3500,
                             .colour = {1, 1, 1}};
 }
 
@@ -243,7 +243,7 @@ static weft_snap_lamp lamp_at(const weft_snap_request *request, weft_vec3 at)
     return (weft_snap_lamp){.at = at,
                             .axis = weft_unit(weft_scale(at, -1)),
                             .radius_mm = request->lamp_radius_mm,
-                            .intensity_cd = 400,
+                            .intensity_cd = 2500,
                             .colour = {1, 0.93, 0.84}};
 }
 

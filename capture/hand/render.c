@@ -3,10 +3,15 @@
 #include "capture/virtual/random.h"
 
 /* A block of pixels is treated alike. */
-enum { BLOCK = 8, EDGE_RAYS = 24, CONTENT_RAYS = 12, SOLID_RAYS = 32, FIRST_RAYS = 8 };
+enum { BLOCK = 8, EDGE_RAYS = 24, CONTENT_RAYS = 12, SOLID_RAYS = 32, FIRST_RAYS = 8, GLINT_RAYS = 400 };
 
 /* The filter before a sensor splits every ray into four, so far apart (pixels). */
 static const double split = 0.35;
+
+/* Where a mirror shows the lamp: so bright that few rays would be many times too bright or too dark. Pixels. */
+typedef struct glint {
+    double x, y, radius;
+} glint;
 
 typedef struct view {
     const weft_snap_lens *lens;
@@ -14,6 +19,8 @@ typedef struct view {
     weft_vec3 eye, right, down, forward;
     uint64_t seed;
     float *radiance;
+    glint glint[WEFT_SNAP_SOLIDS];
+    int glint_count;
 } view;
 
 /* How a block of pixels is to be drawn. */
@@ -86,15 +93,15 @@ static bool is_settled(const double *green, int count)
     return high - low <= 0.02 * high;
 }
 
-/* The mean of `ray_count` rays, or of the first ones where those agree. */
-static weft_rgb trace_pixel(const view *v, int x, int y, int ray_count, const block_kind *kind)
+/* The mean of `ray_count` rays, or of the first ones where those agree and `may_settle`. */
+static weft_rgb trace_pixel(const view *v, int x, int y, int ray_count, bool may_settle, const block_kind *kind)
 {
     uint64_t pixel = (uint64_t)y * (uint64_t)v->lens->width + (uint64_t)x;
     uint64_t bits = weft_random_bits(v->seed, WEFT_RANDOM_PIXEL, pixel);
     weft_rgb total = {0, 0, 0};
     double green[FIRST_RAYS];
     int traced = 0;
-    while (traced < ray_count && !(traced == FIRST_RAYS && is_settled(green, FIRST_RAYS))) {
+    while (traced < ray_count && !(may_settle && traced == FIRST_RAYS && is_settled(green, FIRST_RAYS))) {
         double sample[6];
         weft_snap_ray ray;
         weft_rgb seen = {0, 0, 0};
@@ -109,6 +116,42 @@ static weft_rgb trace_pixel(const view *v, int x, int y, int ray_count, const bl
         traced++;
     }
     return plus((weft_rgb){0, 0, 0}, total, weft_snap_lens_obliquity(v->lens, x, y) / traced);
+}
+
+/* ---- Glints ---- */
+
+/* The place on a ball that mirrors the lamp to the eye: its normal halves the angle. A few rounds settle it. */
+static weft_vec3 mirror_place(const weft_snap_solid *ball, weft_vec3 lamp, weft_vec3 eye)
+{
+    weft_vec3 at = ball->a;
+    for (int i = 0; i < 30; i++) {
+        weft_vec3 to_lamp = weft_unit(weft_subtract(lamp, at)), to_eye = weft_unit(weft_subtract(eye, at));
+        at = weft_add(ball->a, weft_scale(weft_unit(weft_add(to_lamp, to_eye)), ball->radius_mm));
+    }
+    return at;
+}
+
+/* Its blur, twice the width of the lamp in a convex mirror, and room for more. */
+static void add_glint(view *v, const weft_snap_solid *ball)
+{
+    weft_vec3 place = mirror_place(ball, v->scene->lamp.at, v->eye), d = weft_subtract(place, v->eye);
+    double depth = weft_dot(d, v->forward), pixel[2];
+    double per_mm = v->lens->image_distance_mm / depth * v->lens->width / v->lens->sensor_width_mm;
+    double away = weft_length(weft_subtract(v->scene->lamp.at, place));
+    double size = ball->radius_mm * v->scene->lamp.radius_mm / away;
+    double blur = v->lens->pupil_radius_mm * fabs(depth / v->lens->focus_mm - 1);
+    weft_vec3 camera = {weft_dot(d, v->right), weft_dot(d, v->down), depth};
+    if (v->glint_count < WEFT_SNAP_SOLIDS && weft_snap_lens_project(v->lens, camera, pixel))
+        v->glint[v->glint_count++] = (glint){pixel[0], pixel[1], 3 + 1.2 * per_mm * (size + blur)};
+}
+
+static bool in_glint(const view *v, int x, int y)
+{
+    for (int i = 0; i < v->glint_count; i++) {
+        if (hypot(x - v->glint[i].x, y - v->glint[i].y) < v->glint[i].radius)
+            return true;
+    }
+    return false;
 }
 
 /* ---- Pixels ---- */
@@ -128,14 +171,15 @@ static weft_rgb draw_pixel(const view *v, int x, int y, const block_kind *kind)
 {
     weft_vec3 point;
     if (kind->traced)
-        return trace_pixel(v, x, y, SOLID_RAYS, kind);
+        return in_glint(v, x, y) ? trace_pixel(v, x, y, GLINT_RAYS, false, kind)
+                                 : trace_pixel(v, x, y, SOLID_RAYS, true, kind);
     meet_plane(v, x, y, &point);
     if (!weft_snap_sheet_is_even(v->scene->sheet, point.x, point.y, kind->reach))
-        return trace_pixel(v, x, y, EDGE_RAYS, kind);
+        return trace_pixel(v, x, y, EDGE_RAYS, true, kind);
     if (weft_snap_sheet_reflectance(v->scene->sheet, point.x, point.y) < 0)
-        return trace_pixel(v, x, y, CONTENT_RAYS, kind);
+        return trace_pixel(v, x, y, CONTENT_RAYS, true, kind);
     if (kind->shaded)
-        return trace_pixel(v, x, y, EDGE_RAYS, kind);
+        return trace_pixel(v, x, y, EDGE_RAYS, true, kind);
     weft_vec3 toward_eye = weft_unit(weft_subtract(v->eye, point));
     weft_rgb seen = weft_snap_scene_shade(v->scene, point, toward_eye, &(weft_snap_chance){{0, 0}, 0, 0}, false);
     return plus((weft_rgb){0, 0, 0}, seen, weft_snap_lens_vignetting(v->lens, x, y));
@@ -203,6 +247,10 @@ void weft_snap_render(const weft_snap_lens *lens, const weft_pose *pose, const w
               .forward = {r[2][0], r[2][1], r[2][2]},
               .seed = seed,
               .radiance = radiance};
+    for (int i = 0; i < scene->solid_count; i++) {
+        if (scene->solid[i].is_mirror)
+            add_glint(&v, &scene->solid[i]);
+    }
 #pragma omp parallel for schedule(dynamic, 1)
     for (int y = 0; y < lens->height; y += BLOCK) {
         for (int x = 0; x < lens->width; x += BLOCK)
