@@ -11,6 +11,7 @@ static const struct {
     const weft_command *command;
 } commands[] = {
     {"Photographs and geometry to a dataset:", &weft_command_capture},
+    {NULL, &weft_command_hand},
     {NULL, &weft_command_simulate},
     {NULL, &weft_command_register},
     {NULL, &weft_command_photographs},
