@@ -240,7 +240,7 @@ static void leave_out_paperless(work *w)
     }
 }
 
-/* light = decoded light x exp(sum_k tone[k] (encoded - 1/2)^(k + 1)), made to end at 1 and never to fall. Levels
+/* light = decoded light x exp(sum_k tone[k] (2 encoded - 1)^(k + 1)), made to end at 1 and never to fall. Levels
  * follow.
  */
 static void correct_tone(weft_hand *hand)
@@ -249,7 +249,7 @@ static void correct_tone(weft_hand *hand)
     weft_tone_curve first = hand->tone;
     double last = 0;
     for (int i = 0; i <= WEFT_TONE_STEPS; i++) {
-        double power = 1, sum = 0, encoded = i / (double)WEFT_TONE_STEPS - 0.5;
+        double power = 1, sum = 0, encoded = 2 * (i / (double)WEFT_TONE_STEPS) - 1;
         for (int k = 0; k < WEFT_TONE_TERMS; k++)
             sum += term[k] * (power *= encoded);
         double light = (double)first.linear[i] * exp(sum);
@@ -296,14 +296,6 @@ static weft_code find_lamps(work *w, weft_error *error)
                                  .tone_unknown = tone_unknown};
     if (code == WEFT_OK) {
         weft_lamp_guess(&problem, &hand->lamps);
-            for (int i = 0, f = 0; i < hand->count; i++)
-                if (weft_hand_used(&hand->photograph[i])) {
-                    weft_vec3 q = hand->lamps.place[f].position_mm;
-                    fprintf(stderr, "%s guess %d balls %d %d at %.0f %.0f %.0f samples %d\n", hand->photograph[i].name,
-                            hand->lamps.place[f].source, evidence[f].highlight[0].found, evidence[f].highlight[1].found,
-                            q.x, q.y, q.z, evidence[f].paper.count);
-                    f++;
-                }
         code = weft_lamp_solve(&problem, &hand->lamps, error);
     }
     for (int i = 0, from = 0; code == WEFT_OK && i < hand->count; i++) {

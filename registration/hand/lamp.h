@@ -11,8 +11,8 @@
 extern "C" {
 #endif
 
-/* Corrections of the logarithm of light: coefficients of powers of the encoded value minus a half. */
-enum { WEFT_TONE_TERMS = 4 };
+/* Corrections of the logarithm of light: coefficients of powers of the encoded value, which is stretched to -1..1. */
+enum { WEFT_TONE_TERMS = 5 };
 
 /* What one photograph tells. */
 typedef struct weft_lamp_evidence {
@@ -34,7 +34,7 @@ typedef struct weft_lamp_problem {
 
 typedef struct weft_lamp_solution {
     weft_lamp_place *place;       /* [count]; in: where the search starts */
-    double tone[WEFT_TONE_TERMS]; /* light = decoded light x exp(sum_k tone[k] (encoded - 1/2)^(k + 1)) */
+    double tone[WEFT_TONE_TERMS]; /* light = decoded light x exp(sum_k tone[k] (2 encoded - 1)^(k + 1)) */
     double vignetting[3];         /* as weft_camera has it */
     double ink;                   /* reflectance of ink over that of paper */
     double ball_shift_mm[WEFT_TARGET_BALL_COUNT][2]; /* from its place on the sheet */

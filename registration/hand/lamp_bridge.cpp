@@ -25,7 +25,7 @@ constexpr double independent_samples = 30;
 
 /* What is known beforehand: lamps stand at some 700 mm, within a factor of e; a ball stands within a millimetre of its
  * place; tone curves differ from sRGB by some tens of percent; ink within a fifth. */
-constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, tone_deviation = 0.5;
+constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, tone_deviation = 1;
 constexpr double ink_prior_deviation = 0.2, vignetting_deviation = 0.4, flash_deviation_mm = 60;
 
 using vec3 = std::array<double, 3>;
@@ -253,7 +253,7 @@ class lamp_search
                 continue;
             for (int c = 0; c < 3; c++) {
                 residual->log_light[c] = std::log((double)s.light[c]);
-                double power = 1, encoded = (double)weft_srgb_of_linear(s.light[c]) - 0.5;
+                double power = 1, encoded = 2 * (double)weft_srgb_of_linear(s.light[c]) - 1;
                 for (int term = 0; term < WEFT_TONE_TERMS; term++)
                     residual->power[c][term] = power *= encoded;
             }
