@@ -1,12 +1,13 @@
 #include "cli/arguments.h"
 #include "registration/hand/hand.h"
+#include "registration/hand/report.h"
 
 #include <math.h>
 #include <stdio.h>
 
 typedef struct photographs_command {
     weft_common_options common;
-    const char *input, *output;
+    const char *input, *output, *report_folder;
     double opening_mm, paper_reflectance;
     weft_hand_settings settings;
 } photographs_command;
@@ -31,6 +32,8 @@ static const weft_option option_table[] = {
      .high = 1000},
     {"paper", .argument = "SHARE", .help = "Reflectance of the bare paper, 0 to 1 (default: 0.85)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, paper_reflectance), .low = 0.01, .high = 1},
+    {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_TEXT,
+     .offset = offsetof(photographs_command, report_folder)},
     {"linear", .help = "8- and 16-bit files hold linear values, without a tone curve", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(photographs_command, settings.linear)},
     {0},
@@ -68,6 +71,8 @@ static int run(int argc, char **argv)
     weft_code code = weft_hand_register(command.input, command.output, &command.settings, &progress, &hand, &error);
     if (code == WEFT_OK) {
         say_outcome(&command, &hand);
+        if (command.report_folder)
+            code = weft_hand_report(command.report_folder, command.output, &command.settings, &hand, &error);
         weft_hand_free(&hand);
     }
     return weft_command_exit("photographs", &command.common, code, &error);

@@ -1,5 +1,6 @@
 #include "registration/hand/corners.h"
 
+#include "registration/hand/fault.h"
 #include "registration/hand/hand_bridge.h"
 
 #include <math.h>
@@ -87,9 +88,8 @@ weft_code weft_corners_find(const weft_target *target, const weft_light_values *
     if (photograph->marker_count >= fewest_markers)
         WEFT_TRY(keep_plane(values, photograph, error));
     if (photograph->marker_count < fewest_markers)
-        snprintf(photograph->remark, sizeof photograph->remark,
-                 "%d of the target's %d markers are seen: it is blurred, too dark, or of something else",
-                 photograph->marker_count, WEFT_SHEET_MARKER_COUNT);
+        snprintf(photograph->remark, sizeof photograph->remark, "%d of the target's %d markers are seen: %s",
+                 photograph->marker_count, WEFT_SHEET_MARKER_COUNT, weft_photograph_fault(values));
     else if (photograph->corner_count < 4 * fewest_markers)
         snprintf(photograph->remark, sizeof photograph->remark, "its markers do not lie on one plane");
     return WEFT_OK;

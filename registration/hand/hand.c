@@ -5,6 +5,7 @@
 #include "registration/hand/corners.h"
 #include "registration/hand/material.h"
 #include "registration/hand/pose.h"
+#include "registration/hand/thumbnail.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,8 +33,11 @@ weft_hand_settings weft_hand_defaults(void)
 
 void weft_hand_free(weft_hand *hand)
 {
-    for (int i = 0; i < hand->count; i++)
+    for (int i = 0; i < hand->count; i++) {
         free(hand->photograph[i].name);
+        weft_image_free(&hand->photograph[i].thumbnail);
+        weft_image_free(&hand->photograph[i].rectified);
+    }
     free(hand->photograph);
     *hand = (weft_hand){0};
 }
@@ -170,6 +174,7 @@ static weft_code look_at_all(work *w, const char *doing, look what, weft_error *
 
 static weft_code look_for_corners(work *w, int index, const weft_light_values *values, weft_error *error)
 {
+    WEFT_TRY(weft_thumbnail_of_photograph(values, &w->hand->photograph[index].thumbnail, error));
     return weft_corners_find(&w->settings->target, values, &w->hand->photograph[index], error);
 }
 
@@ -314,6 +319,19 @@ static weft_code find_lamps(work *w, weft_error *error)
     return WEFT_OK;
 }
 
+/* Photographs so dark that their noise would be most of what they say. */
+static void leave_out_underexposed(weft_hand *hand)
+{
+    const double darkest_paper = 0.01;
+    for (int i = 0; i < hand->count; i++) {
+        weft_hand_photograph *p = &hand->photograph[i];
+        double paper = p->lamp.level[1] * weft_unit(p->lamp.position_mm).z;
+        if (weft_hand_used(p) && !(paper >= darkest_paper))
+            snprintf(p->remark, sizeof p->remark, "it is underexposed: white paper reaches %.1f %% of full scale",
+                     100 * paper);
+    }
+}
+
 static weft_code refine_and_sample(work *w, weft_error *error)
 {
     WEFT_TRY(weft_reduced_sight_create(&w->hand->lens.camera, &w->settings->target, typical_scale(w->hand), &w->sight,
@@ -338,6 +356,8 @@ static weft_code run(work *w, const char *output, weft_error *error)
     leave_out_paperless(w);
     WEFT_TRY(check_enough(w, "can be used", error));
     WEFT_TRY(find_lamps(w, error));
+    leave_out_underexposed(hand);
+    WEFT_TRY(check_enough(w, "can be used", error));
     return weft_hand_write_dataset(w->folder, output, w->settings, w->progress, hand, error);
 }
 

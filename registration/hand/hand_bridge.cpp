@@ -120,7 +120,8 @@ int flags_of(weft_lens_knowledge knowledge)
         cv::CALIB_USE_INTRINSIC_GUESS | cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K3;
     if (knowledge == WEFT_LENS_UNKNOWN)
         return common;
-    return common | cv::CALIB_FIX_FOCAL_LENGTH | cv::CALIB_FIX_PRINCIPAL_POINT | cv::CALIB_FIX_K1 | cv::CALIB_FIX_K2;
+    const int held = common | cv::CALIB_FIX_FOCAL_LENGTH | cv::CALIB_FIX_PRINCIPAL_POINT | cv::CALIB_FIX_K2;
+    return knowledge == WEFT_LENS_FOCAL_ONLY ? held : held | cv::CALIB_FIX_K1;
 }
 
 weft_code fit_lens(const weft_plate_view *view, int count, weft_lens_knowledge knowledge, weft_camera *camera,

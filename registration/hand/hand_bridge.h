@@ -24,7 +24,7 @@ typedef struct weft_plate_view {
 /* What is known of a lens before any photograph is looked at. */
 typedef enum weft_lens_knowledge {
     WEFT_LENS_UNKNOWN,    /* everything is estimated, from the focal length in `camera` on */
-    WEFT_LENS_FOCAL_ONLY, /* the focal length in `camera` is right, the rest is ideal: few views cannot tell more */
+    WEFT_LENS_FOCAL_ONLY, /* the focal length in `camera` is right; k1 is estimated: few views cannot tell more */
     WEFT_LENS_KNOWN       /* `camera` is right: only poses are estimated */
 } weft_lens_knowledge;
 

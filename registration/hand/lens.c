@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* As many directions as this, 10 degrees apart and not all from above, tell focal length and distortion. */
 enum { views_enough = 6 };
@@ -12,6 +13,9 @@ static const double distinct_deg = 10, steepest_at_least_deg = 25;
 
 /* A photograph whose corners lie this many times further off than the median is of another lens, or of a bent sheet. */
 static const double outlier_ratio = 4, outlier_floor = 4e-4; /* the latter as a share of the longer side */
+
+/* Photographs whose corners lie this near to each other, as a share of the longer side, were taken from a tripod. */
+static const double tripod_share = 5e-4;
 
 static const double film_diagonal_mm = 43.2666;
 
@@ -132,6 +136,68 @@ static int leave_out(weft_hand_photograph *photograph, int count, const weft_cam
     return left_out;
 }
 
+/* Median distance between the corners that two photographs share, pixels; infinite where they share fewer than 4. */
+static double median_shift(const weft_hand_photograph *a, const weft_hand_photograph *b)
+{
+    double shift[WEFT_PLATE_CORNERS];
+    int count = 0;
+    for (int i = 0; i < a->corner_count; i++) {
+        for (int k = 0; k < b->corner_count; k++) {
+            if (a->plate[i][0] == b->plate[k][0] && a->plate[i][1] == b->plate[k][1])
+                shift[count++] = hypot(a->seen[i][0] - b->seen[k][0], a->seen[i][1] - b->seen[k][1]);
+        }
+    }
+    return count >= 4 ? weft_quantile(shift, (size_t)count, 0.5) : INFINITY;
+}
+
+/* A pose for photographs [index] that were taken from one place: that of all their corners together. */
+static weft_code share_pose(weft_hand_photograph *photograph, const int *index, int count, weft_camera *camera,
+                            weft_error *error)
+{
+    size_t limit = (size_t)count * WEFT_PLATE_CORNERS;
+    double(*corner)[2] = malloc(2 * limit * sizeof *corner);
+    if (!corner)
+        return weft_fail_memory(error, "corners of a stay", 2 * limit * sizeof *corner);
+    double(*plate)[2] = corner, (*seen)[2] = corner + limit;
+    weft_plate_view all = {0, (const double(*)[2])plate, (const double(*)[2])seen};
+    for (int i = 0; i < count; i++) {
+        const weft_hand_photograph *p = &photograph[index[i]];
+        memcpy(plate + all.count, p->plate, (size_t)p->corner_count * sizeof *plate);
+        memcpy(seen + all.count, p->seen, (size_t)p->corner_count * sizeof *seen);
+        all.count += p->corner_count;
+    }
+    weft_pose pose;
+    double rms_px;
+    weft_code code = weft_opencv_fit_lens(&all, 1, WEFT_LENS_KNOWN, camera, &pose, &rms_px, error);
+    for (int i = 0; code == WEFT_OK && i < count; i++)
+        photograph[index[i]].pose = pose;
+    free(corner);
+    return code;
+}
+
+/* Photographs from a tripod share a pose. */
+static weft_code share_poses(weft_hand_photograph *photograph, int count, weft_camera *camera, weft_error *error)
+{
+    double limit = tripod_share * fmax(camera->width, camera->height);
+    int *index = malloc(((size_t)count + 1) * sizeof *index);
+    bool *done = calloc((size_t)count + 1, sizeof *done);
+    weft_code code = index && done ? WEFT_OK : weft_fail_memory(error, "stays", (size_t)count * 5);
+    for (int first = 0; code == WEFT_OK && first < count; first++) {
+        int together = 0;
+        for (int i = first; i < count && weft_hand_used(&photograph[first]) && !done[first]; i++) {
+            if (!done[i] && weft_hand_used(&photograph[i]) && median_shift(&photograph[first], &photograph[i]) < limit)
+                index[together++] = i;
+        }
+        for (int i = 0; i < together; i++)
+            done[index[i]] = true;
+        if (together > 1)
+            code = share_pose(photograph, index, together, camera, error);
+    }
+    free(index);
+    free(done);
+    return code;
+}
+
 static double rms_of(const weft_hand_photograph *photograph, int count)
 {
     double squares = 0, corners = 0;
@@ -175,5 +241,5 @@ weft_code weft_lens_estimate_from(weft_hand_photograph *photograph, int count, i
         WEFT_TRY(fit(photograph, count, lens->knowledge, &lens->camera, error));
     } while (leave_out(photograph, count, &lens->camera) > 0);
     lens->rms_px = rms_of(photograph, count);
-    return WEFT_OK;
+    return share_poses(photograph, count, &lens->camera, error);
 }

@@ -3,15 +3,13 @@
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
 #include "registration/hand/read.h"
+#include "registration/hand/thumbnail.h"
 #include "registration/resample/resample.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Cameras nearer to each other than this share of their distance stood on a tripod: they are one view. */
-static const double same_view_share = 5e-4;
 
 typedef struct work {
     const char *folder;
@@ -51,8 +49,7 @@ static weft_code describe(const work *w, int count, weft_dataset_layout *layout,
         const weft_hand_photograph *p = &w->hand->photograph[w->photograph[image]];
         weft_vec3 eye = weft_pose_camera_position(&p->pose);
         int view = 0;
-        while (view < layout->view_count &&
-               weft_length(weft_subtract(layout->view[view], eye)) > same_view_share * weft_length(eye))
+        while (view < layout->view_count && weft_length(weft_subtract(layout->view[view], eye)) > 0)
             view++;
         if (view == layout->view_count)
             layout->view[layout->view_count++] = eye;
@@ -102,7 +99,7 @@ static void normalise(const weft_hand_settings *settings, const weft_lamp_place 
 static weft_code resample(const work *w, int image, const weft_light_values *values, float *texel, weft_half *half,
                           uint8_t *mask, weft_error *error)
 {
-    const weft_hand_photograph *p = &w->hand->photograph[w->photograph[image]];
+    weft_hand_photograph *p = &w->hand->photograph[w->photograph[image]];
     weft_resampler resampler;
     weft_resampling resampling = {&w->hand->lens.camera,
                                   w->inverse_vignetting,
@@ -114,6 +111,7 @@ static weft_code resample(const work *w, int image, const weft_light_values *val
     weft_resampler_apply(&resampler, values->samples, 0, WEFT_HAND_FULL_SCALE, texel, mask);
     weft_resampler_free(&resampler);
     normalise(w->settings, &p->lamp, texel, half, mask);
+    WEFT_TRY(weft_thumbnail_of_texels(half, w->settings->width, w->settings->height, &p->rectified, error));
     return weft_dataset_writer_put_image(w->writer, image, half, mask, error);
 }
 

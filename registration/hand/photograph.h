@@ -3,6 +3,7 @@
 #define WEFT_REGISTRATION_HAND_PHOTOGRAPH_H
 
 #include "base/picture/exif.h"
+#include "base/picture/image.h"
 #include "btf/session/camera.h"
 #include "btf/session/target.h"
 #include "registration/pose/prediction.h"
@@ -42,6 +43,8 @@ typedef struct weft_hand_photograph {
     double correlation, uncertainty_mm;
 
     weft_lamp_place lamp;
+
+    weft_image thumbnail, rectified; /* for the report, sRGB; without pixels where there is none */
 } weft_hand_photograph;
 
 static inline bool weft_hand_used(const weft_hand_photograph *photograph)
