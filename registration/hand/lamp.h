@@ -19,6 +19,7 @@ typedef struct weft_lamp_evidence {
     weft_pose pose;
     weft_paper_samples paper;
     weft_highlight highlight[WEFT_TARGET_BALL_COUNT];
+    double exposure; /* time x sensitivity / f-number^2 as the camera wrote it; 0: it wrote none */
 } weft_lamp_evidence;
 
 typedef struct weft_lamp_problem {
@@ -49,8 +50,9 @@ void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solut
  * obeys
  *     log light = log level + log(L_z |L|^2 / |L - x|^3) + log V(r^2) + [ink] log ink
  * after Lambert's and the inverse square law; a highlight obeys the law of reflection on a sphere. Shadows and stains
- * hardly count (Cauchy's weight). Deviations from this model are smooth over the sheet, so the samples of one
- * photograph count as `independent_samples` in all. Errors: WEFT_SYSTEM. */
+ * hardly count (Cauchy's weight). One lamp has one power: level |L|^2 / exposure is the same in all photographs, within
+ * a tenth, where the camera wrote its exposure. Deviations from this model are smooth over the sheet, so the samples of
+ * one photograph count as `independent_samples` in all. Errors: WEFT_SYSTEM. */
 weft_code weft_lamp_solve(const weft_lamp_problem *problem, weft_lamp_solution *solution, weft_error *error);
 
 #ifdef __cplusplus

@@ -26,7 +26,7 @@ constexpr double independent_samples = 30;
 /* What is known beforehand: lamps stand at some 700 mm, within a factor of e; a ball stands within a millimetre of its
  * place; tone curves differ from sRGB by some tens of percent; ink within a fifth. */
 constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, tone_deviation = 1;
-constexpr double ink_prior_deviation = 0.2, vignetting_deviation = 0.4, flash_deviation_mm = 60;
+constexpr double power_deviation = 0.1, ink_prior_deviation = 0.2, vignetting_deviation = 0.2, flash_deviation_mm = 60;
 
 using vec3 = std::array<double, 3>;
 
@@ -37,7 +37,7 @@ struct photograph_unknowns {
 
 /* Unknowns that all photographs share. */
 struct shared_unknowns {
-    double tone[WEFT_TONE_TERMS], vignetting[2], ink, shift[WEFT_TARGET_BALL_COUNT][2], flash[3];
+    double tone[WEFT_TONE_TERMS], vignetting[2], ink, power, shift[WEFT_TARGET_BALL_COUNT][2], flash[3];
 };
 
 /* From the lamp's unknowns to its place on the plate: itself, or moved with the camera. */
@@ -130,14 +130,30 @@ struct highlight_residual {
     }
 };
 
+/* The power of the lamp: the level times the squared distance, for the exposure. */
+struct power_residual {
+    mounting mount;
+    double log_exposure;
+
+    template <typename T> bool operator()(const T *unknown, const T *level, const T *power, T *residual) const
+    {
+        T lamp[3];
+        mount.place(unknown, lamp);
+        const T squared = lamp[0] * lamp[0] + lamp[1] * lamp[1] + lamp[2] * lamp[2];
+        residual[0] = (level[1] + log(squared) - log_exposure - power[0]) / power_deviation;
+        return true;
+    }
+};
+
 /* (value - mean) / deviation of every unknown in a block. */
 template <int N> struct prior_residual {
-    double mean, deviation;
+    std::array<double, N> mean;
+    double deviation;
 
     template <typename T> bool operator()(const T *value, T *residual) const
     {
         for (int i = 0; i < N; i++)
-            residual[i] = (value[i] - mean) / deviation;
+            residual[i] = (value[i] - mean[i]) / deviation;
         return true;
     }
 };
@@ -151,8 +167,11 @@ struct distance_residual {
     }
 };
 
-template <int N> void add_prior(ceres::Problem &problem, double *block, double mean, double deviation)
+/* The mean is where the block stands now. */
+template <int N> void add_prior(ceres::Problem &problem, double *block, double deviation)
 {
+    std::array<double, N> mean;
+    std::copy_n(block, N, mean.begin());
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<prior_residual<N>, N, N>(new prior_residual<N>{mean, deviation}), nullptr,
         block);
@@ -172,6 +191,7 @@ class lamp_search
             add_paper(i);
             add_highlights(i);
         }
+        add_power();
         add_priors();
     }
 
@@ -289,6 +309,33 @@ class lamp_search
         }
     }
 
+    double log_power(int i) const
+    {
+        const weft_vec3 lamp = output->place[i].position_mm;
+        const double squared = (double)weft_dot(lamp, lamp) / (unit_mm * unit_mm);
+        return own[(size_t)i].level[1] + std::log(squared) - std::log(input->evidence[i].exposure);
+    }
+
+    /* One lamp has one power; it begins at the median. */
+    void add_power()
+    {
+        std::vector<double> power;
+        for (int i = 0; i < input->count; i++)
+            if (input->evidence[i].exposure > 0)
+                power.push_back(log_power(i));
+        if (power.size() < 2)
+            return;
+        std::nth_element(power.begin(), power.begin() + (long)power.size() / 2, power.end());
+        shared.power = power[power.size() / 2];
+        for (int i = 0; i < input->count; i++) {
+            if (!(input->evidence[i].exposure > 0))
+                continue;
+            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<power_residual, 1, 3, 3, 1>(
+                                         new power_residual{mount_of(i), std::log(input->evidence[i].exposure)}),
+                                     new ceres::CauchyLoss(2), lamp_of(i), own[(size_t)i].level, &shared.power);
+        }
+    }
+
     void hold(double *block)
     {
         if (problem.HasParameterBlock(block))
@@ -297,13 +344,15 @@ class lamp_search
 
     void add_priors()
     {
-        add_prior<WEFT_TONE_TERMS>(problem, shared.tone, 0, tone_deviation);
-        add_prior<2>(problem, shared.vignetting, 0, vignetting_deviation);
-        add_prior<1>(problem, &shared.ink, shared.ink, ink_prior_deviation);
+        add_prior<WEFT_TONE_TERMS>(problem, shared.tone, tone_deviation);
+        /* Natural vignetting is cos^4 = 1 - 2 r^2 + ...; the rims of a lens take more, its design less. */
+        shared.vignetting[0] = -2 * input->corner_radius_squared;
+        add_prior<2>(problem, shared.vignetting, vignetting_deviation);
+        add_prior<1>(problem, &shared.ink, ink_prior_deviation);
         for (auto &shift : shared.shift)
-            add_prior<2>(problem, shift, 0, shift_deviation_mm / unit_mm);
+            add_prior<2>(problem, shift, shift_deviation_mm / unit_mm);
         if (input->flash)
-            add_prior<3>(problem, shared.flash, 0, flash_deviation_mm / unit_mm);
+            add_prior<3>(problem, shared.flash, flash_deviation_mm / unit_mm);
         for (int i = 0; !input->flash && i < input->count; i++)
             problem.AddResidualBlock(new ceres::AutoDiffCostFunction<distance_residual, 1, 3>(new distance_residual),
                                      nullptr, lamp_of(i));
