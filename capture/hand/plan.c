@@ -149,7 +149,7 @@ static weft_vec3 eye_of(const aim *a, double distance)
 static weft_pose stand_back(const weft_snap_request *request, const weft_snap_lens *lens, const aim *a)
 {
     double near = 60, far = 6000;
-    for (int i = 0; i < 50; i++) {
+    for (int i = 0; i < 30; i++) {
         double middle = sqrt(near * far);
         weft_pose pose = look_at(eye_of(a, middle), a->at, a->phi, a->roll, a->orientation);
         if (need_of_sheet(lens, &pose, request->opening_mm) > a->fill)

@@ -44,6 +44,20 @@ static void the_lens_distorts(void **state)
     assert_float_equal(slope[0] * scale, 30, 0.01);
 }
 
+/* As docs/reference/hand.md has it: what a reader of the truth computes. */
+static void the_distortion_is_that_of_the_truth(void **state)
+{
+    (void)state;
+    weft_snap_lens lens = a_lens();
+    double pitch = 23.5 / 3000, x = 2711, y = 1804, slope[2];
+    double dx = (x - lens.axis_x) * pitch, dy = (y - lens.axis_y) * pitch;
+    double q2 = (dx * dx + dy * dy) / (0.25 * pitch * pitch * (3000.0 * 3000 + 2000.0 * 2000));
+    double scale = 1 + lens.division[0] * q2 + lens.division[1] * q2 * q2;
+    weft_snap_lens_slopes(&lens, x, y, slope);
+    assert_float_equal(slope[0] * scale * lens.image_distance_mm, dx, 1e-9);
+    assert_float_equal(slope[1] * scale * lens.image_distance_mm, dy, 1e-9);
+}
+
 /* All rays of a pixel meet in the plane in focus, and nowhere nearer. */
 static void rays_meet_in_focus(void **state)
 {
@@ -99,6 +113,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ray_comes_back_to_its_pixel),
         cmocka_unit_test(the_lens_distorts),
+        cmocka_unit_test(the_distortion_is_that_of_the_truth),
         cmocka_unit_test(rays_meet_in_focus),
         cmocka_unit_test(the_rim_shades_the_corners),
     };

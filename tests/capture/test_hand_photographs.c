@@ -22,7 +22,7 @@ static weft_snap_request small_request(const char *folder)
     weft_snap_request request = weft_snap_request_default();
     request.folder = folder;
     request.content = "checker";
-    request.width = 450;
+    request.width = 360;
     request.photograph_count = COUNT;
     request.window = 0;
     request.truth_size = 16;
@@ -76,7 +76,7 @@ static void markers_lie_where_the_truth_says(void **state)
     weft_snap_shot shot[COUNT];
     weft_error error = {0};
     request.set = WEFT_SNAP_TRIPOD;
-    request.width = 1800;
+    request.width = 1500;
     request.format = WEFT_SNAP_TIFF;
     request.photograph_count = 1;
     request.no_balls = true; /* whose shadow may lie on a marker */
@@ -131,7 +131,7 @@ static void photographs_show_the_true_reflectance(void **state)
     int compared = 0;
     request.format = WEFT_SNAP_TIFF;
     request.set = WEFT_SNAP_TRIPOD;
-    request.width = 1200;
+    request.width = 900;
     request.no_balls = request.no_pin = true;
     take(&request);
     weft_snap_plan(&request, shot);
