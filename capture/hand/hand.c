@@ -150,6 +150,7 @@ static weft_code take_and_tell(const weft_snap_request *request, const weft_snap
 {
     WEFT_TRY(make_empty_folder(request->folder, error));
     WEFT_TRY(weft_snap_truth_write(request, shot, error));
+    WEFT_TRY(weft_snap_write_notes(request, shot, error));
     WEFT_TRY(take_all(request, shot, content, progress, error));
     if (request->truth_size > 0)
         return weft_snap_truth_write_reflectance(request, shot, content, progress, error);

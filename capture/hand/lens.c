@@ -95,7 +95,7 @@ double weft_snap_lens_vignetting(const weft_snap_lens *lens, double x, double y)
 static double distort(const weft_snap_lens *lens, double wanted)
 {
     double low = 0, high = 3 * wanted + 1;
-    for (int i = 0; i < 80; i++) {
+    for (int i = 0; i < 55; i++) {
         double middle = 0.5 * (low + high);
         if (middle / division_of(lens, middle * middle) < wanted)
             low = middle;

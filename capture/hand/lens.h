@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-enum { WEFT_SNAP_FIELD_COUNT = 512 };
+enum { WEFT_SNAP_FIELD_COUNT = 128 };
 
 typedef struct weft_snap_lens {
     int width, height;            /* pixels */

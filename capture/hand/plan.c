@@ -149,7 +149,7 @@ static weft_vec3 eye_of(const aim *a, double distance)
 static weft_pose stand_back(const weft_snap_request *request, const weft_snap_lens *lens, const aim *a)
 {
     double near = 60, far = 6000;
-    for (int i = 0; i < 50; i++) {
+    for (int i = 0; i < 30; i++) {
         double middle = sqrt(near * far);
         weft_pose pose = look_at(eye_of(a, middle), a->at, a->phi, a->roll, a->orientation);
         if (need_of_sheet(lens, &pose, request->opening_mm) > a->fill)
@@ -355,17 +355,46 @@ static weft_snap_fault fault_of(const weft_snap_request *request, int photograph
     return WEFT_SNAP_GOOD;
 }
 
-/* A hand between lamp and sheet; one over the plate lies low. */
-static void place_hand(dice *d, weft_snap_shot *shot)
+/* A hand in from one side: the shadow of its fingertips ends `short_of` before the middle of the opening. */
+static void reach_in(dice *d, double part, double short_of, weft_snap_shot *shot)
 {
+    const double reach = 110;
     double turn = between(d, 0, 2 * WEFT_PI);
-    shot->hand_along = weft_vec3_of(cos(turn), sin(turn), 0);
-    weft_vec3 target = {normal(d, 35), normal(d, 35), 0};
-    double part = shot->fault == WEFT_SNAP_HAND_OVER ? 0.08 : between(d, 0.35, 0.6);
-    shot->hand = weft_add(weft_scale(target, 1 - part), weft_scale(shot->lamp.at, part));
-    shot->hand = weft_subtract(shot->hand, weft_scale(shot->hand_along, 60));
-    if (shot->hand.z < 32)
-        shot->hand.z = 32;
+    weft_vec3 along = {cos(turn), sin(turn), 0}, aside = {-along.y, along.x, 0};
+    weft_vec3 tip = weft_add(weft_scale(along, -short_of), weft_scale(aside, normal(d, 15)));
+    weft_vec3 above = weft_add(weft_scale(tip, 1 - part), weft_scale(shot->lamp.at, part));
+    shot->hand_along = along;
+    shot->hand = weft_subtract(above, weft_scale(along, reach));
+    shot->hand.z = fmax(shot->hand.z, 32);
+}
+
+/* How far the line of the arm stays from the camera's line of sight to a corner of the opening's surroundings. */
+static double room_beside_hand(const weft_snap_request *request, const weft_snap_shot *shot)
+{
+    weft_snap_solid arm = {.a = weft_add(shot->hand, weft_scale(shot->hand_along, 110)),
+                           .b = weft_add(shot->hand, weft_scale(shot->hand_along, -260))};
+    weft_vec3 eye = weft_pose_camera_position(&shot->pose);
+    double room = INFINITY, side = 1.4 * request->opening_mm;
+    for (int i = 0; i < 4; i++) {
+        weft_vec3 corner = {i & 1 ? side : -side, i & 2 ? side : -side, 0};
+        room = fmin(room, weft_snap_solid_distance(&arm, corner, eye));
+    }
+    return room;
+}
+
+/* A hand that shades keeps out of the picture of the opening if it can; one over the plate does not. */
+static void place_hand(const weft_snap_request *request, dice *d, weft_snap_shot *shot)
+{
+    const double half_hand = 55;
+    if (shot->fault == WEFT_SNAP_HAND_OVER) {
+        reach_in(d, 0.08, -0.8 * request->opening_mm, shot);
+        return;
+    }
+    for (int try = 0; try < 60; try++) {
+        reach_in(d, between(d, 0.08, 0.25), request->opening_mm * between(d, -0.2, 1.2), shot);
+        if (room_beside_hand(request, shot) > half_hand)
+            return;
+    }
 }
 
 static void spoil(dice *d, weft_snap_shot *shot)
@@ -410,7 +439,7 @@ static void plan_shot(const weft_snap_request *request, int photograph, weft_sna
     focus(request, depth * (1 + normal(&focusing, 0.01)), shot->exposure.f_number, &shot->lens);
     d.next += 2;
     shot->hand_shadow = between(&d, 0, 1) < request->hand_shadows;
-    place_hand(&d, shot);
+    place_hand(request, &d, shot);
     spoil(&d, shot);
 }
 

@@ -3,7 +3,15 @@
 #include "capture/virtual/random.h"
 
 /* A block of pixels is treated alike. */
-enum { BLOCK = 8, EDGE_RAYS = 24, CONTENT_RAYS = 12, SOLID_RAYS = 32, FIRST_RAYS = 8, GLINT_RAYS = 400 };
+enum {
+    BLOCK = 8,
+    EDGE_RAYS = 24,
+    CONTENT_RAYS = 12,
+    SOLID_RAYS = 48,
+    SHADOW_RAYS = 64,
+    FIRST_RAYS = 12,
+    GLINT_RAYS = 400
+};
 
 /* The filter before a sensor splits every ray into four, so far apart (pixels). */
 static const double split = 0.35;
@@ -179,7 +187,7 @@ static weft_rgb draw_pixel(const view *v, int x, int y, const block_kind *kind)
     if (weft_snap_sheet_reflectance(v->scene->sheet, point.x, point.y) < 0)
         return trace_pixel(v, x, y, CONTENT_RAYS, true, kind);
     if (kind->shaded)
-        return trace_pixel(v, x, y, EDGE_RAYS, true, kind);
+        return trace_pixel(v, x, y, SHADOW_RAYS, true, kind);
     weft_vec3 toward_eye = weft_unit(weft_subtract(v->eye, point));
     weft_rgb seen = weft_snap_scene_shade(v->scene, point, toward_eye, &(weft_snap_chance){{0, 0}, 0, 0}, false);
     return plus((weft_rgb){0, 0, 0}, seen, weft_snap_lens_vignetting(v->lens, x, y));

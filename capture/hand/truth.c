@@ -140,6 +140,41 @@ weft_code weft_snap_truth_write(const weft_snap_request *request, const weft_sna
     return code;
 }
 
+/* ---- Notes ---- */
+
+static void print_notes(const weft_snap_request *request, const weft_snap_shot *shot, FILE *stream)
+{
+    if (request->set == WEFT_SNAP_TRIPOD)
+        fprintf(stream, "%d\n", request->photograph_count);
+    else
+        fputs("photograph,theta_deg,phi_deg\n", stream);
+    for (int i = 0; i < request->photograph_count; i++) {
+        weft_vec3 light = weft_unit(shot[i].lamp.at);
+        if (request->set == WEFT_SNAP_TRIPOD)
+            fprintf(stream, "%s %.6f %.6f %.6f\n", shot[i].name, light.x, light.y, light.z);
+        else
+            fprintf(stream, "%s,%.4f,%.4f\n", shot[i].name, weft_deg_of_rad(shot[i].nominal_theta_rad),
+                    weft_deg_of_rad(shot[i].nominal_phi_rad));
+    }
+}
+
+weft_code weft_snap_write_notes(const weft_snap_request *request, const weft_snap_shot *shot, weft_error *error)
+{
+    char path[PATH_MAX], *text = NULL;
+    size_t size = 0;
+    if (request->set != WEFT_SNAP_TRIPOD && request->set != WEFT_SNAP_STEPPED)
+        return WEFT_OK;
+    weft_snap_beside(request->folder, request->set == WEFT_SNAP_TRIPOD ? ".lp" : ".steps.csv", path);
+    FILE *stream = open_memstream(&text, &size);
+    if (!stream)
+        return weft_fail_memory(error, path, 0);
+    print_notes(request, shot, stream);
+    weft_code code =
+        fclose(stream) == 0 ? weft_write_file(path, text, size, error) : weft_fail_memory(error, path, size);
+    free(text);
+    return code;
+}
+
 /* ---- Reflectance ---- */
 
 static void fill_layout(const weft_snap_request *request, const weft_snap_shot *shot, weft_dataset_layout *layout)

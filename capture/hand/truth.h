@@ -19,4 +19,10 @@ weft_code weft_snap_truth_write_reflectance(const weft_snap_request *request, co
                                             const weft_snap_content *content, const weft_progress *progress,
                                             weft_error *error);
 
+/* What a person would note down. Of a tripod FOLDER.lp: the number of photographs, then a line for each, its name and
+ * the direction of the lamp from the middle of the sheet, in the frame of the sheet (as Polynomial Texture Mapping has
+ * it). Of a table FOLDER.steps.csv: name, theta_deg and phi_deg of the view as the table says. Nothing else. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_snap_write_notes(const weft_snap_request *request, const weft_snap_shot *shot, weft_error *error);
+
 #endif
