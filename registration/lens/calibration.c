@@ -9,7 +9,6 @@
 static const double deviations_of_median = 1.1774;
 
 static const double stray_deviations = 6, least_stray_px = 0.5, off_ratio = 3, least_off_px = 0.3, strayed_share = 0.25;
-static const double carried_errors = 3;
 
 /* ---- Leaving out ---- */
 
@@ -106,58 +105,6 @@ static weft_code fit_robustly(weft_board_photograph *photograph, int count, cons
 
 /* ---- The model ---- */
 
-static bool is_carried(const weft_lens_fit *fit, int parameter)
-{
-    return fabs(fit->value[parameter]) > carried_errors * fit->standard_error[parameter];
-}
-
-static weft_code note_fixed(const weft_lens_fit *fit, int parameter, weft_lens_report *report, weft_error *error)
-{
-    return weft_lines_add(&report->fixed, error,
-                          "%s is held at 0: the photographs say %.2g, with a standard error of %.2g",
-                          weft_lens_parameter_name[parameter], fit->value[parameter], fit->standard_error[parameter]);
-}
-
-enum { K2 = 5, P1 = 6, P2 = 7, K3 = 8 };
-
-/* Drops from the model what the fit does not carry, one at a time. */
-static weft_code simplify(const weft_lens_fit *fit, weft_lens_model *model, bool *changed, weft_lens_report *report,
-                          weft_error *error)
-{
-    *changed = true;
-    if (model->k3 && !is_carried(fit, K3)) {
-        model->k3 = 0;
-        return note_fixed(fit, K3, report, error);
-    }
-    if (!model->k3 && model->k2 && !is_carried(fit, K2)) {
-        model->k2 = 0;
-        return note_fixed(fit, K2, report, error);
-    }
-    if (model->tangential && !is_carried(fit, P1) && !is_carried(fit, P2)) {
-        model->tangential = 0;
-        WEFT_TRY(note_fixed(fit, P1, report, error));
-        return note_fixed(fit, P2, report, error);
-    }
-    *changed = false;
-    return WEFT_OK;
-}
-
-static weft_code choose_model(weft_board_photograph *photograph, int count, weft_lens_model *model, weft_lens_fit *fit,
-                              weft_lens_report *report, weft_error *error)
-{
-    for (bool changed = true; changed;) {
-        weft_code code = simplify(fit, model, &changed, report, error);
-        if (code == WEFT_OK && changed) {
-            weft_lens_fit_free(fit);
-            code = weft_lens_fit_run(photograph, count, model, 0, 0, fit, error);
-        }
-        WEFT_TRY(code);
-    }
-    return WEFT_OK;
-}
-
-/* ---- The report ---- */
-
 static weft_lens lens_of(const weft_lens_fit *fit, int width, int height)
 {
     const double *v = fit->value;
@@ -177,6 +124,85 @@ static weft_lens lens_of(const weft_lens_fit *fit, int width, int height)
         lens.standard_error[i] = fit->standard_error[i];
     return lens;
 }
+
+enum { K2 = 5, K3 = 8, MODELS = 6, BORDER_STEPS = 16 };
+
+/* From all terms to the radial one that every lens has. */
+static const weft_lens_model models[MODELS] = {{1, 1, 1}, {1, 0, 1}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
+
+/* Akaike's criterion for few residuals (Hurvich and Tsai 1989): they are Gaussian noise of unknown width, and poses are
+ * parameters, too. */
+static double criterion(const weft_lens_fit *fit, const weft_lens_model *model)
+{
+    double values = 2.0 * fit->points, parameters = 5 + model->k2 + 2 * model->tangential + model->k3 + 6 * fit->views;
+    double spare = values - parameters - 1;
+    if (spare <= 0)
+        return INFINITY;
+    return values * log(fit->rms_px * fit->rms_px) + 2 * parameters + 2 * parameters * (parameters + 1) / spare;
+}
+
+/* Whether a lens can be so: a polynomial may turn back, or run away, where there were no corners. Every pixel of the
+ * border of a photograph has a point of the world, at half to twice the distance from the axis. */
+static bool is_plausible(const weft_camera *c)
+{
+    for (int i = 0; i < 4 * BORDER_STEPS; i++) {
+        double along = i % BORDER_STEPS / (double)BORDER_STEPS;
+        bool upright = i / BORDER_STEPS % 2, far = i / BORDER_STEPS / 2;
+        weft_pixel at = {(upright ? far : along) * (c->width - 1), (upright ? along : far) * (c->height - 1)};
+        weft_pixel in = weft_camera_undistort(c, at), back = weft_camera_distort(c, in);
+        double away = hypot(at.x - c->cx, at.y - c->cy), undistorted = hypot(in.x - c->cx, in.y - c->cy);
+        if (!(hypot(back.x - at.x, back.y - at.y) < 1e-3 && undistorted >= away / 2 && undistorted <= 2 * away))
+            return false;
+    }
+    return true;
+}
+
+static weft_code note_fixed(const weft_lens_model *model, weft_lens_report *report, weft_error *error)
+{
+    const bool is_free[WEFT_LENS_PARAMETERS] = {
+        true, true, true, true, true, model->k2, model->tangential, model->tangential, model->k3};
+    for (int i = K2; i <= K3; i++) {
+        if (!is_free[i])
+            WEFT_TRY(weft_lines_add(&report->fixed, error, "%s is held at 0: the photographs do not tell it",
+                                    weft_lens_parameter_name[i]));
+    }
+    return WEFT_OK;
+}
+
+/* Takes a fit in the place of the best, if it is better. */
+static void keep_better(const weft_board_photograph *first, const weft_lens_model *model, weft_lens_fit *fit,
+                        weft_lens_model *best_model, weft_lens_fit *best, double *least)
+{
+    weft_camera camera = lens_of(fit, first->width, first->height).camera;
+    bool is_simplest = !model->k2 && !model->tangential;
+    double here = is_plausible(&camera) ? criterion(fit, model) : INFINITY;
+    if (here < *least || (is_simplest && *least == INFINITY)) {
+        weft_lens_fit_free(best);
+        *best = *fit;
+        *best_model = *model;
+        *least = here;
+    } else {
+        weft_lens_fit_free(fit);
+    }
+}
+
+/* `best` is the fit of the first model, and becomes that of the best. */
+static weft_code choose_model(const weft_board_photograph *photograph, int count, weft_lens_model *best_model,
+                              weft_lens_fit *best, weft_lens_report *report, weft_error *error)
+{
+    double least = INFINITY;
+    for (int i = 0; i < MODELS; i++) {
+        weft_lens_fit fit;
+        weft_code code = weft_lens_fit_run(photograph, count, &models[i], 0, 0, &fit, error);
+        if (code == WEFT_BAD_INPUT)
+            continue; /* none fits: another may */
+        WEFT_TRY(code);
+        keep_better(&photograph[fit.photograph[0]], &models[i], &fit, best_model, best, &least);
+    }
+    return note_fixed(best_model, report, error);
+}
+
+/* ---- The report ---- */
 
 static weft_code report_photographs(const weft_board_photograph *photograph, int count, weft_lens_report *report,
                                     weft_error *error)

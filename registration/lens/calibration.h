@@ -36,7 +36,8 @@ typedef struct weft_lens_report {
  * other, corners farther than 6 standard deviations from where the lens puts them, and photographs whose corners are
  * three times as far off as in others.
  *
- * Of k3, k2, and p1 with p2, in that order, those are held at 0 that are less than 3 standard errors from it.
+ * Of the models that leave out k3, k2 and k3, or p1 and p2, and are plausible over the whole photograph, the one is
+ * taken that Akaike's criterion prefers, corrected for few residuals (Hurvich and Tsai 1989).
  *
  * A standard error is the larger of two: that of least squares, which takes errors for independent, and the jackknife's
  * (Efron 1982), from leaving out photographs in turn, at most 10 groups of them.
