@@ -29,7 +29,7 @@ extern const weft_command weft_command_capture, weft_command_hand, weft_command_
     weft_command_photographs, weft_command_import;
 extern const weft_command weft_command_tile, weft_command_bard, weft_command_compress, weft_command_fit_weave;
 extern const weft_command weft_command_render, weft_command_play, weft_command_compare, weft_command_eval;
-extern const weft_command weft_command_info, weft_command_verify;
+extern const weft_command weft_command_info, weft_command_verify, weft_command_target, weft_command_lens;
 
 /* The progress reporter of the command line: a line with an ETA that rewrites itself on a terminal, a plain line every
  * few seconds otherwise, a JSON event with --json, nothing with --quiet. */

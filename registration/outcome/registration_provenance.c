@@ -1,6 +1,7 @@
 #include "registration/outcome/outcome.h"
 
 #include "base/text/json_text.h"
+#include "btf/session/camera_json.h"
 
 #include <string.h>
 
@@ -30,13 +31,6 @@ static json_t *pack_session(const weft_session *s)
                      s->black_level);
 }
 
-static json_t *pack_camera(const weft_camera *c)
-{
-    return json_pack("{si si sf sf sf sf sf sf s[fff]}", "width", c->width, "height", c->height, "fx", c->fx, "fy",
-                     c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2", c->k2, "vignetting", c->vignetting[0],
-                     c->vignetting[1], c->vignetting[2]);
-}
-
 static json_t *pack_faults(const weft_session *session, const weft_registration *r)
 {
     json_t *faults = json_array();
@@ -54,7 +48,7 @@ char *weft_registration_provenance(const weft_session *session, const weft_regis
         weft_json_append(&stays, pack_stay(session, r, stay));
     json_t *root =
         json_pack("{ss so so s{si si sf sf} si si so so}", "made_by", "weft register " WEFT_VERSION, "session",
-                  pack_session(session), "camera", pack_camera(&session->camera), "settings", "width",
+                  pack_session(session), "camera", weft_camera_pack(&session->camera), "settings", "width",
                   r->settings.width, "height", r->settings.height, "tolerance_mm", r->settings.limits.tolerance_mm,
                   "least_correlation", r->settings.limits.least_correlation, "images", r->image_count,
                   "white_levels_estimated", r->estimated_whites, "faults", pack_faults(session, r), "stays", stays);
