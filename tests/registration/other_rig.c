@@ -17,7 +17,7 @@ static const double opening_mm = 32, camera_mm = 520, light_mm = 700, focal_px =
 
 /* Degrees: theta, phi. */
 static const double view_deg[OTHER_RIG_VIEWS][2] = {{0, 0}, {30, 40}, {45, 160}, {60, 250}, {75, 10}, {70, 320}};
-static const double light_deg[OTHER_RIG_LIGHTS][2] = {{12, 75}, {40, 200}, {62, 330}};
+static const double light_deg[OTHER_RIG_LIGHTS][2] = {{12, 75}, {40, 200}, {68, 330}};
 
 other_rig other_rig_off(void)
 {
@@ -211,10 +211,10 @@ static double light_loss(const other_rig *rig, double px, double py)
 
 /* ---- What is on the plate ---- */
 
-/* Reflectance of the cloth at a drawn place. Its waves are 7 mm long and more. */
+/* Reflectance of the cloth at a drawn place. Its waves are 4 mm long and more. */
 static void pattern(double x, double y, double rgb[3])
 {
-    double warp = sin(2 * pi * (x + 0.2 * y) / 9), weft = cos(2 * pi * (y - 0.1 * x) / 7);
+    double warp = sin(2 * pi * (x + 0.2 * y) / 5), weft = cos(2 * pi * (y - 0.1 * x) / 4);
     rgb[0] = 0.30 + 0.10 * warp * weft + 0.04 * warp;
     rgb[1] = 0.25 + 0.08 * warp - 0.05 * weft;
     rgb[2] = 0.20 + 0.07 * weft * weft + 0.03 * warp;

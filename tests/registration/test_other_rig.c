@@ -76,8 +76,8 @@ static void compare_shot(int shot, weft_half sample[TEXELS][TEXELS][OTHER_RIG_SH
     }
 }
 
-/* Median relative error over all samples that are there. */
-static double reflectance_error(void)
+/* Relative error over all samples that are there: median, and 90th percentile. */
+static double reflectance_error(double *tenth)
 {
     static weft_half sample[TEXELS][TEXELS][OTHER_RIG_SHOTS][3];
     static uint8_t mask[TEXELS][TEXELS][OTHER_RIG_SHOTS];
@@ -91,6 +91,7 @@ static double reflectance_error(void)
     for (int shot = 0; shot < OTHER_RIG_SHOTS; shot++)
         compare_shot(shot, sample, mask, error, &count);
     assert_true(count > sizeof error / sizeof *error * 9 / 10);
+    *tenth = weft_quantile(error, count, 0.9);
     return weft_quantile(error, count, 0.5);
 }
 
@@ -110,30 +111,33 @@ static double bend_error(const other_rig *rig)
 }
 
 typedef struct floors {
-    double median_texels, worst_texels, bend_mm, reflectance;
+    double median_texels, worst_texels, bend_mm, reflectance, tenth;
 } floors;
 
 static void hold(const other_rig *rig, const floors *most)
 {
-    double worst, median, bend, reflectance;
+    double worst, median, bend, reflectance, tenth;
     take_and_register(rig);
     median = warp_errors(rig, &worst);
     bend = bend_error(rig);
-    reflectance = reflectance_error();
-    print_message("%.4f texels median, %.4f worst; reflectance %.2f %%\n", median, worst, 100 * reflectance);
+    reflectance = reflectance_error(&tenth);
+    print_message("%.4f texels median, %.4f worst; reflectance %.2f %%, a tenth beyond %.2f %%\n", median, worst,
+                  100 * reflectance, 100 * tenth);
     assert_true(registration.found.bend.stays == OTHER_RIG_VIEWS);
     assert_true(median < most->median_texels);
     assert_true(worst < most->worst_texels);
     assert_true(bend < most->bend_mm);
     assert_true(reflectance < most->reflectance);
+    assert_true(tenth < most->tenth);
     let_go();
 }
 
-/* Measured: 0.012 and 0.042 texels, 0.003 mm, 0.78 %. A flat plate assumed, it was 0.5 and 1.5 texels and 2.9 %. */
+/* Measured: 0.012 and 0.042 texels, 0.003 mm, 1.07 and 4.4 %, most of it the size of a pixel in steep views. The
+ * margins of reflectance are narrow: without the slope of the plate in its light it is 1.17 %. */
 static void a_bent_plate_before_a_camera_that_is_not_the_declared_one(void **state)
 {
     (void)state;
-    const floors most = {0.02, 0.05, 0.006, 0.012};
+    const floors most = {0.02, 0.05, 0.006, 0.0114, 0.046};
     other_rig rig = other_rig_off();
     hold(&rig, &most);
 }
