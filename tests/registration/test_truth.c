@@ -54,7 +54,8 @@ static int leave(void **state)
     return scratch_folder_leave(state);
 }
 
-static void poses_agree_with_the_truth_within_half_the_floors(void **state)
+/* Measured: 0.006 texels in the median view, 0.018 in the worst. The floors are 0.05 and 0.15. */
+static void poses_agree_with_the_truth(void **state)
 {
     (void)state;
     double error[STAYS];
@@ -68,8 +69,8 @@ static void poses_agree_with_the_truth_within_half_the_floors(void **state)
                       weft_deg_of_rad(registration.survey.view[registration.survey.stay[stay].view].theta_rad),
                       error[stay]);
     }
-    assert_true(weft_quantile(error, STAYS, 0.5) < 0.025);
-    assert_true(weft_quantile(error, STAYS, 1) < 0.075);
+    assert_true(weft_quantile(error, STAYS, 0.5) < 0.01);
+    assert_true(weft_quantile(error, STAYS, 1) < 0.03);
 }
 
 /* Nor is the lens that the session calibrates taken for darker at its rim: 0.2 % is that of the white patches. */
@@ -88,7 +89,8 @@ static void a_flat_plate_is_found_flat(void **state)
     assert_true(fabs(loss) < 0.01);
 }
 
-static void reflectance_agrees_with_the_truth_within_the_floor(void **state)
+/* Measured: 1.73 %. The floor is 3 %. */
+static void reflectance_agrees_with_the_truth(void **state)
 {
     (void)state;
     double *up_to_45 = malloc(sizeof *up_to_45 * TRUTH_IMAGES * VALUES);
@@ -110,7 +112,7 @@ static void reflectance_agrees_with_the_truth_within_the_floor(void **state)
     assert_true(count_45 > 0);
     double median = weft_quantile(up_to_45, count_45, 0.5);
     print_message("views to 45 degrees: median relative error %.2f %%\n", 100 * median);
-    assert_true(median < 0.03);
+    assert_true(median < 0.019);
     truth_errors_free(&errors);
     weft_dataset_close(dataset);
     free(up_to_45);
@@ -143,9 +145,9 @@ static void texels_beside_the_frame_are_right_or_missing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(poses_agree_with_the_truth_within_half_the_floors),
+        cmocka_unit_test(poses_agree_with_the_truth),
         cmocka_unit_test(a_flat_plate_is_found_flat),
-        cmocka_unit_test(reflectance_agrees_with_the_truth_within_the_floor),
+        cmocka_unit_test(reflectance_agrees_with_the_truth),
         cmocka_unit_test(texels_beside_the_frame_are_right_or_missing),
     };
     return cmocka_run_group_tests(tests, take_and_register, leave);
