@@ -1,3 +1,4 @@
+#include "btf/session/lens.h"
 #include "cli/arguments.h"
 #include "registration/hand/hand.h"
 #include "registration/hand/report.h"
@@ -7,7 +8,7 @@
 
 typedef struct photographs_command {
     weft_common_options common;
-    const char *input, *output, *report_folder;
+    const char *input, *output, *report_folder, *lens;
     double opening_mm, paper_reflectance;
     weft_hand_settings settings;
 } photographs_command;
@@ -25,6 +26,8 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, opening_mm), .low = 1, .high = 10000},
     {"size", 's', "WxH", "Texels of the opening (default: 256x256)", .kind = WEFT_OPTION_SIZE,
      .offset = offsetof(photographs_command, settings.width), .high = LARGEST_SIZE},
+    {"lens", .argument = "LENS.json", .help = "The lens, from weft lens (default: found in the photographs)",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(photographs_command, lens)},
     {"flash", .help = "The lamp is the camera's flash, or fixed to the camera", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(photographs_command, settings.flash)},
     {"balls", .argument = "MM", .help = "Diameter of the mirror balls on the sheet; 0: there are none (default: 20)",
@@ -68,7 +71,12 @@ static int run(int argc, char **argv)
     command.settings.target.paper_reflectance = command.settings.target.white_reflectance = command.paper_reflectance;
     weft_hand hand;
     weft_error error = {0};
-    weft_code code = weft_hand_register(command.input, command.output, &command.settings, &progress, &hand, &error);
+    weft_lens lens;
+    weft_code code = command.lens ? weft_lens_read(command.lens, &lens, &error) : WEFT_OK;
+    if (command.lens)
+        command.settings.lens = &lens.camera;
+    if (code == WEFT_OK)
+        code = weft_hand_register(command.input, command.output, &command.settings, &progress, &hand, &error);
     if (code == WEFT_OK) {
         say_outcome(&command, &hand);
         if (command.report_folder)

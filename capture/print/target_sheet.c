@@ -135,7 +135,7 @@ static bool is_ink(const weft_target *target, weft_rectangle outline, int column
 {
     double x = outline.x0 + (column + 0.5) / MARKER_CELLS * (outline.x1 - outline.x0);
     double y = outline.y0 + (row + 0.5) / MARKER_CELLS * (outline.y1 - outline.y0);
-    return weft_target_reflectance(target, x, y) < (target->ink_reflectance + target->paper_reflectance) / 2;
+    return weft_target_sheet_reflectance(target, x, y) < (target->ink_reflectance + target->paper_reflectance) / 2;
 }
 
 static double between(double from, double to, int cell)
@@ -158,7 +158,7 @@ static void draw_row_of_cells(weft_print_page *page, const weft_target *target, 
 
 static void draw_markers(weft_print_page *page, const weft_target *target)
 {
-    for (int id = 0; id < WEFT_TARGET_MARKER_COUNT; id++) {
+    for (int id = 0; id < WEFT_SHEET_MARKER_COUNT; id++) {
         weft_rectangle outline = weft_target_marker(target, id);
         for (int row = 0; row < MARKER_CELLS; row++)
             draw_row_of_cells(page, target, outline, row);

@@ -1,5 +1,7 @@
 #include "registration/hand/hand_bridge.h"
 
+#include "registration/pose/marker_edges.h"
+
 #include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -42,39 +44,17 @@ cv::Mat exposed(const cv::Mat &linear)
     return grey;
 }
 
-double shortest_side(const std::vector<cv::Point2f> &corner)
-{
-    double shortest = INFINITY;
-    for (size_t i = 0; i < 4; i++)
-        shortest = std::min(shortest, cv::norm(corner[i] - corner[(i + 1) % 4]));
-    return shortest;
-}
+/* Of a DICT_4X4 marker with its border. */
+constexpr int cells_across = 6;
 
-/* A window that holds one corner of the frame of ink, which is a sixth of the marker wide, and nothing else. */
-void refine_corners(const cv::Mat &full, std::vector<cv::Point2f> &corner)
+std::vector<std::vector<cv::Point2f>> find_markers(const cv::Mat &small, std::vector<int> &ids)
 {
-    const int reach = std::clamp((int)(shortest_side(corner) / 8), 2, 12);
-    const cv::TermCriteria until(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 60, 0.002);
-    cv::cornerSubPix(full, corner, cv::Size(reach, reach), cv::Size(-1, -1), until);
-}
-
-std::vector<std::vector<cv::Point2f>> find_markers(const cv::Mat &full, std::vector<int> &ids)
-{
-    const double scale = std::max(1.0, std::max(full.cols, full.rows) / search_side_px);
-    cv::Mat small;
-    cv::resize(full, small, cv::Size(), 1 / scale, 1 / scale, cv::INTER_AREA);
     const auto parameters = cv::aruco::DetectorParameters::create();
     parameters->adaptiveThreshWinSizeMax = 63;
     parameters->minMarkerPerimeterRate = 0.02;
     std::vector<std::vector<cv::Point2f>> corners;
-    cv::aruco::detectMarkers(exposed(small), cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50), corners, ids,
+    cv::aruco::detectMarkers(small, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50), corners, ids,
                              parameters);
-    const double scale_x = (double)full.cols / small.cols, scale_y = (double)full.rows / small.rows;
-    for (auto &marker : corners) {
-        for (auto &corner : marker)
-            corner = cv::Point2f((float)((corner.x + 0.5) * scale_x - 0.5), (float)((corner.y + 0.5) * scale_y - 0.5));
-        refine_corners(full, marker);
-    }
     return corners;
 }
 
@@ -82,7 +62,7 @@ using points_3d = std::vector<std::vector<cv::Point3f>>;
 using points_2d = std::vector<std::vector<cv::Point2f>>;
 
 /* The plate's y goes up, as it does in Weft; OpenCV does not mind. */
-void copy_points(const weft_plate_view *view, int count, points_3d &plate, points_2d &seen)
+void copy_points(const weft_corner_view *view, int count, points_3d &plate, points_2d &seen)
 {
     for (int i = 0; i < count; i++) {
         plate.emplace_back();
@@ -117,21 +97,27 @@ double reprojection_rms(const std::vector<cv::Point3f> &plate, const std::vector
 int flags_of(weft_lens_knowledge knowledge)
 {
     const int common =
-        cv::CALIB_USE_INTRINSIC_GUESS | cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K3;
-    if (knowledge == WEFT_LENS_UNKNOWN)
-        return common;
+        cv::CALIB_USE_INTRINSIC_GUESS | cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_FIX_TANGENT_DIST | cv::CALIB_FIX_K3;
     const int held = common | cv::CALIB_FIX_FOCAL_LENGTH | cv::CALIB_FIX_PRINCIPAL_POINT | cv::CALIB_FIX_K2;
-    return knowledge == WEFT_LENS_FOCAL_ONLY ? held : held | cv::CALIB_FIX_K1;
+    switch (knowledge) {
+    case WEFT_LENS_UNKNOWN:
+        return common;
+    case WEFT_LENS_FOCAL_ONLY:
+        return held;
+    case WEFT_LENS_KNOWN:
+        break;
+    }
+    return held | cv::CALIB_FIX_K1;
 }
 
-weft_code fit_lens(const weft_plate_view *view, int count, weft_lens_knowledge knowledge, weft_camera *camera,
+weft_code fit_lens(const weft_corner_view *view, int count, weft_lens_knowledge knowledge, weft_camera *camera,
                    weft_pose *pose, double *rms_px, weft_error *error)
 {
     points_3d plate;
     points_2d seen;
     copy_points(view, count, plate, seen);
     cv::Mat matrix = (cv::Mat_<double>(3, 3) << camera->fx, 0, camera->cx, 0, camera->fy, camera->cy, 0, 0, 1);
-    cv::Mat distortion = (cv::Mat_<double>(1, 5) << camera->k1, camera->k2, 0, 0, 0);
+    cv::Mat distortion = (cv::Mat_<double>(1, 5) << camera->k1, camera->k2, camera->p1, camera->p2, camera->k3);
     std::vector<cv::Mat> turns, shifts;
     const cv::TermCriteria until(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 100, 1e-10);
     const double rms = cv::calibrateCamera(plate, seen, cv::Size(camera->width, camera->height), matrix, distortion,
@@ -156,22 +142,27 @@ extern "C" weft_code weft_opencv_find_markers_in_photograph(const float *grey, i
 {
     *count = 0;
     return guarded("finding markers", error, [&] {
-        const cv::Mat full(height, width, CV_32F, const_cast<float *>(grey));
+        const cv::Mat full = exposed(cv::Mat(height, width, CV_32F, const_cast<float *>(grey)));
+        const double reduction = std::max(1.0, std::max(width, height) / search_side_px);
+        cv::Mat small;
+        cv::resize(full, small, cv::Size(), 1 / reduction, 1 / reduction, cv::INTER_AREA);
+        const double scale_x = (double)width / small.cols, scale_y = (double)height / small.rows;
         std::vector<int> ids;
-        const auto corners = find_markers(full, ids);
+        const auto corners = find_markers(small, ids);
         for (size_t found = 0; found < ids.size() && *count < WEFT_MARKERS_LIMIT; found++) {
             weft_marker *next = &marker[(*count)++];
             next->id = ids[found];
             for (size_t corner = 0; corner < 4; corner++) {
-                next->corner[corner][0] = (double)corners[found][corner].x;
-                next->corner[corner][1] = (double)corners[found][corner].y;
+                next->corner[corner][0] = ((double)corners[found][corner].x + 0.5) * scale_x - 0.5;
+                next->corner[corner][1] = ((double)corners[found][corner].y + 0.5) * scale_y - 0.5;
             }
+            weft_marker_refine(full.data, width, height, cells_across, next->corner);
         }
         return WEFT_OK;
     });
 }
 
-extern "C" weft_code weft_opencv_fit_lens(const weft_plate_view *view, int count, weft_lens_knowledge knowledge,
+extern "C" weft_code weft_opencv_fit_lens(const weft_corner_view *view, int count, weft_lens_knowledge knowledge,
                                           weft_camera *camera, weft_pose *pose, double *rms_px, weft_error *error)
 {
     return guarded("fitting a lens", error,

@@ -10,16 +10,16 @@ extern "C" {
 #endif
 
 /* Finds the markers of the target in a linear grey photograph [height][width] of any size and brightness. They are
- * looked for in a reduced picture and their corners refined in the full one, by the gradients around them. At most
+ * looked for in a reduced picture; their corners lie where lines along their edges meet in the full one. At most
  * WEFT_MARKERS_LIMIT are written. Errors: WEFT_SYSTEM with the library's message. */
 weft_code weft_opencv_find_markers_in_photograph(const float *grey, int width, int height, weft_marker *marker,
                                                  int *count, weft_error *error);
 
 /* Corners of one photograph: places on the plate, mm, and where they are seen, pixels. */
-typedef struct weft_plate_view {
+typedef struct weft_corner_view {
     int count;
     const double (*plate)[2], (*seen)[2]; /* [count] */
-} weft_plate_view;
+} weft_corner_view;
 
 /* What is known of a lens before any photograph is looked at. */
 typedef enum weft_lens_knowledge {
@@ -31,7 +31,7 @@ typedef enum weft_lens_knowledge {
 /* One lens and a pose a view, by bundle adjustment: least squares of the reprojection (Zhang 2000). `camera` (in: size
  * and what is known; out: the lens, its vignetting untouched). pose [count]; rms_px [count] of every view. Errors:
  * WEFT_BAD_INPUT where no lens fits; WEFT_SYSTEM. */
-weft_code weft_opencv_fit_lens(const weft_plate_view *view, int count, weft_lens_knowledge knowledge,
+weft_code weft_opencv_fit_lens(const weft_corner_view *view, int count, weft_lens_knowledge knowledge,
                                weft_camera *camera, weft_pose *pose, double *rms_px, weft_error *error);
 
 #ifdef __cplusplus

@@ -22,7 +22,7 @@ static const double film_diagonal_mm = 43.2666;
 /* Memory of one fit: the used photographs, packed. */
 typedef struct packing {
     int count, *index;
-    weft_plate_view *view;
+    weft_corner_view *view;
     weft_pose *pose;
     double *rms_px;
 } packing;
@@ -38,7 +38,7 @@ static void packing_free(packing *p)
 static weft_code pack(const weft_hand_photograph *photograph, int count, packing *p, weft_error *error)
 {
     size_t n = (size_t)count;
-    *p = (packing){0, calloc(n, sizeof(int)), calloc(n, sizeof(weft_plate_view)), calloc(n, sizeof(weft_pose)),
+    *p = (packing){0, calloc(n, sizeof(int)), calloc(n, sizeof(weft_corner_view)), calloc(n, sizeof(weft_pose)),
                    calloc(n, sizeof(double))};
     if (!p->index || !p->view || !p->pose || !p->rms_px) {
         packing_free(p);
@@ -48,8 +48,8 @@ static weft_code pack(const weft_hand_photograph *photograph, int count, packing
         if (!weft_hand_used(&photograph[i]))
             continue;
         p->index[p->count] = i;
-        p->view[p->count++] = (weft_plate_view){photograph[i].corner_count, (const double(*)[2])photograph[i].plate,
-                                                (const double(*)[2])photograph[i].seen};
+        p->view[p->count++] = (weft_corner_view){photograph[i].corner_count, (const double(*)[2])photograph[i].plate,
+                                                 (const double(*)[2])photograph[i].seen};
     }
     return WEFT_OK;
 }
@@ -159,7 +159,7 @@ static weft_code share_pose(weft_hand_photograph *photograph, const int *index, 
     if (!corner)
         return weft_fail_memory(error, "corners of a stay", 2 * limit * sizeof *corner);
     double(*plate)[2] = corner, (*seen)[2] = corner + limit;
-    weft_plate_view all = {0, (const double(*)[2])plate, (const double(*)[2])seen};
+    weft_corner_view all = {0, (const double(*)[2])plate, (const double(*)[2])seen};
     for (int i = 0; i < count; i++) {
         const weft_hand_photograph *p = &photograph[index[i]];
         memcpy(plate + all.count, p->plate, (size_t)p->corner_count * sizeof *plate);

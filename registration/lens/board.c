@@ -137,7 +137,7 @@ int weft_board_point_limit(const weft_board *b)
 {
     switch (b->kind) {
     case WEFT_BOARD_PLATE:
-        return 4 * WEFT_TARGET_MARKER_COUNT;
+        return 4 * WEFT_SHEET_MARKER_COUNT;
     case WEFT_BOARD_CHESSBOARD:
     case WEFT_BOARD_CHARUCO:
         return b->columns * b->rows;

@@ -95,7 +95,7 @@ static int marker_count(const weft_board *b, int layout)
 {
     int cells = b->columns * b->rows;
     if (b->kind == WEFT_BOARD_PLATE)
-        return WEFT_TARGET_MARKER_COUNT;
+        return WEFT_SHEET_MARKER_COUNT;
     return b->kind == WEFT_BOARD_CHARUCO ? (cells + layout) / 2 : cells;
 }
 

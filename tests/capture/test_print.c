@@ -96,10 +96,10 @@ static void assert_markers_at_true_size(const raster *r, const weft_target_sheet
 {
     weft_target target = weft_target_printed(settings->opening_mm);
     weft_marker marker[WEFT_MARKERS_LIMIT];
-    assert_int_equal(find(r, marker), WEFT_TARGET_MARKER_COUNT);
+    assert_int_equal(find(r, marker), WEFT_SHEET_MARKER_COUNT);
     double worst = 0, along = 0, square = 0;
-    for (int i = 0; i < WEFT_TARGET_MARKER_COUNT; i++) {
-        assert_in_range(marker[i].id, 0, WEFT_TARGET_MARKER_COUNT - 1);
+    for (int i = 0; i < WEFT_SHEET_MARKER_COUNT; i++) {
+        assert_in_range(marker[i].id, 0, WEFT_SHEET_MARKER_COUNT - 1);
         for (int corner = 0; corner < 4; corner++) {
             double place[2];
             corner_of(&target, marker[i].id, corner, place);
@@ -297,7 +297,7 @@ static double worst_corner_px(const raster *picture, const weft_target *target, 
     int count = find(picture, marker), found = 0;
     double worst = 0;
     for (int i = 0; i < count; i++) {
-        if (marker[i].id >= WEFT_TARGET_MARKER_COUNT)
+        if (marker[i].id >= WEFT_SHEET_MARKER_COUNT)
             continue;
         found++;
         for (int corner = 0; corner < 4; corner++) {
@@ -307,9 +307,9 @@ static double worst_corner_px(const raster *picture, const weft_target *target, 
             worst = fmax(worst, hypot(p.x - marker[i].corner[corner][0], p.y - marker[i].corner[corner][1]));
         }
     }
-    if (found != WEFT_TARGET_MARKER_COUNT)
+    if (found != WEFT_SHEET_MARKER_COUNT)
         print_message("only %d markers\n", found);
-    return found == WEFT_TARGET_MARKER_COUNT ? worst : INFINITY;
+    return found == WEFT_SHEET_MARKER_COUNT ? worst : INFINITY;
 }
 
 static void every_corner_is_found_from_75_degrees(void **state)
