@@ -47,21 +47,24 @@ static weft_code light_sensor(const weft_snap_request *request, const weft_snap_
     return WEFT_OK;
 }
 
-static void encode_tone(float *pixels, size_t count)
+static weft_code encode_tone(float *pixels, size_t count, weft_error *error)
 {
     enum { STEPS = 1 << 14 };
     static const float scale = STEPS;
     float *curve = malloc((STEPS + 2) * sizeof *curve);
-    for (int i = 0; curve && i <= STEPS + 1; i++)
+    if (!curve)
+        return weft_fail_memory(error, "a tone curve", STEPS * sizeof *curve);
+    for (int i = 0; i <= STEPS + 1; i++)
         curve[i] = (float)weft_snap_tone((double)i / STEPS);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < count; i++) {
         float at = pixels[i] * scale;
         int below = (int)at;
         float part = at - (float)below;
-        pixels[i] = curve ? curve[below] * (1 - part) + curve[below + 1] * part : (float)weft_snap_tone(pixels[i]);
+        pixels[i] = curve[below] * (1 - part) + curve[below + 1] * part;
     }
     free(curve);
+    return WEFT_OK;
 }
 
 static weft_code develop(const weft_snap_request *request, const weft_snap_shot *shot, const weft_image *light,
@@ -77,7 +80,7 @@ static weft_code develop(const weft_snap_request *request, const weft_snap_shot 
     }
     weft_code code = weft_snap_sense(&shot->exposure, seen, count, shot->key, image->pixels, error);
     if (code == WEFT_OK && request->format == WEFT_SNAP_JPEG)
-        encode_tone(image->pixels, count);
+        code = encode_tone(image->pixels, count, error);
     weft_image_free(&shaken);
     return code;
 }

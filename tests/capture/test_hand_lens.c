@@ -111,10 +111,8 @@ static void the_rim_shades_the_corners(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ray_comes_back_to_its_pixel),
-        cmocka_unit_test(the_lens_distorts),
-        cmocka_unit_test(the_distortion_is_that_of_the_truth),
-        cmocka_unit_test(rays_meet_in_focus),
+        cmocka_unit_test(a_ray_comes_back_to_its_pixel),       cmocka_unit_test(the_lens_distorts),
+        cmocka_unit_test(the_distortion_is_that_of_the_truth), cmocka_unit_test(rays_meet_in_focus),
         cmocka_unit_test(the_rim_shades_the_corners),
     };
     return cmocka_run_group_tests_name("hand lens", tests, NULL, NULL);

@@ -264,6 +264,7 @@ static double exif_number(ExifData *data, ExifIfd ifd, ExifTag tag)
         return exif_get_short(entry->data, order);
     assert_int_equal(entry->format, EXIF_FORMAT_RATIONAL);
     ExifRational value = exif_get_rational(entry->data, order);
+    assert_int_not_equal(value.denominator, 0);
     return (double)value.numerator / value.denominator;
 }
 
@@ -296,6 +297,24 @@ static void exif_says_what_the_camera_did(void **state)
         exif_data_unref(data);
     }
     assert_true(turned);
+}
+
+/* A power of two is one over a whole number exactly. */
+static void exif_holds_every_exposure(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_image image;
+    expect_ok(weft_image_create(16, 16, &image, &error), &error);
+    for (int power = -11; power <= 1; power++) {
+        weft_camera_notes notes = {"a", "b", "2026:03:14 14:00:00", 1, ldexp(1, power), 8, 200, 35, 53};
+        expect_ok(weft_snapshot_write("exposed.jpg", &image, &notes, &error), &error);
+        ExifData *data = exif_data_new_from_file("exposed.jpg");
+        assert_non_null(data);
+        assert_float_equal(exif_number(data, EXIF_IFD_EXIF, EXIF_TAG_EXPOSURE_TIME) / ldexp(1, power), 1, 0.005);
+        exif_data_unref(data);
+    }
+    weft_image_free(&image);
 }
 
 /* The truth in the file is that of the plan, and rubbish is named. */
@@ -375,10 +394,15 @@ static void a_folder_in_use_is_left_alone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(markers_lie_where_the_truth_says), cmocka_unit_test(photographs_show_the_true_reflectance),
-        cmocka_unit_test(noise_is_that_of_electrons),       cmocka_unit_test(the_tone_curve_is_an_s),
-        cmocka_unit_test(threads_change_nothing),           cmocka_unit_test(exif_says_what_the_camera_did),
-        cmocka_unit_test(the_truth_is_written_down),        cmocka_unit_test(a_tripod_stands),
+        cmocka_unit_test(markers_lie_where_the_truth_says),
+        cmocka_unit_test(photographs_show_the_true_reflectance),
+        cmocka_unit_test(noise_is_that_of_electrons),
+        cmocka_unit_test(the_tone_curve_is_an_s),
+        cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(exif_says_what_the_camera_did),
+        cmocka_unit_test(exif_holds_every_exposure),
+        cmocka_unit_test(the_truth_is_written_down),
+        cmocka_unit_test(a_tripod_stands),
         cmocka_unit_test(a_folder_in_use_is_left_alone),
     };
     return cmocka_run_group_tests_name("hand photographs", tests, scratch_folder_enter, scratch_folder_leave);

@@ -88,6 +88,25 @@ static void the_pin_throws_its_shadow(void **state)
     assert_true(seen_at(&s, 0.5 * (x + foot[0]), 0.5 * (y + foot[1])) < 0.3 * bright);
 }
 
+/* The distance of two lines against a search over both, for fingers of all lengths and directions. */
+static void distances_of_lines_are_least(void **state)
+{
+    (void)state;
+    enum { STEPS = 400 };
+    for (int i = 0; i < 60; i++) {
+        weft_vec3 p = {20 * sin(i), 20 * cos(3 * i), 10}, q = {30 * cos(i), 25 * sin(2 * i), 90};
+        weft_snap_solid s = {.a = {15 * sin(5 * i), 12, 30 + 20 * cos(i)}, .b = {-20 * cos(i), 8 * sin(i), 50}};
+        double least = INFINITY;
+        for (int k = 0; k <= STEPS * STEPS; k++) {
+            double u = (double)(k % STEPS) / (STEPS - 1), v = (double)(k / STEPS) / STEPS;
+            weft_vec3 on_ray = weft_add(p, weft_scale(weft_subtract(q, p), u));
+            weft_vec3 on_solid = weft_add(s.a, weft_scale(weft_subtract(s.b, s.a), v));
+            least = fmin(least, weft_length(weft_subtract(on_ray, on_solid)));
+        }
+        assert_float_equal(weft_snap_solid_distance(&s, p, q), least, 0.15);
+    }
+}
+
 /* A larger lamp has softer shadows: beside the edge of a ball's shadow, a part of the light. */
 static void shadows_are_soft(void **state)
 {
@@ -106,6 +125,42 @@ static void shadows_are_soft(void **state)
         partial += lit > 0.03 && lit < 0.24;
     }
     assert_true(partial >= 2);
+}
+
+/* Pixels that are traced are as bright as those that are not: the paper with and without something that may stand
+ * before it, to the corners of the frame. */
+static void both_ways_to_a_pixel_agree(void **state)
+{
+    (void)state;
+    stage s;
+    set_up(&s, false);
+    s.shot.lens.width = 300;
+    s.shot.lens.height = 200;
+    s.shot.lens.axis_x = 149.5;
+    s.shot.lens.axis_y = 99.5;
+    for (int row = 0; row < WEFT_SNAP_CELLS_Y; row++)
+        for (int column = 0; column < WEFT_SNAP_CELLS_X; column++)
+            s.sheet.cell[row][column] = 0.85F;
+    s.sheet.margin_mm = 2000;
+    s.scene.lamp.at = weft_vec3_of(700, 500, 250);
+    float *quick = calloc(300 * 200 * 3, sizeof *quick), *traced = calloc(300 * 200 * 3, sizeof *traced);
+    assert_true(quick && traced);
+    weft_snap_render(&s.shot.lens, &s.shot.pose, &s.scene, 1, quick);
+    /* A ball just over the eye and over the lamp hides nothing, but comes near all that the eye sees. */
+    weft_vec3 eye = weft_pose_camera_position(&s.shot.pose);
+    s.scene.solid[0] =
+        (weft_snap_solid){.a = {eye.x, eye.y, eye.z + 60}, .b = {eye.x, eye.y, eye.z + 60}, .radius_mm = 59};
+    s.scene.solid_count = 1;
+    weft_snap_render(&s.shot.lens, &s.shot.pose, &s.scene, 1, traced);
+    int differ = 0, tried = 0;
+    for (size_t i = 0; i < 300 * 200; i++) {
+        differ += fabsf(traced[3 * i] - quick[3 * i]) > 0.04F * quick[3 * i];
+        tried += traced[3 * i] != quick[3 * i];
+    }
+    assert_true(tried > 1000);
+    assert_true(differ < 0.02 * 300 * 200);
+    free(quick);
+    free(traced);
 }
 
 /* ---- The mirror ---- */
@@ -216,7 +271,9 @@ int main(void)
         cmocka_unit_test(light_falls_with_square_and_cosine),
         cmocka_unit_test(a_disc_shines_ahead),
         cmocka_unit_test(the_pin_throws_its_shadow),
+        cmocka_unit_test(distances_of_lines_are_least),
         cmocka_unit_test(shadows_are_soft),
+        cmocka_unit_test(both_ways_to_a_pixel_agree),
         cmocka_unit_test(a_ball_mirrors_the_lamp),
         cmocka_unit_test(a_ball_mirrors_the_window),
     };
