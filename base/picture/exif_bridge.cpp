@@ -36,7 +36,8 @@ weft_code read_head(const char *path, weft_exif *exif, weft_error *error)
     exif->bits = spec.get_int_attribute("oiio:BitsPerSample", (int)(8 * spec.format.size()));
     exif->exposure_s = number_of(spec, {"ExposureTime"});
     exif->f_number = number_of(spec, {"FNumber"});
-    exif->iso = number_of(spec, {"Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings", "raw:iso_speed"});
+    exif->iso = number_of(
+        spec, {"Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings", "Exif:ISOSpeed", "ISOSpeed", "raw:iso_speed"});
     exif->focal_length_mm = number_of(spec, {"Exif:FocalLength"});
     exif->focal_length_35mm = number_of(spec, {"Exif:FocalLengthIn35mmFilm"});
     return WEFT_OK;

@@ -7,6 +7,9 @@
  * or dimmer than this many times what the ball shows at the median, is no lamp. */
 static const double spot_share = 0.5, largest_share = 0.12, least_contrast = 3;
 
+/* How far the centre of a spot lies from the middle of the highlight, and what the shape of ball and lamp add. */
+static const double spot_error_px = 0.2, least_deviation_rad = 0.002;
+
 /* Of the outline: beyond it lies the paper. */
 static const double inner_share = 0.97;
 
@@ -111,5 +114,7 @@ weft_highlight weft_ball_highlight(const weft_camera *camera, const weft_pose *p
     if (!(s.brightest > least_contrast * s.sum / (double)s.disc_pixels) ||
         (double)s.pixels > largest_share * (double)s.disc_pixels)
         return none;
-    return (weft_highlight){true, ray_of(camera, pose, s.x / s.weight, s.y / s.weight)};
+    /* The ball's normal turns by 1 / radius a pixel, and what it mirrors by twice that. */
+    double deviation_rad = hypot(least_deviation_rad, 2 * spot_error_px / d.radius);
+    return (weft_highlight){true, ray_of(camera, pose, s.x / s.weight, s.y / s.weight), deviation_rad};
 }

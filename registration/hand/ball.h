@@ -8,7 +8,8 @@
 /* Where a highlight is seen. */
 typedef struct weft_highlight {
     bool found;
-    weft_vec3 ray; /* unit, plate frame, from the camera toward the highlight */
+    weft_vec3 ray;        /* unit, plate frame, from the camera toward the highlight */
+    double deviation_rad; /* standard error of the direction that it mirrors: what a fraction of a pixel makes */
 } weft_highlight;
 
 /* Looks for the brightest small spot within the outline of the ball that touches the plate at (place[0], place[1]), mm.

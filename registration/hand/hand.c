@@ -292,7 +292,6 @@ static weft_code find_lamps(work *w, weft_error *error)
         if (weft_hand_used(&hand->photograph[i]))
             evidence[next++] = w->evidence[i];
     }
-    bool tone_unknown = !w->settings->linear && !hand->photograph[0].exif.is_float;
     weft_lamp_problem problem = {.target = &w->settings->target,
                                  .places = &w->places,
                                  .count = used,
@@ -300,7 +299,7 @@ static weft_code find_lamps(work *w, weft_error *error)
                                  .ball_diameter_mm = w->settings->ball_diameter_mm,
                                  .corner_radius_squared = corner_radius_squared(&hand->lens.camera),
                                  .flash = w->settings->flash,
-                                 .tone_unknown = tone_unknown};
+                                 .tone_unknown = hand->tone_found};
     if (code == WEFT_OK) {
         weft_lamp_guess(&problem, &hand->lamps);
         code = weft_lamp_solve(&problem, &hand->lamps, error);
@@ -315,8 +314,7 @@ static weft_code find_lamps(work *w, weft_error *error)
     if (code != WEFT_OK)
         return code;
     memcpy(hand->lens.camera.vignetting, hand->lamps.vignetting, sizeof hand->lamps.vignetting);
-    hand->tone_found = tone_unknown;
-    if (tone_unknown)
+    if (hand->tone_found)
         correct_tone(hand);
     return WEFT_OK;
 }
@@ -348,9 +346,11 @@ static weft_code run(work *w, const char *output, weft_error *error)
     weft_hand *hand = w->hand;
     WEFT_TRY(list_photographs(w, error));
     WEFT_TRY(check_enough(w, "can be read", error));
+    const weft_exif *common = common_size(hand);
+    hand->tone_found = !w->settings->linear && !common->is_float;
+    hand->tone = hand->tone_found ? weft_tone_srgb() : weft_tone_linear();
     WEFT_TRY(look_at_all(w, "looking for the target", look_for_corners, error));
     WEFT_TRY(check_enough(w, "show the target", error));
-    const weft_exif *common = common_size(hand);
     WEFT_TRY(weft_lens_estimate_from(hand->photograph, hand->count, common->width, common->height, w->settings->lens,
                                      &hand->lens, error));
     WEFT_TRY(weft_paper_places_create(&w->settings->target, &w->places, error));
@@ -368,7 +368,7 @@ weft_code weft_hand_register(const char *folder, const char *output, const weft_
 {
     work w = {.folder = folder, .settings = settings, .progress = progress, .hand = hand};
     double began_s = weft_now_s();
-    *hand = (weft_hand){.tone = settings->linear ? weft_tone_linear() : weft_tone_srgb()};
+    *hand = (weft_hand){0};
     weft_code code = run(&w, output, error);
     for (int i = 0; w.evidence && i < hand->count; i++)
         free(w.evidence[i].paper.sample);

@@ -25,7 +25,7 @@ typedef struct weft_hand {
     int used_count;
     weft_lens_estimate lens; /* with the vignetting found */
     weft_tone_curve tone;
-    bool tone_found;
+    bool tone_found;          /* else the files are linear */
     weft_lamp_solution lamps; /* without places: those are in the photographs */
     double seconds;
 } weft_hand;

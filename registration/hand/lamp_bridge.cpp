@@ -18,9 +18,8 @@ namespace
 /* Lengths inside the solver, so that all unknowns are of the order of 1. */
 constexpr double unit_mm = 100;
 
-/* Standard deviations of the model, not of the noise: paper is no perfect diffuser, ink shines, a highlight has a
- * shape. */
-constexpr double paper_deviation = 0.01, ink_deviation = 0.05, highlight_deviation_rad = 0.004;
+/* Standard deviations of the model, not of the noise: paper is no perfect diffuser, and ink shines. */
+constexpr double paper_deviation = 0.01, ink_deviation = 0.05;
 constexpr double independent_samples = 30;
 
 /* What is known beforehand: lamps stand at some 700 mm, within a factor of e; a ball stands within a millimetre of its
@@ -94,7 +93,7 @@ struct paper_residual {
 struct highlight_residual {
     mounting mount;
     vec3 eye, ray, touch; /* in units; `touch` is where the ball touches the sheet by the drawing */
-    double radius;
+    double radius, deviation_rad;
 
     template <typename T> bool operator()(const T *unknown, const T *shift, T *residual) const
     {
@@ -124,7 +123,7 @@ struct highlight_residual {
             mirrored[i] = ray[i] - 2.0 * normal_part * normal[i];
         for (int i = 0; i < 3; i++) {
             const int j = (i + 1) % 3, k = (i + 2) % 3;
-            residual[i] = (to[j] * mirrored[k] - to[k] * mirrored[j]) / (length * highlight_deviation_rad);
+            residual[i] = (to[j] * mirrored[k] - to[k] * mirrored[j]) / (length * deviation_rad);
         }
         return true;
     }
@@ -298,7 +297,8 @@ class lamp_search
                                                    {eye.x / unit_mm, eye.y / unit_mm, eye.z / unit_mm},
                                                    {seen.ray.x, seen.ray.y, seen.ray.z},
                                                    {place[0] / unit_mm, place[1] / unit_mm, 0},
-                                                   input->ball_diameter_mm / 2 / unit_mm};
+                                                   input->ball_diameter_mm / 2 / unit_mm,
+                                                   seen.deviation_rad};
             double vanishing[3];
             if (!(*residual)(lamp_of(i), shared.shift[ball], vanishing)) {
                 delete residual;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* As many directions as this, 10 degrees apart and not all from above, tell focal length and distortion. */
-enum { views_enough = 6 };
+enum { views_enough = 4 };
 static const double distinct_deg = 10, steepest_at_least_deg = 25;
 
 /* A photograph whose corners lie this many times further off than the median is of another lens, or of a bent sheet. */
