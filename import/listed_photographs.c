@@ -1,8 +1,8 @@
 #include "import/far_photograph.h"
 #include "import/readers.h"
 
-#include "base/text/image_list.h"
 #include "base/text/csv.h"
+#include "base/text/image_list.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
