@@ -8,9 +8,9 @@
 static const double unit_count = 32;
 static const double plate_radius = 52;
 static const double marker_side = 18, outer_marker_side = 12;
-static const double marker_center[WEFT_SHEET_MARKER_COUNT][2] = {{38, 0},    {27, 27},   {0, 38},   {-27, 27}, {-38, 0},
-                                                                 {-27, -27}, {0, -38},   {27, -27}, {54, 44},  {0, 70},
-                                                                 {-54, 44},  {-54, -44}, {0, -70},  {54, -44}};
+static const double marker_center[WEFT_SHEET_MARKER_COUNT][2] = {
+    {38, 0},   {27, 27}, {0, 38}, {-27, 27}, {-38, 0},   {-27, -27}, {0, -38},
+    {27, -27}, {54, 44}, {0, 70}, {-54, 44}, {-54, -44}, {-54, -75}, {54, -44}};
 static const double reference_center[4][2] = {{22.5, 0}, {0, 22.5}, {-22.5, 0}, {0, -22.5}};
 static const double reference_across = 7, reference_along = 13;
 static const double sheet_width = 124, sheet_height = 168;

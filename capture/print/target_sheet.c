@@ -227,9 +227,10 @@ static void draw_title(const sheet *s, weft_print_page *page)
     snprintf(text, sizeof text, "opening %.4g mm  \u00b7  balls %g mm  \u00b7  pin %g mm  \u00b7  paper %s",
              s->settings->opening_mm, s->settings->ball_mm, s->settings->pin_mm, s->settings->paper.name);
     weft_print_text(page, 0, y - 5.5 * s->scale, 3.1 * s->scale, WEFT_PRINT_CENTRED, 0, text);
-    double arrow = 64 * s->unit, wide = 3.2 * s->scale, high = 5.5 * s->scale;
-    weft_print_triangle(page, (const double[3][2]){{-wide, arrow}, {wide, arrow}, {0, arrow + high}});
-    weft_print_text(page, 0, arrow - 4 * s->scale, 3.6 * s->scale, WEFT_PRINT_CENTRED, 0, "up");
+    /* Beside the marker in the middle. */
+    double x = -16 * s->unit, arrow = 68 * s->unit, wide = 3.2 * s->scale, high = 5.5 * s->scale;
+    weft_print_triangle(page, (const double[3][2]){{x - wide, arrow}, {x + wide, arrow}, {x, arrow + high}});
+    weft_print_text(page, x, arrow - 4 * s->scale, 3.6 * s->scale, WEFT_PRINT_CENTRED, 0, "up");
 }
 
 static void draw_lines(const sheet *s, weft_print_page *page, double x, const char *const *line)

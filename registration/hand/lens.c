@@ -233,6 +233,9 @@ weft_code weft_lens_estimate_from(weft_hand_photograph *photograph, int count, i
                                   const weft_camera *known, weft_lens_estimate *lens, weft_error *error)
 {
     *lens = (weft_lens_estimate){.knowledge = WEFT_LENS_KNOWN};
+    if (known && (known->width != width || known->height != height))
+        return weft_fail(error, WEFT_BAD_INPUT, "the lens is of photographs of %d x %d pixels, these have %d x %d",
+                         known->width, known->height, width, height);
     if (known)
         lens->camera = *known;
     else

@@ -5,15 +5,18 @@
 
 /* In 32nds of the opening's side, as the target is drawn: how far apart places lie, how far around one nothing else may
  * lie, and half the side of the square that is averaged. */
-static const double unit_count = 32, spacing = 2, clearance = 1.1, reach = 0.5, keep_away = 20;
+static const double unit_count = 32, spacing = 2, clearance = 1.1, reach = 0.5, keep_away = 20, printed_beyond = 57;
 
 /* Bilinear samples along a side of the square, and how many pixels its margin must be wide for the point spread. */
 enum { samples_across = 5 };
 static const double least_margin_px = 1.5;
 
-/* Whether a ball or the pin stands on, or leans over, a place. */
+/* Whether a ball or the pin stands on, or leans over, a place, or words and rulers may be printed there. */
 static bool is_occupied(const weft_target *target, double x, double y)
 {
+    double limit = printed_beyond * target->opening_mm / unit_count;
+    if (fabs(x) > limit || fabs(y) > limit)
+        return true;
     double room = keep_away * target->opening_mm / unit_count, place[2];
     for (int thing = 0; thing <= WEFT_TARGET_BALL_COUNT; thing++) {
         if (thing < WEFT_TARGET_BALL_COUNT)

@@ -95,7 +95,7 @@ static void markers_lie_where_the_truth_says(void **state)
     weft_marker marker[WEFT_MARKERS_LIMIT];
     int count = 0;
     expect_ok(weft_opencv_find_markers(grey, image.width, image.height, marker, &count, &error), &error);
-    assert_int_equal(count, WEFT_TARGET_MARKER_COUNT);
+    assert_int_equal(count, WEFT_SHEET_MARKER_COUNT);
     for (int i = 0; i < count; i++)
         expect_marker(&request, &shot[0], &marker[i]);
     free(grey);
