@@ -137,7 +137,8 @@ static bool step_nearer(const weft_camera *c, weft_pixel wanted, weft_pixel *p, 
     double determinant = determinant_of(s), distance = hypot(excess->x, excess->y);
     weft_pixel step = {(s.yy * excess->x - s.xy * excess->y) / determinant,
                        (s.xx * excess->y - s.xy * excess->x) / determinant};
-    for (double share = 1; share > 1e-6; share /= 2) {
+    for (int halvings = 0; halvings < 20; halvings++) {
+        double share = ldexp(1, -halvings);
         weft_pixel next = {p->x - share * step.x, p->y - share * step.y}, left = excess_at(c, next, wanted);
         if (hypot(left.x, left.y) < distance && way_on_the_side_of_the_axis(c, *p, next) == 1) {
             *p = next;

@@ -50,7 +50,7 @@ static void format_date(char text[32])
     time_t seconds = given ? (time_t)strtoll(given, NULL, 10) : 0;
     struct tm date;
     if (!gmtime_r(&seconds, &date) || !strftime(text, 32, "%Y-%m-%dT%H:%M:%SZ", &date))
-        strcpy(text, "1970-01-01T00:00:00Z");
+        snprintf(text, 32, "1970-01-01T00:00:00Z");
 }
 
 static cairo_surface_t *create_pdf(FILE *stream, double width, double height, const char *title)

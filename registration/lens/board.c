@@ -113,8 +113,8 @@ weft_code weft_board_parse(const char *text, weft_board *board, weft_error *erro
     *board = (weft_board){0};
     if (strlen(text) >= sizeof copy)
         return weft_fail(error, WEFT_BAD_USAGE, "--board '%s' is too long", text);
-    strcpy(copy, text);
-    strcpy(board->text, text);
+    memcpy(copy, text, strlen(text) + 1);
+    memcpy(board->text, text, strlen(text) + 1);
     int count = split(copy, part);
     const kind_of_board *kind = find_kind(part[0]);
     if (!kind)
