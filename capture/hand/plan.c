@@ -416,8 +416,9 @@ static void name_shot(const weft_snap_request *request, int photograph, weft_sna
     dice d = dice_of(request->seed, -4);
     int first = (int)between(&d, 100, 8000), number = (first + photograph) % 10000;
     snprintf(shot->name, sizeof shot->name, "IMG_%04d.%s", number, ending[request->format][photograph % 7 == 5]);
-    snprintf(shot->date, sizeof shot->date, "2026:03:14 %02d:%02d:%02d", (14 + photograph / 180) % 24,
-             photograph / 3 % 60, photograph % 3 * 20 + photograph % 17);
+    unsigned count = (unsigned)photograph;
+    snprintf(shot->date, sizeof shot->date, "2026:03:14 %02u:%02u:%02u", (14 + count / 180) % 24, count / 3 % 60,
+             count % 3 * 20 + count % 17);
 }
 
 static void plan_shot(const weft_snap_request *request, int photograph, weft_snap_shot *shot)
