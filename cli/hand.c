@@ -32,7 +32,7 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_CHOICE, .offset = PLACE(format), .words = format_names},
     {"width", .argument = "N", .help = "Pixels across; the height is two thirds (default: 3000)",
      .kind = WEFT_OPTION_WHOLE, .offset = PLACE(width), .low = 300, .high = 8000},
-    {"opening", .argument = "MM", .help = "Side of the opening of the printed sheet (default: 40)",
+    {"opening", .argument = "MM", .help = "Side of the opening of the printed sheet (default: 50)",
      .kind = WEFT_OPTION_NUMBER, .offset = PLACE(opening_mm), .low = 20, .high = 200},
     {"focal-length", .argument = "MM", .help = "Of the lens, before a sensor of APS-C (default: 35)",
      .kind = WEFT_OPTION_NUMBER, .offset = PLACE(focal_length_mm), .low = 18, .high = 120},

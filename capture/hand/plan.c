@@ -31,7 +31,7 @@ weft_snap_request weft_snap_request_default(void)
     return (weft_snap_request){.seed = 1,
                                .photograph_count = 60,
                                .width = 3000,
-                               .opening_mm = 40,
+                               .opening_mm = 50,
                                .focal_length_mm = 35,
                                .max_view_rad = weft_rad_of_deg(65),
                                .lamp_radius_mm = 12,

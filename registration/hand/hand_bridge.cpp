@@ -1,6 +1,7 @@
 #include "registration/hand/hand_bridge.h"
 
 #include "registration/pose/marker_edges.h"
+#include "registration/pose/opencv_guard.h"
 
 #include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
@@ -8,25 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <new>
 #include <vector>
 
 namespace
 {
-
-template <typename Work> weft_code guarded(const char *what, weft_error *error, Work work)
-{
-    try {
-        return work();
-    } catch (const std::bad_alloc &) {
-        return weft_fail_memory(error, what, 0);
-    } catch (const std::exception &failure) {
-        return weft_fail(error, WEFT_SYSTEM, "%s failed in OpenCV: %s", what, failure.what());
-    } catch (...) {
-        return weft_fail(error, WEFT_SYSTEM, "%s failed in OpenCV", what);
-    }
-}
 
 /* The side of the picture in which markers are looked for: they are then some 100 pixels wide. */
 constexpr double search_side_px = 1600;
@@ -141,7 +127,7 @@ extern "C" weft_code weft_opencv_find_markers_in_photograph(const float *grey, i
                                                             weft_marker *marker, int *count, weft_error *error)
 {
     *count = 0;
-    return guarded("finding markers", error, [&] {
+    return weft_opencv_guarded("finding markers", error, [&] {
         const cv::Mat full = exposed(cv::Mat(height, width, CV_32F, const_cast<float *>(grey)));
         const double reduction = std::max(1.0, std::max(width, height) / search_side_px);
         cv::Mat small;
@@ -165,6 +151,6 @@ extern "C" weft_code weft_opencv_find_markers_in_photograph(const float *grey, i
 extern "C" weft_code weft_opencv_fit_lens(const weft_corner_view *view, int count, weft_lens_knowledge knowledge,
                                           weft_camera *camera, weft_pose *pose, double *rms_px, weft_error *error)
 {
-    return guarded("fitting a lens", error,
-                   [&] { return fit_lens(view, count, knowledge, camera, pose, rms_px, error); });
+    return weft_opencv_guarded("fitting a lens", error,
+                               [&] { return fit_lens(view, count, knowledge, camera, pose, rms_px, error); });
 }

@@ -1,31 +1,18 @@
 #include "registration/lens/calibrate_bridge.h"
 
+#include "registration/pose/opencv_guard.h"
+
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <new>
 #include <vector>
 
 namespace
 {
 
 using double_pair = double[2];
-
-template <typename Work> weft_code guarded(const char *what, weft_error *error, Work work)
-{
-    try {
-        return work();
-    } catch (const std::bad_alloc &) {
-        return weft_fail_memory(error, what, 0);
-    } catch (const std::exception &failure) {
-        return weft_fail(error, WEFT_SYSTEM, "%s failed in OpenCV: %s", what, failure.what());
-    } catch (...) {
-        return weft_fail(error, WEFT_SYSTEM, "%s failed in OpenCV", what);
-    }
-}
 
 cv::Mat wrap(const uint8_t *grey, int width, int height)
 {
@@ -106,7 +93,7 @@ extern "C" weft_code weft_opencv_find_chessboard(const uint8_t *grey, int width,
                                                  double (*corner)[2], int *found, weft_error *error)
 {
     *found = 0;
-    return guarded("finding a chessboard", error, [&] {
+    return weft_opencv_guarded("finding a chessboard", error, [&] {
         std::vector<cv::Point2f> corners;
         if (find_chessboard(wrap(grey, width, height), cv::Size(columns, rows), &corners) &&
             corners.size() == size_t(columns) * size_t(rows)) {
@@ -120,7 +107,7 @@ extern "C" weft_code weft_opencv_find_chessboard(const uint8_t *grey, int width,
 extern "C" weft_code weft_opencv_refine_corners(const uint8_t *grey, int width, int height, double (*corner)[2],
                                                 int count, int reach, weft_error *error)
 {
-    return guarded("refining corners", error, [&] {
+    return weft_opencv_guarded("refining corners", error, [&] {
         std::vector<cv::Point2f> corners;
         for (int i = 0; i < count; i++)
             corners.emplace_back(float(corner[i][0]), float(corner[i][1]));
@@ -138,7 +125,7 @@ extern "C" weft_code weft_opencv_calibrate(int width, int height, int views, con
                                            double standard_error[WEFT_LENS_VALUES], double (*rotation)[3],
                                            double (*residual_px)[2], double *rms_px, weft_error *error)
 {
-    return guarded("calibrating", error, [&] {
+    return weft_opencv_guarded("calibrating", error, [&] {
         const views_of_board split = split_views(views, point_count, board_mm, pixel);
         cv::Mat matrix, coefficients, deviations, pose_deviations, view_errors;
         std::vector<cv::Mat> rotations, translations;

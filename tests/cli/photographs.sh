@@ -25,7 +25,7 @@ refused() {
     [ ! -e refused.btf.h5 ] || fail "a dataset was left behind"
 }
 
-"$weft" hand checker -o free --photographs 12 --rubbish 4 --width 1100 --truth-size 32 -q
+"$weft" hand checker --opening 40 -o free --photographs 12 --rubbish 4 --width 1100 --truth-size 32 -q
 "$weft" photographs free -o free.btf.h5 --opening 40 --size 32x32 --report report >said 2>/dev/null
 "$python" "$here/photographs.py" free || fail "set free is wrong"
 for fault in "blurred" "something else" "lens covered" "covered"; do
@@ -34,11 +34,11 @@ done
 [ "$(grep -c "left out '" said)" = 4 ] || fail "not four are left out: $(cat said)"
 [ -s report/index.html ] || fail "no report"
 
-"$weft" hand checker -o tripod --photographs 8 --set tripod --width 900 --truth-size 32 -q
+"$weft" hand checker --opening 40 -o tripod --photographs 8 --set tripod --width 900 --truth-size 32 -q
 "$weft" photographs tripod -o tripod.btf.h5 --opening 40 --size 32x32 -q 2>/dev/null
 "$python" "$here/photographs.py" tripod || fail "set tripod is wrong"
 
-"$weft" hand checker -o linear --photographs 10 --format exr --width 900 --truth-size 32 -q
+"$weft" hand checker --opening 40 -o linear --photographs 10 --format exr --width 900 --truth-size 32 -q
 "$weft" photographs linear -o linear.btf.h5 --opening 40 --size 32x32 -q 2>/dev/null
 "$python" "$here/photographs.py" linear || fail "set linear is wrong"
 
