@@ -2,7 +2,6 @@
  * difference below 4/255, of 8-bit sRGB values. */
 #include "stage.h"
 
-#include "btf/direction/direction.h"
 #include "player/draw/player_parts.h"
 #include "reflectance/lafortune/lafortune.h"
 #include "reflectance/layers/layers.h"
@@ -135,75 +134,6 @@ static void compressed_equals_c_with_a_light_table(void **state)
 
 /* ---- Linear layers ---- */
 
-enum { LAYER_DIRECTIONS = 37 };
-
-/* Anything smooth in light and view that is positive on the whole. */
-static double factor_of(int layer, int colour, weft_vec3 light, weft_vec3 view)
-{
-    double phase = 0.7 * layer + 0.3 * colour;
-    double wave = cos(phase + 2.3 * light.x - 1.1 * view.y) * cos(1.9 * light.y + 1.3 * view.x + layer);
-    return light.z * (layer == 0 ? 1 : 0.8 * wave);
-}
-
-static void put_direction(int index, float *xyz)
-{
-    weft_vec3 direction = weft_direction_of_angles(weft_ubo81_angles(index));
-    xyz[0] = (float)direction.x;
-    xyz[1] = (float)direction.y;
-    xyz[2] = (float)direction.z;
-}
-
-static void fill_image(weft_layers *layers, int view, int light)
-{
-    int image = view * LAYER_DIRECTIONS + light;
-    put_direction(light, layers->light + 3 * image);
-    for (int i = 0; i < 3 * layers->layer_count; i++)
-        layers->value[(size_t)image * 3 * (size_t)layers->layer_count + (size_t)i] = weft_half_of_float(
-            (float)factor_of(i / 3, i % 3, vector(layers->light + 3 * image), vector(layers->view + 3 * view)));
-}
-
-/* The last squares of the largest level are dark enough for their ceilings to be reached. */
-static void fill_level(weft_layers_level *level, int layer_count)
-{
-    int texels = level->width * level->height;
-    for (int i = 0; i < texels * layer_count; i++) {
-        int layer = i / (4 * texels) * 4 + i % 4;
-        level->coefficient[i] = (int8_t)(layer == 0 ? 90 + rand() % 30 : rand() % 61 - 30);
-    }
-    size_t ceilings = weft_ceiling_count(level->width, level->height);
-    for (size_t i = 0; i < ceilings; i++)
-        level->ceiling[i] = i + 2 < ceilings ? 255 : 176;
-}
-
-static void add_layers(weft_material *material, weft_layers_kind kind, int layer_count)
-{
-    weft_error error = {0};
-    weft_layers shape = {.kind = kind,
-                         .layer_count = layer_count,
-                         .view_count = LAYER_DIRECTIONS,
-                         .image_count = LAYER_DIRECTIONS * LAYER_DIRECTIONS,
-                         .light_side = 12,
-                         .view_side = 9,
-                         .light_smoothness = 1e-2f,
-                         .view_smoothness = 1e-2f,
-                         .least_cosine = 0.5f};
-    expect_ok(weft_layers_create(&shape, material->level[0].width, material->level[0].height, material->level_count,
-                                 &material->layers, &error),
-              &error);
-    material->has_layers = true;
-    for (int view = 0; view < LAYER_DIRECTIONS; view++) {
-        put_direction(view, material->layers->view + 3 * view);
-        material->layers->first[view + 1] = (uint32_t)(LAYER_DIRECTIONS * (view + 1));
-        for (int light = 0; light < LAYER_DIRECTIONS; light++)
-            fill_image(material->layers, view, light);
-    }
-    for (int k = 0; k < layer_count; k++)
-        material->layers->scale[k] = 0.35f / 127;
-    srand(5);
-    for (int k = 0; k < material->level_count; k++)
-        fill_level(&material->layers->level[k], layer_count);
-}
-
 typedef struct layer_model {
     material_model lobes; /* which have the opacity */
     weft_layer_maps maps;
@@ -230,7 +160,7 @@ static void compare_layers(void **state, const char *what, weft_layers_kind kind
     layer_model model = {.count = scene.layers < layer_count ? (scene.layers + 3) / 4 * 4 : layer_count};
     weft_material *material = &model.lobes.material;
     stage_material(20, 13, 1, views, 0, material);
-    add_layers(material, kind, layer_count);
+    stage_layers(kind, layer_count, material);
     expect_ok(weft_table_directions_create(material, &model.lobes.directions, &error), &error);
     expect_ok(weft_layer_maps_create(material->layers, &model.maps, &error), &error);
     expect_ok(weft_player_set_material(s->player, material, &error), &error);

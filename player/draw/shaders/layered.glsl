@@ -32,8 +32,8 @@ float ceiling_at(int level, vec2 coordinate)
     return exp2((255.0 * textureLod(layer_ceiling, place * ceiling_step, 0.0).r - 192.0) / 8.0);
 }
 
-// Reflectance times cosine, for directions above the horizon.
-vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view)
+// Reflectance times cosine, for directions above the horizon. STOCHASTIC takes one of the two rows of view nodes.
+vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view, inout float chance)
 {
     vec3 half_vector = half_vector_of(light, view);
     vec2 inner = (HALF_VECTOR ? place_of_half_vector(half_vector) : place_of_direction(light));
@@ -41,6 +41,8 @@ vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view)
     inner = inner * (layer_sides.x - 1.0) + 0.5;
     float row = min(floor(outer.y), layer_sides.y - 2.0), share = outer.y - row;
     float rows = 1.0 / layer_sides.y;
+    if (STOCHASTIC)
+        row += happens(chance, share) ? 1.0 : 0.0;
     float low = (row + (outer.x + 0.5) * rows) * rows, high = low + rows;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < LAYER_GROUPS; i++) {
@@ -49,8 +51,9 @@ vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view)
         for (int c = 0; c < 3; c++) {
             vec2 node = inner + vec2(float(c), float(i)) * layer_sides.x;
             vec2 place = node / (layer_sides.x * vec2(3.0, float(LAYER_GROUPS)));
-            vec4 factor = mix(textureLod(layer_map, vec3(place, low), 0.0), textureLod(layer_map, vec3(place, high), 0.0),
-                              share);
+            vec4 factor = textureLod(layer_map, vec3(place, low), 0.0);
+            if (!STOCHASTIC)
+                factor = mix(factor, textureLod(layer_map, vec3(place, high), 0.0), share);
             sum[c] += dot(coefficient[i], factor);
         }
     }
@@ -93,7 +96,7 @@ vec4 radiance(SurfacePoint point)
         if (irradiance == vec3(0.0) || light.z <= 0.0 || point.view.z <= 0.0)
             continue;
         vec3 most = vec3(ceiling * min(1.0, light.z / least_cosine));
-        sum += irradiance / light.z * clamp(layers_value(coefficient, light, point.view), vec3(0.0), most);
+        sum += irradiance / light.z * clamp(layers_value(coefficient, light, point.view, point.chance), vec3(0.0), most);
     }
     if (!OPACITY)
         return vec4(sum, 1.0);
