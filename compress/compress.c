@@ -222,8 +222,10 @@ static weft_code fit_sparse(fitting *work, weft_material *material, weft_compres
 
 static weft_code fit_layers(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
-    weft_layers_options options = {
-        .layer_count = work->options->layer_count, .held_out = work->options->held_out, .budget = work->budget};
+    weft_layers_options options = {.layer_count = work->options->layer_count,
+                                   .held_out = work->options->held_out,
+                                   .for_screen = work->options->weights == WEFT_WEIGHTS_SCREEN,
+                                   .budget = work->budget};
     return options.layer_count > 0
                ? weft_layers_fit(work->dataset, &options, work->progress, material, &report->layers, error)
                : WEFT_OK;

@@ -63,8 +63,9 @@ static weft_code split_allocate(const weft_layer_images *images, split *s, weft_
     s->fitted.light = malloc(count * sizeof *s->fitted.light);
     s->fitted.view = malloc(views * sizeof *s->fitted.view);
     s->fitted.cosine = malloc(count * sizeof *s->fitted.cosine);
+    s->fitted.weight = malloc(count * sizeof *s->fitted.weight);
     if (s->held && s->held_view && s->fitted.image && s->fitted.first && s->fitted.light && s->fitted.view &&
-        s->fitted.cosine)
+        s->fitted.cosine && s->fitted.weight)
         return WEFT_OK;
     split_free(s);
     return weft_fail_memory(error, "images of layers", count * sizeof(weft_vec3));
@@ -80,9 +81,7 @@ static void add_view(const weft_layer_images *images, int view, bool held_view, 
             s->held_view[s->held_count] = images->view[view];
             s->held[s->held_count++] = i;
         } else {
-            fitted->image[fitted->image_count] = i;
-            fitted->cosine[fitted->image_count] = images->cosine[i];
-            fitted->light[fitted->image_count++] = images->light[i];
+            weft_layer_images_add(fitted, images, i, i);
         }
     }
     if (fitted->image_count == before)
@@ -136,7 +135,7 @@ static weft_code find_coefficients(const trial *t, weft_error *error)
 static void add_errors(const trial *t, const weft_layer_maps *maps, int held, double *square, double *energy)
 {
     int image = t->split->held[held], count = t->components->count;
-    float factor[3 * WEFT_LAYERS_MAX];
+    float factor[3 * WEFT_LAYERS_MAX], weight = t->images->weight[image];
     weft_layer_factors(maps, t->images->light[image], t->split->held_view[held], factor);
     for (int texel = 0; texel < t->whole->texel_count; texel++) {
         const float *own = t->coefficient + (size_t)texel * (size_t)count;
@@ -147,7 +146,7 @@ static void add_errors(const trial *t, const weft_layer_maps *maps, int held, do
             float value = 0;
             for (int k = 0; k < count; k++)
                 value += own[k] * factor[3 * k + c];
-            double difference = fmax((double)value, 0) - (double)sample[c];
+            double difference = (double)(weight * fmaxf(value, 0) - sample[c]);
             *square += difference * difference;
             *energy += (double)sample[c] * (double)sample[c];
         }

@@ -17,7 +17,8 @@ static weft_code allocate(const weft_dataset_layout *layout, weft_layer_images *
     images->light = malloc(count * sizeof *images->light);
     images->view = malloc(views * sizeof *images->view);
     images->cosine = malloc(count * sizeof *images->cosine);
-    bool all = images->image && images->first && images->light && images->view && images->cosine;
+    images->weight = malloc(count * sizeof *images->weight);
+    bool all = images->image && images->first && images->light && images->view && images->cosine && images->weight;
     return all ? WEFT_OK : weft_fail_memory(error, "images of layers", count * sizeof *images->light);
 }
 
@@ -28,6 +29,7 @@ void weft_layer_images_free(weft_layer_images *images)
     free(images->light);
     free(images->view);
     free(images->cosine);
+    free(images->weight);
     *images = (weft_layer_images){0};
 }
 
@@ -36,6 +38,7 @@ static void add_image(weft_layer_images *images, const weft_dataset_layout *layo
     weft_vec3 light = weft_unit(layout->light[image]);
     images->image[images->image_count] = image;
     images->light[images->image_count] = light;
+    images->weight[images->image_count] = 1;
     images->cosine[images->image_count++] = layout->values == WEFT_REFLECTANCE ? (float)light.z : 1.0f;
 }
 
@@ -72,6 +75,14 @@ weft_code weft_layer_images_create(const weft_dataset_layout *layout, const uint
     return code;
 }
 
+void weft_layer_images_add(weft_layer_images *images, const weft_layer_images *from, int index, int image)
+{
+    images->image[images->image_count] = image;
+    images->light[images->image_count] = from->light[index];
+    images->weight[images->image_count] = from->weight[index];
+    images->cosine[images->image_count++] = from->cosine[index];
+}
+
 int weft_layer_images_gather(const weft_layer_images *images, const weft_half *samples, const uint8_t *mask,
                              float *scratch, float *vector, uint8_t *valid)
 {
@@ -85,7 +96,7 @@ int weft_layer_images_gather(const weft_layer_images *images, const weft_half *s
         valid[i] = known[images->image[i]] > 0;
         valid_count += valid[i];
         for (size_t c = 0; c < 3; c++)
-            vector[3 * i + c] = images->cosine[i] * sample[c];
+            vector[3 * i + c] = images->weight[i] * images->cosine[i] * sample[c];
     }
     return valid_count;
 }

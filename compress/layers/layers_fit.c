@@ -39,6 +39,8 @@ static weft_code learn(fitting *work, weft_material *material, weft_layers_repor
     weft_progress_report(work->progress, "learning layers", 0, 2);
     WEFT_TRY(weft_layer_images_create(layout, work->options->held_out, &work->images, error));
     WEFT_TRY(weft_training_read(work->dataset, &work->images, &work->training, error));
+    if (work->options->for_screen)
+        weft_training_weigh_for_screen(&work->training, &work->images);
     WEFT_TRY(weft_layer_model_choose(&work->images, &work->training, count, &report->kind, report->trial_error, error));
     weft_progress_report(work->progress, "learning layers", 1, 2);
     WEFT_TRY(weft_components_find(&work->training, count, &work->components, error));
@@ -88,6 +90,7 @@ static size_t compare_image(const fitting *work, const weft_layer_maps *maps, in
     float factor[3 * WEFT_LAYERS_MAX];
     size_t count = 0;
     weft_vec3 light = work->images.light[image];
+    float scale = 1 / work->images.weight[image];
     weft_layer_factors(maps, light, work->images.view[view], factor);
     for (size_t texel = 0; texel < (size_t)training->texel_count; texel++) {
         const float *sample = training->vector + texel * training->length + 3 * (size_t)image;
@@ -95,9 +98,9 @@ static size_t compare_image(const fitting *work, const weft_layer_maps *maps, in
             continue;
         weft_rgb value = weft_layers_texel(work->layers, work->layers->layer_count, factor, 0, training->place[texel].x,
                                            training->place[texel].y, light.z);
-        pair[count++] = (weft_compared){sample[0], (float)value.r};
-        pair[count++] = (weft_compared){sample[1], (float)value.g};
-        pair[count++] = (weft_compared){sample[2], (float)value.b};
+        pair[count++] = (weft_compared){scale * sample[0], (float)value.r};
+        pair[count++] = (weft_compared){scale * sample[1], (float)value.g};
+        pair[count++] = (weft_compared){scale * sample[2], (float)value.b};
     }
     return count;
 }

@@ -8,9 +8,12 @@
 #include "btf/material/material.h"
 #include "compress/run/memory.h"
 
+#include <stdbool.h>
+
 typedef struct weft_layers_options {
     int layer_count;         /* 4 .. 64, a multiple of 4 */
     const uint8_t *held_out; /* [image_count] images that the fit must not see, or NULL */
+    bool for_screen;         /* dim images count for more (compress/options/options.h) */
     weft_memory_budget budget;
 } weft_layers_options;
 

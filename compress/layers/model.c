@@ -38,18 +38,25 @@ static void fill_directions(const weft_layer_images *images, weft_layers *layers
     memcpy(layers->first, images->first, ((size_t)images->view_count + 1) * sizeof *layers->first);
 }
 
-static void fill_values(const weft_components *components, weft_layers *layers)
+/* Without the weights. */
+static float component_at(const weft_layer_images *images, const float *vector, size_t i)
+{
+    return vector[i] / images->weight[i / 3];
+}
+
+static void fill_values(const weft_layer_images *images, const weft_components *components, weft_layers *layers)
 {
     size_t count = (size_t)layers->layer_count, series = 3 * count;
     for (size_t k = 0; k < count; k++) {
         const float *vector = components->vector + k * components->length;
         float most = 0;
         for (size_t i = 0; i < 3 * (size_t)layers->image_count; i++)
-            most = fmaxf(most, fabsf(vector[i]));
+            most = fmaxf(most, fabsf(component_at(images, vector, i)));
         layers->scale[k] = most;
         for (size_t i = 0; i < (size_t)layers->image_count; i++)
             for (size_t c = 0; c < 3; c++)
-                layers->value[i * series + 3 * k + c] = weft_half_of_float(most > 0 ? vector[3 * i + c] / most : 0);
+                layers->value[i * series + 3 * k + c] =
+                    weft_half_of_float(most > 0 ? component_at(images, vector, 3 * i + c) / most : 0);
     }
 }
 
@@ -68,7 +75,7 @@ weft_code weft_layer_model_create(const weft_layer_images *images, const weft_co
                          .least_cosine = least_cosine(images)};
     WEFT_TRY(weft_layers_create(&shape, width, height, level_count, result, error));
     fill_directions(images, *result);
-    fill_values(components, *result);
+    fill_values(images, components, *result);
     return WEFT_OK;
 }
 
@@ -78,8 +85,8 @@ static void factors_of_view(const weft_layer_maps *maps, const weft_layer_images
     float at[3 * WEFT_LAYERS_MAX];
     for (size_t i = images->first[view]; i < images->first[view + 1]; i++) {
         weft_layer_factors(maps, images->light[i], images->view[view], at);
-        for (size_t k = 0; k < count; k++)
-            memcpy(factor + k * images->length + 3 * i, at + 3 * k, 3 * sizeof *factor);
+        for (size_t k = 0; k < 3 * count; k++)
+            factor[k / 3 * images->length + 3 * i + k % 3] = images->weight[i] * at[k];
     }
 }
 

@@ -11,7 +11,8 @@ weft_code weft_layer_model_create(const weft_layer_images *images, const weft_co
                                   weft_layers_kind kind, int width, int height, int level_count, weft_layers **result,
                                   weft_error *error);
 
-/* What the maps give at the images themselves: factor [layer][images->length], aligned to 64 bytes. */
+/* What the maps give at the images themselves, times their weights: factor [layer][images->length], aligned to 64
+ * bytes. */
 void weft_layer_model_factors(const weft_layer_maps *maps, const weft_layer_images *images, float *factor);
 
 /* Which kind of maps predicts images better that it has not seen: a tenth of the views and of the lights are held out

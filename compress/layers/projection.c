@@ -38,11 +38,13 @@ void weft_projection_free(weft_projection *projection)
 
 /* ---- A block ---- */
 
-static float brightest(const float *vector, size_t count)
+static float brightest(const weft_layer_images *images, const float *vector)
 {
     float most = 0;
-    for (size_t i = 0; i < count; i++)
-        most = fmaxf(most, vector[i]);
+    for (size_t i = 0; i < (size_t)images->image_count; i++) {
+        float largest = fmaxf(vector[3 * i], fmaxf(vector[3 * i + 1], vector[3 * i + 2]));
+        most = fmaxf(most, largest / images->weight[i]);
+    }
     return most;
 }
 
@@ -59,7 +61,7 @@ static size_t gather(const run *r, worker *own, long first, int count)
         own->empty += valid == 0;
         r->projection
             ->brightest[((size_t)block->place.y + y) * (size_t)r->projection->width + (size_t)block->place.x + x] =
-            brightest(vector, 3 * images);
+            brightest(r->images, vector);
     }
     return images;
 }

@@ -1,5 +1,8 @@
 #include "compress/layers/training.h"
 
+#include "compress/fit/bundle.h"
+
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -136,6 +139,40 @@ weft_code weft_training_read(weft_dataset *dataset, const weft_layer_images *ima
     free(r.mask);
     free(r.scratch);
     return code;
+}
+
+/* ---- Weights ---- */
+
+/* The mean of an image over the texels that have it. */
+static double grey_of(const weft_training *t, size_t image, double *square, double *count)
+{
+    double sum = 0, own = 0;
+    for (size_t texel = 0; texel < (size_t)t->texel_count; texel++) {
+        const float *sample = t->vector + texel * t->length + 3 * image;
+        if (!t->valid[texel * t->image_count + image])
+            continue;
+        for (int c = 0; c < 3; c++) {
+            sum += (double)sample[c];
+            *square += (double)sample[c] * (double)sample[c];
+        }
+        own += 3;
+    }
+    *count += own;
+    return own > 0 ? fmax(sum / own, 0) : 0;
+}
+
+void weft_training_weigh_for_screen(weft_training *t, weft_layer_images *images)
+{
+    double square = 0, count = 1e-30;
+    for (size_t i = 0; i < t->image_count; i++)
+        images->weight[i] = (float)grey_of(t, i, &square, &count);
+    double toe = WEFT_SCREEN_TOE * sqrt(square / count) + 1e-30;
+    for (size_t i = 0; i < t->image_count; i++) {
+        images->weight[i] = (float)sqrt(1 / (1 + (double)images->weight[i] / toe));
+        for (size_t texel = 0; texel < (size_t)t->texel_count; texel++)
+            for (size_t c = 0; c < 3; c++)
+                t->vector[texel * t->length + 3 * i + c] *= images->weight[i];
+    }
 }
 
 /* ---- Some of the images ---- */

@@ -27,6 +27,11 @@ weft_code weft_training_read(weft_dataset *dataset, const weft_layer_images *ima
                              weft_error *error);
 void weft_training_free(weft_training *training);
 
+/* Weighs every image, in `images` and in the samples, by 1 / (1 + grey / (WEFT_SCREEN_TOE rms)): grey is the mean of
+ * its samples and rms that of all. Where factors cannot follow a highlight, what is dim keeps its colour then, as with
+ * weft_samples_weigh_for_screen. */
+void weft_training_weigh_for_screen(weft_training *training, weft_layer_images *images);
+
 /* What training texels say of some of their images alone: those at index choice [images->image_count] of `whole`. The
  * caller frees. Errors: WEFT_SYSTEM. */
 weft_code weft_training_subset(const weft_training *whole, const weft_layer_images *images, const int *choice,

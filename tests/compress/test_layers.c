@@ -57,6 +57,20 @@ static void fill_masked(const weft_dataset_layout *layout, int x, int y, float *
     }
 }
 
+/* A highlight of another width in every texel, over a dim ground: no few functions say it. */
+static void fill_widths(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    (void)mask;
+    for (int i = 0; i < layout->image_count; i++) {
+        weft_vec3 light = layout->light[i], view = layout->view[layout->view_of_image[i]];
+        weft_vec3 axis = weft_unit(weft_vec3_of(0.05 * (x % 7) - 0.15, 0.05 * (y % 5) - 0.1, 1));
+        weft_vec3 half_vector = weft_unit(weft_add(light, view));
+        double shine = pow(fmax(0, weft_dot(half_vector, axis)), 10 + 17 * ((x * 3 + y * 5) % 11));
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = (float)(light.z * (0.02 + 2 * shine));
+    }
+}
+
 /* What is held out says nonsense and does not say so. */
 static int is_held(int image)
 {
@@ -198,6 +212,25 @@ static void what_is_held_out_is_not_seen(void **state)
     weft_material_free(&material);
 }
 
+static void dim_samples_count_for_more_on_a_screen(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report even, screen;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_widths, WEFT_FAR);
+    fit(&options, &material, &even);
+    weft_material_free(&material);
+    options.weights = WEFT_WEIGHTS_SCREEN;
+    fit(&options, &material, &screen);
+    weft_material_free(&material);
+    const weft_error_summary *a = &even.layers.fitted, *b = &screen.layers.fitted;
+    print_message("even %.4f median, %.4f RMSE; for a screen %.4f, %.4f\n", a->median_relative, a->relative_rmse,
+                  b->median_relative, b->relative_rmse);
+    assert_true(b->median_relative < 0.97 * a->median_relative);
+    assert_true(b->relative_rmse < 1.2 * a->relative_rmse);
+}
+
 /* A texel of a level has the mean coefficients of what it covers, the narrow ones at the border included. */
 static void levels_are_means(void **state)
 {
@@ -310,6 +343,7 @@ int main(void)
         cmocka_unit_test(layers_follow_samples_and_what_lies_between_them),
         cmocka_unit_test(masked_samples_leave_no_trace),
         cmocka_unit_test(what_is_held_out_is_not_seen),
+        cmocka_unit_test(dim_samples_count_for_more_on_a_screen),
         cmocka_unit_test(levels_are_means),
         cmocka_unit_test(ceilings_hold_everywhere),
         cmocka_unit_test(the_same_bytes_for_any_number_of_threads),
