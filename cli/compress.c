@@ -117,6 +117,9 @@ static weft_code check(void *values, weft_error *error)
         return weft_fail(error, WEFT_BAD_USAGE, "--layers is a multiple of %d, not %d", WEFT_LAYERS_GROUP,
                          o->layer_count);
     bool chooses = o->target_error > 0 || o->budget_bytes > 0;
+    if (o->layer_count > 0 && chooses)
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "--error and --budget choose lobes and tables for each texel: leave out --layers");
     if (o->target_error > 0 && o->budget_bytes > 0)
         return weft_fail(error, WEFT_BAD_USAGE, "give --error or --budget, not both");
     if (o->table_components > 0 && chooses)

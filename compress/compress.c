@@ -261,6 +261,8 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
     weft_compress_report own = {0};
     double began = weft_now_s();
     WEFT_TRY(weft_compress_options_check(options, dataset, error));
+    if (options->layer_count > 0)
+        WEFT_TRY(weft_layers_check(dataset, options->layer_count, error));
     plan(weft_dataset_get_layout(dataset), options, &own);
     fitting work = {.dataset = dataset,
                     .options = options,

@@ -135,7 +135,7 @@ static weft_code find_coefficients(const trial *t, weft_error *error)
 static void add_errors(const trial *t, const weft_layer_maps *maps, int held, double *square, double *energy)
 {
     int image = t->split->held[held], count = t->components->count;
-    float factor[3 * WEFT_LAYERS_MAX], weight = t->images->weight[image];
+    float factor[3 * WEFT_LAYERS_MAX] = {0}, weight = t->images->weight[image];
     weft_layer_factors(maps, t->images->light[image], t->split->held_view[held], factor);
     for (int texel = 0; texel < t->whole->texel_count; texel++) {
         const float *own = t->coefficient + (size_t)texel * (size_t)count;

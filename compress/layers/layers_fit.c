@@ -38,6 +38,11 @@ static weft_code learn(fitting *work, weft_material *material, weft_layers_repor
     int count = work->options->layer_count;
     weft_progress_report(work->progress, "learning layers", 0, 2);
     WEFT_TRY(weft_layer_images_create(layout, work->options->held_out, &work->images, error));
+    /* Samples of the texels that are learned from, those again that are not held out, and their products. */
+    WEFT_TRY(weft_memory_budget_require(&work->options->budget,
+                                        (uint64_t)WEFT_TRAINING_TEXELS *
+                                            (8 * work->images.length + 12 * (uint64_t)WEFT_TRAINING_TEXELS),
+                                        weft_dataset_path(work->dataset), "its layers", error));
     WEFT_TRY(weft_training_read(work->dataset, &work->images, &work->training, error));
     if (work->options->for_screen)
         weft_training_weigh_for_screen(&work->training, &work->images);
@@ -139,20 +144,25 @@ static weft_code fit(fitting *work, weft_material *material, weft_layers_report 
     return measure(work, report, error);
 }
 
-weft_code weft_layers_fit(weft_dataset *dataset, const weft_layers_options *options, const weft_progress *progress,
-                          weft_material *material, weft_layers_report *report, weft_error *error)
+weft_code weft_layers_check(const weft_dataset *dataset, int layer_count, weft_error *error)
 {
-    fitting work = {.dataset = dataset, .options = options, .progress = progress};
-    *report = (weft_layers_report){0};
     if (weft_dataset_get_layout(dataset)->distance == WEFT_NEAR)
         return weft_fail(error, WEFT_BAD_USAGE,
                          "'%s' has near lights or cameras, whose directions differ from texel to texel: it cannot "
                          "have layers",
                          weft_dataset_path(dataset));
-    if (options->layer_count < WEFT_LAYERS_GROUP || options->layer_count > WEFT_LAYERS_MAX ||
-        options->layer_count % WEFT_LAYERS_GROUP != 0)
-        return weft_fail(error, WEFT_BAD_USAGE, "%d layers: must be 4 to %d, a multiple of 4", options->layer_count,
+    if (layer_count < WEFT_LAYERS_GROUP || layer_count > WEFT_LAYERS_MAX || layer_count % WEFT_LAYERS_GROUP != 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "%d layers: must be 4 to %d, a multiple of 4", layer_count,
                          WEFT_LAYERS_MAX);
+    return WEFT_OK;
+}
+
+weft_code weft_layers_fit(weft_dataset *dataset, const weft_layers_options *options, const weft_progress *progress,
+                          weft_material *material, weft_layers_report *report, weft_error *error)
+{
+    fitting work = {.dataset = dataset, .options = options, .progress = progress};
+    *report = (weft_layers_report){0};
+    WEFT_TRY(weft_layers_check(dataset, options->layer_count, error));
     weft_code code = fit(&work, material, report, error);
     if (code == WEFT_OK) {
         material->layers = work.layers;

@@ -25,6 +25,9 @@ typedef struct weft_layers_report {
     weft_error_summary fitted; /* level 0, of the training texels, over images that were fitted */
 } weft_layers_report;
 
+/* That the dataset can have so many layers, before any work is done. Errors: those of weft_layers_fit. */
+weft_code weft_layers_check(const weft_dataset *dataset, int layer_count, weft_error *error);
+
 /* Adds layers to `material`, which has the size of the dataset and may have lobes as well. The same dataset gives the
  * same layers, for any number of threads and any memory. Errors: WEFT_BAD_USAGE for a near dataset, whose directions
  * differ from texel to texel, for options out of range and where the memory does not suffice; those of reading;

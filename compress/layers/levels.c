@@ -90,7 +90,7 @@ static void next_level(pyramid *p, int level, int width0, int height0)
 
 void weft_layers_fill_levels(weft_projection *projection, weft_layers *layers)
 {
-    float step[WEFT_LAYERS_MAX];
+    float step[WEFT_LAYERS_MAX] = {0};
     pyramid p = {.width = projection->width,
                  .height = projection->height,
                  .layer_count = (size_t)projection->layer_count,

@@ -154,18 +154,6 @@ static int side_level_for(const weft_dataset_layout *layout)
     return level;
 }
 
-static weft_code check_memory(const weft_dataset *dataset, uint64_t bytes, const weft_memory_budget *budget,
-                              weft_error *error)
-{
-    uint64_t needed = weft_memory_budget_taken(budget) + bytes;
-    if (needed <= budget->limit)
-        return WEFT_OK;
-    return weft_fail(error, WEFT_BAD_USAGE,
-                     "'%s' needs %llu MB of memory for its layers, more than the limit of %llu MB",
-                     weft_dataset_path(dataset), (unsigned long long)(needed / 1000000 + 1),
-                     (unsigned long long)(budget->limit / 1000000));
-}
-
 static weft_code allocate(const weft_dataset_layout *layout, int layer_count, weft_projection *projection,
                           weft_error *error)
 {
@@ -206,11 +194,11 @@ weft_code weft_projection_make(weft_dataset *dataset, const weft_layer_images *i
     uint64_t texels = (uint64_t)layout->width * (uint64_t)layout->height;
     run r = {.images = images, .projector = projector, .projection = projection, .thread_count = omp_get_max_threads()};
     weft_block_plan plan;
-    WEFT_TRY(check_memory(dataset,
-                          weft_block_reader_bytes(layout, block_texels) +
-                              texels * 4 * (uint64_t)(projector->count + 1) +
-                              (uint64_t)r.thread_count * 32 * (uint64_t)layout->image_count * BATCH,
-                          budget, error));
+    WEFT_TRY(weft_memory_budget_require(budget,
+                                        weft_block_reader_bytes(layout, block_texels) +
+                                            texels * 4 * (uint64_t)(projector->count + 1) +
+                                            (uint64_t)r.thread_count * 32 * (uint64_t)layout->image_count * BATCH,
+                                        weft_dataset_path(dataset), "its layers", error));
     WEFT_TRY(allocate(layout, projector->count, projection, error));
     weft_code code = weft_block_plan_create(layout->width, layout->height, side_level, 0, &plan, error);
     if (code == WEFT_OK) {

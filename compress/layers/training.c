@@ -87,7 +87,7 @@ static weft_code read_square(reading *r, int x0, int y0, weft_error *error)
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             if ((x + 3 * y) % stride_of(layout) == 0 && r->training->texel_count < WEFT_TRAINING_TEXELS)
-                take_texel(r, x0 + x, y0 + y, (size_t)(y * width + x));
+                take_texel(r, x0 + x, y0 + y, (size_t)y * (size_t)width + (size_t)x);
         }
     return WEFT_OK;
 }

@@ -69,7 +69,7 @@ static weft_code upload_ceilings(const weft_layers *layers, weft_layer_texture *
  * largest code. */
 static void arrange(const weft_layers *layers, const float *node, weft_half *texel)
 {
-    size_t side = (size_t)layers->light_side, views = (size_t)(layers->view_side * layers->view_side);
+    size_t side = (size_t)layers->light_side, views = (size_t)layers->view_side * (size_t)layers->view_side;
     size_t count = (size_t)layers->layer_count, groups = count / WEFT_LAYERS_GROUP;
     for (size_t view = 0; view < views; view++)
         for (size_t at = 0; at < side * side; at++)
@@ -105,7 +105,8 @@ static weft_code upload_texels_of_map(const weft_layer_texture *t, const weft_ha
 static weft_code upload_maps(const weft_layers *layers, weft_layer_texture *t, weft_error *error)
 {
     weft_layer_maps maps;
-    size_t nodes = (size_t)(layers->light_side * layers->light_side * layers->view_side * layers->view_side);
+    size_t lights = (size_t)layers->light_side * (size_t)layers->light_side;
+    size_t nodes = lights * (size_t)layers->view_side * (size_t)layers->view_side;
     WEFT_TRY(weft_layer_maps_create(layers, &maps, error));
     weft_half *texel = malloc(nodes * COLOURS * (size_t)layers->layer_count * sizeof *texel);
     weft_code code = texel ? WEFT_OK : weft_fail_memory(error, "maps of layers", nodes * sizeof *texel);
@@ -149,7 +150,8 @@ void weft_layer_texture_free(weft_layer_texture *t)
 size_t weft_layer_texture_bytes(const weft_layer_texture *t, size_t *shared)
 {
     size_t texels = (size_t)t->layout.width * (size_t)t->layout.height, groups = (size_t)t->group_count;
-    size_t nodes = (size_t)(t->light_side * t->light_side * t->view_side * t->view_side);
+    size_t lights = (size_t)t->light_side * (size_t)t->light_side;
+    size_t nodes = lights * (size_t)t->view_side * (size_t)t->view_side;
     *shared = nodes * groups * COLOURS * WEFT_LAYERS_GROUP * sizeof(weft_half);
     return *shared + texels * groups * WEFT_LAYERS_GROUP +
            (size_t)t->ceiling_layout.width * (size_t)t->ceiling_layout.height;

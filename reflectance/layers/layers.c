@@ -27,7 +27,7 @@ void weft_layer_factors(const weft_layer_maps *maps, weft_vec3 light, weft_vec3 
     weft_real divisor = 1;
     if (layers->kind == WEFT_LAYERS_OF_HALF_VECTOR)
         divisor = fmax(weft_dot(light, half_vector), (weft_real)WEFT_LEAST_INCIDENCE);
-    size_t light_nodes = (size_t)(layers->light_side * layers->light_side);
+    size_t light_nodes = (size_t)layers->light_side * (size_t)layers->light_side;
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) {
             const float *node = maps->node + ((size_t)outer.index[i] * light_nodes + (size_t)inner.index[j]) * series;

@@ -116,8 +116,8 @@ static weft_code map_views(const weft_layers *layers, size_t row, float *of_view
 
 weft_code weft_layer_maps_create(const weft_layers *layers, weft_layer_maps *maps, weft_error *error)
 {
-    size_t row = (size_t)(layers->light_side * layers->light_side) * 3 * (size_t)layers->layer_count;
-    size_t nodes = (size_t)(layers->view_side * layers->view_side);
+    size_t row = (size_t)layers->light_side * (size_t)layers->light_side * 3 * (size_t)layers->layer_count;
+    size_t nodes = (size_t)layers->view_side * (size_t)layers->view_side;
     float *of_view = malloc((size_t)layers->view_count * row * sizeof *of_view);
     *maps = (weft_layer_maps){.layers = layers, .node = malloc(nodes * row * sizeof *maps->node)};
     weft_code code = of_view && maps->node ? map_views(layers, row, of_view, error)
