@@ -217,11 +217,16 @@ static void say_layers(const weft_common_options *common, const weft_compress_op
     if (options->layer_count == 0)
         return;
     weft_command_say(common,
-                     "%d layers over %s (held-out trial: %.4f over the light, %.4f over the half vector), learned from "
-                     "%d texels; there they leave median rel. %.4f, 80 %% rel. %.4f, rel. RMSE %.4f, PSNR %.2f dB",
-                     options->layer_count, kind[layers->kind], layers->trial_error[0], layers->trial_error[1],
-                     layers->training_texels, layers->fitted.median_relative, layers->fitted.percentile80_relative,
-                     layers->fitted.relative_rmse, layers->fitted.psnr_db);
+                     "%d layers over %s, learned from %d texels; on images held out to choose: %.4f over the light, "
+                     "%.4f over the half vector (relative RMSE)",
+                     options->layer_count, kind[layers->kind], layers->training_texels, layers->trial_error[0],
+                     layers->trial_error[1]);
+    weft_command_say(common,
+                     "layers at those texels, fitted samples: median rel. %.4f, 80 %% rel. %.4f, rel. RMSE %.4f, "
+                     "PSNR %.2f dB",
+                     layers->fitted.median_relative, layers->fitted.percentile80_relative, layers->fitted.relative_rmse,
+                     layers->fitted.psnr_db);
+    weft_command_say(common, "the lobes beside them, for players without layers:");
 }
 
 static void say_sizes(const compress_command *command, const weft_dataset_layout *layout,
@@ -282,8 +287,8 @@ static weft_code compress_dataset(const compress_command *command, const char *p
         unlink(partial_path);
         say_model(command, &options, dataset, &report);
         say_target(command, &report);
-        say_errors(&command->common, &material);
         say_layers(&command->common, &options, &report);
+        say_errors(&command->common, &material);
         say_sizes(command, layout, &report);
     }
     weft_material_free(&material);
