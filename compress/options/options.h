@@ -39,7 +39,8 @@ typedef struct weft_compress_options {
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
     uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */
-    const char *checkpoint_path; /* keeps what is done of a dense model until the caller removes it; NULL: none */
+    const char *checkpoint_path; /* keeps what is done of a dense model until the caller removes it; NULL: none,
+                                    and the dataset may have lost its name */
     weft_log log;                /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 

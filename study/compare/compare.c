@@ -44,7 +44,7 @@ static weft_code measure_material(const compared_files *files, const weft_progre
                                   weft_comparison *comparison, weft_error *error)
 {
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_material(files->dataset, &files->material, &predictor, error));
+    WEFT_TRY(weft_predictor_of_material(weft_dataset_get_layout(files->dataset), &files->material, &predictor, error));
     weft_code code = measure_texture(files->dataset, predictor, "compressed", progress, comparison, error);
     weft_predictor_free(predictor);
     return code;
