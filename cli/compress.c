@@ -254,7 +254,7 @@ static weft_code check_output(const char *path, weft_error *error)
 
 /* Where it cannot be measured for a reason that does not concern the fit of the whole, the user is told. */
 static weft_code measure_hold_out(const compress_command *command, weft_dataset *dataset, const weft_progress *progress,
-                                  weft_hold_out *result, weft_error *error)
+                                  weft_hold_out *result, uint64_t *added_bytes, weft_error *error)
 {
     char scratch_path[PATH_MAX];
     weft_error own = {0};
@@ -269,6 +269,8 @@ static weft_code measure_hold_out(const compress_command *command, weft_dataset 
         *result = (weft_hold_out){0};
         return WEFT_OK;
     }
+    if (code == WEFT_OK)
+        code = weft_hold_out_bytes(result, added_bytes, &own);
     if (code != WEFT_OK)
         *error = own;
     return code;
@@ -286,7 +288,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     weft_hold_out held_out;
     weft_code code = weft_dataset_open(command->input, &dataset, error);
     if (code == WEFT_OK)
-        code = measure_hold_out(command, dataset, &progress, &held_out, error);
+        code = measure_hold_out(command, dataset, &progress, &held_out, &options.added_bytes, error);
     if (code == WEFT_OK)
         code = weft_compress(dataset, &options, &progress, &material, &report, error);
     if (code == WEFT_OK && held_out.split_count > 0)

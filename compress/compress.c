@@ -153,6 +153,7 @@ static weft_code fit_chosen(fitting *work, const weft_texel_source *source, cons
 {
     weft_budget_plan plan = {.bytes = work->options->budget_bytes};
     WEFT_TRY(weft_compress_metadata_bytes(source->layout, &plan.reserve, error));
+    plan.reserve += work->options->added_bytes;
     if (plan.bytes > 0)
         return weft_budget_fit(work->dataset, source, job, &plan, material, result, error);
     WEFT_TRY(weft_dense_fit(work->dataset, source, job, material, result, error));

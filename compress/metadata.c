@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of metadata besides the provenance: what is said of the fit, and what is added about images that were held out. */
-enum { FIT_BYTES = 2048, HELD_OUT_BYTES = 3072 };
+enum { FIT_BYTES = 2048 /* of metadata besides the provenance */ };
 
 const char *weft_compress_model_name(weft_compress_model model)
 {
@@ -21,7 +20,7 @@ weft_code weft_compress_metadata_bytes(const weft_dataset_layout *layout, uint64
     json_decref(provenance);
     if (size == 0)
         return weft_fail_memory(error, "provenance", strlen(layout->provenance));
-    *bytes = FIT_BYTES + HELD_OUT_BYTES + size;
+    *bytes = FIT_BYTES + size;
     return WEFT_OK;
 }
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 16, BLOCK_SIDE = 64 };
+enum { SIDE = 12, BLOCK_SIDE = 64 };
 
 /* Of the excerpt, at most. */
 static const long most_samples = 1L << 21;
@@ -223,7 +223,8 @@ typedef struct measuring {
     weft_splits splits;
     weft_compress_model whole_model; /* that all images carry, and its lobes */
     int whole_lobes;
-    means_taken material_taken, photographs_taken, fitted_taken;
+    means_taken material_taken, photographs_taken;
+    int fitted_taken;
     int measured_count; /* of the splits: the first ones */
     weft_hold_out *result;
 } measuring;
@@ -247,13 +248,15 @@ static weft_code predict(const weft_material *material, const uint8_t *held, tri
 
 static weft_code measure_trial(measuring *work, trial *t, weft_error *error)
 {
-    weft_hold_out_error material, photographs, fitted;
+    weft_hold_out_error material, photographs;
+    weft_error_summary fitted;
     WEFT_TRY(summarise(&t->material, &material, error));
     WEFT_TRY(summarise(&t->photographs, &photographs, error));
-    WEFT_TRY(summarise(&t->fitted, &fitted, error));
+    drop_empty_slots(&t->fitted);
+    WEFT_TRY(weft_error_summary_of(t->fitted.value, t->fitted.count, &fitted, error));
     take_errors(&material, &work->material_taken, &work->result->material);
     take_errors(&photographs, &work->photographs_taken, &work->result->photographs);
-    take_errors(&fitted, &work->fitted_taken, &work->result->fitted);
+    take_into_mean(&fitted, &work->fitted_taken, &work->result->fitted);
     return WEFT_OK;
 }
 

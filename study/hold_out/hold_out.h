@@ -23,14 +23,14 @@ typedef struct weft_hold_out {
     bool smaller_model; /* the images that were left carry less than all of them do */
     weft_hold_out_error material;
     weft_hold_out_error photographs; /* interpolated between those that were not held out */
-    weft_hold_out_error fitted;      /* of the same fits where they were fitted: on what the next split holds out, which
+    weft_error_summary fitted;       /* of the same fits where they were fitted: on what the next split holds out, which
                                         lies in the same rings. Zero where there is no next one */
 } weft_hold_out;
 
 /* Fits some texels with `options` to the images that a split leaves, for each of up to `split_count` splits, and
  * compares what the material says of the others with their samples, in the quantity of the dataset. Without mip levels,
  * held-out images of `options` and checkpoint. A budget is taken for the share of the texels in the whole material. The
- * texels are at most 16 x 16 (fewer where the images are more than about 8000), and 64 x 64 neighbours where the fit
+ * texels are at most 12 x 12 (fewer where the images are more than about 14000), and 64 x 64 neighbours where the fit
  * borrows from them. What was left out is not in what the fit reads: neither its samples, nor its views as entries of
  * T.
  *

@@ -47,7 +47,7 @@ json_t *weft_hold_out_to_json(const weft_hold_out *r)
         weft_json_put(&object, "smaller_model", json_true());
     weft_json_put(&object, "not_fitted", json_of_errors(&r->material));
     weft_json_put(&object, "photographs_interpolated", json_of_errors(&r->photographs));
-    weft_json_put(&object, "fitted", json_of_errors(&r->fitted));
+    weft_json_put(&object, "fitted", json_of_error(&r->fitted));
     return object;
 }
 
@@ -62,6 +62,16 @@ weft_code weft_hold_out_store(const weft_hold_out *result, weft_material *materi
     free(material->metadata);
     material->metadata = text;
     return WEFT_OK;
+}
+
+weft_code weft_hold_out_bytes(const weft_hold_out *result, uint64_t *bytes, weft_error *error)
+{
+    static const char name[] = ",\"held_out\":";
+    json_t *object = weft_hold_out_to_json(result);
+    size_t size = object ? json_dumpb(object, NULL, 0, JSON_COMPACT) : 0;
+    json_decref(object);
+    *bytes = size + sizeof name;
+    return size > 0 ? WEFT_OK : weft_fail_memory(error, "metadata of the material", 0);
 }
 
 /* ---- From JSON ---- */
@@ -113,7 +123,7 @@ static bool read_object(const json_t *object, weft_hold_out *r)
     r->smaller_model = smaller;
     return complete && read_kind(kind, &r->kind) && read_errors(json_object_get(object, "not_fitted"), &r->material) &&
            read_errors(json_object_get(object, "photographs_interpolated"), &r->photographs) &&
-           read_errors(json_object_get(object, "fitted"), &r->fitted);
+           read_error(json_object_get(object, "fitted"), &r->fitted);
 }
 
 bool weft_hold_out_read(const char *metadata, weft_hold_out *result)
@@ -139,7 +149,7 @@ void weft_hold_out_headline(const weft_hold_out *r, char line[WEFT_HOLD_OUT_LINE
         snprintf(photographs, sizeof photographs, " (the photographs themselves, interpolated: %.3f)",
                  r->photographs.all.relative_rmse);
     snprintf(line, WEFT_HOLD_OUT_LINE, "%s: relative RMSE %.3f%s; on those that were: %.3f", weft_hold_out_about(r),
-             r->material.all.relative_rmse, photographs, r->fitted.all.relative_rmse);
+             r->material.all.relative_rmse, photographs, r->fitted.relative_rmse);
 }
 
 /* Appends to a line; what does not fit is cut. */

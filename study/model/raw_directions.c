@@ -62,15 +62,43 @@ static weft_code triangulate_views(const weft_dataset_layout *layout, const weft
     return count > 0 ? weft_triangulation_build(scratch, count, &directions->views, error) : WEFT_OK;
 }
 
+/* The lights of the images of a view, as a texel sees them; returns how many. */
+static int collect_lights(const weft_dataset_layout *layout, const weft_view_order *order, int view, int x, int y,
+                          weft_vec3 *light)
+{
+    int count = order->first[view + 1] - order->first[view];
+    for (int i = 0; i < count; i++)
+        light[i] = weft_dataset_light_direction(layout, order->image[order->first[view] + i], x, y);
+    return count;
+}
+
+static bool same_lights(const weft_vec3 *a, const weft_vec3 *b, int count)
+{
+    for (int i = 0; i < count; i++) {
+        if (a[i].x != b[i].x || a[i].y != b[i].y || a[i].z != b[i].z)
+            return false;
+    }
+    return true;
+}
+
+/* Views that were lit alike one after the other share their triangles. `scratch` [2][image_count]. */
 static weft_code triangulate_lights(const weft_dataset_layout *layout, const weft_view_order *order, int x, int y,
                                     weft_vec3 *scratch, weft_raw_directions *directions, weft_error *error)
 {
+    weft_vec3 *light = scratch, *before = scratch + layout->image_count;
+    int before_count = 0;
+    weft_triangulation *shared = NULL;
     for (int v = 0; v < layout->view_count; v++) {
-        int count = order->first[v + 1] - order->first[v];
-        for (int i = 0; i < count; i++)
-            scratch[i] = weft_dataset_light_direction(layout, order->image[order->first[v] + i], x, y);
-        if (count > 0)
-            WEFT_TRY(weft_triangulation_build(scratch, count, &directions->lights[v], error));
+        int count = collect_lights(layout, order, v, x, y, light);
+        if (count == 0)
+            continue;
+        if (count != before_count || !same_lights(light, before, count))
+            WEFT_TRY(weft_triangulation_build(light, count, &shared, error));
+        directions->lights[v] = shared;
+        before_count = count;
+        weft_vec3 *other = light;
+        light = before;
+        before = other;
     }
     return WEFT_OK;
 }
@@ -82,10 +110,10 @@ weft_code weft_raw_directions_create(const weft_dataset_layout *layout, const we
     *directions = (weft_raw_directions){.view_count = layout->view_count,
                                         .view_of = calloc((size_t)layout->view_count, sizeof *directions->view_of),
                                         .lights = calloc((size_t)layout->view_count, sizeof *directions->lights)};
-    weft_vec3 *scratch = malloc(most * sizeof *scratch);
+    weft_vec3 *scratch = malloc(2 * most * sizeof *scratch);
     weft_code code = WEFT_OK;
     if (!directions->view_of || !directions->lights || !scratch)
-        code = weft_fail_memory(error, "directions", most * sizeof *scratch);
+        code = weft_fail_memory(error, "directions", 2 * most * sizeof *scratch);
     if (code == WEFT_OK)
         code = triangulate_views(layout, order, x, y, scratch, directions, error);
     if (code == WEFT_OK)
@@ -99,8 +127,12 @@ weft_code weft_raw_directions_create(const weft_dataset_layout *layout, const we
 void weft_raw_directions_free(weft_raw_directions *directions)
 {
     weft_triangulation_free(directions->views);
-    for (int v = 0; directions->lights && v < directions->view_count; v++)
-        weft_triangulation_free(directions->lights[v]);
+    weft_triangulation *freed = NULL;
+    for (int v = 0; directions->lights && v < directions->view_count; v++) {
+        if (directions->lights[v] && directions->lights[v] != freed)
+            weft_triangulation_free(directions->lights[v]);
+        freed = directions->lights[v] ? directions->lights[v] : freed;
+    }
     free(directions->lights);
     free(directions->view_of);
     *directions = (weft_raw_directions){0};

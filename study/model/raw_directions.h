@@ -21,7 +21,8 @@ typedef struct weft_raw_directions {
     int view_count;
     int *view_of;                /* by index into views: only views with images are among them */
     weft_triangulation *views;   /* NULL where no view has any */
-    weft_triangulation **lights; /* [view_count] of the images of a view, in their order; NULL for a view without any */
+    weft_triangulation **lights; /* [view_count] of the images of a view, in their order, those of views in a
+                                    row that were lit alike one and the same; NULL for a view without any */
 } weft_raw_directions;
 
 /* As texel (x, y) sees them; in a far dataset all texels see the same. Errors: WEFT_SYSTEM for memory. */
