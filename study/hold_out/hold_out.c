@@ -9,10 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 12, BLOCK_SIDE = 64 };
+/* Layers learn from 512 texels, which are to be there. */
+enum { SIDE = 12, LAYERS_SIDE = 24, BLOCK_SIDE = 64 };
 
 /* Of the excerpt, at most. */
-static const long most_samples = 1L << 21;
+static const long most_samples = 1L << 22;
 
 /* ---- One split ---- */
 
@@ -303,7 +304,7 @@ static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error
     if (weft_compress_plan(&others, &work->options, &lobes) == WEFT_COMPRESS_SPARSE)
         return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &work->excerpt, error);
     weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
-    int side = SIDE;
+    int side = work->options.layer_count > 0 ? LAYERS_SIDE : SIDE;
     while (side > 1 && (long)side * side * layout->image_count > most_samples)
         side--;
     return weft_excerpt_read(dataset, kind, side, &work->excerpt, error);

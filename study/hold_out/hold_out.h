@@ -30,9 +30,9 @@ typedef struct weft_hold_out {
 /* Fits some texels with `options` to the images that a split leaves, for each of up to `split_count` splits, and
  * compares what the material says of the others with their samples, in the quantity of the dataset. Without mip levels,
  * held-out images of `options` and checkpoint. A budget is taken for the share of the texels in the whole material. The
- * texels are at most 12 x 12 (fewer where the images are more than about 14000), and 64 x 64 neighbours where the fit
- * borrows from them. What was left out is not in what the fit reads: neither its samples, nor its views as entries of
- * T.
+ * texels are at most 12 x 12 (24 x 24 with layers, fewer where there are very many images), and 64 x 64 neighbours
+ * where the fit borrows from them. What was left out is not in what the fit reads: neither its samples, nor its views
+ * as entries of T.
  *
  * Writes a dataset of those texels to the folder of `scratch_path`, nameless once it is complete. The result depends
  * neither on the number of threads nor on the memory allowed.
