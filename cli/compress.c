@@ -298,8 +298,8 @@ static weft_compress_options resolve(const compress_command *command, const weft
     return options;
 }
 
-/* Where it cannot be measured for a reason that does not concern the fit of the whole, the user is told. The
- * options learn how much is added to the file. */
+/* Where it cannot be measured, for want of memory say, or because the texels that were chosen are holes, the user is
+ * told: what concerns the whole, too, its fit will say. The options learn how much is added to the file. */
 static weft_code measure_hold_out(const compress_command *command, weft_dataset *dataset,
                                   weft_compress_options *options, const weft_progress *progress, weft_hold_out *result,
                                   weft_error *error)
@@ -311,7 +311,7 @@ static weft_code measure_hold_out(const compress_command *command, weft_dataset 
         return WEFT_OK;
     snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
     weft_code code = weft_hold_out_measure(dataset, options, command->hold_out, scratch_path, progress, result, &own);
-    if (code == WEFT_BAD_USAGE) {
+    if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT) {
         weft_command_say(&command->common, "error on directions that were not fitted: not measured: %s", own.message);
         *result = (weft_hold_out){0};
         return WEFT_OK;
