@@ -1,6 +1,8 @@
 #include "compress/compress.h"
 #include "base/atomic_file.h"
 #include "cli/arguments.h"
+#include "cli/describe.h"
+#include "study/hold_out/record.h"
 #include "study/inspect/model_report.h"
 
 #include <limits.h>
@@ -14,6 +16,7 @@ typedef struct compress_command {
     weft_common_options common;
     const char *input, *output, *report;
     weft_compress_options options;
+    int hold_out;     /* splits; 0: off */
     int lobes, table; /* NOT_GIVEN, or as in the options */
 } compress_command;
 
@@ -45,6 +48,15 @@ static weft_code read_memory(const weft_option *option, const char *text, void *
     unsigned long long megabytes;
     WEFT_TRY(weft_option_whole(option->name, text, 1, 1000000000, &megabytes, error));
     ((compress_command *)values)->options.memory_bytes = 1000000 * megabytes;
+    return WEFT_OK;
+}
+
+static weft_code read_hold_out(const weft_option *option, const char *text, void *values, weft_error *error)
+{
+    unsigned long long splits = 0;
+    if (strcmp(text, "off") != 0)
+        WEFT_TRY(weft_option_whole(option->name, text, 1, WEFT_SPLIT_MOST, &splits, error));
+    ((compress_command *)values)->hold_out = (int)splits;
     return WEFT_OK;
 }
 
@@ -101,6 +113,10 @@ static const weft_option option_table[] = {
      .help = "Choose the model of each texel so that the error is least and the file no larger; tables may have fewer "
              "bits. Fits every model first, without a checkpoint",
      .read = read_budget},
+    {"hold-out", .argument = "off|N",
+     .help = "Fit some texels N times without about a tenth of the views and of the lights, others each time, and say "
+             "how well the material predicts these (default: 1); the material itself is fitted to all images",
+     .read = read_hold_out},
     {"report", .argument = "DIR",
      .help = "With --error or --budget: a page with a map of the models that were chosen, and their shares by level",
      .kind = WEFT_OPTION_TEXT, .offset = offsetof(compress_command, report)},
@@ -190,8 +206,26 @@ static void say_target(const compress_command *command, const weft_compress_repo
                          100 * command->options.target_error, report->missed_texel_count, report->texel_count);
 }
 
+/* An event of what is in the metadata, too. */
+static weft_code say_hold_out(const weft_common_options *common, const weft_hold_out *result, weft_error *error)
+{
+    char line[WEFT_HOLD_OUT_LINE];
+    weft_hold_out_headline(result, line);
+    weft_command_say(common, "%s", line);
+    weft_hold_out_explain(result, line);
+    weft_command_say(common, "  %s", line);
+    if (!common->json)
+        return WEFT_OK;
+    json_t *object = weft_hold_out_to_json(result);
+    weft_code code =
+        object ? weft_command_describe(common, "held_out", object, error) : weft_fail_memory(error, "event", 0);
+    json_decref(object);
+    return code;
+}
+
 static void say_errors(const weft_common_options *common, const weft_material *material)
 {
+    weft_command_say(common, "on the samples that were fitted:");
     weft_command_say(common, "level       texels   median rel.  80 %% rel.  RMSE       rel. RMSE  PSNR dB");
     for (int k = 0; k < material->level_count; k++) {
         const weft_material_level *level = &material->level[k];
@@ -264,6 +298,31 @@ static weft_compress_options resolve(const compress_command *command, const weft
     return options;
 }
 
+/* Where it cannot be measured, for want of memory say, or because the texels that were chosen are holes, the user is
+ * told: what concerns the whole, too, its fit will say. The options learn how much is added to the file. */
+static weft_code measure_hold_out(const compress_command *command, weft_dataset *dataset,
+                                  weft_compress_options *options, const weft_progress *progress, weft_hold_out *result,
+                                  weft_error *error)
+{
+    char scratch_path[PATH_MAX];
+    weft_error own = {0};
+    *result = (weft_hold_out){0};
+    if (command->hold_out == 0)
+        return WEFT_OK;
+    snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
+    weft_code code = weft_hold_out_measure(dataset, options, command->hold_out, scratch_path, progress, result, &own);
+    if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT) {
+        weft_command_say(&command->common, "error on directions that were not fitted: not measured: %s", own.message);
+        *result = (weft_hold_out){0};
+        return WEFT_OK;
+    }
+    if (code == WEFT_OK)
+        code = weft_hold_out_bytes(result, &options->added_bytes, &own);
+    if (code != WEFT_OK)
+        *error = own;
+    return code;
+}
+
 static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
 {
     weft_progress progress = weft_command_progress(&command->common);
@@ -271,13 +330,19 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     weft_dataset *dataset = NULL;
     weft_material material = {0};
     weft_compress_report report;
+    weft_hold_out held_out;
     weft_code code = weft_dataset_open(command->input, &dataset, error);
     if (code == WEFT_OK) {
         options = resolve(command, dataset);
+        code = measure_hold_out(command, dataset, &options, &progress, &held_out, error);
+    }
+    if (code == WEFT_OK) {
         options.checkpoint_path = partial_path;
         options.log = weft_command_log(&command->common);
         code = weft_compress(dataset, &options, &progress, &material, &report, error);
     }
+    if (code == WEFT_OK && held_out.split_count > 0)
+        code = weft_hold_out_store(&held_out, &material, error);
     if (code == WEFT_OK)
         code = weft_material_write(command->output, &material, error);
     if (code == WEFT_OK && command->report)
@@ -287,6 +352,8 @@ static weft_code compress_dataset(const compress_command *command, const char *p
         unlink(partial_path);
         say_model(command, &options, dataset, &report);
         say_target(command, &report);
+        if (held_out.split_count > 0)
+            code = say_hold_out(&command->common, &held_out, error);
         say_layers(&command->common, &options, &report);
         say_errors(&command->common, &material);
         say_sizes(command, layout, &report);
@@ -298,7 +365,8 @@ static weft_code compress_dataset(const compress_command *command, const char *p
 
 static int run(int argc, char **argv)
 {
-    compress_command command = {.options = weft_compress_default_options(), .lobes = NOT_GIVEN, .table = NOT_GIVEN};
+    compress_command command = {
+        .options = weft_compress_default_options(), .hold_out = 1, .lobes = NOT_GIVEN, .table = NOT_GIVEN};
     weft_arguments_parse(&weft_command_compress, argc, argv, &command);
     weft_error error = {0};
     char partial_path[PATH_MAX];
@@ -316,7 +384,8 @@ const weft_command weft_command_compress = {
     .usage = "NAME.btf.h5 -o NAME.weft",
     .documentation = "Example: weft compress cloth.btf.h5 -o cloth.weft --lobes 2\n\n"
                      "Fits Lafortune lobes with a view table to every texel of every mip level of a "
-                     "dataset, and measures what the result leaves. With too few images for that, "
+                     "dataset, and measures what the result leaves: of the samples that it was fitted to, and of "
+                     "directions that it was not. With too few images for that, "
                      "fits what they can carry and says so.\n\n"
                      "Samples are read in blocks while the blocks before are fitted. What is done is "
                      "kept in NAME.weft.partial: killed, the same command goes on where it stopped and "

@@ -15,6 +15,7 @@
 
 #include <inttypes.h>
 #include <malloc.h>
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,6 +43,31 @@ static void plan(const weft_dataset_layout *layout, const weft_compress_options 
     } else if (options->lobe_count > 1) {
         report->lobe_count = 1;
     }
+}
+
+weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const weft_compress_options *options,
+                                       int *lobe_count)
+{
+    weft_compress_report report = {0};
+    plan(layout, options, &report);
+    *lobe_count = report.lobe_count;
+    return report.model;
+}
+
+weft_code weft_compress_share_budget(const weft_dataset_layout *whole, const weft_dataset_layout *part,
+                                     const weft_compress_options *options, uint64_t *bytes, weft_error *error)
+{
+    uint64_t beside_whole, beside_part;
+    *bytes = 0;
+    if (options->budget_bytes == 0)
+        return WEFT_OK;
+    WEFT_TRY(weft_compress_metadata_bytes(whole, &beside_whole, error));
+    WEFT_TRY(weft_compress_metadata_bytes(part, &beside_part, error));
+    double texels = (double)whole->width * whole->height * (options->levels ? 4.0 / 3 : 1);
+    double share = fmin(1, (double)part->width * part->height / texels);
+    uint64_t left = options->budget_bytes > beside_whole ? options->budget_bytes - beside_whole : 0;
+    *bytes = beside_part + (uint64_t)ceil(share * (double)left);
+    return WEFT_OK;
 }
 
 /* The directions of S: those that the bundle of the fit labels. */
@@ -128,6 +154,7 @@ static weft_code fit_chosen(fitting *work, const weft_texel_source *source, cons
 {
     weft_budget_plan plan = {.bytes = work->options->budget_bytes};
     WEFT_TRY(weft_compress_metadata_bytes(source->layout, &plan.reserve, error));
+    plan.reserve += work->options->added_bytes;
     if (plan.bytes > 0)
         return weft_budget_fit(work->dataset, source, job, &plan, material, result, error);
     WEFT_TRY(weft_dense_fit(work->dataset, source, job, material, result, error));
@@ -156,10 +183,11 @@ static weft_code reduce_tables(fitting *work, const weft_texel_source *source, c
 static weft_code fit_dense(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     const weft_compress_options *options = work->options;
-    identity_text identity;
+    identity_text identity = {0};
     weft_dense_result result;
     WEFT_TRY(weft_given_frames_store(work->dataset, material, error));
-    WEFT_TRY(identify(work->dataset, options, report, &work->fingerprint, &identity, error));
+    if (options->checkpoint_path)
+        WEFT_TRY(identify(work->dataset, options, report, &work->fingerprint, &identity, error));
     weft_dense_job job = {.budget = work->budget,
                           .checkpoint_path = options->checkpoint_path,
                           .identity = {identity.program, identity.dataset, identity.options},

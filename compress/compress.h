@@ -36,6 +36,16 @@ typedef struct weft_compress_report {
     double starved_seconds;   /* that the fit waited for it */
 } weft_compress_report;
 
+/* The model that weft_compress fits to a dataset with this layout, and how many lobes. Pure. */
+weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const weft_compress_options *options,
+                                       int *lobe_count);
+
+/* The budget for the finest level of `part`, some texels of `whole`: what the budget of the options leaves for texels,
+ * in proportion to their number, and what a file has besides. 0 where the options have no budget. Errors: WEFT_SYSTEM
+ * for memory. */
+weft_code weft_compress_share_budget(const weft_dataset_layout *whole, const weft_dataset_layout *part,
+                                     const weft_compress_options *options, uint64_t *bytes, weft_error *error);
+
 /* Fits `material`, which the caller frees with weft_material_free; errors by level are in it. `report` may be NULL. The
  * result depends neither on the number of threads (OpenMP) nor on the order of the images, the memory allowed or
  * whether a checkpoint was used. The sparse model holds all samples and keeps no checkpoint. Nothing else may use the

@@ -25,14 +25,14 @@ struct weft_predictor {
     uint8_t *mask;
 };
 
-static weft_code create(const weft_dataset *dataset, predict_function *predict, weft_predictor **result,
+static weft_code create(const weft_dataset_layout *layout, predict_function *predict, weft_predictor **result,
                         weft_error *error)
 {
     *result = calloc(1, sizeof **result);
     if (!*result)
         return weft_fail_memory(error, "predictor", sizeof **result);
     (*result)->predict = predict;
-    (*result)->layout = weft_dataset_get_layout(dataset);
+    (*result)->layout = layout;
     return WEFT_OK;
 }
 
@@ -116,16 +116,14 @@ static weft_code prepare_layers(weft_predictor *predictor, weft_error *error)
     return WEFT_OK;
 }
 
-weft_code weft_predictor_of_material(const weft_dataset *dataset, const weft_material *material,
+weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const weft_material *material,
                                      weft_predictor **result, weft_error *error)
 {
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     if (material->level[0].width != layout->width || material->level[0].height != layout->height)
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' has %d x %d texels, but the material %d x %d: it is not made from it",
-                         weft_dataset_path(dataset), layout->width, layout->height, material->level[0].width,
-                         material->level[0].height);
-    WEFT_TRY(create(dataset, predict_by_material, result, error));
+                         "the dataset has %d x %d texels, but the material %d x %d: it is not made from it",
+                         layout->width, layout->height, material->level[0].width, material->level[0].height);
+    WEFT_TRY(create(layout, predict_by_material, result, error));
     (*result)->material = material;
     weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
     if (code == WEFT_OK && material->layers && layout->distance == WEFT_FAR)
@@ -187,7 +185,7 @@ static void predict_by_weave(const weft_predictor *predictor, int x, int y, cons
 weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,
                                   weft_predictor **result, weft_error *error)
 {
-    WEFT_TRY(create(dataset, predict_by_weave, result, error));
+    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_weave, result, error));
     (*result)->weave = weave;
     (*result)->tiles = *layout;
     weft_code code = weft_woven_table_create(weave, &(*result)->table, error);
@@ -213,7 +211,7 @@ static void predict_by_threads(const weft_predictor *predictor, int x, int y, co
 weft_code weft_predictor_of_threads(const weft_dataset *dataset, const weft_microcylinder_cloth *cloth,
                                     weft_predictor **result, weft_error *error)
 {
-    WEFT_TRY(create(dataset, predict_by_threads, result, error));
+    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_threads, result, error));
     (*result)->threads = weft_microcylinder_prepare(cloth);
     return WEFT_OK;
 }
@@ -252,7 +250,7 @@ weft_code weft_predictor_of_dataset(const weft_dataset *dataset, const char *pat
                                     weft_error *error)
 {
     weft_predictor *predictor;
-    WEFT_TRY(create(dataset, predict_by_dataset, &predictor, error));
+    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_dataset, &predictor, error));
     weft_code code = weft_dataset_open(path, &predictor->other, error);
     if (code == WEFT_OK && !same_images(predictor->layout, weft_dataset_get_layout(predictor->other)))
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' does not have the texels, images and quantity of '%s'", path,

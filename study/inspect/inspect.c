@@ -10,6 +10,7 @@
 #include "geometry/yarn/tile_mesh.h"
 #include "reflectance/microcylinder/file.h"
 #include "reflectance/weave/weave.h"
+#include "study/hold_out/record.h"
 #include "study/inspect/verify.h"
 
 #include <math.h>
@@ -87,6 +88,26 @@ static json_t *describe_level(const weft_material *material, int k)
     return described;
 }
 
+/* The error to judge a material by, then that on what it was fitted to. What says how it was measured is in the
+ * metadata. */
+static json_t *describe_error(const weft_material *material)
+{
+    weft_hold_out held_out;
+    json_t *described = json_object();
+    if (weft_hold_out_read(material->metadata, &held_out)) {
+        char how[WEFT_HOLD_OUT_LINE];
+        weft_hold_out_explain(&held_out, how);
+        weft_json_put(&described, "not_fitted", json_real(held_out.material.all.relative_rmse));
+        weft_json_put(&described, "photographs_interpolated", json_real(held_out.photographs.all.relative_rmse));
+        weft_json_put(&described, "fitted", json_real(held_out.fitted.relative_rmse));
+        weft_json_put(&described, "how", json_string(how));
+    } else {
+        weft_json_put(&described, "not_fitted", json_string("not measured"));
+    }
+    weft_json_put(&described, "fitted_level_0", json_real(material->level[0].error.relative_rmse));
+    return described;
+}
+
 static json_t *describe_layers(const weft_layers *layers)
 {
     return json_pack("{s:i, s:s, s:i, s:i}", "count", layers->layer_count, "maps_over",
@@ -100,11 +121,12 @@ static json_t *describe_material(const char *path, const weft_material *material
     json_t *metadata = parsed(material->metadata), *levels = json_array();
     for (int i = 0; i < material->level_count; i++)
         weft_json_append(&levels, describe_level(material, i));
-    json_t *described = json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind",
-                                  "material", "bytes", (json_int_t)weft_file_bytes(path), "texels",
-                                  material->level[0].width, material->level[0].height, "lobes", material->lobe_count,
-                                  "views_in_table", material->view_count, "lights_in_table", material->light_count,
-                                  "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata", metadata);
+    json_t *described =
+        json_pack("{s:s, s:s, s:o, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material",
+                  "relative_rmse", describe_error(material), "bytes", (json_int_t)weft_file_bytes(path), "texels",
+                  material->level[0].width, material->level[0].height, "lobes", material->lobe_count, "views_in_table",
+                  material->view_count, "lights_in_table", material->light_count, "texel_pitch_mm",
+                  material->texel_pitch_mm, "levels", levels, "metadata", metadata);
     if (material->layers)
         weft_json_put(&described, "layers", describe_layers(material->layers));
     return described;
