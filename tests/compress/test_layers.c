@@ -259,6 +259,36 @@ static void levels_are_means(void **state)
     weft_material_free(&material);
 }
 
+/* The brightest sample of the square of 8 x 8 texels that begins at (x0, y0). */
+static double brightest_of_square(int x0, int y0)
+{
+    double brightest = 0;
+    for (int y = y0; y < y0 + 8 && y < HEIGHT; y++)
+        for (int x = x0; x < x0 + 8 && x < WIDTH; x++)
+            for (int i = 0; i < VIEWS * LIGHTS; i++) {
+                double rgb[3];
+                mixture(x, y, direction(i % LIGHTS), direction(i / LIGHTS), rgb);
+                brightest = fmax(brightest, fmax(rgb[0], fmax(rgb[1], rgb[2])));
+            }
+    return brightest;
+}
+
+/* A step of the codes is 9 %. */
+static void ceilings_are_four_times_the_brightest_sample(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, NULL);
+    for (int i = 0; i < 4; i++) {
+        double ratio = (double)weft_ceiling_of_code(material.layers->level[0].ceiling[i]) /
+                       brightest_of_square(i % 2 * 8, i / 2 * 8);
+        assert_true(ratio > 3.99 && ratio < 4.4);
+    }
+    weft_material_free(&material);
+}
+
 /* Nothing exceeds four times the brightest sample of the square of texels, from anywhere. */
 static void ceilings_hold_everywhere(void **state)
 {
@@ -345,6 +375,7 @@ int main(void)
         cmocka_unit_test(what_is_held_out_is_not_seen),
         cmocka_unit_test(dim_samples_count_for_more_on_a_screen),
         cmocka_unit_test(levels_are_means),
+        cmocka_unit_test(ceilings_are_four_times_the_brightest_sample),
         cmocka_unit_test(ceilings_hold_everywhere),
         cmocka_unit_test(the_same_bytes_for_any_number_of_threads),
         cmocka_unit_test(near_datasets_and_odd_numbers_are_refused),
