@@ -268,6 +268,21 @@ static weft_code read_array(const weft_dataset *dataset, const char *name, int r
     return code;
 }
 
+/* A file may hold none of them. */
+static weft_code read_figures(weft_dataset *dataset, weft_error *error)
+{
+    weft_dataset_layout *layout = &dataset->layout;
+    const hsize_t images = (hsize_t)layout->image_count;
+    for (int i = 0; i < WEFT_IMAGE_FIGURES; i++) {
+        const char *name = weft_image_figure_name[i];
+        if (H5Lexists(dataset->file, name, H5P_DEFAULT) <= 0)
+            continue;
+        WEFT_TRY(weft_dataset_layout_allocate_figure(layout, (weft_image_figure)i, error));
+        WEFT_TRY(read_array(dataset, name, 1, &images, H5T_NATIVE_DOUBLE, layout->figure[i], error));
+    }
+    return WEFT_OK;
+}
+
 static weft_code read_provenance(weft_dataset *dataset, weft_error *error)
 {
     if (H5Lexists(dataset->file, "provenance", H5P_DEFAULT) == 0)
@@ -311,6 +326,7 @@ static weft_code read_layout(weft_dataset *dataset, weft_error *error)
     WEFT_TRY(read_array(dataset, "light", 2, images, H5T_NATIVE_DOUBLE, layout->light, error));
     WEFT_TRY(read_array(dataset, "view", 2, views, H5T_NATIVE_DOUBLE, layout->view, error));
     WEFT_TRY(read_array(dataset, "view_of_image", 1, images, H5T_NATIVE_INT32, layout->view_of_image, error));
+    WEFT_TRY(read_figures(dataset, error));
     WEFT_TRY(read_provenance(dataset, error));
     WEFT_TRY(weft_dataset_layout_check(layout, dataset->path, WEFT_BAD_INPUT, error));
     if (layout->distance == WEFT_FAR) {
