@@ -336,6 +336,18 @@ static weft_code read_layout(weft_dataset *dataset, weft_error *error)
     return WEFT_OK;
 }
 
+/* Whether the file begins as a material does. */
+static bool is_material(const char *path)
+{
+    static const char magic[5] = {(char)0x89, 'W', 'E', 'F', 'T'};
+    char head[sizeof magic] = "";
+    FILE *file = fopen(path, "rb");
+    bool found = file && fread(head, sizeof head, 1, file) == 1 && memcmp(head, magic, sizeof magic) == 0;
+    if (file)
+        fclose(file);
+    return found;
+}
+
 static weft_code open_file(weft_dataset *dataset, weft_error *error)
 {
     struct stat status;
@@ -343,6 +355,9 @@ static weft_code open_file(weft_dataset *dataset, weft_error *error)
         return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s': %s", dataset->path, strerror(errno));
     if (!S_ISREG(status.st_mode))
         return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s': not a regular file", dataset->path);
+    if (is_material(dataset->path))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a material: a dataset (NAME.btf.h5) belongs in its place",
+                         dataset->path);
     dataset->file_size = (uint64_t)status.st_size;
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);

@@ -106,7 +106,8 @@ static weft_code resample(const work *w, int image, const weft_light_values *val
                                   .inverse_vignetting = w->inverse_vignetting,
                                   .homography = p->homography,
                                   .opening_mm = w->settings->target.opening_mm,
-                                  .point_spread_px = 2 * sqrt(fmax(0, p->point_spread.constant))};
+                                  .point_spread_px = 2 * sqrt(fmax(0, p->point_spread.constant)),
+                                  .fill = true};
     WEFT_TRY(weft_resampler_create(&resampling, w->settings->width, w->settings->height, &resampler, error));
     weft_resampler_apply(&resampler, values->samples, 0, WEFT_HAND_FULL_SCALE, texel, mask);
     weft_resampler_free(&resampler);
