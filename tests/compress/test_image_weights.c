@@ -88,7 +88,7 @@ static double worst_error(const weft_material *material)
     const weft_material_level *level = &material->level[0];
     int views = material->view_count > 0 ? material->view_count : 1;
     double worst = 0;
-    for (size_t i = 0; i < (size_t)(views * SIDE * SIDE); i++) {
+    for (size_t i = 0; i < (size_t)views * SIDE * SIDE; i++) {
         size_t texel = i % (SIDE * SIDE);
         double diffuse = (double)weft_float_of_half(level->diffuse[4 * texel + 1]);
         double t = material->view_count > 0 ? weft_table_of_code(level->table[4 * i + 1]) : 1;
