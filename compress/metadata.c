@@ -1,6 +1,7 @@
 #include "compress/metadata.h"
 
 #include "base/text/json_text.h"
+#include "btf/dataset/measured.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -76,8 +77,10 @@ weft_code weft_compress_describe(const weft_dataset_layout *layout, const weft_c
     weft_checksum_print(fingerprint->layout, layout_text);
     weft_checksum_print(fingerprint->samples, samples_text);
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
-    json_t *object = json_pack("{s:o, s:{s:s, s:s}, s:o}", "provenance", provenance, "dataset", "layout", layout_text,
-                               "samples", samples_text, "fit", describe_fit(options, report, setting));
+    weft_measured measured = weft_measured_of(layout);
+    json_t *object = json_pack("{s:o, s:o, s:{s:s, s:s}, s:o}", "measured", weft_measured_pack(&measured), "provenance",
+                               provenance, "dataset", "layout", layout_text, "samples", samples_text, "fit",
+                               describe_fit(options, report, setting));
     char *text = object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
     json_decref(object);
     if (!text)

@@ -83,4 +83,7 @@ weft_code weft_material_size(const weft_material *material, uint64_t *size, weft
  * Errors: WEFT_BAD_INPUT naming the file and the section. The caller frees with weft_material_free. */
 weft_code weft_material_read(const char *path, weft_material *material, weft_error *error);
 
+/* The metadata alone; the caller frees. Errors: as above, as far as the container and the metadata show them. */
+weft_code weft_material_read_metadata(const char *path, char **metadata, weft_error *error);
+
 #endif

@@ -212,3 +212,21 @@ weft_code weft_material_read(const char *path, weft_material *material, weft_err
     free(file.bytes);
     return code;
 }
+
+weft_code weft_material_read_metadata(const char *path, char **metadata, weft_error *error)
+{
+    weft_material material = {0};
+    weft_file_image file = {.path = path};
+    *metadata = NULL;
+    WEFT_TRY(weft_read_file(path, largest_file, (char **)&file.bytes, &file.size, error));
+    weft_code code = weft_file_image_open(&file, &material, error);
+    if (code == WEFT_OK)
+        code = read_kind(&file, &material, WEFT_SECTION_META, error);
+    if (code == WEFT_OK)
+        *metadata = material.metadata;
+    else
+        free(material.metadata);
+    free(file.section);
+    free(file.bytes);
+    return code;
+}

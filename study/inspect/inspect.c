@@ -1,6 +1,7 @@
 #include "study/inspect/inspect.h"
 
 #include "base/atomic_file.h"
+#include "base/numeric/statistics.h"
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
 #include "btf/direction/direction.h"
@@ -15,6 +16,8 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
 
 static const size_t longest_list = 16;
 
@@ -145,18 +148,43 @@ static weft_code inspect_material(const char *path, json_t **result, weft_error 
 
 /* ---- Dataset ---- */
 
+/* Smallest, median and largest of what is known about every image; nothing where nothing is. */
+static void put_figures(json_t **described, const weft_dataset_layout *layout)
+{
+    static const char *const name[WEFT_IMAGE_FIGURES] = {
+        [WEFT_IMAGE_WEIGHT] = "image_weights",
+        [WEFT_IMAGE_VIEW_ERROR] = "view_standard_errors_deg",
+        [WEFT_IMAGE_LIGHT_ERROR] = "light_standard_errors_deg",
+        [WEFT_IMAGE_VALUE_ERROR] = "value_relative_standard_errors",
+    };
+    int count = layout->image_count;
+    double *sorted = malloc((size_t)count * sizeof *sorted);
+    for (int i = 0; sorted && i < WEFT_IMAGE_FIGURES; i++) {
+        if (!layout->figure[i])
+            continue;
+        memcpy(sorted, layout->figure[i], (size_t)count * sizeof *sorted);
+        weft_json_put(described, name[i],
+                      json_pack("{s:f, s:f, s:f}", "smallest", weft_quantile(sorted, count, 0), "median",
+                                weft_quantile(sorted, count, 0.5), "largest", weft_quantile(sorted, count, 1)));
+    }
+    free(sorted);
+}
+
 static json_t *describe_dataset(const char *path, const weft_dataset *dataset)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     json_int_t raw =
         (json_int_t)layout->width * layout->height * layout->image_count * 3 * (json_int_t)sizeof(weft_half);
-    return json_pack("{s:s, s:s, s:I, s:I, s:[ii], s:i, s:i, s:s, s:s, s:s, s:f, s:o}", "file", path, "kind", "dataset",
-                     "bytes", (json_int_t)weft_file_bytes(path), "half_float_bytes", raw, "texels", layout->width,
-                     layout->height, "images", layout->image_count, "views", layout->view_count, "values",
-                     layout->values == WEFT_REFLECTANCE ? "reflectance" : "reflectance times cosine",
-                     "lights_and_views", layout->distance == WEFT_NEAR ? "positions (near)" : "directions (far)",
-                     "frames", weft_dataset_has_frames(dataset) ? "given" : "of the surface", "texel_pitch_mm",
-                     layout->texel_pitch_mm, "provenance", parsed(layout->provenance));
+    json_t *described =
+        json_pack("{s:s, s:s, s:I, s:I, s:[ii], s:i, s:i, s:s, s:s, s:s, s:f, s:o}", "file", path, "kind", "dataset",
+                  "bytes", (json_int_t)weft_file_bytes(path), "half_float_bytes", raw, "texels", layout->width,
+                  layout->height, "images", layout->image_count, "views", layout->view_count, "values",
+                  layout->values == WEFT_REFLECTANCE ? "reflectance" : "reflectance times cosine", "lights_and_views",
+                  layout->distance == WEFT_NEAR ? "positions (near)" : "directions (far)", "frames",
+                  weft_dataset_has_frames(dataset) ? "given" : "of the surface", "texel_pitch_mm",
+                  layout->texel_pitch_mm, "provenance", parsed(layout->provenance));
+    put_figures(&described, layout);
+    return described;
 }
 
 static weft_code inspect_dataset(const char *path, const weft_progress *progress, bool all, json_t **result,
