@@ -1,3 +1,4 @@
+#include "base/atomic_file.h"
 #include "btf/session/lens.h"
 #include "cli/arguments.h"
 #include "registration/hand/hand.h"
@@ -5,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <unistd.h>
 
 typedef struct photographs_command {
     weft_common_options common;
@@ -69,6 +71,13 @@ static void say_outcome(const photographs_command *command, const weft_hand *han
                      command->settings.width, command->settings.height, hand->used_count, hand->count, hand->seconds);
 }
 
+/* Hours of work must not end at a folder that cannot be written. */
+static weft_code check_report_folder(const char *folder, weft_error *error)
+{
+    WEFT_TRY(weft_make_folder(folder, error));
+    return access(folder, W_OK | X_OK) == 0 ? WEFT_OK : weft_fail_errno(error, "write into", folder);
+}
+
 static int run(int argc, char **argv)
 {
     photographs_command command = {.opening_mm = 50, .paper_reflectance = 0.85, .settings = weft_hand_defaults()};
@@ -87,6 +96,8 @@ static int run(int argc, char **argv)
         code = weft_light_list_read(command.lights, &lights, &error);
     if (command.lights)
         command.settings.lights = &lights;
+    if (code == WEFT_OK && command.report_folder)
+        code = check_report_folder(command.report_folder, &error);
     if (code == WEFT_OK)
         code = weft_hand_register(command.input, command.output, &command.settings, &progress, &hand, &error);
     if (code == WEFT_OK) {

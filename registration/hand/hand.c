@@ -386,6 +386,23 @@ static weft_code refine_and_sample(work *w, weft_error *error)
     return code;
 }
 
+/* Balls and pin have true sizes, the sheet has what --opening says: where they contradict the paper, one is wrong. */
+static weft_code note_misfits(weft_hand *hand, weft_error *error)
+{
+    const double most = 3;
+    if (hand->lamps.ball_misfit > most)
+        WEFT_TRY(weft_lines_add(&hand->notes, error,
+                                "the highlights on the balls lie %.0f standard errors off, median: is the opening, or "
+                                "the diameter of the balls, what was said?",
+                                hand->lamps.ball_misfit));
+    if (hand->lamps.pin_misfit > most)
+        return weft_lines_add(&hand->notes, error,
+                              "the shadows of the pin lie %.0f standard errors off, median: is the opening, or the "
+                              "height of the pin, what was said?",
+                              hand->lamps.pin_misfit);
+    return WEFT_OK;
+}
+
 static weft_code run(work *w, const char *output, weft_error *error)
 {
     weft_hand *hand = w->hand;
@@ -410,6 +427,7 @@ static weft_code run(work *w, const char *output, weft_error *error)
     WEFT_TRY(check_enough(w, "can be used", error));
     WEFT_TRY(find_lamps(w, error));
     leave_out_underexposed(hand);
+    WEFT_TRY(note_misfits(hand, error));
     if (w->settings->lights)
         WEFT_TRY(weft_listed_compare(w->settings->lights, hand->photograph, hand->count, &hand->notes, error));
     WEFT_TRY(check_enough(w, "can be used", error));

@@ -45,7 +45,8 @@ typedef struct weft_lamp_solution {
     double ink;                   /* reflectance of ink over that of paper */
     double ball_shift_mm[WEFT_TARGET_BALL_COUNT][2]; /* from its place on the sheet */
     double pin_shift_mm[3];                          /* of its head */
-    double flash_mm[3];                              /* in the frame of the camera */
+    double ball_misfit, pin_misfit; /* medians of how far highlights and shadows lie off, in standard errors */
+    double flash_mm[3];             /* in the frame of the camera */
 } weft_lamp_solution;
 
 /* Fills solution->place with a first guess: where the rays from the balls meet, else by the shadow of the pin, else as

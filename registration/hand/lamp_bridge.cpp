@@ -25,9 +25,10 @@ constexpr double independent_samples = 30;
 /* What is known beforehand: lamps stand at some 700 mm, within a factor of e; a ball stands within a millimetre of its
  * place, the head of the pin within half of one; tone curves differ from sRGB by some tens of percent; ink within a
  * fifth. */
-constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, tone_deviation = 1,
-                 pin_deviation_mm = 0.5;
+constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, pin_deviation_mm = 0.5;
 constexpr double power_deviation = 0.1, ink_prior_deviation = 0.2, vignetting_deviation = 0.2, flash_deviation_mm = 60;
+
+constexpr double tone_deviation[WEFT_TONE_TERMS] = {0.5, 0.5, 0.25, 0.25, 0.125};
 
 using vec3 = std::array<double, 3>;
 
@@ -194,6 +195,16 @@ struct power_residual {
     }
 };
 
+/* Tone curves are smooth: the higher a power, the less of it. */
+struct tone_residual {
+    template <typename T> bool operator()(const T *tone, T *residual) const
+    {
+        for (int k = 0; k < WEFT_TONE_TERMS; k++)
+            residual[k] = tone[k] / tone_deviation[k];
+        return true;
+    }
+};
+
 /* (value - mean) / deviation of every unknown in a block. */
 template <int N> struct prior_residual {
     std::array<double, N> mean;
@@ -262,6 +273,7 @@ class lamp_search
             write_place(i);
         find_uncertainties();
         write_shared();
+        find_misfits();
         return WEFT_OK;
     }
 
@@ -271,6 +283,13 @@ class lamp_search
     std::vector<photograph_unknowns> own;
     shared_unknowns shared;
     ceres::Problem problem;
+
+    struct highlight_seen {
+        const highlight_residual *residual; /* of the problem */
+        int photograph, ball;
+    };
+    std::vector<highlight_seen> highlights;
+    std::vector<std::pair<const pin_residual *, int>> pins;
 
     double *lamp_of(int i)
     {
@@ -358,6 +377,7 @@ class lamp_search
             }
             problem.AddResidualBlock(new ceres::AutoDiffCostFunction<highlight_residual, 3, 3, 2>(residual),
                                      new ceres::CauchyLoss(3), lamp_of(i), shared.shift[ball]);
+            highlights.push_back({residual, i, ball});
         }
     }
 
@@ -378,6 +398,7 @@ class lamp_search
             seen.across_mm / unit_mm};
         problem.AddResidualBlock(new ceres::AutoDiffCostFunction<pin_residual, 2, 3, 3>(residual),
                                  new ceres::CauchyLoss(3), lamp_of(i), shared.pin_shift);
+        pins.emplace_back(residual, i);
     }
 
     void add_listed(int i)
@@ -428,7 +449,9 @@ class lamp_search
 
     void add_priors()
     {
-        add_prior<WEFT_TONE_TERMS>(problem, shared.tone, tone_deviation);
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<tone_residual, WEFT_TONE_TERMS, WEFT_TONE_TERMS>(new tone_residual),
+            nullptr, shared.tone);
         /* Natural vignetting is cos^4 = 1 - 2 r^2 + ...; the rims of a lens take more, its design less. */
         shared.vignetting[0] = -2 * input->corner_radius_squared;
         add_prior<2>(problem, shared.vignetting, vignetting_deviation);
@@ -484,6 +507,29 @@ class lamp_search
         place->position_mm = weft_vec3_of(lamp[0] * unit_mm, lamp[1] * unit_mm, lamp[2] * unit_mm);
         for (int c = 0; c < 3; c++)
             place->level[c] = std::exp(own[(size_t)i].level[c]) / input->target->paper_reflectance;
+    }
+
+    static double median(std::vector<double> &value)
+    {
+        if (value.empty())
+            return 0;
+        std::nth_element(value.begin(), value.begin() + (long)value.size() / 2, value.end());
+        return value[value.size() / 2];
+    }
+
+    /* How many standard errors balls and pin lie off, in the median. */
+    void find_misfits()
+    {
+        std::vector<double> balls, shadows;
+        double r[3];
+        for (const highlight_seen &seen : highlights)
+            balls.push_back((*seen.residual)(lamp_of(seen.photograph), shared.shift[seen.ball], r)
+                                ? std::hypot(r[0], r[1], r[2])
+                                : HUGE_VAL);
+        for (const auto &[residual, i] : pins)
+            shadows.push_back((*residual)(lamp_of(i), shared.pin_shift, r) ? std::hypot(r[0], r[1]) : HUGE_VAL);
+        output->ball_misfit = median(balls);
+        output->pin_misfit = median(shadows);
     }
 
     void write_shared()
