@@ -118,8 +118,11 @@ static weft_code read_lp_row(weft_light_list *list, char *line, int number, weft
 {
     double value[3];
     for (int i = 2; i >= 0; i--) {
-        if (!read_number(cut_last_word(line), &value[i]))
+        char *word = cut_last_word(line);
+        if (!read_number(word, &value[i]))
             return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: not a name and three numbers", list->path, number);
+        if (word == line) /* nothing stands before it */
+            *line = 0;
     }
     weft_listed_light row = {.line = number, .has_light = true, .light = {value[0], value[1], value[2]}};
     return add_row(list, trimmed(line), row, error);

@@ -108,7 +108,7 @@ class shadow_fit
 
   private:
     static constexpr int fewest_texels = 200;
-    static constexpr double noise = 0.03, farthest_mm = 4, least_darkness = 0.25;
+    static constexpr double noise = 0.03, strange_darkness = 0.25, farthest_mm = 4, least_darkness = 0.25;
     const weft_pin_area *area;
     const float *darkness;
     weft_pin_shadow *shadow;
@@ -137,7 +137,7 @@ class shadow_fit
         texels++;
         problem.AddResidualBlock(new ceres::AutoDiffCostFunction<texel_residual, 1, 2, 2, 3>(
                                      new texel_residual{x, y, (double)darkness[i], area->height_mm, is_open}),
-                                 new ceres::CauchyLoss(2 * noise), end, foot, shape);
+                                 new ceres::CauchyLoss(strange_darkness), end, foot, shape);
     }
 
     /* From the covariance for residuals of 1, along the shadow and across it. */
