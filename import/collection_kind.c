@@ -16,13 +16,6 @@ static weft_code check_folder(const char *folder, weft_error *error)
     return WEFT_OK;
 }
 
-static bool holds_light_list(const char *folder)
-{
-    int count;
-    free(weft_light_list_in(folder, &count));
-    return count > 0;
-}
-
 static weft_code list_photographs(const char *folder, const char *lights, weft_collection *collection,
                                   weft_error *error)
 {
@@ -32,9 +25,12 @@ static weft_code list_photographs(const char *folder, const char *lights, weft_c
         return weft_collection_of_positions(folder, collection, error);
     if (weft_folder_holds(folder, "directions.csv"))
         return weft_collection_of_table(folder, collection, error);
-    if (holds_light_list(folder))
-        return weft_collection_of_lights(folder, NULL, collection, error);
-    return weft_collection_of_names(folder, collection, error);
+    char *list;
+    int count;
+    WEFT_TRY(weft_light_list_in(folder, &list, &count, error));
+    free(list);
+    return count > 0 ? weft_collection_of_lights(folder, NULL, collection, error)
+                     : weft_collection_of_names(folder, collection, error);
 }
 
 static int count_present(const weft_collection *collection)

@@ -15,20 +15,22 @@ static bool ends_in_lp(const char *name)
     return dot && dot > name && strcasecmp(dot, ".lp") == 0;
 }
 
-char *weft_light_list_in(const char *folder, int *count)
+weft_code weft_light_list_in(const char *folder, char **path, int *count, weft_error *error)
 {
     DIR *stream = opendir(folder);
-    char *first = NULL;
+    *path = NULL;
     *count = 0;
-    for (struct dirent *entry; stream && (entry = readdir(stream));) {
-        if (!ends_in_lp(entry->d_name))
+    if (!stream)
+        return weft_fail_errno(error, "list", folder);
+    weft_code code = WEFT_OK;
+    for (struct dirent *entry; code == WEFT_OK && (entry = readdir(stream));) {
+        if (!ends_in_lp(entry->d_name) || (*count)++ > 0)
             continue;
-        if ((*count)++ == 0)
-            first = weft_join_path(folder, entry->d_name);
+        if (!(*path = weft_join_path(folder, entry->d_name)))
+            code = weft_fail_memory(error, "path", strlen(folder));
     }
-    if (stream)
-        closedir(stream);
-    return first;
+    closedir(stream);
+    return code;
 }
 
 static weft_code add_lit(const weft_light_list *list, const weft_listed_light *row, const char *name,
@@ -91,7 +93,9 @@ static weft_code add_listed(const char *folder, const weft_light_list *list, wef
 static weft_code find_list(const char *folder, const char *lights, char **path, weft_error *error)
 {
     int count = 1;
-    *path = lights ? strdup(lights) : weft_light_list_in(folder, &count);
+    *path = lights ? strdup(lights) : NULL;
+    if (!lights)
+        WEFT_TRY(weft_light_list_in(folder, path, &count, error));
     if (!*path)
         return weft_fail_memory(error, "path", strlen(folder));
     if (count == 1)

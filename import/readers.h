@@ -22,8 +22,8 @@ weft_code weft_collection_of_lights(const char *folder, const char *lights, weft
 /* Photographs named by their angles, in the folder or one below. */
 weft_code weft_collection_of_names(const char *folder, weft_collection *collection, weft_error *error);
 
-/* The path of an .lp file in the folder, in new memory, and how many there are; NULL where there is none, or memory is
- * short. */
-char *weft_light_list_in(const char *folder, int *count);
+/* The path of an .lp file in the folder, in new memory, NULL where there is none, and how many there are. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_light_list_in(const char *folder, char **path, int *count, weft_error *error);
 
 #endif
