@@ -14,7 +14,10 @@ typedef struct compress_command {
     weft_common_options common;
     const char *input, *output, *report;
     weft_compress_options options;
+    int lobes, table; /* NOT_GIVEN, or as in the options */
 } compress_command;
+
+enum { NOT_GIVEN = -1 };
 
 static weft_code read_tables(const weft_option *option, const char *text, void *values, weft_error *error)
 {
@@ -47,6 +50,7 @@ static weft_code read_memory(const weft_option *option, const char *text, void *
 
 /* In the order of weft_frame_choice and of weft_sample_weights. */
 static const char *const frame_words[] = {"off", "given", "on", NULL};
+static const char *const switch_words[] = {"off", "on", NULL};
 static const char *const weight_words[] = {"even", "screen", NULL};
 
 static const weft_option option_table[] = {
@@ -57,10 +61,16 @@ static const weft_option option_table[] = {
     {"output", 'o', "NAME.weft", "The material to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(compress_command, output)},
     {"lobes", .argument = "0..3", .help = "Lafortune lobes a texel and channel, at most (default: 2)",
-     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, options.lobe_count), .low = 0,
-     .high = WEFT_MATERIAL_MAX_LOBES},
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, lobes), .low = 0, .high = WEFT_MATERIAL_MAX_LOBES},
     {"table", .argument = "on|off", .help = "View table T, where the samples can carry it (default: on)",
-     .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.table)},
+     .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, table), .words = switch_words},
+    {"layers", .argument = "K",
+     .help =
+         "Add K linear layers, 4 to 64, a multiple of 4: K bytes a texel and tables that all texels share. They come "
+         "nearer to the photographs than lobes do, most of all between them. Without --lobes and --table the lobes "
+         "beside them are a diffuse term (default: 0)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, options.layer_count), .low = 0,
+     .high = WEFT_LAYERS_MAX},
     {"light-table", .argument = "on|off",
      .help = "Light table S beside T, as large and several times the time; where lights repeat (default: off)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.light_table)},
@@ -103,7 +113,13 @@ static weft_code check(void *values, weft_error *error)
 {
     const compress_command *command = values;
     const weft_compress_options *o = &command->options;
+    if (o->layer_count % WEFT_LAYERS_GROUP != 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "--layers is a multiple of %d, not %d", WEFT_LAYERS_GROUP,
+                         o->layer_count);
     bool chooses = o->target_error > 0 || o->budget_bytes > 0;
+    if (o->layer_count > 0 && chooses)
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "--error and --budget choose lobes and tables for each texel: leave out --layers");
     if (o->target_error > 0 && o->budget_bytes > 0)
         return weft_fail(error, WEFT_BAD_USAGE, "give --error or --budget, not both");
     if (o->table_components > 0 && chooses)
@@ -127,7 +143,8 @@ static void say_idle(const weft_common_options *common, const weft_compress_opti
         weft_command_say(common, "with so few images --max-exponent changes nothing");
 }
 
-static void say_model(const compress_command *command, const weft_dataset *dataset, const weft_compress_report *report)
+static void say_model(const compress_command *command, const weft_compress_options *options,
+                      const weft_dataset *dataset, const weft_compress_report *report)
 {
     const weft_common_options *common = &command->common;
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
@@ -135,21 +152,20 @@ static void say_model(const compress_command *command, const weft_dataset *datas
     weft_command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height,
                      layout->image_count, report->lobe_count, table,
                      report->light_count > 0 ? " and a light table" : "");
-    if (command->options.table_components > 0 && report->table_components == 0)
+    if (options->table_components > 0 && report->table_components == 0)
         weft_command_say(common, "these images carry no tables: --tables changes nothing");
-    if (command->options.light_table && report->light_count == 0)
+    if (options->light_table && report->light_count == 0)
         weft_command_say(common, "these images carry no light table: --light-table changes nothing");
     if (report->model == WEFT_COMPRESS_SPARSE)
-        say_idle(common, &command->options);
-    else if (command->options.frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(dataset))
+        say_idle(common, options);
+    else if (options->frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(dataset))
         weft_command_say(common, "the dataset gives no frames: --frames given is that of the surface");
     if (report->model == WEFT_COMPRESS_SPARSE)
         weft_command_say(common,
                          "%d images cannot carry lobes in every texel: exponents and normals are shared with the "
                          "neighbours, only amplitudes are the texel's own",
                          layout->image_count);
-    else if (report->lobe_count < command->options.lobe_count ||
-             (command->options.table && report->model != WEFT_COMPRESS_TABLE))
+    else if (report->lobe_count < options->lobe_count || (options->table && report->model != WEFT_COMPRESS_TABLE))
         weft_command_say(common, "%s: fitted %d lobes without a table",
                          layout->distance == WEFT_NEAR ? "near cameras or too few images" : "too few images",
                          report->lobe_count);
@@ -193,6 +209,26 @@ static void say_errors(const weft_common_options *common, const weft_material *m
     }
 }
 
+static void say_layers(const weft_common_options *common, const weft_compress_options *options,
+                       const weft_compress_report *report)
+{
+    static const char *const kind[] = {"the light", "the half vector"};
+    const weft_layers_report *layers = &report->layers;
+    if (options->layer_count == 0)
+        return;
+    weft_command_say(common,
+                     "%d layers over %s, learned from %d texels; on images held out to choose: %.4f over the light, "
+                     "%.4f over the half vector (relative RMSE)",
+                     options->layer_count, kind[layers->kind], layers->training_texels, layers->trial_error[0],
+                     layers->trial_error[1]);
+    weft_command_say(common,
+                     "layers at those texels, fitted samples: median rel. %.4f, 80 %% rel. %.4f, rel. RMSE %.4f, "
+                     "PSNR %.2f dB",
+                     layers->fitted.median_relative, layers->fitted.percentile80_relative, layers->fitted.relative_rmse,
+                     layers->fitted.psnr_db);
+    weft_command_say(common, "the lobes beside them, for players without layers:");
+}
+
 static void say_sizes(const compress_command *command, const weft_dataset_layout *layout,
                       const weft_compress_report *report)
 {
@@ -218,18 +254,30 @@ static weft_code check_output(const char *path, weft_error *error)
     return code;
 }
 
+/* Beside layers lobes are for those who cannot play layers, unless they were asked for; opacity lies in the table. */
+static weft_compress_options resolve(const compress_command *command, const weft_dataset *dataset)
+{
+    weft_compress_options options = command->options;
+    bool alone = options.layer_count == 0;
+    options.lobe_count = command->lobes != NOT_GIVEN ? command->lobes : alone ? options.lobe_count : 0;
+    options.table = command->table != NOT_GIVEN ? command->table : alone || weft_dataset_has_opacity(dataset);
+    return options;
+}
+
 static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
 {
     weft_progress progress = weft_command_progress(&command->common);
     weft_compress_options options = command->options;
-    options.checkpoint_path = partial_path;
-    options.log = weft_command_log(&command->common);
     weft_dataset *dataset = NULL;
     weft_material material = {0};
     weft_compress_report report;
     weft_code code = weft_dataset_open(command->input, &dataset, error);
-    if (code == WEFT_OK)
+    if (code == WEFT_OK) {
+        options = resolve(command, dataset);
+        options.checkpoint_path = partial_path;
+        options.log = weft_command_log(&command->common);
         code = weft_compress(dataset, &options, &progress, &material, &report, error);
+    }
     if (code == WEFT_OK)
         code = weft_material_write(command->output, &material, error);
     if (code == WEFT_OK && command->report)
@@ -237,8 +285,9 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     if (code == WEFT_OK) {
         const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
         unlink(partial_path);
-        say_model(command, dataset, &report);
+        say_model(command, &options, dataset, &report);
         say_target(command, &report);
+        say_layers(&command->common, &options, &report);
         say_errors(&command->common, &material);
         say_sizes(command, layout, &report);
     }
@@ -249,7 +298,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
 
 static int run(int argc, char **argv)
 {
-    compress_command command = {.options = weft_compress_default_options()};
+    compress_command command = {.options = weft_compress_default_options(), .lobes = NOT_GIVEN, .table = NOT_GIVEN};
     weft_arguments_parse(&weft_command_compress, argc, argv, &command);
     weft_error error = {0};
     char partial_path[PATH_MAX];

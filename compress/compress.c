@@ -4,6 +4,7 @@
 #include "base/processor.h"
 #include "btf/dataset/fingerprint.h"
 #include "btf/material/models.h"
+#include "compress/layers/layers_fit.h"
 #include "compress/metadata.h"
 #include "compress/run/budget.h"
 #include "compress/run/given_frames.h"
@@ -219,6 +220,17 @@ static weft_code fit_sparse(fitting *work, weft_material *material, weft_compres
                                     &work->counts, &report->masked_count, error);
 }
 
+static weft_code fit_layers(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
+{
+    weft_layers_options options = {.layer_count = work->options->layer_count,
+                                   .held_out = work->options->held_out,
+                                   .for_screen = work->options->weights == WEFT_WEIGHTS_SCREEN,
+                                   .budget = work->budget};
+    return options.layer_count > 0
+               ? weft_layers_fit(work->dataset, &options, work->progress, material, &report->layers, error)
+               : WEFT_OK;
+}
+
 static weft_code fit_material(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
@@ -230,6 +242,7 @@ static weft_code fit_material(fitting *work, weft_material *material, weft_compr
         WEFT_TRY(fit_dense(work, material, report, error));
     if (work->counts.empty == work->counts.texels && !work->options->held_out)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(work->dataset));
+    WEFT_TRY(fit_layers(work, material, report, error));
     report->texel_count = work->counts.texels;
     report->empty_texel_count = work->counts.empty;
     report->turned_frame_count = work->counts.turned;
@@ -248,6 +261,8 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
     weft_compress_report own = {0};
     double began = weft_now_s();
     WEFT_TRY(weft_compress_options_check(options, dataset, error));
+    if (options->layer_count > 0)
+        WEFT_TRY(weft_layers_check(dataset, options->layer_count, error));
     plan(weft_dataset_get_layout(dataset), options, &own);
     fitting work = {.dataset = dataset,
                     .options = options,

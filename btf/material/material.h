@@ -11,6 +11,7 @@
 #include "base/numeric/error_summary.h"
 #include "base/status.h"
 #include "btf/direction/frame.h"
+#include "btf/material/layers.h"
 #include "btf/material/table_basis.h"
 
 #include <stdbool.h>
@@ -49,11 +50,13 @@ typedef struct weft_material {
     bool has_models;       /* every level says which model each texel has */
     bool has_table_bases;  /* tables are stored by components, and so */
     bool has_opacity;      /* are opacities by themselves, if any is below 1 */
+    bool has_layers;       /* `layers` is, or will be, set */
     double texel_pitch_mm; /* of level 0 */
     weft_vec3 *view;       /* [view_count], unit, upper hemisphere */
     weft_vec3 *light;      /* [light_count], unit, upper hemisphere */
     weft_material_level level[WEFT_MATERIAL_MAX_LEVELS];
-    char *metadata; /* JSON text: provenance, fit settings; never NULL once read */
+    weft_layers *layers; /* the same reflectance a second time, nearer to the photographs; NULL without */
+    char *metadata;      /* JSON text: provenance, fit settings; never NULL once read */
 } weft_material;
 
 /* Allocates all arrays of a material (zeroed) for a level 0 of width x height; full mip chain when

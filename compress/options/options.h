@@ -35,6 +35,7 @@ typedef struct weft_compress_options {
     double max_exponent;   /* N <= this */
     double target_error;   /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
     uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
+    int layer_count;       /* linear layers beside the lobes: 4..64, a multiple of 4; 0: none */
     int table_components;  /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */

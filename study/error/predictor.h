@@ -12,7 +12,8 @@ typedef struct weft_predictor weft_predictor;
 
 /* Predictions for one dataset, whose layout outlives the predictor. The caller frees with weft_predictor_free. */
 
-/* Level 0 of a material, which stays the caller's. Errors: WEFT_BAD_INPUT where its size is not that of the dataset. */
+/* Level 0 of a material, which stays the caller's: its layers where it has some, else its lobes. Errors: WEFT_BAD_INPUT
+ * where its size is not that of the dataset. */
 weft_code weft_predictor_of_material(const weft_dataset *dataset, const weft_material *material,
                                      weft_predictor **result, weft_error *error);
 

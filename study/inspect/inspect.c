@@ -87,17 +87,27 @@ static json_t *describe_level(const weft_material *material, int k)
     return described;
 }
 
+static json_t *describe_layers(const weft_layers *layers)
+{
+    return json_pack("{s:i, s:s, s:i, s:i}", "count", layers->layer_count, "maps_over",
+                     layers->kind == WEFT_LAYERS_OF_LIGHT ? "light" : "half vector", "views", layers->view_count,
+                     "images", layers->image_count);
+}
+
 static json_t *describe_material(const char *path, const weft_material *material)
 {
     /* First: reading numbers, jansson sets errno to 0. */
     json_t *metadata = parsed(material->metadata), *levels = json_array();
     for (int i = 0; i < material->level_count; i++)
         weft_json_append(&levels, describe_level(material, i));
-    return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
-                     (json_int_t)weft_file_bytes(path), "texels", material->level[0].width, material->level[0].height,
-                     "lobes", material->lobe_count, "views_in_table", material->view_count, "lights_in_table",
-                     material->light_count, "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata",
-                     metadata);
+    json_t *described = json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind",
+                                  "material", "bytes", (json_int_t)weft_file_bytes(path), "texels",
+                                  material->level[0].width, material->level[0].height, "lobes", material->lobe_count,
+                                  "views_in_table", material->view_count, "lights_in_table", material->light_count,
+                                  "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata", metadata);
+    if (material->layers)
+        weft_json_put(&described, "layers", describe_layers(material->layers));
+    return described;
 }
 
 static weft_code inspect_material(const char *path, json_t **result, weft_error *error)
