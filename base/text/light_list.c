@@ -60,7 +60,8 @@ static weft_code add_row(weft_light_list *list, const char *name, weft_listed_li
     if (!*name)
         return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: no name of a photograph", list->path, row.line);
     for (int i = 0; i < list->count; i++) {
-        if (strcasecmp(list->row[i].file, name) == 0)
+        const char *other = list->row[i].file;
+        if (other && strcasecmp(other, name) == 0)
             return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: '%s' is listed already in line %d", list->path, row.line,
                              name, list->row[i].line);
     }
@@ -98,9 +99,11 @@ static char *cut_last_word(char *line)
 
 static bool read_number(const char *text, double *value)
 {
+    if (!text)
+        return false;
     char *end;
-    *value = text ? strtod(text, &end) : 0;
-    return text && end != text && !*end && isfinite(*value);
+    *value = strtod(text, &end);
+    return end != text && !*end && isfinite(*value);
 }
 
 static char *trimmed(char *text)
@@ -119,7 +122,7 @@ static weft_code read_lp_row(weft_light_list *list, char *line, int number, weft
     double value[3];
     for (int i = 2; i >= 0; i--) {
         char *word = cut_last_word(line);
-        if (!read_number(word, &value[i]))
+        if (!word || !read_number(word, &value[i]))
             return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: not a name and three numbers", list->path, number);
         if (word == line) /* nothing stands before it */
             *line = 0;

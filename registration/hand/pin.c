@@ -55,7 +55,7 @@ static const double surroundings_mm = 8;
 
 static bool *find_paper(const weft_pin_area *area, const weft_target *target)
 {
-    bool *paper = malloc((size_t)area->columns * (size_t)area->rows);
+    bool *paper = calloc((size_t)area->columns * (size_t)area->rows, sizeof *paper);
     for (int i = 0; paper && i < area->columns * area->rows; i++) {
         double x = area->x0 + area->step_mm * (i % area->columns), y = area->y0 + area->step_mm * (i / area->columns);
         paper[i] = true;
@@ -223,7 +223,8 @@ static double try_heading(const weft_pin_area *area, const float *darkness, head
 {
     const double samples_of_head = 4 * weft_pin_head_radius_mm / area->step_mm;
     double line = 0, best = -INFINITY;
-    for (double along = first_mm; along < reach_mm; along += area->step_mm) {
+    for (int step = 0; first_mm + step * area->step_mm < reach_mm; step++) {
+        double along = first_mm + step * area->step_mm;
         double here = beside(area, darkness, h, along, 0);
         if (open && along >= shortest_open_mm && line > best && isfinite(here))
             best = line, *length = along;
