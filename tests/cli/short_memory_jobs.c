@@ -27,6 +27,11 @@ const short_memory_job short_memory_inputs[] = {
     {"chosen", ALL_OR_NOTHING, 1, {"compress", "small.btf.h5", "-o", "chosen.weft", "--error", "25"}},
     {"sparse", ALL_OR_NOTHING, 1, {"compress", "card.btf.h5", "-o", "card.weft"}},
     {"prediction", ALL_OR_NOTHING, 1, {"bard", "small.btf.h5", "-o", "small.bard.h5"}},
+    {"photographed",
+     ALL_OR_NOTHING,
+     1,
+     {"hand", "checker", "-o", "taken", "--photographs", "3", "--width", "600", "--set", "tripod", "--truth-size",
+      "0"}},
     {"picture", ALL_OR_NOTHING, 1, {"render", "small.weft", "-o", "small.png", "--size", "32x32", "--samples", "1"}},
     {NULL, ALL_OR_NOTHING, 1, {NULL}},
 };
@@ -56,6 +61,20 @@ const short_memory_job short_memory_jobs[] = {
     {"import", ALL_OR_NOTHING, 1, {"import", IN "named", "-o", "card.btf.h5", "--size", "2"}},
     {"import-listed", ALL_OR_NOTHING, 1, {"import", IN "listed", "-o", "card.btf.h5"}},
     {"import-placed", ALL_OR_NOTHING, 1, {"import", IN "placed", "-o", "card.btf.h5"}},
+    {"import-lit", ALL_OR_NOTHING, 1, {"import", IN "lit", "-o", "card.btf.h5"}},
+    {"target", ALL_OR_NOTHING, 1, {"target", "-o", "target.svg"}},
+    {"target-pdf", ALL_OR_NOTHING, 1, {"target", "-o", "target.pdf"}},
+    {"hand",
+     GOES_ON,
+     16,
+     {"hand", "checker", "-o", "taken", "--photographs", "1", "--width", "300", "--set", "tripod", "--truth-size",
+      "4"}},
+    {"photographs",
+     ALL_OR_NOTHING,
+     32,
+     {"photographs", IN "taken", "-o", "felt.btf.h5", "--size", "8x8", "--lights", IN "taken.lp", "--report",
+      "report"}},
+    {"lens", ALL_OR_NOTHING, 8, {"lens", IN "taken", "--board", "plate:50", "-o", "lens.json"}},
     {"compress", GOES_ON, 1, {"compress", IN "small.btf.h5", "-o", "small.weft", "--lobes", "1"}},
     {"compress-light-table",
      GOES_ON,
@@ -148,6 +167,10 @@ static void write_collections(void)
     write_photograph("listed", "b.exr", 0.3f);
     write_text("listed/directions.csv",
                "file,theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\na.png,0,0,0,0\nb.exr,30,0,10,120\n");
+    mkdir("lit", 0777);
+    write_photograph("lit", "a.png", 0.2f);
+    write_photograph("lit", "b.png", 0.3f);
+    write_text("lit/dome.lp", "3\nB.PNG 0 0.6 0.8\na.png 0 0 1\ngone.png 0.6 0 0.8\n");
     mkdir("placed", 0777);
     write_photograph("placed", "00.png", 0.2f);
     write_photograph("placed", "01.png", 0.3f);

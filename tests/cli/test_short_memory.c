@@ -23,6 +23,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <cairo.h>
 #include <unistd.h>
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -82,6 +83,7 @@ static void *call_main(void *context)
         argument[count++] = "--quiet";
     argument[count++] = "--threads=2";
     int code = __real_main(count, argument);
+    cairo_debug_reset_static_data(); /* it keeps typefaces for later pages, and is no leak */
     short_memory_count_kept();
     leave(code);
     return NULL;
