@@ -10,6 +10,7 @@
 #include "tests/cli/short_memory_files.h"
 #include "tests/cli/short_memory_jobs.h"
 
+#include <cairo.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -23,7 +24,6 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <cairo.h>
 #include <unistd.h>
 
 #if defined(__SANITIZE_ADDRESS__)
