@@ -18,7 +18,7 @@ static weft_code allocate(const weft_dataset_layout *layout, weft_layer_images *
     images->light = malloc(count * sizeof *images->light);
     images->view = malloc(views * sizeof *images->view);
     images->cosine = malloc(count * sizeof *images->cosine);
-    images->weight = malloc(count * sizeof *images->weight);
+    images->weight = calloc(count, sizeof *images->weight);
     bool all = images->image && images->first && images->light && images->view && images->cosine && images->weight;
     return all ? WEFT_OK : weft_fail_memory(error, "images of layers", count * sizeof *images->light);
 }
