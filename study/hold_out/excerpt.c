@@ -219,10 +219,12 @@ static weft_code make_kept_layout(const weft_dataset_layout *source, const kept_
     }
     for (int view = 0; view < kept->view_count; view++)
         layout->view[view] = source->view[kept->view[view]];
-    if (source->figure[WEFT_IMAGE_WEIGHT])
-        WEFT_TRY(weft_dataset_layout_allocate_figure(layout, WEFT_IMAGE_WEIGHT, error));
-    for (int i = 0; layout->figure[WEFT_IMAGE_WEIGHT] && i < kept->image_count; i++)
-        layout->figure[WEFT_IMAGE_WEIGHT][i] = source->figure[WEFT_IMAGE_WEIGHT][kept->image[i]];
+    const double *weight = source->figure[WEFT_IMAGE_WEIGHT];
+    if (!weight)
+        return WEFT_OK;
+    WEFT_TRY(weft_dataset_layout_allocate_figure(layout, WEFT_IMAGE_WEIGHT, error));
+    for (int i = 0; i < kept->image_count; i++)
+        layout->figure[WEFT_IMAGE_WEIGHT][i] = weight[kept->image[i]];
     return WEFT_OK;
 }
 

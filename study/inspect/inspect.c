@@ -107,7 +107,8 @@ static json_t *describe_error(const weft_material *material)
     } else {
         weft_json_put(&described, "not_fitted", json_string("not measured"));
     }
-    weft_json_put(&described, "fitted_level_0", json_real(material->level[0].error.relative_rmse));
+    weft_json_put(&described, material->layers ? "fitted_level_0_lobes" : "fitted_level_0",
+                  json_real(material->level[0].error.relative_rmse));
     return described;
 }
 
