@@ -88,14 +88,17 @@ weft_code weft_measured_parse(const char *metadata, bool *known, weft_measured *
     *known = false;
     errno = 0;
     json_t *object = metadata ? json_loads(metadata, 0, NULL) : NULL, *own = json_object_get(object, "measured");
-    if (metadata && !object && errno == ENOMEM)
-        return weft_fail_memory(error, "metadata", strlen(metadata));
+    bool is_short = metadata && !object && errno == ENOMEM;
+    errno = 0; /* jansson allocates to unpack, too */
     bool says =
         own && json_unpack(own, "{s:[FFFF], s:[FFFF], s:[FFF], s:[FFF]}", "view", &m.view.axis.x, &m.view.axis.y,
                            &m.view.axis.z, &m.view.angle_rad, "light", &m.light.axis.x, &m.light.axis.y,
                            &m.light.axis.z, &m.light.angle_rad, "first_view", &m.first_view.x, &m.first_view.y,
                            &m.first_view.z, "first_light", &m.first_light.x, &m.first_light.y, &m.first_light.z) == 0;
+    is_short = is_short || (own && !says && errno == ENOMEM);
     json_decref(object);
+    if (is_short)
+        return weft_fail_memory(error, "metadata", strlen(metadata));
     m.view.angle_rad *= WEFT_PI / 180;
     m.light.angle_rad *= WEFT_PI / 180;
     *measured = m;
