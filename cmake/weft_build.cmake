@@ -117,6 +117,26 @@ function(weft_room room)
     weft_show_headers(${target} ${room} "${room_SHOWS}" "${room_FOLDERS}")
 endfunction()
 
+# Modules are loaded while the program runs. Executables search this folder for them; RPATH, unlike RUNPATH, holds for a sanitizer's
+# dlopen, too.
+set(WEFT_MODULES ${CMAKE_BINARY_DIR}/modules)
+set(CMAKE_BUILD_RPATH ${WEFT_MODULES})
+add_link_options(-Wl,--disable-new-dtags)
+
+# weft_module(ROOM NAME SOURCES file... USES room|package...): sources of a room whose packages are slow to load, as NAME.so, which
+# that room opens when it is needed. Linking the room builds it.
+function(weft_module room name)
+    cmake_parse_arguments(module "" "" "SOURCES;USES" ${ARGN})
+    weft_target_of(target ${room})
+    weft_target_of(uses ${module_USES})
+    list(TRANSFORM module_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/${room}/)
+    add_library(${name} MODULE ${module_SOURCES})
+    target_link_libraries(${name} PRIVATE weft_options ${uses})
+    target_include_directories(${name} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
+    set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${WEFT_MODULES})
+    add_dependencies(${target} ${name})
+endfunction()
+
 # weft_stage(NAME): weft_NAME_stage is all rooms under one top folder, and those that they use, and all of base.
 function(weft_stage name)
     get_property(targets DIRECTORY ${CMAKE_SOURCE_DIR}/${name} PROPERTY BUILDSYSTEM_TARGETS)

@@ -1,4 +1,4 @@
-#include "base/picture/exif.h"
+#include "base/picture/image_library.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -46,7 +46,7 @@ weft_code read_head(const char *path, weft_exif *exif, weft_error *error)
 
 } // namespace
 
-extern "C" weft_code weft_exif_read(const char *path, weft_exif *exif, weft_error *error)
+weft_code weft_exif_bridge_read(const char *path, weft_exif *exif, weft_error *error)
 {
     try {
         return read_head(path, exif, error);

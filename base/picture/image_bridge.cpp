@@ -1,5 +1,5 @@
 #include "base/atomic_file.h"
-#include "base/picture/image.h"
+#include "base/picture/image_library.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -250,55 +250,41 @@ template <typename Action> weft_code guarded(const char *path, weft_error *error
     }
 }
 
-} // namespace
-
-weft_code weft_image_create(int width, int height, weft_image *image, weft_error *error)
-{
-    size_t bytes = size_t(width) * size_t(height) * 3 * sizeof(float);
-    *image = weft_image{width, height, static_cast<float *>(calloc(1, bytes))};
-    return image->pixels ? WEFT_OK : weft_fail_memory(error, "image", bytes);
-}
-
-void weft_image_free(weft_image *image)
-{
-    free(image->pixels);
-    *image = weft_image{0, 0, nullptr};
-}
-
-weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+weft_code image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
 {
     return guarded(path, error, [&] { return read_image(path, image, kind, error); });
 }
 
-weft_code weft_image_write(const char *path, const weft_image *image, const char *description, weft_error *error)
-{
-    return weft_image_write_settings(path, image, description, nullptr, error);
-}
-
-weft_code weft_image_write_settings(const char *path, const weft_image *image, const char *description,
-                                    const char *settings, weft_error *error)
+weft_code image_write(const char *path, const weft_image *image, const char *description, const char *settings,
+                      weft_error *error)
 {
     return guarded(path, error, [&] { return write_image(path, image, description, settings, error); });
 }
 
-weft_code weft_image_read_settings(const char *path, char **settings, weft_error *error)
+weft_code image_read_settings(const char *path, char **settings, weft_error *error)
 {
     return guarded(path, error, [&] { return read_settings(path, settings, error); });
 }
 
-weft_code weft_photograph_write(const char *path, int width, int height, int bits, const uint16_t *samples,
-                                weft_error *error)
+weft_code photograph_write(const char *path, int width, int height, int bits, const uint16_t *samples,
+                           weft_error *error)
 {
     return guarded(path, error, [&] { return write_photograph(path, width, height, bits, samples, error); });
 }
 
-weft_code weft_photograph_read(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error)
+weft_code photograph_read(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error)
 {
     return guarded(path, error, [&] { return read_photograph(path, width, height, bits, samples, error); });
 }
 
-weft_code weft_snapshot_write(const char *path, const weft_image *image, const weft_camera_notes *notes,
-                              weft_error *error)
+weft_code snapshot_write(const char *path, const weft_image *image, const weft_camera_notes *notes, weft_error *error)
 {
     return guarded(path, error, [&] { return write_snapshot(path, image, notes, error); });
 }
+
+} // namespace
+
+extern "C" const weft_image_library weft_image_library_table = {
+    image_read,      image_write,    image_read_settings,   photograph_write,
+    photograph_read, snapshot_write, weft_exif_bridge_read,
+};
