@@ -12,32 +12,32 @@ cd "$scratch"
 weave="$assets/weaves/polyester_lining.wv"
 write_plan >plan.csv
 expect_ok capture --sample "$weave" --plan plan.csv -o good
-photograph=tv030_pv090/tl030_pl060_tv030_pv090.tif
 
-# A copy of the good session whose photographs may be spoilt one by one.
+# A copy of the good session whose photographs may be spoilt.
 spoil() {
     rm -rf spoilt spoilt.btf.h5 report
     cp -r good spoilt
 }
 
-# One bad photograph is named and does not sink the rest.
-expect_survives() {
-    expect_ok register spoilt --size 16x16 -o spoilt.btf.h5 --report report
-    cat out.log err.log report/index.html | grep -q "$1" || fail "'$1' is not named"
-    expect_ok compress spoilt.btf.h5 --lobes 1 --hold-out off -o spoilt.weft
-}
-
-spoil && rm "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
-spoil && : >"spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
-spoil && truncate -s 20000 "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
-spoil && convert -size 100x80 xc:gray "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
-spoil && head -c 500 /dev/urandom >"spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
-spoil && convert -size 416x416 xc:black -depth 16 -type TrueColor "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
+# Bad photographs are named and do not sink the rest: missing, empty, cut, of another size, no picture, without the target.
+stay=spoilt/tv030_pv090
 spoil
-for each in spoilt/tv030_pv090/*.tif; do # a view whose target cannot be seen
+rm $stay/tl030_pl060_tv030_pv090.tif
+: >$stay/tl030_pl180_tv030_pv090.tif
+truncate -s 20000 $stay/tl045_pl300_tv030_pv090.tif
+convert -size 100x80 xc:gray $stay/tl060_pl000_tv030_pv090.tif
+head -c 500 /dev/urandom >$stay/tl060_pl120_tv030_pv090.tif
+convert -size 416x416 xc:black -depth 16 -type TrueColor $stay/tl060_pl240_tv030_pv090.tif
+for each in spoilt/tv045_pv240/*.tif; do # a view whose target cannot be seen
     convert -size 416x416 xc:gray -depth 16 -type TrueColor "$each"
 done
-expect_survives tv030_pv090
+expect_ok register spoilt --size 16x16 -o spoilt.btf.h5 --report report
+cat out.log err.log report/index.html >named
+for name in tl030_pl060 tl030_pl180 tl045_pl300 tl060_pl000 tl060_pl120 tl060_pl240; do
+    grep -q "${name}_tv030_pv090" named || fail "${name}_tv030_pv090 is not named"
+done
+grep -q tv045_pv240 named || fail "the view without a target is not named"
+expect_ok compress spoilt.btf.h5 --lobes 1 --hold-out off -o spoilt.weft
 spoil
 find spoilt -name '*.tif' -delete
 expect_error 1 spoilt register spoilt --size 16x16 -o spoilt.btf.h5

@@ -19,7 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { WIDTH = 40, HEIGHT = 36, BLOCKS = 9, KINDS = 6, MAX_SAID = 8192 };
+enum { WIDTH = 34, HEIGHT = 18, BLOCKS = 6, KINDS = 6, MAX_SAID = 8192 };
 
 static const char *const dataset_path = "large.btf.h5", *const whole_path = "large-whole.weft",
                          *const path = "large.weft", *const partial_path = "large.weft.partial";
@@ -174,7 +174,7 @@ static int prepare(void **state)
     unlink(partial_path);
     unlink("large-whole.weft.partial");
     outcome got = compress_dataset(dataset_path, whole_path, no_limit, no_option);
-    expect_says(&got, 0, "in 9 blocks");
+    expect_says(&got, 0, "in 6 blocks");
     assert_int_equal(size_of("large-whole.weft.partial"), -1);
     return 0;
 }
@@ -182,7 +182,7 @@ static int prepare(void **state)
 /* Leaves a partial file of at least two blocks as "large.kept", and removes the original. */
 static void keep_some_blocks(void)
 {
-    outcome got = compress_dataset(dataset_path, path, (limits){.kill_at = 900000}, no_option);
+    outcome got = compress_dataset(dataset_path, path, (limits){.kill_at = 450000}, no_option);
     assert_true(WIFSIGNALED(got.status));
     copy_file(partial_path, "large.kept", SIZE_MAX);
     unlink(partial_path);
@@ -219,7 +219,7 @@ static void other_models_go_on_as_well(void **state)
     for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
         outcome got = compress_dataset(dataset_path, "large-chosen.weft", no_limit, option[i]);
         expect_says(&got, 0, "fitted in");
-        got = compress_dataset(dataset_path, path, (limits){.kill_at = 900000}, option[i]);
+        got = compress_dataset(dataset_path, path, (limits){.kill_at = 700000}, option[i]);
         assert_true(WIFSIGNALED(got.status));
         got = compress_dataset(dataset_path, path, no_limit, option[i]);
         expect_says(&got, 0, "going on after");
@@ -238,7 +238,7 @@ static void a_checkpoint_cut_anywhere_goes_on(void **state)
         copy_file("large.kept", partial_path, (size_t)cut[i]);
         outcome got = compress_dataset(dataset_path, path, no_limit, no_option);
         expect_not_said(&got, "discarded");
-        expect_done(&got, i < 2 ? "in 9 blocks" : "going on after");
+        expect_done(&got, i < 2 ? "in 6 blocks" : "going on after");
     }
 }
 
@@ -297,7 +297,7 @@ static void what_is_no_checkpoint_is_left_alone(void **state)
 static void a_full_disk_keeps_what_is_done(void **state)
 {
     (void)state;
-    outcome got = compress_dataset(dataset_path, path, (limits){.file = 700000}, no_option);
+    outcome got = compress_dataset(dataset_path, path, (limits){.file = 500000}, no_option);
     expect_says(&got, 3, "cannot append to 'large.weft.partial'");
     assert_int_equal(size_of(path), -1);
     assert_true(size_of(partial_path) > 150000);

@@ -326,7 +326,7 @@ static void the_drape_is_drawn_in_every_scene_and_measured(void **state)
     options.lobe_count = 1;
     expect_ok(weft_dataset_open("weave.btf.h5", &dataset, &error), &error);
     expect_ok(weft_compress(dataset, &options, NULL, &material, NULL, &error), &error);
-    weft_traced_request request = {dataset, &material, "weave.stitch", 16, 1};
+    weft_traced_request request = {dataset, &material, "weave.stitch", 10, 1};
     expect_ok(weft_traced_truth_measure(&request, NULL, &truth, &error), &error);
     bool drawn = truth.drawn;
     if (drawn) {
@@ -337,7 +337,7 @@ static void the_drape_is_drawn_in_every_scene_and_measured(void **state)
             check_scene(&truth.scene[i]);
         weft_traced_truth_free(&truth);
         request.stitch = "other.stitch";
-        request.paths = 4;
+        request.paths = 1;
         expect_ok(weft_traced_truth_measure(&request, NULL, &truth, &error), &error);
         assert_non_null(strstr(truth.warning, "'Plain weave', the truth is traced from 'Other weave'"));
         weft_traced_truth_free(&truth);
