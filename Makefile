@@ -1,7 +1,10 @@
 # Two commands do everything: `make demo` and `make test`. The build itself is CMake's.
 build := build/release
 
-.PHONY: demo test program build check mutants bench numerics references packages clean
+# Where `make install` puts the program; DESTDIR stages it.
+PREFIX ?= /usr/local
+
+.PHONY: demo test program build install uninstall package check mutants bench numerics references packages clean
 
 demo: program
 	scripts/demo.sh $(build)/cli/weft demo-out
@@ -15,6 +18,19 @@ build: program
 program: packages
 	cmake --preset release -Wno-dev --log-level=WARNING
 	cmake --build --preset release --target weft
+
+install: program
+	cmake --build --preset release --target manual
+	cmake --install $(build) --prefix $(PREFIX)
+
+# What the last `make install` from here has put there, with the same DESTDIR.
+uninstall:
+	while read -r file || [ -n "$$file" ]; do rm -f "$(DESTDIR)$$file"; done <$(build)/install_manifest.txt
+
+# build/release/weft.deb
+package: program
+	cmake --build --preset release --target manual
+	cpack --config $(build)/CPackConfig.cmake
 
 packages:
 	scripts/install-packages.sh

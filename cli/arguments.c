@@ -64,25 +64,35 @@ static void add_row(arguments *a, const weft_option *option, const weft_setting 
         };
 }
 
+static void add_option(void *context, const weft_option *option, const weft_setting *setting)
+{
+    add_row(context, option, setting);
+}
+
+static void add_rows(arguments *a)
+{
+    if (a->command->shows_scene)
+        for (int group = 1; weft_settings_group(group); group++)
+            add_heading(a, weft_settings_group(group), group);
+    add_heading(a, "Common options:", COMMON_GROUP);
+    weft_arguments_each(a->command, add_option, a);
+}
+
 static bool is_row(const weft_option *option)
 {
     return option->name || option->argument;
 }
 
-static void add_rows(arguments *a)
+void weft_arguments_each(const weft_command *command, weft_arguments_visit *visit, void *context)
 {
-    for (const weft_option *option = a->command->options; is_row(option); option++)
-        add_row(a, option, NULL);
-    if (a->command->shows_scene) {
-        for (int group = 1; weft_settings_group(group); group++)
-            add_heading(a, weft_settings_group(group), group);
+    for (const weft_option *option = command->options; is_row(option); option++)
+        visit(context, option, NULL);
+    if (command->shows_scene)
         for (const weft_setting *setting = weft_settings_schema(); setting->key || setting->option.name; setting++)
             if (is_row(&setting->option))
-                add_row(a, &setting->option, setting);
-    }
-    add_heading(a, "Common options:", COMMON_GROUP);
+                visit(context, &setting->option, setting);
     for (const weft_option *option = common_table; is_row(option); option++)
-        add_row(a, option, NULL);
+        visit(context, option, NULL);
 }
 
 /* ---- Reading ---- */

@@ -15,4 +15,9 @@ typedef struct weft_scene_values {
  * WEFT_BAD_USAGE; a picture with settings that cannot be read with the code of that. */
 void weft_arguments_parse(const weft_command *command, int argc, char **argv, void *values);
 
+/* Visits every option of a command: its own, those of a scene with their setting (else NULL), the common ones. Options
+ * without a name are arguments that are known by their place, in the order of the places. */
+typedef void weft_arguments_visit(void *context, const weft_option *option, const weft_setting *setting);
+void weft_arguments_each(const weft_command *command, weft_arguments_visit *visit, void *context);
+
 #endif

@@ -31,6 +31,16 @@ extern const weft_command weft_command_tile, weft_command_bard, weft_command_com
 extern const weft_command weft_command_render, weft_command_play, weft_command_compare, weft_command_eval;
 extern const weft_command weft_command_info, weft_command_verify, weft_command_target, weft_command_lens;
 
+/* All of them, in the order of `weft --help`; the last has no command. */
+typedef struct weft_command_entry {
+    const char *heading; /* before it, or NULL */
+    const weft_command *command;
+} weft_command_entry;
+extern const weft_command_entry weft_commands[];
+
+/* The command of that name, or NULL. */
+const weft_command *weft_command_named(const char *name);
+
 /* The progress reporter of the command line: a line with an ETA that rewrites itself on a terminal, a plain line every
  * few seconds otherwise, a JSON event with --json, nothing with --quiet. */
 weft_progress weft_command_progress(const weft_common_options *common);

@@ -1,34 +1,10 @@
 #include "cli/command.h"
+#include "cli/complete.h"
 
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Commands with the heading before them, or NULL. */
-static const struct {
-    const char *heading;
-    const weft_command *command;
-} commands[] = {
-    {"Before photographs are taken by hand:", &weft_command_target},
-    {NULL, &weft_command_lens},
-    {"Photographs and geometry to a dataset:", &weft_command_capture},
-    {NULL, &weft_command_hand},
-    {NULL, &weft_command_simulate},
-    {NULL, &weft_command_register},
-    {NULL, &weft_command_photographs},
-    {NULL, &weft_command_import},
-    {NULL, &weft_command_tile},
-    {NULL, &weft_command_bard},
-    {"A dataset to a model:", &weft_command_compress},
-    {NULL, &weft_command_fit_weave},
-    {"Look and measure:", &weft_command_render},
-    {NULL, &weft_command_play},
-    {NULL, &weft_command_compare},
-    {NULL, &weft_command_eval},
-    {NULL, &weft_command_info},
-    {NULL, &weft_command_verify},
-};
 
 static void print_usage(FILE *stream)
 {
@@ -36,10 +12,10 @@ static void print_usage(FILE *stream)
           "Usage: weft COMMAND [OPTION...]\n"
           "Turns photographs of a material into something you can play back in real time.\n\n",
           stream);
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
-        if (commands[i].heading)
-            fprintf(stream, "%s%s\n", i > 0 ? "\n" : "", commands[i].heading);
-        fprintf(stream, "  %-10s %s\n", commands[i].command->name, commands[i].command->summary);
+    for (const weft_command_entry *entry = weft_commands; entry->command; entry++) {
+        if (entry->heading)
+            fprintf(stream, "%s%s\n", entry > weft_commands ? "\n" : "", entry->heading);
+        fprintf(stream, "  %-12s %s\n", entry->command->name, entry->command->summary);
     }
     fputs("\n'weft COMMAND --help' explains a command. 'weft --version' prints the version.\n"
           "Exit codes: 0 done, 1 bad input, 2 bad usage, 3 device or system failure.\n",
@@ -72,10 +48,11 @@ int main(int argc, char **argv)
         puts("weft " WEFT_VERSION);
         return EXIT_SUCCESS;
     }
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
-        if (strcmp(argv[1], commands[i].command->name) == 0)
-            return run_command(commands[i].command, argc - 1, argv + 1);
-    }
+    if (strcmp(argv[1], "--complete") == 0)
+        return weft_complete(argc - 2, argv + 2);
+    const weft_command *chosen = weft_command_named(argv[1]);
+    if (chosen)
+        return run_command(chosen, argc - 1, argv + 1);
     fprintf(stderr, "weft: there is no command '%s'; 'weft --help' lists them\n", argv[1]);
     return WEFT_BAD_USAGE;
 }

@@ -49,7 +49,8 @@ static const weft_setting light[] = {
 
 /* In the order of the text. */
 static const weft_setting schema[] = {
-    SETTING("files.material", .argument = "NAME.weft", NAME(material), .read = weft_choose_file),
+    SETTING("files.material", .argument = "NAME.weft|NAME.btf.h5|CLOTH.wv|CLOTH.mc", NAME(material),
+            .read = weft_choose_file),
     SETTING("files.dataset", OPTION("raw", "NAME.btf.h5", SHOWN, "Show this dataset in mode raw"), NAME(dataset)),
     SETTING("files.weave",
             OPTION("weave", "CLOTH.wv|CLOTH.mc", SHOWN, "Show this weave or microcylinder cloth in mode analytic"),

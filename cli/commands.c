@@ -1,0 +1,33 @@
+#include "cli/command.h"
+
+#include <string.h>
+
+const weft_command_entry weft_commands[] = {
+    {"Before photographs are taken by hand:", &weft_command_target},
+    {NULL, &weft_command_lens},
+    {"Photographs and geometry to a dataset:", &weft_command_capture},
+    {NULL, &weft_command_hand},
+    {NULL, &weft_command_simulate},
+    {NULL, &weft_command_register},
+    {NULL, &weft_command_photographs},
+    {NULL, &weft_command_import},
+    {NULL, &weft_command_tile},
+    {NULL, &weft_command_bard},
+    {"A dataset to a model:", &weft_command_compress},
+    {NULL, &weft_command_fit_weave},
+    {"Look and measure:", &weft_command_render},
+    {NULL, &weft_command_play},
+    {NULL, &weft_command_compare},
+    {NULL, &weft_command_eval},
+    {NULL, &weft_command_info},
+    {NULL, &weft_command_verify},
+    {NULL, NULL},
+};
+
+const weft_command *weft_command_named(const char *name)
+{
+    const weft_command_entry *entry = weft_commands;
+    while (entry->command && strcmp(entry->command->name, name) != 0)
+        entry++;
+    return entry->command;
+}
