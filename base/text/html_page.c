@@ -3,33 +3,12 @@
 #include "base/atomic_file.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const style =
-    "\n"
-    "body{font:16px/1.5 system-ui,sans-serif;max-width:1180px;margin:2em auto;padding:0 1em;color:#1c1c1c;"
-    "background:#fcfcfb}\n"
-    "h1{font-size:1.6em}h2{font-size:1.2em;margin-top:2em;border-bottom:1px solid #ccc}\n"
-    "h3{font-size:1em;margin:1.4em 0 .3em}p.note{color:#555;font-size:.92em}\n"
-    "table{border-collapse:collapse;margin:.6em 0}\n"
-    "td,th{padding:.2em .9em .2em 0;text-align:right;vertical-align:top;font-variant-numeric:tabular-nums}\n"
-    "td:first-child,th:first-child,.text{text-align:left}th{font-weight:600;border-bottom:1px solid #ccc}\n"
-    "table.long{width:100%;font-size:.8em}table.long th{position:sticky;top:0;background:#fcfcfb}\n"
-    "tr.bad td{background:#fdecea}tr.weak td{background:#fff6df}\n"
-    ".tiles{display:grid;grid-template-columns:repeat(auto-fill,minmax(165px,1fr));gap:12px}\n"
-    ".tiles div{border:1px solid #ccc;border-radius:6px;padding:.5em .9em;background:#fff;font-size:.85em;color:#555}\n"
-    ".tiles b{display:block;font-size:1.7em;color:#1c1c1c}\n"
-    ".row{display:flex;flex-wrap:wrap;gap:12px}figure{margin:0}\n"
-    "figcaption{font-size:.85em;color:#555;max-width:262px}\n"
-    "img{display:block;image-rendering:pixelated;background:#ddd;max-width:100%}\n"
-    ".gallery{display:grid;grid-template-columns:repeat(auto-fill,minmax(360px,1fr));gap:14px}\n"
-    ".gallery figure{background:#fff;border:1px solid #ccc;border-radius:6px;padding:10px}\n"
-    ".gallery figure.bad{border-color:#d9483b}.gallery figcaption{max-width:none;margin-top:6px}\n"
-    ".gallery div{display:grid;grid-template-columns:repeat(3,1fr);gap:6px}\n"
-    ".gallery img{width:100%;aspect-ratio:1;object-fit:contain;background:#20242a;image-rendering:auto}\n"
-    ".gallery img.texels{image-rendering:pixelated}\n"
-    "svg.chart{width:100%;background:#fff;border:1px solid #ccc;border-radius:6px}\n";
+/* base/text/page/page.css and page.js, in the program. */
+extern const char weft_page_page_css[], weft_page_page_js[];
 
 weft_code weft_page_begin(const char *folder, const char *title, weft_page *page, weft_error *error)
 {
@@ -45,7 +24,7 @@ weft_code weft_page_begin(const char *folder, const char *title, weft_page *page
           "content=\"width=device-width\">\n<title>",
           page->html);
     weft_page_text(page, title);
-    fprintf(page->html, "</title>\n<style>%s</style>\n<h1>", style);
+    fprintf(page->html, "</title>\n<style>\n%s</style>\n<h1>", weft_page_page_css);
     weft_page_text(page, title);
     fputs("</h1>\n", page->html);
     return WEFT_OK;
@@ -113,6 +92,22 @@ void weft_page_tile(weft_page *page, const char *label, const char *format, ...)
     va_end(arguments);
 }
 
+void weft_page_columns(weft_page *page, const char *headings)
+{
+    fputs("<tr>", page->html);
+    for (const char *heading = headings; heading;) {
+        size_t length = strcspn(heading, "|");
+        bool is_words = *heading == ':';
+        char text[WEFT_MESSAGE_SIZE];
+        snprintf(text, sizeof text, "%.*s", (int)length - is_words, heading + is_words);
+        fputs(is_words ? "<th scope=\"col\" class=\"text\">" : "<th scope=\"col\">", page->html);
+        weft_page_text(page, text);
+        fputs("</th>", page->html);
+        heading = heading[length] ? heading + length + 1 : NULL;
+    }
+    fputs("</tr>\n", page->html);
+}
+
 void weft_page_fact(weft_page *page, const char *name, const char *format, ...)
 {
     va_list arguments;
@@ -127,7 +122,7 @@ void weft_page_fact(weft_page *page, const char *name, const char *format, ...)
 
 weft_code weft_page_finish(weft_page *page, weft_error *error)
 {
-    fputs("</html>\n", page->html);
+    fprintf(page->html, "<script>\n%s</script>\n</html>\n", weft_page_page_js);
     weft_code code = WEFT_OK;
     char *path = NULL;
     if (fflush(page->html) != 0 || ferror(page->html) || asprintf(&path, "%s/index.html", page->folder) < 0)

@@ -8,7 +8,10 @@
  *     <table class="long">         many rows and columns: smaller, and the heading stays in sight
  *     <td class="text">            a cell of words, at the left; a table's first column is at the left anyway
  *     <tr class="bad">, "weak"     a row that reports a failure, or something to look at; also <figure class="bad">
- *     <svg class="chart">          as wide as the page */
+ *     <svg class="chart">          as wide as the page
+ *
+ * It is light or dark as the reader's system is. Pictures enlarge at a click; those of one row, figure or gallery may
+ * then be wiped one against the other. */
 #ifndef WEFT_BASE_TEXT_HTML_PAGE_H
 #define WEFT_BASE_TEXT_HTML_PAGE_H
 
@@ -39,6 +42,10 @@ weft_code weft_page_picture(weft_page *page, const char *name, const weft_image 
 
 /* A large number or word, formatted, with what it says below it (text); stands in <div class="tiles">. */
 void weft_page_tile(weft_page *page, const char *label, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* The headings of a table's columns, or of a part of it: text, with "|" between one and the next; ':' before one of
+ * words, which stands at the left as its cells do. */
+void weft_page_columns(weft_page *page, const char *headings);
 
 /* A row of a table of two columns: text and a formatted number or text. */
 void weft_page_fact(weft_page *page, const char *name, const char *format, ...) __attribute__((format(printf, 3, 4)));

@@ -125,8 +125,8 @@ static void write_left_out(weft_page *page, const weft_hand *hand)
 {
     if (hand->used_count == hand->count)
         return;
-    fputs("<h2>Left out</h2>\n<table class=\"long\">\n<tr><th>photograph</th><th class=\"text\">why</th></tr>\n",
-          page->html);
+    fputs("<h2>Left out</h2>\n<table class=\"long\">\n", page->html);
+    weft_page_columns(page, "photograph|:why");
     for (int i = 0; i < hand->count; i++) {
         if (weft_hand_used(&hand->photograph[i]))
             continue;
@@ -155,10 +155,9 @@ static void write_row(weft_page *page, const weft_hand_photograph *p)
 
 static void write_table(weft_page *page, const weft_hand *hand)
 {
-    fputs("<h2>All that are used</h2>\n<table class=\"long\">\n<tr><th>photograph</th><th>view: theta, phi, "
-          "degrees</th><th>camera, mm</th><th>lamp: theta, phi, degrees</th><th>lamp, mm</th><th>lamp: standard error, "
-          "degrees</th><th>corners, pixels RMS</th><th>warp: standard error, mm</th><th>markers</th></tr>\n",
-          page->html);
+    fputs("<h2>All that are used</h2>\n<table class=\"long\">\n", page->html);
+    weft_page_columns(page, "photograph|view: theta, phi, degrees|camera, mm|lamp: theta, phi, degrees|lamp, mm|lamp: "
+                            "standard error, degrees|corners, pixels RMS|warp: standard error, mm|markers");
     for (int i = 0; i < hand->count; i++) {
         if (weft_hand_used(&hand->photograph[i]))
             write_row(page, &hand->photograph[i]);

@@ -62,8 +62,8 @@ void weft_write_faults(weft_page *page, const weft_session *session, const weft_
 {
     if (r->fault_count == 0 && r->failed_stays == 0)
         return;
-    fputs("<h2>What could not be used</h2>\n<table><tr><th class=\"text\">what</th><th class=\"text\">why</th></tr>\n",
-          page->html);
+    fputs("<h2>What could not be used</h2>\n<table>", page->html);
+    weft_page_columns(page, "what|:why");
     for (int stay = 0; stay < r->survey.stay_count; stay++) {
         const weft_stay *one = &r->survey.stay[stay];
         if (r->pose[stay].source != WEFT_POSE_FAILED)
@@ -91,10 +91,10 @@ weft_code weft_write_rings(weft_page *page, const weft_session *session, const w
         "in "
         "the photograph, RMS over the opening; what the calibration of the lens has wrong comes on top and is not seen "
         "here. The shift is against the pose that the rig promised.</p>\n"
-        "<table><tr><th>view</th><th>stays</th><th>failed</th><th>error, median (texels)</th><th>worst</th>"
-        "<th>correlation, median</th><th>worst</th><th>shift, median (mm)</th><th>worst</th><th>saturated "
-        "(%)</th></tr>\n",
+        "<table>",
         page->html);
+    weft_page_columns(page, "view|stays|failed|error, median (texels)|worst|correlation, median|worst|shift, median "
+                            "(mm)|worst|saturated (%)");
     for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
         weft_ring_summary s;
         WEFT_TRY(weft_ring_summarise(session, r, ring, &s, error));
@@ -132,12 +132,10 @@ static void write_stay(weft_page *page, const weft_session *session, const weft_
 
 void weft_write_stays(weft_page *page, const weft_session *session, const weft_registration *r)
 {
-    fputs(
-        "<h2>Every view</h2>\n<table "
-        "class=\"long\"><tr><th>view</th><th>&theta;&deg;</th><th>&phi;&deg;</th><th>stay</th>"
-        "<th>photographs</th><th class=\"text\">used</th><th>markers</th><th>markers' RMS (px)</th><th>correlation</th>"
-        "<th>error (texels)</th><th>shift (mm)</th><th class=\"text\">remark</th></tr>\n",
-        page->html);
+    fputs("<h2>Every view</h2>\n<table class=\"long\">", page->html);
+    weft_page_columns(
+        page, "view|\u03b8\u00b0|\u03c6\u00b0|stay|photographs|:used|markers|markers' RMS (px)|correlation|error "
+              "(texels)|shift (mm)|:remark");
     for (int stay = 0; stay < r->survey.stay_count; stay++)
         write_stay(page, session, r, stay);
     fputs("</table>\n", page->html);

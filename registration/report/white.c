@@ -86,9 +86,9 @@ weft_code weft_write_whites(weft_page *page, const weft_session *session, const 
     if (r->estimated_whites)
         fprintf(page->html, " In %d photographs no patch could be measured; they use the level of the others.",
                 r->estimated_whites);
-    fputs("</p>\n<table><tr><th>light</th><th>photographs</th><th>white level, median</th><th>against all (%)</th>"
-          "<th>5th to 95th percentile (%)</th><th>patches disagree by (%)</th></tr>\n",
-          page->html);
+    fputs("</p>\n<table>", page->html);
+    weft_page_columns(page, "light|photographs|white level, median|against all (%)|5th to 95th percentile (%)|patches "
+                            "disagree by (%)");
     for (int ring = 0; ring < WEFT_RING_COUNT && overall > 0; ring++)
         write_ring(page, ring, overall, level, disagreement, collect_levels(session, r, ring, level, disagreement));
     fputs("</table>\n<p>White level of every stay of the camera, in the order in which they were taken:</p>\n",

@@ -131,13 +131,17 @@ weft_code weft_model_picture(const weft_material *material, weft_image *image, w
 static void write_numbers(weft_page *page, const weft_material *material)
 {
     model_counts counts = count_models(material);
-    fprintf(page->html, "<table>\n<tr><th>level</th><th>texels</th>");
+    static const char column[] = "<th scope=\"col\">%s</th>";
+    fprintf(page->html, "<table>\n<tr>");
+    fprintf(page->html, column, "level");
+    fprintf(page->html, column, "texels");
     for (int i = 0; i < counts.used_count; i++) {
         char name[WEFT_MODEL_NAME];
         weft_model_print(weft_model_decode((uint8_t)counts.used[i]), name);
-        fprintf(page->html, "<th>%s</th>", name);
+        fprintf(page->html, column, name);
     }
-    fprintf(page->html, "<th>relative RMSE</th></tr>\n");
+    fprintf(page->html, column, "relative RMSE");
+    fprintf(page->html, "</tr>\n");
     for (int k = 0; k < material->level_count; k++) {
         const weft_material_level *level = &material->level[k];
         fprintf(page->html, "<tr><td>%d</td><td>%d x %d</td>", k, level->width, level->height);

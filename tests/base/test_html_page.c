@@ -54,6 +54,18 @@ static void a_picture_lies_beside_the_page_under_its_caption(void **state)
     free(html);
 }
 
+static void headings_of_columns_say_that_they_are(void **state)
+{
+    (void)state;
+    weft_page page;
+    assert_int_equal(weft_page_begin("report", "Columns", &page, NULL), WEFT_OK);
+    weft_page_columns(&page, "a & b||:words");
+    char *html = finished_page(&page);
+    assert_non_null(strstr(html, "<tr><th scope=\"col\">a &amp; b</th><th scope=\"col\"></th>"
+                                 "<th scope=\"col\" class=\"text\">words</th></tr>\n"));
+    free(html);
+}
+
 static void a_page_that_is_given_up_leaves_no_file(void **state)
 {
     (void)state;
@@ -68,6 +80,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_in_a_text_is_markup),
         cmocka_unit_test(a_picture_lies_beside_the_page_under_its_caption),
+        cmocka_unit_test(headings_of_columns_say_that_they_are),
         cmocka_unit_test(a_page_that_is_given_up_leaves_no_file),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

@@ -71,7 +71,7 @@ static void the_page_counts_the_texels_of_each_model(void **state)
     material.level[1].error.relative_rmse = 0.125;
     expect_ok(weft_model_report_write("model_report", &material, &error), &error);
     expect_ok(weft_read_file("model_report/index.html", 1 << 20, &html, &size, &error), &error);
-    assert_non_null(strstr(html, "<th>2 lobes, T 4 bits</th>"));
+    assert_non_null(strstr(html, "<th scope=\"col\">2 lobes, T 4 bits</th>"));
     assert_non_null(strstr(html, "<td>0</td><td>4 x 2</td><td>12.5 %</td>"));
     assert_non_null(strstr(html, "<td>0.1250</td>"));
     free(html);

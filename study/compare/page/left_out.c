@@ -2,8 +2,8 @@
 
 static void print_table(weft_page *page, const weft_leave_one_out *left_out)
 {
-    fputs("<table><tr><th>photograph left out</th><th>values</th><th>relative RMSE</th><th>median relative</th></tr>\n",
-          page->html);
+    fputs("<table>", page->html);
+    weft_page_columns(page, "photograph left out|values|relative RMSE|median relative");
     for (int i = 0; i < left_out->count; i++) {
         const weft_left_out *photograph = &left_out->photograph[i];
         fputs("<tr><td>", page->html);
@@ -11,7 +11,7 @@ static void print_table(weft_page *page, const weft_leave_one_out *left_out)
         fprintf(page->html, "</td><td>%ld</td><td>%.4f</td><td>%.4f</td></tr>\n", photograph->error.count,
                 photograph->error.relative_rmse, photograph->error.median_relative);
     }
-    fprintf(page->html, "<tr><th>mean</th><th></th><th>%.4f</th><th>%.4f</th></tr></table>\n",
+    fprintf(page->html, "<tr><th scope=\"row\">mean</th><td></td><td>%.4f</td><td>%.4f</td></tr></table>\n",
             left_out->mean_relative_rmse, left_out->mean_median_relative);
 }
 

@@ -92,12 +92,11 @@ static void print_model_error(weft_page *page, const char *name, const weft_erro
 
 void weft_page_models(weft_page *page, const weft_comparison *comparison)
 {
-    fputs("<h2 id=\"models\">Models against the data</h2>\n<table><tr><th>every sample of every texel</th><th>values"
-          "</th><th>relative RMSE</th><th>median relative</th><th>80th percentile</th></tr>\n",
-          page->html);
+    fputs("<h2 id=\"models\">Models against the data</h2>\n<table>", page->html);
+    weft_page_columns(page, "every sample of every texel|values|relative RMSE|median relative|80th percentile");
     for (int i = 0; i < comparison->model_count; i++)
         print_model_error(page, comparison->model[i].name, &comparison->model[i].texture.all);
-    fputs("<tr><th>mean BRDF of the material</th><th></th><th></th><th></th><th></th></tr>\n", page->html);
+    weft_page_columns(page, "mean BRDF of the material||||");
     for (int i = 0; i < comparison->model_count; i++)
         print_model_error(page, comparison->model[i].name, &comparison->model[i].mean);
     fputs("</table>\n<p class=\"note\">", page->html);
@@ -115,10 +114,9 @@ static void print_levels(weft_page *page, const weft_material *material)
     fputs("<h2>Error of the material on the samples it was fitted to, level by level</h2>\n<p class=\"note\">Measured "
           "over all valid samples when the "
           "file was written, decoded as a player sees it; percentiles to 2 % of their "
-          "value.</p>\n<table><tr><th>texels</th><th>median relative</th><th>80th "
-          "percentile</th><th>RMSE</th>"
-          "<th>relative RMSE</th><th>PSNR</th></tr>\n",
+          "value.</p>\n<table>",
           page->html);
+    weft_page_columns(page, "texels|median relative|80th percentile|RMSE|relative RMSE|PSNR");
     for (int i = 0; i < material->level_count; i++) {
         const weft_material_level *level = &material->level[i];
         const weft_error_summary *e = &level->error;
@@ -141,7 +139,7 @@ static void print_error(weft_page *page, const char *name, const weft_error_summ
 
 static void print_rings(weft_page *page, const char *title, const weft_error_summary ring[WEFT_RING_COUNT])
 {
-    fprintf(page->html, "<tr><th>%s</th><th></th><th></th><th></th></tr>\n", title);
+    weft_page_columns(page, title);
     for (int i = 0; i < WEFT_RING_COUNT; i++) {
         char name[32];
         snprintf(name, sizeof name, "about %d\u00b0", 15 * i);
@@ -157,10 +155,11 @@ static void print_directions(weft_page *page, const weft_dataset_layout *layout,
             measurement->texel_count, (long)layout->width * layout->height);
     explain_error(page);
     fputs("</p>\n", page->html);
-    fputs("<table><tr><th></th><th>values</th><th>median relative</th><th>relative RMSE</th></tr>\n", page->html);
+    fputs("<table>", page->html);
+    weft_page_columns(page, "|values|median relative|relative RMSE");
     print_error(page, "all", &measurement->all);
-    print_rings(page, "view from the normal", measurement->by_view);
-    print_rings(page, "light from the normal", measurement->by_light);
+    print_rings(page, "view from the normal|||", measurement->by_view);
+    print_rings(page, "light from the normal|||", measurement->by_light);
     fputs("</table>\n", page->html);
 }
 

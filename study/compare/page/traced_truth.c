@@ -88,11 +88,11 @@ static void print_row(weft_page *page, const weft_truth_scene *scene, int model)
 
 static void print_table(weft_page *page, const weft_traced_truth *truth)
 {
-    static const char *const columns = "<th>relative RMSE</th><th>PSNR</th><th>median relative</th><th>of blocks</th>";
-    fprintf(page->html,
-            "<table><tr><th></th><th></th><th colspan=\"4\">all light</th><th colspan=\"4\">light of the cloth near "
-            "by</th><th></th></tr>\n<tr><th>scene</th><th></th>%s%s<th>noise of the truth</th></tr>\n",
-            columns, columns);
+    fputs("<table><tr><td></td><td></td><th scope=\"colgroup\" colspan=\"4\">all light</th><th scope=\"colgroup\" "
+          "colspan=\"4\">light of the cloth near by</th><td></td></tr>\n",
+          page->html);
+    weft_page_columns(page, "scene||relative RMSE|PSNR|median relative|of blocks|relative RMSE|PSNR|median "
+                            "relative|of blocks|noise of the truth");
     for (int i = 0; i < WEFT_TRUTH_SCENE_COUNT; i++)
         for (int model = 0; model < WEFT_TRUTH_TRACED; model++)
             print_row(page, &truth->scene[i], model);
