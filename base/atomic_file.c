@@ -244,6 +244,23 @@ bool weft_is_same_file(const char *a, const char *b)
     return stat(a, &one) == 0 && stat(b, &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
 }
 
+weft_code weft_output_folder_check(const char *path, weft_error *error)
+{
+    struct stat status;
+    char there[PATH_MAX];
+    if (!path[0] || strlen(path) >= sizeof there)
+        return weft_fail(error, WEFT_BAD_USAGE, "not a folder name: '%.60s'", path);
+    snprintf(there, sizeof there, "%s", path);
+    while (stat(there, &status) != 0) {
+        if ((errno != ENOENT && errno != ENOTDIR) || strcmp(there, ".") == 0)
+            return weft_fail_errno(error, "create folder", path);
+        folder_of(there, there);
+    }
+    if (!S_ISDIR(status.st_mode))
+        return weft_fail(error, WEFT_SYSTEM, "cannot create folder '%s': '%s' is a file", path, there);
+    return access(there, W_OK | X_OK) == 0 ? WEFT_OK : weft_fail_errno(error, "write into folder", there);
+}
+
 weft_code weft_make_folder(const char *path, weft_error *error)
 {
     char partial[PATH_MAX];

@@ -57,6 +57,9 @@ uint64_t weft_file_bytes(const char *path);
 /* Whether both paths lead to one and the same file that exists. */
 bool weft_is_same_file(const char *a, const char *b);
 
+/* Whether a folder could be made there, or written into. Errors: WEFT_SYSTEM. */
+weft_code weft_output_folder_check(const char *path, weft_error *error);
+
 /* Creates a folder and its parents; an existing folder is fine. */
 weft_code weft_make_folder(const char *path, weft_error *error);
 

@@ -148,8 +148,8 @@ static error_t set_by_key(arguments *a, int key, const char *text, struct argp_s
 static const char *text_of(const arguments *a, int row)
 {
     const weft_option *option = a->row[row].option;
-    bool is_text =
-        option->kind == WEFT_OPTION_TEXT || option->kind == WEFT_OPTION_INPUT || option->kind == WEFT_OPTION_OUTPUT;
+    bool is_text = option->kind == WEFT_OPTION_TEXT || option->kind == WEFT_OPTION_INPUT ||
+                   option->kind == WEFT_OPTION_OUTPUT || option->kind == WEFT_OPTION_FOLDER;
     return is_text && !a->row[row].setting ? *(const char **)((char *)a->values + option->offset) : NULL;
 }
 
@@ -180,9 +180,12 @@ static void check_outputs(const arguments *a, struct argp_state *state)
 {
     weft_error error = {0};
     for (int row = 0; row < a->row_count; row++) {
-        const char *output = a->row[row].option->kind == WEFT_OPTION_OUTPUT ? text_of(a, row) : NULL;
-        if (output)
-            insist(weft_output_check(output, &error), &error, state);
+        const weft_option_kind kind = a->row[row].option->kind;
+        const char *name = text_of(a, row);
+        if (name && kind == WEFT_OPTION_OUTPUT)
+            insist(weft_output_check(name, &error), &error, state);
+        if (name && kind == WEFT_OPTION_FOLDER)
+            insist(weft_output_folder_check(name, &error), &error, state);
     }
 }
 

@@ -16,7 +16,7 @@ typedef struct capture_command {
 } capture_command;
 
 static const weft_option option_table[] = {
-    {"output", 'o', "SESSION", "The folder of the session", .is_required = true, .kind = WEFT_OPTION_TEXT,
+    {"output", 'o', "SESSION", "The folder of the session", .is_required = true, .kind = WEFT_OPTION_FOLDER,
      .offset = offsetof(capture_command, request.folder)},
     {"rig", .argument = "virtual|FILE.json", .help = "The rig, or a file with its settings (default: virtual)",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig_file)},

@@ -22,7 +22,7 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_INPUT,
      .offset = offsetof(compare_command, options.material)},
     {"output", 'o', "REPORT/", "The folder for the page and its pictures", .is_required = true,
-     .kind = WEFT_OPTION_TEXT, .offset = offsetof(compare_command, options.folder)},
+     .kind = WEFT_OPTION_FOLDER, .offset = offsetof(compare_command, options.folder)},
     {"weave", .argument = "CLOTH.wv|CLOTH.mc", .help = "Compare this weave or microcylinder cloth, too",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(compare_command, options.weave)},
     {"fit", .help = "Fit that weave to the dataset first (see fit-weave); writes REPORT/fitted.wv",

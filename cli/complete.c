@@ -67,7 +67,7 @@ static void print_part(const weft_option *option, const char *part, size_t lengt
         length = fixed_length(part, length);
         if (length > 0 && length >= strlen(start) && begins(part, start))
             printf("%s%.*s\t\n", before, (int)length, part);
-    } else if (begins(part, "DIR") || begins(part, "FOLDER") || begins(part, "SESSION") || begins(part, "REPORT/"))
+    } else if (option->kind == WEFT_OPTION_FOLDER || begins(part, "FOLDER") || begins(part, "SESSION"))
         puts(":folder");
     else if (ending)
         printf(":file\t%.*s\n", (int)(part + length - ending), ending);

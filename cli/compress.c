@@ -119,7 +119,7 @@ static const weft_option option_table[] = {
      .read = read_hold_out},
     {"report", .argument = "DIR",
      .help = "With --error or --budget: a page with a map of the models that were chosen, and their shares by level",
-     .kind = WEFT_OPTION_TEXT, .offset = offsetof(compress_command, report)},
+     .kind = WEFT_OPTION_FOLDER, .offset = offsetof(compress_command, report)},
     {"memory", .argument = "MB", .help = "Never take more memory than this (default: a quarter of what there is)",
      .read = read_memory},
     {0},

@@ -16,7 +16,7 @@ static const char *const format_names[] = {"jpeg", "tiff", "exr", NULL};
 static const weft_option option_table[] = {
     {.argument = "CLOTH", .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = PLACE(content)},
     {"output", 'o', "FOLDER", "The folder for the photographs, empty or new", .is_required = true,
-     .kind = WEFT_OPTION_TEXT, .offset = PLACE(folder)},
+     .kind = WEFT_OPTION_FOLDER, .offset = PLACE(folder)},
     {"set", .argument = "WHICH",
      .help =
          "How they are taken: free (default; camera and lamp in the hands), flash (on the camera), tripod (the lamp "

@@ -42,7 +42,7 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(photographs_command, lights)},
     {"paper", .argument = "SHARE", .help = "Reflectance of the bare paper, 0 to 1 (default: 0.85)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, paper_reflectance), .low = 0.01, .high = 1},
-    {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_TEXT,
+    {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
      .offset = offsetof(photographs_command, report_folder)},
     {"linear", .help = "8- and 16-bit files hold linear values, without a tone curve", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(photographs_command, settings.linear)},

@@ -24,7 +24,7 @@ static const weft_option option_table[] = {
      .offset = offsetof(register_command, output)},
     {"size", 's', "WxH", "Texels of the opening (default: 64x64)", .kind = WEFT_OPTION_SIZE,
      .offset = offsetof(register_command, width), .high = LARGEST_SIZE},
-    {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_TEXT,
+    {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
      .offset = offsetof(register_command, report_folder)},
     {"allow-unfinished", .help = "Register what there is of a session that is not finished", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(register_command, allow_unfinished)},

@@ -23,6 +23,7 @@ typedef enum weft_option_kind {
     WEFT_OPTION_TEXT,   /* const char *: the text itself, which must live on */
     WEFT_OPTION_INPUT,  /* the same, of a file that is read */
     WEFT_OPTION_OUTPUT, /* the same, of a file that is written */
+    WEFT_OPTION_FOLDER, /* the same, of a folder that is written into */
     WEFT_OPTION_NAME    /* char *: a copy, owned; what was there is freed */
 } weft_option_kind;
 

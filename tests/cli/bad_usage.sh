@@ -38,10 +38,19 @@ for command in compress tile; do
     expect_one_line 3 "folder 'absent'" "$command" good.btf.h5 -o absent/out
 done
 expect_one_line 3 "folder 'absent'" photographs good -o absent/out.btf.h5
+expect_one_line 3 "'good.weft' is a file" compare good.btf.h5 good.weft -o good.weft/report
+expect_one_line 3 "'good.weft' is a file" capture --sample "$weave" --plan plan.csv -o good.weft
+expect_one_line 3 "'good.weft' is a file" hand checker -o good.weft/new
+for command in "register good" "photographs good" "compress good.btf.h5 --error 20"; do
+    # shellcheck disable=SC2086
+    expect_one_line 3 "'good.weft' is a file" $command -o out --report good.weft
+    expect_no_file out
+done
 if [ "$(id -u)" != 0 ]; then
     mkdir locked
     chmod 555 locked
     expect_one_line 3 "folder 'locked'" compress good.btf.h5 -o locked/out.weft
+    expect_one_line 3 "folder 'locked'" compare good.btf.h5 good.weft -o locked/new/report
 fi
 expect_one_line 1 "no file 'absent.btf.h5'" render --raw absent.btf.h5 -o out.png
 
