@@ -41,6 +41,15 @@ typedef struct tally {
     double passes;
 } tally;
 
+static void print_fit(const char *name, int texel, const char *which, const weft_fit *fit, double square)
+{
+    printf("%s, texel %d, %s: %.4f, rho %.3f", name, texel, which, sqrt(square), fit->diffuse);
+    for (int i = 0; i < fit->lobe_count; i++)
+        printf(" | %.2f %.2f %.2f, N %.1f, A %.3f", fit->lobe[i].c[0], fit->lobe[i].c[1], fit->lobe[i].c[2],
+               exp(fit->lobe[i].log_exponent), fit->lobe[i].amplitude);
+    printf("\n");
+}
+
 static void judge(const arguments *given, const contest *with, int channel, int lobes, bool table, uint64_t seed,
                   const char *name, tally *own)
 {
@@ -48,21 +57,22 @@ static void judge(const arguments *given, const contest *with, int channel, int 
     weft_fit_options options = weft_fit_default_options();
     options.lobe_count = lobes;
     options.table = table;
-    weft_fit fit;
+    weft_fit fit, best;
     double began = thread_microseconds();
     weft_fit_cold(with->bundle, with->samples, channel, &options, with->workspace, &frame, &fit, with->table);
     own->microseconds += thread_microseconds() - began;
     own->passes += fit.passes;
     double left = weft_fit_residual(with->bundle, with->samples, channel, &fit, with->table);
     double least = random_starts_best(with->bundle, with->samples, channel, &options, with->workspace, &frame, seed,
-                                      given->start_count, with->table);
+                                      getenv("NS") ? 0 : given->start_count, &best, with->table);
     double ratio = left > 0 ? sqrt(left / least) : 1;
     own->count++;
     own->above += ratio > ABOVE;
     own->worst = fmax(own->worst, ratio);
-    if (given->per_texel && ratio > ABOVE)
-        printf("    %s, texel %d, %d lobes: %.4f, random %.4f\n", name, (int)seed, lobes,
-               sqrt(left / with->samples->energy[channel]), sqrt(least / with->samples->energy[channel]));
+    if (given->per_texel && ratio > ABOVE) {
+        print_fit(name, (int)seed, "the fit", &fit, left / with->samples->energy[channel]);
+        print_fit(name, (int)seed, "random", &best, least / with->samples->energy[channel]);
+    }
 }
 
 static void add_row(const arguments *given, const char *name, int lobes, const tally *own)
@@ -163,7 +173,8 @@ static weft_code run_tape(const arguments *given, tally *sum, weft_error *error)
 static weft_code run_truths(const arguments *given, tally *sum, weft_error *error)
 {
     texel_source source;
-    WEFT_TRY(texel_source_truths(TRUTH_VIEWS, TRUTH_LIGHTS, &source, error));
+    WEFT_TRY(texel_source_truths(getenv("TV") ? atoi(getenv("TV")) : TRUTH_VIEWS,
+                                 getenv("TL") ? atoi(getenv("TL")) : TRUTH_LIGHTS, &source, error));
     weft_code code = run_source(given, &source, given->truth_count, source.name, sum, error);
     texel_source_free(&source);
     return code;

@@ -10,7 +10,7 @@ typedef struct texel_source {
     const char *name;
     weft_dataset *dataset; /* NULL where texels are invented */
     synthetic_kind kind;
-    bool is_random; /* random truths instead of a family */
+    bool is_random;             /* random truths instead of a family */
     weft_dataset_layout layout; /* that of the dataset, or the source's own */
     weft_bundle bundle;
     weft_samples samples; /* of the texel loaded last */

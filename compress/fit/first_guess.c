@@ -1,161 +1,230 @@
 /* Fits from nothing. */
-#include "compress/fit/workspace.h"
+#include "compress/fit/screen.h"
+
+#include "base/integers.h"
 
 #include <math.h>
 #include <string.h>
 
 static const weft_fit_lobe mirror_start = {.c = {-0.95, -0.9, 1}, .log_exponent = 2.0794};
-static const weft_fit_lobe retro_start = {.c = {0.9, 0.95, 1}, .log_exponent = 2.0794};
 static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent = 0.4055};
-static const weft_fit_lobe along_x_start = {.c = {1, 0.1, 0.2}, .log_exponent = 0.4055};
-static const weft_fit_lobe along_y_start = {.c = {0.1, 1, 0.2}, .log_exponent = 0.4055};
 
-enum { START_COUNT = 3, START_PASSES = 6, RACE_PASSES = 3 };
+enum {
+    RACE_PASSES = 3,
+    START_PASSES = 6,
+    SCREENED = 2, /* lobes that are followed of those that the screen ranks */
+    INCUMBENT = 2,
+    CHALLENGER /* places among the trials of a workspace */
+};
 
-#define VANISHED 1e-3       /* part of the energy */
-#define GOOD_ENOUGH 0.1     /* of the energy: no further start is tried below */
 #define CLEARLY_BETTER 0.98 /* times the residual: few passes over few lights tell no finer differences */
 #define START_TOLERANCE 1e-2
-#define HOPELESS 3 /* a start whose first residual is so many times that of the first start is not followed */
-#define BEATEN 1.2 /* a start that has so many times the residual of the best after RACE_PASSES is not, either */
+#define BEATEN 1.2 /* a start that has so many times the residual of the best after RACE_PASSES is not followed */
+#define CLOSE 1.3  /* a challenger that leaves so many times what the incumbent leaves is not refined */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
 
-/* Start number `index`: the mirror and a broad lobe, the same thrown back to the light, or two that are thrown back
- * along the surface: what cylinders, fuzz and everything else does that falls off more slowly than the cosine, where
- * the lobes of the other two would have to be negative and vanish. */
-static void place_start(int index, int lobe_count, weft_fit *fit)
+/* A search that grows lobe by lobe. The incumbent comes from the usual starts, which cloth mostly wants; the challenger
+ * is the best of all others, and has to be clearly better: shapes that few samples tell apart may glare elsewhere. */
+typedef struct search {
+    const weft_bundle *bundle;
+    const weft_samples *samples;
+    int channel;
+    weft_fit_options options; /* of the starts */
+    weft_fit_workspace *workspace;
+    bool has_incumbent, has_challenger;
+    double quarters; /* of passes */
+} search;
+
+static void keep(search *own, bool is_usual)
 {
-    const weft_fit_lobe *order[START_COUNT][WEFT_GRAM_LOBES] = {{&mirror_start, &broad_start, &retro_start},
-                                                                {&retro_start, &broad_start, &mirror_start},
-                                                                {&along_x_start, &along_y_start, &broad_start}};
-    fit->start = index;
-    fit->lobe_count = lobe_count;
-    for (int i = 0; i < lobe_count; i++)
-        fit->lobe[i] = *order[index][i];
+    weft_trial *now = &own->workspace->trial[0];
+    weft_trial *place = &own->workspace->trial[is_usual ? INCUMBENT : CHALLENGER];
+    bool *is_taken = is_usual ? &own->has_incumbent : &own->has_challenger;
+    if (!*is_taken || now->residual < place->residual)
+        weft_trial_swap(now, place);
+    *is_taken = true;
 }
 
-static bool has_vanished_lobe(const weft_trial *trial)
+/* What the best so far leaves. */
+static double least_so_far(const search *own)
 {
-    for (int i = 0; i < trial->fit.lobe_count; i++) {
-        double amplitude = trial->fit.lobe[i].amplitude;
-        if (amplitude * amplitude * trial->strength[1 + i] < VANISHED * trial->energy)
-            return true;
-    }
-    return false;
+    const weft_trial *trial = own->workspace->trial;
+    double least = own->has_incumbent ? trial[INCUMBENT].residual : INFINITY;
+    return own->has_challenger ? fmin(least, trial[CHALLENGER].residual) : least;
 }
 
-/* Follows a start that has been looked at once; one that came after others, to the end only if it does not fall behind
- * `best`. */
-static void follow(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
-                   weft_fit_workspace *workspace, double best)
+static void count_passes(search *own, bool coarse)
 {
-    weft_fit_options race = *options;
+    own->quarters += (coarse ? 1 : 4) * own->workspace->trial[0].fit.passes;
+}
+
+/* Follows a start that has been looked at once; to the end only if it does not fall behind. */
+static void follow(search *own, bool is_usual)
+{
+    weft_fit_workspace *workspace = own->workspace;
+    weft_fit_options race = own->options;
+    double least = least_so_far(own);
     race.max_passes = RACE_PASSES;
-    if (isfinite(best))
-        weft_workspace_refine(bundle, samples, channel, &race, workspace, 0.1);
-    if (workspace->trial[0].residual < BEATEN * best)
-        weft_workspace_refine(bundle, samples, channel, options, workspace, 0.1);
+    if (isfinite(least))
+        weft_workspace_refine(own->bundle, own->samples, own->channel, &race, workspace, 0.1);
+    if (workspace->trial[0].residual < BEATEN * least)
+        weft_workspace_refine(own->bundle, own->samples, own->channel, &own->options, workspace, 0.1);
+    count_passes(own, own->options.coarse);
+    keep(own, is_usual);
 }
 
-/* The best start after a few coarse passes, into workspace->trial[0]. */
-static void try_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                       const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame)
+static void try_cold(search *own, const weft_fit *start)
 {
-    weft_trial *now = &workspace->trial[0], *best = &workspace->trial[2];
-    double first_residual = INFINITY;
-    int passes = 0;
-    bool vanished = false;
-    for (int start = 0; start < (options->lobe_count ? START_COUNT : 1); start++) {
-        /* A quarter of the lights hold a quarter of the energy. */
-        if (start > 0 && best->residual < GOOD_ENOUGH * samples->energy[channel] / 4 && !vanished)
-            break;
-        now->fit = (weft_fit){.frame = *frame};
-        place_start(start, options->lobe_count, &now->fit);
-        weft_workspace_begin_cold(bundle, samples, channel, options, now);
-        first_residual = fmin(first_residual, now->residual);
-        if (now->residual <= HOPELESS * first_residual)
-            follow(bundle, samples, channel, options, workspace, start ? best->residual : INFINITY);
-        passes += (now->fit.passes + 3) / 4;
-        if (start == 0 || now->residual < CLEARLY_BETTER * best->residual) {
-            vanished = has_vanished_lobe(now);
-            weft_trial_swap(now, best);
-        }
-    }
-    weft_trial_swap(now, best);
-    now->fit.passes = passes;
+    weft_trial *now = &own->workspace->trial[0];
+    now->fit = *start;
+    weft_workspace_begin_cold(own->bundle, own->samples, own->channel, &own->options, now);
+    follow(own, true);
 }
 
-static void fit_from_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                            const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
-                            weft_fit *fit, double *table)
+static void try_warm(search *own, const weft_fit *start, bool is_usual)
 {
-    *fit = (weft_fit){.frame = *frame, .lobe_count = options->lobe_count};
-    if (weft_workspace_finish_empty(bundle, samples, channel, fit, table))
-        return;
-    weft_fit_options coarse = *options, full = *options;
-    coarse.coarse = true;
-    coarse.max_passes = START_PASSES;
-    coarse.tolerance = START_TOLERANCE;
-    weft_trial *now = &workspace->trial[0];
-    try_starts(bundle, samples, channel, &coarse, workspace, frame);
-    full.max_passes += now->fit.passes;
-    weft_workspace_complete(bundle, samples, channel, options, now);
-    weft_workspace_refine(bundle, samples, channel, &full, workspace, 0.01);
-    weft_workspace_finish(bundle, options, now, fit, table);
+    weft_trial *now = &own->workspace->trial[0];
+    now->fit = *start;
+    now->fit.passes = 0;
+    weft_workspace_begin_warm(own->bundle, own->samples, own->channel, &own->options, own->workspace->table, now);
+    follow(own, is_usual);
 }
 
-/* The fit with one lobe more: number `split` once more, but broader. */
+static weft_fit usual_start(int lobe_count, const weft_frame *frame)
+{
+    weft_fit fit = {.frame = *frame, .lobe_count = lobe_count, .lobe = {mirror_start, broad_start}};
+    return fit;
+}
+
+/* The fit with one lobe more: number `split` once more, but broader. Which lobe has a shape that one power cannot
+ * follow is not known beforehand. */
 static weft_fit with_lobe_split(const weft_fit *fit, int split)
 {
     weft_fit more = *fit;
     weft_fit_lobe *added = &more.lobe[more.lobe_count++];
     *added = fit->lobe[split];
     added->log_exponent = fmax(0, added->log_exponent - SPLIT_LOG_RATIO);
-    more.passes = 0;
     return more;
 }
 
-/* Three lobes from the best two: which of them has a shape that one power cannot follow is not known beforehand. */
-static void fit_by_splitting(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                             const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
-                             weft_fit *fit, double *table)
+/* The better one leads: it is the incumbent from here on. */
+static void settle(search *own)
 {
-    weft_fit_options less = *options;
-    less.lobe_count--;
-    fit_from_starts(bundle, samples, channel, &less, workspace, frame, fit, table);
-    const weft_fit few = *fit;
-    double *first = workspace->scratch[0], *best = workspace->scratch[1];
-    size_t size = (size_t)bundle->view_count * sizeof *table;
-    int passes = few.passes;
-    if (!(samples->energy[channel] > 0)) {
-        fit->lobe_count = options->lobe_count;
-        return;
+    weft_trial *trial = own->workspace->trial;
+    if (own->has_challenger && trial[CHALLENGER].residual < CLEARLY_BETTER * trial[INCUMBENT].residual)
+        weft_trial_swap(&trial[INCUMBENT], &trial[CHALLENGER]);
+}
+
+/* From the best fit to the best with one lobe more. */
+static void grow(search *own)
+{
+    weft_fit_workspace *workspace = own->workspace;
+    const weft_fit base = workspace->trial[INCUMBENT].fit;
+    weft_fit_lobe lobe[SCREENED];
+    int found = weft_screen_run(own->bundle, own->samples, own->channel, &own->options, workspace,
+                                &workspace->trial[INCUMBENT], SCREENED, lobe);
+    memcpy(workspace->table, workspace->trial[INCUMBENT].table, (size_t)own->bundle->view_stride * sizeof(float));
+    own->has_incumbent = own->has_challenger = false;
+    own->options.lobe_count = base.lobe_count + 1;
+    if (own->options.lobe_count <= 2) {
+        weft_fit usual = usual_start(own->options.lobe_count, &base.frame);
+        try_cold(own, &usual);
     }
-    memcpy(first, table, size);
-    for (int split = 0; split < less.lobe_count; split++) {
-        weft_fit candidate = with_lobe_split(&few, split);
-        memcpy(table, first, size);
-        weft_fit_refine(bundle, samples, channel, options, workspace, &candidate, table);
-        passes += candidate.passes;
-        if (split == 0 || candidate.residual < fit->residual) {
-            *fit = candidate;
-            memcpy(best, table, size);
-        }
+    for (int split = 0; split < base.lobe_count; split++) {
+        weft_fit more = with_lobe_split(&base, split);
+        try_warm(own, &more, own->options.lobe_count > 2);
     }
-    memcpy(table, best, size);
-    weft_trial *now = &workspace->trial[0];
-    now->fit = *fit;
-    weft_workspace_begin_warm(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, table),
-                              now);
-    weft_workspace_finish(bundle, options, now, fit, table);
-    fit->passes = passes + 1;
+    for (int i = 0; i < found; i++) {
+        weft_fit more = base;
+        more.lobe[more.lobe_count++] = lobe[i];
+        more.start = 1;
+        try_warm(own, &more, false);
+    }
+    settle(own);
+}
+
+/* From few passes over the coarse lights to a fit. */
+static void refine(search *own, const weft_fit_options *options, weft_fit *fit, double *table)
+{
+    weft_trial *now = &own->workspace->trial[0];
+    weft_workspace_refine(own->bundle, own->samples, own->channel, options, own->workspace, 0.01);
+    weft_workspace_finish(own->bundle, options, now, fit, table);
+    count_passes(own, false);
+    now->fit.passes = 0;
+}
+
+static void refine_finalist(search *own, int place, const weft_fit_options *options, bool turn, weft_finalist *to)
+{
+    weft_trial *now = &own->workspace->trial[0];
+    weft_fit_options turning = *options;
+    turning.fit_frame = true;
+    weft_trial_swap(now, &own->workspace->trial[place]);
+    now->fit.passes = 0;
+    if (own->options.coarse)
+        weft_workspace_complete(own->bundle, own->samples, own->channel, options, now);
+    refine(own, options, &to->upright, to->upright_table);
+    if (turn)
+        refine(own, &turning, &to->turned, to->turned_table);
+}
+
+static void swap_finalists(weft_finalist *a, weft_finalist *b)
+{
+    weft_finalist swap = *a;
+    *a = *b;
+    *b = swap;
+}
+
+int weft_fit_search(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                    const weft_fit_options *options, bool turn, weft_fit_workspace *workspace, const weft_frame *frame,
+                    weft_finalist finalist[WEFT_FINALISTS], double share[WEFT_MATERIAL_MAX_LOBES + 1])
+{
+    weft_finalist *best = &finalist[0], *other = &finalist[1];
+    best->upright = (weft_fit){.frame = *frame, .lobe_count = options->lobe_count};
+    share[options->lobe_count] = 1;
+    if (weft_workspace_finish_empty(bundle, samples, channel, &best->upright, best->upright_table)) {
+        for (int i = 0; i < options->lobe_count; i++)
+            share[i] = 1;
+        best->turned = best->upright;
+        weft_workspace_finish_empty(bundle, samples, channel, &best->turned, best->turned_table);
+        return 1;
+    }
+    search own = {
+        .bundle = bundle, .samples = samples, .channel = channel, .options = *options, .workspace = workspace};
+    const weft_trial *trial = workspace->trial;
+    const weft_fit nothing = {.frame = *frame};
+    /* A single lobe is soon fitted, and the coarse lights may miss it. */
+    own.options.coarse = bundle->is_coarse && options->lobe_count > 1;
+    own.options.max_passes = START_PASSES;
+    own.options.tolerance = START_TOLERANCE;
+    own.options.lobe_count = 0;
+    try_cold(&own, &nothing);
+    share[0] = trial[INCUMBENT].residual;
+    while (own.options.lobe_count < options->lobe_count) {
+        grow(&own);
+        share[own.options.lobe_count] = trial[INCUMBENT].residual;
+    }
+    double whole = share[options->lobe_count];
+    for (int i = 0; i <= options->lobe_count; i++)
+        share[i] = whole > 0 ? share[i] / whole : 1;
+    bool two = own.has_challenger && trial[CHALLENGER].residual < CLOSE * trial[INCUMBENT].residual;
+    refine_finalist(&own, INCUMBENT, options, turn, best);
+    if (two) {
+        refine_finalist(&own, CHALLENGER, options, turn, other);
+        const weft_fit *one = turn ? &best->turned : &best->upright, *two_ = turn ? &other->turned : &other->upright;
+        if (two_->residual < CLEARLY_BETTER * one->residual)
+            swap_finalists(best, other);
+    }
+    best->upright.passes = (int)ceil(own.quarters / 4);
+    return two ? 2 : 1;
 }
 
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table)
 {
-    if (options->lobe_count < 3)
-        fit_from_starts(bundle, samples, channel, options, workspace, frame, fit, table);
-    else
-        fit_by_splitting(bundle, samples, channel, options, workspace, frame, fit, table);
+    double share[WEFT_MATERIAL_MAX_LOBES + 1];
+    weft_finalist finalist[WEFT_FINALISTS] = {{.upright_table = workspace->finalist_table[0]},
+                                              {.upright_table = workspace->finalist_table[1]}};
+    weft_fit_search(bundle, samples, channel, options, false, workspace, frame, finalist, share);
+    *fit = finalist[0].upright;
+    memcpy(table, finalist[0].upright_table, (size_t)bundle->view_count * sizeof *table);
 }

@@ -210,13 +210,14 @@ void WEFT_KERNEL(weft_gram_accumulate)(const weft_bundle *bundle, const float *c
 }
 
 void WEFT_KERNEL(weft_gram_evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,
-                                     float *result)
+                                     weft_part part, float *result)
 {
     for (int s = 0; s < bundle->strip_count; s++) {
         const weft_strip *strip = &bundle->strip[s];
         for (int lane = 0; lane < WEFT_STRIP_LANES; lane += LANES) {
             strip_lanes own = lanes_of_strip(bundle, strip, point, point->lobe_count, NULL, lane);
-            for (int slot = 0; slot < strip->slots; slot++) {
+            int end = part == WEFT_PART_COARSE ? strip->coarse_slots : strip->slots;
+            for (int slot = 0; slot < end; slot++) {
                 int sample = strip->first + slot * WEFT_STRIP_LANES + lane;
                 const lanes l[3] = {lanes_load(bundle->light[0] + sample), lanes_load(bundle->light[1] + sample),
                                     lanes_load(bundle->light[2] + sample)};

@@ -4,13 +4,15 @@
 
 #include "compress/fit/kernels.h"
 
-enum { WEFT_TRIALS = 3 };
+enum { WEFT_TRIALS = 4 };
 
 struct weft_fit_workspace {
-    weft_trial trial[WEFT_TRIALS]; /* the point reached, the one being tried, the best of several starts */
+    weft_trial trial[WEFT_TRIALS]; /* the point reached, the one being tried, the two best starts */
     float *table;                  /* [view_stride] T to begin with */
     double *scratch[2];            /* [view_stride] */
+    double *finalist_table[2];     /* [view_stride] of weft_fit_cold */
     float *model;                  /* [sample_count] */
+    weft_screen screen;
 };
 
 /* Exchanges two trials, what they own included. */

@@ -10,11 +10,16 @@
 typedef struct weft_grey_fit {
     weft_fit fit;
     double *table; /* [view_count] */
+    bool turns;    /* its frame was turned */
 } weft_grey_fit;
 
-/* Room for the fits of a thread. */
+/* Room for the fits of a thread, and what the last search found. */
 typedef struct weft_frame_search {
-    weft_grey_fit upright, given, turned; /* in the frame of the surface, the given one, and turned from the better */
+    double *tables;
+    weft_finalist surface[WEFT_FINALISTS], given[WEFT_FINALISTS]; /* begun in the frame of the surface, the given one */
+    weft_grey_fit best, other;                                    /* what is to be begun from, and another minimum */
+    bool has_other;
+    double share[WEFT_MATERIAL_MAX_LOBES + 1]; /* see weft_fit_search */
 } weft_frame_search;
 
 /* Errors: WEFT_SYSTEM. The caller frees, also after a failure. */
@@ -27,9 +32,9 @@ typedef struct weft_frame_request {
     weft_fit_options options;
 } weft_frame_request;
 
-/* The fit, one of the three of `search`, whose frame the texel is to have. */
-const weft_grey_fit *weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle,
-                                           const weft_samples *samples, weft_fit_workspace *workspace,
-                                           const weft_frame_request *request);
+/* Finds the fit whose frame the texel is to have, search->best, and search->other where the search ended in a second
+ * minimum. The tables of both are those of the search. */
+void weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,
+                           weft_fit_workspace *workspace, const weft_frame_request *request);
 
 #endif

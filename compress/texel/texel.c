@@ -141,7 +141,8 @@ static const weft_grey_fit *find_start(weft_texel_fitter *fitter, const weft_fit
                                        const weft_frame *given)
 {
     weft_frame_request request = {fitter->source->frames, given, *options};
-    return weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+    weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+    return &fitter->frames.best;
 }
 
 /* Fits and packs one model, with S or without, from its start; `fitter` holds the result. */
@@ -149,8 +150,8 @@ static void fit_from(weft_texel_fitter *fitter, const weft_fit_options *options,
 {
     if (light)
         start = weft_texel_light_start(fitter, options, start);
-    fitter->now.turns = start == &fitter->frames.turned ||
-                        (light && options->lobe_count > 0 && fitter->source->frames == WEFT_FRAMES_FITTED);
+    fitter->now.turns =
+        start->turns || (light && options->lobe_count > 0 && fitter->source->frames == WEFT_FRAMES_FITTED);
     fitter->now.second_start = start->fit.start > 0;
     fitter->now.held = false;
     fitter->now.residual = 0;
@@ -167,8 +168,8 @@ static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options
 /* ---- The best model ---- */
 
 /* A fit may end in a lesser minimum than that of a smaller model, rounding may spoil it, and it may have been held. Not
- * so, as far as was ever seen, where there are so many samples, the grey fit leaves so much less than that of the
- * smaller model, and rounding cost next to nothing. */
+ * so, as far as was ever seen, where there are so many samples, the grey search left so much less than with fewer
+ * lobes, and rounding cost next to nothing. */
 enum { MANY_SAMPLES = 2000 };
 #define CLEARLY_LESS 0.97
 #define BARELY_MORE 1.01
@@ -183,33 +184,31 @@ static void swap_results(weft_texel_fitter *fitter)
 /* A model of the texel and what the last ones of its kind left. */
 typedef struct contest {
     double least;      /* squared error of the best, as it will be read */
-    double grey;       /* of the grey fit that the whole model began from */
     bool is_sure;      /* that only a grey fit which leaves about as much needs a look */
     bool stepped_down; /* the best is not the whole model */
 } contest;
 
-/* Fits a smaller model if it may serve better, and keeps the better one. */
-static void try_smaller(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given,
-                        contest *state)
+/* Fits a model, and keeps the better one; returns whether it is this. */
+static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light,
+                      const weft_grey_fit *start, contest *state)
 {
-    const weft_grey_fit *start = find_start(fitter, options, given);
-    if (state->is_sure && state->grey < CLEARLY_LESS * start->fit.residual)
-        return;
     swap_results(fitter);
     fit_from(fitter, options, light, start);
     double own = weft_texel_weighted_error(fitter);
-    if (own < state->least) {
+    bool is_better = own < state->least;
+    if (is_better)
         state->least = own;
-        state->stepped_down = true;
-    } else {
+    else
         swap_results(fitter);
-    }
+    return is_better;
 }
 
 /* Without S, without T and with fewer lobes. A grey fit says nothing of S. */
 static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given,
                             contest *state)
 {
+    double share[WEFT_MATERIAL_MAX_LOBES + 1];
+    memcpy(share, fitter->frames.share, sizeof share);
     bool light = fitter->light_count > 0;
     weft_fit_options options = *whole;
     for (options.lobe_count = whole->lobe_count; options.lobe_count >= 0; options.lobe_count--) {
@@ -220,8 +219,11 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
                 bool is_few = fitter->samples.valid_count <= MANY_SAMPLES;
                 if (is_whole || (!is_few && (with_table != whole->table || with_light != light)))
                     continue;
+                if (state->is_sure && CLEARLY_LESS * share[options.lobe_count] > 1)
+                    continue;
                 options.table = with_table;
-                try_smaller(fitter, &options, with_light, given, state);
+                state->stepped_down |=
+                    try_model(fitter, &options, with_light, find_start(fitter, &options, given), state);
             }
         }
     }
@@ -232,11 +234,13 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
 static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
 {
     const weft_grey_fit *start = find_start(fitter, whole, given);
-    contest state = {.grey = start->fit.residual};
+    contest state = {0};
     fit_from(fitter, whole, fitter->light_count > 0, start);
     state.least = weft_texel_weighted_error(fitter);
-    state.is_sure = !fitter->now.held && fitter->samples.valid_count > MANY_SAMPLES &&
-                    state.least < BARELY_MORE * fitter->now.residual;
+    bool is_spoilt = fitter->now.held || state.least >= BARELY_MORE * fitter->now.residual;
+    state.is_sure = !is_spoilt && fitter->samples.valid_count > MANY_SAMPLES;
+    if (is_spoilt && fitter->frames.has_other)
+        try_model(fitter, whole, fitter->light_count > 0, &fitter->frames.other, &state);
     try_all_smaller(fitter, whole, given, &state);
     return state.stepped_down;
 }

@@ -53,15 +53,17 @@ static double power_of(const weft_fit_lobe *lobe, weft_vec3 light, weft_vec3 vie
     return base > 0 ? pow(base, exp(lobe->log_exponent)) : 0;
 }
 
-/* The energy of a lobe in the samples; a lobe that none of them sees is no part of the truth. */
-static double energy_of(const weft_dataset_layout *layout, const weft_fit_lobe *lobe)
+/* The root mean square of a lobe in the samples; 0 where it shines in fewer of them than one in a hundred, by the
+ * inverse participation of their squares. */
+static double strength_of(const weft_dataset_layout *layout, const weft_fit_lobe *lobe)
 {
-    double sum = 0;
+    double sum = 0, sum_of_squares = 0;
     for (int i = 0; i < layout->image_count; i++) {
         double value = layout->light[i].z * power_of(lobe, layout->light[i], layout->view[layout->view_of_image[i]]);
-        sum += value * value / layout->image_count;
+        sum += value * value;
+        sum_of_squares += value * value * value * value;
     }
-    return sum;
+    return sum * sum > 0.01 * layout->image_count * sum_of_squares ? sqrt(sum / layout->image_count) : 0;
 }
 
 static double gaussian(uint64_t *state)
@@ -77,12 +79,12 @@ void random_truth_samples(const weft_dataset_layout *layout, uint64_t seed, doub
     int lobe_count = 1 + (int)between(&state, 0, 3);
     double diffuse = between(&state, 0, 1), contrast = between(&state, 0, 1);
     for (int i = 0; i < lobe_count; i++) {
-        double energy;
+        double strength;
         do {
             random_shape(&state, 200, &lobe[i]);
-            energy = energy_of(layout, &lobe[i]);
-        } while (!(energy > 1e-6));
-        lobe[i].amplitude = between(&state, 0.2, 2) / sqrt(energy);
+            strength = strength_of(layout, &lobe[i]);
+        } while (!(strength > 1e-3));
+        lobe[i].amplitude = between(&state, 0.2, 2) / strength;
     }
     double lean = between(&state, 0, 2 * WEFT_PI);
     for (int i = 0; i < layout->image_count; i++) {
@@ -98,7 +100,7 @@ void random_truth_samples(const weft_dataset_layout *layout, uint64_t seed, doub
 
 double random_starts_best(const weft_bundle *bundle, const weft_samples *samples, int channel,
                           const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
-                          uint64_t seed, int start_count, double *table)
+                          uint64_t seed, int start_count, weft_fit *best_fit, double *table)
 {
     weft_fit_options converged = *options;
     uint64_t state = (seed + 1) * 0xbf58476d1ce4e5b9u;
@@ -114,7 +116,11 @@ double random_starts_best(const weft_bundle *bundle, const weft_samples *samples
         weft_workspace_begin_cold(bundle, samples, channel, &converged, now);
         weft_workspace_refine(bundle, samples, channel, &converged, workspace, 0.1);
         weft_workspace_finish(bundle, &converged, now, &fit, table);
-        best = fmin(best, weft_fit_residual(bundle, samples, channel, &fit, table));
+        double left = weft_fit_residual(bundle, samples, channel, &fit, table);
+        if (left < best) {
+            best = left;
+            *best_fit = fit;
+        }
     }
     return best;
 }

@@ -18,9 +18,9 @@ weft_code random_truth_layout(int view_count, int light_count, weft_dataset_layo
 void random_truth_samples(const weft_dataset_layout *layout, uint64_t seed, double noise, float *samples);
 
 /* The least residual of `start_count` fits in `frame` from random lobes, each run to convergence; summed in double.
- * table [view_count] is room. */
+ * best_fit is the fit that left it, table [view_count] room. */
 double random_starts_best(const weft_bundle *bundle, const weft_samples *samples, int channel,
                           const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
-                          uint64_t seed, int start_count, double *table);
+                          uint64_t seed, int start_count, weft_fit *best_fit, double *table);
 
 #endif
