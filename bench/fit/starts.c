@@ -64,7 +64,7 @@ static void judge(const arguments *given, const contest *with, int channel, int 
     own->passes += fit.passes;
     double left = weft_fit_residual(with->bundle, with->samples, channel, &fit, with->table);
     double least = random_starts_best(with->bundle, with->samples, channel, &options, with->workspace, &frame, seed,
-                                      getenv("NS") ? 0 : given->start_count, &best, with->table);
+                                      given->start_count, &best, with->table);
     double ratio = left > 0 ? sqrt(left / least) : 1;
     own->count++;
     own->above += ratio > ABOVE;
@@ -173,8 +173,7 @@ static weft_code run_tape(const arguments *given, tally *sum, weft_error *error)
 static weft_code run_truths(const arguments *given, tally *sum, weft_error *error)
 {
     texel_source source;
-    WEFT_TRY(texel_source_truths(getenv("TV") ? atoi(getenv("TV")) : TRUTH_VIEWS,
-                                 getenv("TL") ? atoi(getenv("TL")) : TRUTH_LIGHTS, &source, error));
+    WEFT_TRY(texel_source_truths(TRUTH_VIEWS, TRUTH_LIGHTS, &source, error));
     weft_code code = run_source(given, &source, given->truth_count, source.name, sum, error);
     texel_source_free(&source);
     return code;

@@ -12,7 +12,7 @@ static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent =
 enum {
     RACE_PASSES = 3,
     START_PASSES = 6,
-    SCREENED = 2, /* lobes that are followed of those that the screen ranks */
+    SCREENED = 3, /* lobes that are followed of those that the screen ranks */
     INCUMBENT = 2,
     CHALLENGER /* places among the trials of a workspace */
 };
@@ -32,25 +32,34 @@ typedef struct search {
     weft_fit_options options; /* of the starts */
     weft_fit_workspace *workspace;
     bool has_incumbent, has_challenger;
-    double quarters; /* of passes */
+    double left[WEFT_TRIALS]; /* what those two leave where T keeps within a moderate contrast */
+    double quarters;          /* of passes */
 } search;
+
+static double moderate_residual(const search *own)
+{
+    const weft_trial *now = &own->workspace->trial[0];
+    return own->options.table ? weft_trial_moderate_residual(own->bundle, now) : now->residual;
+}
 
 static void keep(search *own, bool is_usual)
 {
-    weft_trial *now = &own->workspace->trial[0];
-    weft_trial *place = &own->workspace->trial[is_usual ? INCUMBENT : CHALLENGER];
+    int at = is_usual ? INCUMBENT : CHALLENGER;
+    weft_trial *now = &own->workspace->trial[0], *place = &own->workspace->trial[at];
     bool *is_taken = is_usual ? &own->has_incumbent : &own->has_challenger;
-    if (!*is_taken || now->residual < place->residual)
+    double left = moderate_residual(own);
+    if (!*is_taken || left < own->left[at]) {
         weft_trial_swap(now, place);
+        own->left[at] = left;
+    }
     *is_taken = true;
 }
 
 /* What the best so far leaves. */
 static double least_so_far(const search *own)
 {
-    const weft_trial *trial = own->workspace->trial;
-    double least = own->has_incumbent ? trial[INCUMBENT].residual : INFINITY;
-    return own->has_challenger ? fmin(least, trial[CHALLENGER].residual) : least;
+    double least = own->has_incumbent ? own->left[INCUMBENT] : INFINITY;
+    return own->has_challenger ? fmin(least, own->left[CHALLENGER]) : least;
 }
 
 static void count_passes(search *own, bool coarse)
@@ -73,20 +82,13 @@ static void follow(search *own, bool is_usual)
     keep(own, is_usual);
 }
 
-static void try_cold(search *own, const weft_fit *start)
-{
-    weft_trial *now = &own->workspace->trial[0];
-    now->fit = *start;
-    weft_workspace_begin_cold(own->bundle, own->samples, own->channel, &own->options, now);
-    follow(own, true);
-}
-
-static void try_warm(search *own, const weft_fit *start, bool is_usual)
+/* Only the shapes of `start` count. */
+static void try_shapes(search *own, const weft_fit *start, bool is_usual)
 {
     weft_trial *now = &own->workspace->trial[0];
     now->fit = *start;
     now->fit.passes = 0;
-    weft_workspace_begin_warm(own->bundle, own->samples, own->channel, &own->options, own->workspace->table, now);
+    weft_workspace_begin_cold(own->bundle, own->samples, own->channel, &own->options, now);
     follow(own, is_usual);
 }
 
@@ -111,8 +113,12 @@ static weft_fit with_lobe_split(const weft_fit *fit, int split)
 static void settle(search *own)
 {
     weft_trial *trial = own->workspace->trial;
-    if (own->has_challenger && trial[CHALLENGER].residual < CLEARLY_BETTER * trial[INCUMBENT].residual)
-        weft_trial_swap(&trial[INCUMBENT], &trial[CHALLENGER]);
+    if (!own->has_challenger || own->left[CHALLENGER] >= CLEARLY_BETTER * own->left[INCUMBENT])
+        return;
+    double left = own->left[INCUMBENT];
+    weft_trial_swap(&trial[INCUMBENT], &trial[CHALLENGER]);
+    own->left[INCUMBENT] = own->left[CHALLENGER];
+    own->left[CHALLENGER] = left;
 }
 
 /* From the best fit to the best with one lobe more. */
@@ -123,22 +129,21 @@ static void grow(search *own)
     weft_fit_lobe lobe[SCREENED];
     int found = weft_screen_run(own->bundle, own->samples, own->channel, &own->options, workspace,
                                 &workspace->trial[INCUMBENT], SCREENED, lobe);
-    memcpy(workspace->table, workspace->trial[INCUMBENT].table, (size_t)own->bundle->view_stride * sizeof(float));
     own->has_incumbent = own->has_challenger = false;
     own->options.lobe_count = base.lobe_count + 1;
     if (own->options.lobe_count <= 2) {
         weft_fit usual = usual_start(own->options.lobe_count, &base.frame);
-        try_cold(own, &usual);
+        try_shapes(own, &usual, true);
     }
     for (int split = 0; split < base.lobe_count; split++) {
         weft_fit more = with_lobe_split(&base, split);
-        try_warm(own, &more, own->options.lobe_count > 2);
+        try_shapes(own, &more, own->options.lobe_count > 2);
     }
     for (int i = 0; i < found; i++) {
         weft_fit more = base;
         more.lobe[more.lobe_count++] = lobe[i];
         more.start = 1;
-        try_warm(own, &more, false);
+        try_shapes(own, &more, false);
     }
     settle(own);
 }
@@ -153,7 +158,8 @@ static void refine(search *own, const weft_fit_options *options, weft_fit *fit, 
     now->fit.passes = 0;
 }
 
-static void refine_finalist(search *own, int place, const weft_fit_options *options, bool turn, weft_finalist *to)
+/* Returns what is left where T keeps within a moderate contrast. */
+static double refine_finalist(search *own, int place, const weft_fit_options *options, bool turn, weft_finalist *to)
 {
     weft_trial *now = &own->workspace->trial[0];
     weft_fit_options turning = *options;
@@ -165,6 +171,7 @@ static void refine_finalist(search *own, int place, const weft_fit_options *opti
     refine(own, options, &to->upright, to->upright_table);
     if (turn)
         refine(own, &turning, &to->turned, to->turned_table);
+    return moderate_residual(own);
 }
 
 static void swap_finalists(weft_finalist *a, weft_finalist *b)
@@ -185,19 +192,19 @@ int weft_fit_search(const weft_bundle *bundle, const weft_samples *samples, int 
         for (int i = 0; i < options->lobe_count; i++)
             share[i] = 1;
         best->turned = best->upright;
-        weft_workspace_finish_empty(bundle, samples, channel, &best->turned, best->turned_table);
+        if (turn)
+            weft_workspace_finish_empty(bundle, samples, channel, &best->turned, best->turned_table);
         return 1;
     }
     search own = {
         .bundle = bundle, .samples = samples, .channel = channel, .options = *options, .workspace = workspace};
     const weft_trial *trial = workspace->trial;
     const weft_fit nothing = {.frame = *frame};
-    /* A single lobe is soon fitted, and the coarse lights may miss it. */
-    own.options.coarse = bundle->is_coarse && options->lobe_count > 1;
+    own.options.coarse = bundle->is_coarse;
     own.options.max_passes = START_PASSES;
     own.options.tolerance = START_TOLERANCE;
     own.options.lobe_count = 0;
-    try_cold(&own, &nothing);
+    try_shapes(&own, &nothing, true);
     share[0] = trial[INCUMBENT].residual;
     while (own.options.lobe_count < options->lobe_count) {
         grow(&own);
@@ -206,13 +213,14 @@ int weft_fit_search(const weft_bundle *bundle, const weft_samples *samples, int 
     double whole = share[options->lobe_count];
     for (int i = 0; i <= options->lobe_count; i++)
         share[i] = whole > 0 ? share[i] / whole : 1;
-    bool two = own.has_challenger && trial[CHALLENGER].residual < CLOSE * trial[INCUMBENT].residual;
-    refine_finalist(&own, INCUMBENT, options, turn, best);
+    bool two = own.has_challenger && (options->lobe_count == 1 || own.left[CHALLENGER] < CLOSE * own.left[INCUMBENT]);
+    double left = refine_finalist(&own, INCUMBENT, options, turn, best);
     if (two) {
-        refine_finalist(&own, CHALLENGER, options, turn, other);
-        const weft_fit *one = turn ? &best->turned : &best->upright, *two_ = turn ? &other->turned : &other->upright;
-        if (two_->residual < CLEARLY_BETTER * one->residual)
+        weft_trial_swap(&workspace->trial[0], &workspace->trial[INCUMBENT]);
+        if (refine_finalist(&own, CHALLENGER, options, turn, other) < CLEARLY_BETTER * left)
             swap_finalists(best, other);
+        else
+            weft_trial_swap(&workspace->trial[0], &workspace->trial[INCUMBENT]);
     }
     best->upright.passes = (int)ceil(own.quarters / 4);
     return two ? 2 : 1;

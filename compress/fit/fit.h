@@ -72,7 +72,7 @@ typedef struct weft_finalist {
 
 /* The same, with all that it found. Returns the number of finalists, the best first; the second, where there is one,
  * ended in another minimum. share [lobe_count + 1]: what the best with so many lobes left, over what that of the whole
- * left, by the few passes that either got before it was refined. */
+ * left, by the few passes that either got before it was refined. The workspace keeps the last pass of the best. */
 int weft_fit_search(const weft_bundle *bundle, const weft_samples *samples, int channel,
                     const weft_fit_options *options, bool turn, weft_fit_workspace *workspace, const weft_frame *frame,
                     weft_finalist finalist[WEFT_FINALISTS], double share[WEFT_MATERIAL_MAX_LOBES + 1]);

@@ -2,6 +2,7 @@
 #include "compress/texel/model_ladder.h"
 #include "compress/texel/parts.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -171,7 +172,8 @@ static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options
  * so, as far as was ever seen, where there are so many samples, the grey search left so much less than with fewer
  * lobes, and rounding cost next to nothing. */
 enum { MANY_SAMPLES = 2000 };
-#define CLEARLY_LESS 0.97
+#define CLEARLY_LESS 0.9     /* by few samples, which any model follows too closely */
+#define CLEARLY_LESS_LIT 0.7 /* the same where S is to be fitted, of which the search knows nothing */
 #define BARELY_MORE 1.01
 
 static void swap_results(weft_texel_fitter *fitter)
@@ -188,19 +190,36 @@ typedef struct contest {
     bool stepped_down; /* the best is not the whole model */
 } contest;
 
-/* Fits a model, and keeps the better one; returns whether it is this. */
-static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light,
+/* Was the last model that was fitted held, or did rounding cost much? */
+static bool is_spoilt(const weft_texel_fitter *fitter, double error)
+{
+    return fitter->now.held || error >= BARELY_MORE * fitter->now.residual;
+}
+
+/* Fits a model from one start, and keeps the better one; returns whether it was spoilt. */
+static bool try_start(weft_texel_fitter *fitter, const weft_fit_options *options, bool light,
                       const weft_grey_fit *start, contest *state)
 {
     swap_results(fitter);
     fit_from(fitter, options, light, start);
     double own = weft_texel_weighted_error(fitter);
-    bool is_better = own < state->least;
-    if (is_better)
+    bool spoilt = is_spoilt(fitter, own);
+    if (own < state->least)
         state->least = own;
     else
         swap_results(fitter);
-    return is_better;
+    return spoilt;
+}
+
+/* The same from the start that leaves least and, where the result is spoilt, from another; returns whether the result
+ * of the first was spoilt. */
+static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given,
+                      contest *state)
+{
+    bool spoilt = try_start(fitter, options, light, find_start(fitter, options, given), state);
+    if (spoilt && fitter->frames.has_other)
+        try_start(fitter, options, light, &fitter->frames.other, state);
+    return spoilt;
 }
 
 /* Without S, without T and with fewer lobes. A grey fit says nothing of S. */
@@ -210,6 +229,7 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
     double share[WEFT_MATERIAL_MAX_LOBES + 1];
     memcpy(share, fitter->frames.share, sizeof share);
     bool light = fitter->light_count > 0;
+    double clear = light ? CLEARLY_LESS_LIT : CLEARLY_LESS;
     weft_fit_options options = *whole;
     for (options.lobe_count = whole->lobe_count; options.lobe_count >= 0; options.lobe_count--) {
         for (int with_table = whole->table; with_table >= 0; with_table--) {
@@ -219,11 +239,12 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
                 bool is_few = fitter->samples.valid_count <= MANY_SAMPLES;
                 if (is_whole || (!is_few && (with_table != whole->table || with_light != light)))
                     continue;
-                if (state->is_sure && CLEARLY_LESS * share[options.lobe_count] > 1)
+                if (state->is_sure && clear * share[options.lobe_count] > 1)
                     continue;
                 options.table = with_table;
-                state->stepped_down |=
-                    try_model(fitter, &options, with_light, find_start(fitter, &options, given), state);
+                double before = state->least;
+                try_model(fitter, &options, with_light, given, state);
+                state->stepped_down |= state->least < before;
             }
         }
     }
@@ -233,14 +254,9 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
  * whole one. */
 static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
 {
-    const weft_grey_fit *start = find_start(fitter, whole, given);
-    contest state = {0};
-    fit_from(fitter, whole, fitter->light_count > 0, start);
-    state.least = weft_texel_weighted_error(fitter);
-    bool is_spoilt = fitter->now.held || state.least >= BARELY_MORE * fitter->now.residual;
-    state.is_sure = !is_spoilt && fitter->samples.valid_count > MANY_SAMPLES;
-    if (is_spoilt && fitter->frames.has_other)
-        try_model(fitter, whole, fitter->light_count > 0, &fitter->frames.other, &state);
+    contest state = {.least = INFINITY};
+    bool spoilt = try_model(fitter, whole, fitter->light_count > 0, given, &state);
+    state.is_sure = !spoilt && fitter->samples.valid_count > MANY_SAMPLES;
     try_all_smaller(fitter, whole, given, &state);
     return state.stepped_down;
 }
