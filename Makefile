@@ -1,7 +1,7 @@
 # Two commands do everything: `make demo` and `make test`. The build itself is CMake's.
 build := build/release
 
-.PHONY: demo test program build check mutants bench numerics packages clean
+.PHONY: demo test program build check mutants bench numerics references packages clean
 
 demo: program
 	scripts/demo.sh $(build)/cli/weft demo-out
@@ -33,6 +33,15 @@ bench:
 	scripts/install-packages.sh bench
 	$(MAKE) build
 	scripts/bench.sh $(build) $(or $(TEXELS),100) $(or $(SIZE),64)
+
+# That of the system has the packages; another may come first on the path.
+python := $(firstword $(wildcard /usr/bin/python3) python3)
+
+# Computes the reference values of the tests anew, by programs that share no code with Weft, and compares.
+references:
+	$(python) tests/data/generate/reference_values.py
+	$(python) tests/data/generate/reference_values.py --conditions
+	$(python) tests/data/generate/foreign_dataset.py
 
 # Worst-case errors of every model, by search against binary128: remakes the tables of docs/notes/numerics.md.
 numerics: build

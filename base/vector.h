@@ -19,24 +19,26 @@ typedef struct weft_rgb {
     weft_real r, g, b;
 } weft_rgb;
 
+/* No compound literal: C++ includes this, too. */
 static inline weft_vec3 weft_vec3_of(weft_real x, weft_real y, weft_real z)
 {
-    return (weft_vec3){x, y, z};
+    weft_vec3 v = {x, y, z};
+    return v;
 }
 
 static inline weft_vec3 weft_add(weft_vec3 a, weft_vec3 b)
 {
-    return (weft_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+    return weft_vec3_of(a.x + b.x, a.y + b.y, a.z + b.z);
 }
 
 static inline weft_vec3 weft_subtract(weft_vec3 a, weft_vec3 b)
 {
-    return (weft_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+    return weft_vec3_of(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
 static inline weft_vec3 weft_scale(weft_vec3 a, weft_real s)
 {
-    return (weft_vec3){a.x * s, a.y * s, a.z * s};
+    return weft_vec3_of(a.x * s, a.y * s, a.z * s);
 }
 
 static inline weft_real weft_dot(weft_vec3 a, weft_vec3 b)
@@ -46,7 +48,7 @@ static inline weft_real weft_dot(weft_vec3 a, weft_vec3 b)
 
 static inline weft_vec3 weft_cross(weft_vec3 a, weft_vec3 b)
 {
-    return (weft_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    return weft_vec3_of(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
 static inline weft_real weft_length(weft_vec3 a)

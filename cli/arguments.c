@@ -111,7 +111,8 @@ static void set_next(arguments *a, const char *text, struct argp_state *state)
     for (int row = 0; row < a->row_count; row++) {
         if (a->row[row].option->name || (place++ < a->place_count && !a->row[row].setting))
             continue;
-        a->place_count++;
+        if (!a->row[row].option->repeats)
+            a->place_count++;
         set(a, row, text, state);
         return;
     }

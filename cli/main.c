@@ -10,9 +10,13 @@ static const struct {
     const char *heading;
     const weft_command *command;
 } commands[] = {
+    {"Before photographs are taken by hand:", &weft_command_target},
+    {NULL, &weft_command_lens},
     {"Photographs and geometry to a dataset:", &weft_command_capture},
+    {NULL, &weft_command_hand},
     {NULL, &weft_command_simulate},
     {NULL, &weft_command_register},
+    {NULL, &weft_command_photographs},
     {NULL, &weft_command_import},
     {NULL, &weft_command_tile},
     {NULL, &weft_command_bard},

@@ -65,6 +65,13 @@ static weft_code say_outcome(const register_command *command, const weft_session
         &command->common,
         "random error of a position, estimated: %.4f texels median, %.4f worst; %.3f %% of the samples saturated",
         all.median_uncertainty, all.worst_uncertainty, 100 * all.saturated);
+    if (r->found.bend.stays > 0)
+        weft_command_say(
+            &command->common,
+            "taken out: a bend of the plate of %.3f mm at its rim (random error %.4f), vignetting beside the "
+            "calibration of %.2f %% (standard error %.2f)",
+            weft_bend_depth_mm(&r->found.bend), r->found.bend.standard_error_mm,
+            100 * weft_vignetting_loss(&r->found.vignetting), 100 * r->found.vignetting.standard_error);
     if (command->report_folder)
         weft_command_say(&command->common, "report: %s/index.html", command->report_folder);
     return WEFT_OK;

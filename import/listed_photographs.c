@@ -2,6 +2,7 @@
 #include "import/readers.h"
 
 #include "base/text/csv.h"
+#include "base/text/image_list.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

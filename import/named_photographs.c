@@ -1,6 +1,8 @@
 #include "import/far_photograph.h"
 #include "import/readers.h"
 
+#include "base/text/image_list.h"
+
 static weft_code add_named(const char *folder, const weft_lines *names, weft_collection *collection, weft_error *error)
 {
     int unreadable = 0;

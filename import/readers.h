@@ -18,9 +18,4 @@ weft_code weft_collection_of_table(const char *folder, weft_collection *collecti
 /* Photographs named by their angles, in the folder or one below. */
 weft_code weft_collection_of_names(const char *folder, weft_collection *collection, weft_error *error);
 
-/* ---- Shared by them ---- */
-
-/* Names (relative, sorted) of the image files in a folder and the folders in it. Freed with weft_lines_free. */
-weft_code weft_images_list(const char *folder, weft_lines *names, weft_error *error);
-
 #endif

@@ -46,13 +46,6 @@ static void bench_free(bench *b)
     free(b->mask);
 }
 
-static weft_exposure exposure_of(const weft_session *session, int shot)
-{
-    weft_vec3 direction = weft_direction_of_angles(session->shot[shot].light_driven);
-    return (weft_exposure){session->black_level, (1 << session->bits) - 1, session->record[shot].exposure_s,
-                           weft_scale(direction, session->light_distance_mm)};
-}
-
 /* Keeps the photograph under the highest light; of equal ones the first, so that threads do not matter. */
 static void show(job *j, int shot, const float *texel)
 {
@@ -99,7 +92,7 @@ static weft_code rectify_photograph(job *j, int index, bench *b, bool *done, wef
     const weft_session *session = j->rectifier->session;
     int shot = j->photographs->shot[index];
     weft_white *white = &j->rectifier->registration->white[shot];
-    weft_exposure exposure = exposure_of(session, shot);
+    weft_exposure exposure = weft_exposure_of(session, shot);
     *done = false;
     if (!j->photographs->usable[index] || white->patches > 0) /* the latter is in the dataset already */
         return WEFT_OK;
@@ -113,8 +106,8 @@ static weft_code rectify_photograph(job *j, int index, bench *b, bool *done, wef
         *white = j->estimated[shot];
     }
     weft_resampler_apply(&j->resampler, samples, exposure.black_level, exposure.full_scale, b->texel, b->mask);
-    weft_reflectance_of_raw(white, &exposure, session->target.opening_mm, j->resampler.width, j->resampler.height,
-                            b->texel);
+    weft_reflectance_of_raw(white, &exposure, &j->rectifier->sight->bend, session->target.opening_mm,
+                            j->resampler.width, j->resampler.height, b->texel);
     *done = true;
     return put(j, shot, b, error);
 }
@@ -150,13 +143,13 @@ static weft_code rectify_all(job *j, int *used, weft_error *error)
 }
 
 /* Two standard deviations of the point spread of the lens at the corner of the opening where it is widest, pixels. */
-static double point_spread_reach(const weft_view_pose *pose, double opening_mm)
+static double point_spread_reach(const weft_sight *sight, const weft_view_pose *pose)
 {
-    const double *last = pose->homography.m[2];
+    const weft_plate_view view = weft_plate_view_of(&sight->camera, &pose->homography, &sight->bend);
     double widest = 0;
     for (int corner = 0; corner < 4; corner++) {
-        double x = opening_mm * (corner % 2 - 0.5), y = opening_mm * (corner / 2 - 0.5);
-        double z = (last[0] * x + last[1] * y) / last[2] + 1;
+        double x = sight->opening_mm * (corner % 2 - 0.5), y = sight->opening_mm * (corner / 2 - 0.5);
+        double z = weft_plate_view_depth(&view, x, y);
         widest = fmax(widest, pose->point_spread.constant + pose->point_spread.depth * (1 - 1 / z) * (1 - 1 / z));
     }
     return 2 * sqrt(widest);
@@ -184,8 +177,9 @@ weft_code weft_rectify_stay(const weft_rectifier *rectifier, int stay, const wef
     weft_resampling resampling = {&rectifier->sight->camera,
                                   rectifier->sight->inverse_vignetting,
                                   pose->homography,
+                                  rectifier->sight->bend,
                                   target->opening_mm,
-                                  point_spread_reach(pose, target->opening_mm),
+                                  point_spread_reach(rectifier->sight, pose),
                                   is_most_frontal(&registration->survey, stay)};
     WEFT_TRY(weft_resampler_create(&resampling, registration->settings.width, registration->settings.height,
                                    &j.resampler, error));

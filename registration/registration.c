@@ -1,6 +1,7 @@
 #include "registration/registration.h"
 
 #include "base/clock.h"
+#include "registration/calibrate.h"
 #include "registration/rectify.h"
 #include "registration/report/report.h"
 #include "registration/white_estimate.h"
@@ -197,6 +198,8 @@ static weft_code run(work *w, weft_error *error)
     weft_registration *registration = w->rectifier.registration;
     const weft_session *session = w->rectifier.session;
     long total = session->shot_count - registration->survey.untaken;
+    weft_progress_report(w->progress, "calibrating", 0, total);
+    WEFT_TRY(weft_calibrate(session, registration, &w->sight, error));
     for (int stay = 0; stay < registration->survey.stay_count; stay++) {
         weft_progress_report(w->progress, "registering views", w->done, total);
         WEFT_TRY(register_stay(w, stay, error));

@@ -55,6 +55,20 @@ weft_code weft_photograph_write(const char *path, int width, int height, int bit
  * bits. Errors: WEFT_BAD_INPUT naming the file for missing, truncated, or another size. Thread-safe. */
 weft_code weft_photograph_read(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error);
 
+/* What a camera writes beside the pixels (Exif 2.3). */
+typedef struct weft_camera_notes {
+    const char *make, *model;
+    const char *date; /* "YYYY:MM:DD HH:MM:SS" */
+    int orientation;  /* 1 .. 8: how to turn the picture to see it upright; the pixels stay as the sensor read them */
+    double exposure_s, f_number, iso, focal_length_mm, focal_length_35mm;
+} weft_camera_notes;
+
+/* Writes a photograph as cameras do, atomically; the format follows the extension: .jpg 8 bits of quality 93, .tif 16
+ * bits, .exr half floats. Integers are clamped to 0..1 and rounded. The same arguments give the same bytes. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_snapshot_write(const char *path, const weft_image *image, const weft_camera_notes *notes,
+                              weft_error *error);
+
 #ifdef __cplusplus
 }
 #endif

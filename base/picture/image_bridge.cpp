@@ -4,6 +4,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -171,6 +172,72 @@ weft_code read_photograph(const char *path, int width, int height, int bits, uin
     return WEFT_OK;
 }
 
+OIIO::TypeDesc snapshot_type(const std::string &path)
+{
+    if (has_extension(path, ".exr"))
+        return OIIO::TypeDesc::HALF;
+    return has_extension(path, ".jpg") ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
+}
+
+void note(OIIO::ImageSpec *spec, const weft_camera_notes *notes)
+{
+    spec->attribute("Make", notes->make);
+    spec->attribute("Model", notes->model);
+    spec->attribute("DateTime", notes->date);
+    spec->attribute("Exif:DateTimeOriginal", notes->date);
+    spec->attribute("Orientation", notes->orientation);
+    /* One over a whole number, which OpenImageIO 2.4 turns into one over nothing. */
+    spec->attribute("ExposureTime", std::nextafter(float(notes->exposure_s), 0.0f));
+    spec->attribute("FNumber", float(notes->f_number));
+    /* TIFF takes but the latter. */
+    spec->attribute("Exif:PhotographicSensitivity", int(notes->iso + 0.5));
+    spec->attribute("Exif:ISOSpeed", int(notes->iso + 0.5));
+    spec->attribute("Exif:FocalLength", float(notes->focal_length_mm));
+    spec->attribute("Exif:FocalLengthIn35mmFilm", int(notes->focal_length_35mm + 0.5));
+}
+
+weft_code write_to(const char *path, const OIIO::ImageSpec &spec, const weft_image *image, weft_error *error)
+{
+    auto output = OIIO::ImageOutput::create(path);
+    if (!output || !output->open(path, spec) || !output->write_image(OIIO::TypeDesc::FLOAT, image->pixels) ||
+        !output->close())
+        return weft_fail(error, WEFT_SYSTEM, "cannot write image '%s': %s", path,
+                         first_line(output ? output->geterror() : OIIO::geterror()).c_str());
+    /* The library keeps silent where a disk is full. */
+    if (weft_file_bytes(path) < spec.image_bytes(true))
+        return weft_fail(error, WEFT_SYSTEM, "cannot write image '%s': it was cut short", path);
+    return WEFT_OK;
+}
+
+/* OpenImageIO 2.4 spoils the Exif of a TIFF that it writes into memory. */
+weft_code write_tiff_snapshot(const char *path, OIIO::ImageSpec *spec, const weft_image *image, weft_error *error)
+{
+    weft_atomic_file file;
+    spec->attribute("compression", "none");
+    WEFT_TRY(weft_atomic_file_begin(path, &file, error));
+    weft_code code = write_to(file.temporary_path, *spec, image, error);
+    if (code == WEFT_OK)
+        return weft_atomic_file_commit(&file, error);
+    weft_atomic_file_abandon(&file);
+    return code;
+}
+
+weft_code write_snapshot(const char *path, const weft_image *image, const weft_camera_notes *notes, weft_error *error)
+{
+    OIIO::TypeDesc type = snapshot_type(path);
+    OIIO::ImageSpec spec(image->width, image->height, 3, type);
+    bool is_jpeg = type == OIIO::TypeDesc::UINT8;
+    spec.attribute("oiio:ColorSpace", is_jpeg ? "sRGB" : "linear");
+    if (is_jpeg)
+        spec.attribute("compression", "jpeg:93");
+    note(&spec, notes);
+    if (type == OIIO::TypeDesc::UINT16)
+        return write_tiff_snapshot(path, &spec, image, error);
+    encoded_bytes bytes;
+    WEFT_TRY(encode(path, spec, OIIO::TypeDesc::FLOAT, image->pixels, &bytes, error));
+    return weft_write_file(path, bytes.data(), bytes.size(), error);
+}
+
 /* No C++ exception leaves the bridge. */
 template <typename Action> weft_code guarded(const char *path, weft_error *error, Action action)
 {
@@ -228,4 +295,10 @@ weft_code weft_photograph_write(const char *path, int width, int height, int bit
 weft_code weft_photograph_read(const char *path, int width, int height, int bits, uint16_t *samples, weft_error *error)
 {
     return guarded(path, error, [&] { return read_photograph(path, width, height, bits, samples, error); });
+}
+
+weft_code weft_snapshot_write(const char *path, const weft_image *image, const weft_camera_notes *notes,
+                              weft_error *error)
+{
+    return guarded(path, error, [&] { return write_snapshot(path, image, notes, error); });
 }

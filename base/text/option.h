@@ -35,6 +35,7 @@ typedef struct weft_option {
     int group;         /* of the help */
     bool is_required;  /* one of the kinds that are text must not stay NULL */
     bool may_be_empty; /* the value may be left out */
+    bool repeats;      /* an argument that is known by its place: takes all that follow, each by `read` */
     weft_option_kind kind;
     size_t offset; /* of the value in the target */
     double low, high, divisor;

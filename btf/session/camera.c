@@ -1,5 +1,7 @@
 #include "btf/session/camera.h"
 
+#include <stdbool.h>
+
 weft_pose weft_pose_of_view(weft_angles view, double distance_mm)
 {
     double sine = sin(view.theta_rad), cosine = cos(view.theta_rad);
@@ -73,28 +75,100 @@ static double radius_squared(const weft_camera *camera, weft_pixel pixel, double
     return *x * *x + *y * *y;
 }
 
+/* In normalised coordinates. */
+static weft_pixel distort(const weft_camera *c, weft_pixel p)
+{
+    double r2 = p.x * p.x + p.y * p.y, radial = 1 + r2 * (c->k1 + r2 * (c->k2 + r2 * c->k3));
+    return (weft_pixel){p.x * radial + 2 * c->p1 * p.x * p.y + c->p2 * (r2 + 2 * p.x * p.x),
+                        p.y * radial + c->p1 * (r2 + 2 * p.y * p.y) + 2 * c->p2 * p.x * p.y};
+}
+
+/* Derivative of `distort`: of x by x, of both crosswise (it is symmetric), of y by y. */
+typedef struct distortion_slope {
+    double xx, xy, yy;
+} distortion_slope;
+
+static distortion_slope slope_at(const weft_camera *c, weft_pixel p)
+{
+    double r2 = p.x * p.x + p.y * p.y, radial = 1 + r2 * (c->k1 + r2 * (c->k2 + r2 * c->k3));
+    double by_r2 = c->k1 + r2 * (2 * c->k2 + r2 * 3 * c->k3);
+    return (distortion_slope){radial + 2 * p.x * p.x * by_r2 + 2 * c->p1 * p.y + 6 * c->p2 * p.x,
+                              2 * p.x * p.y * by_r2 + 2 * c->p1 * p.x + 2 * c->p2 * p.y,
+                              radial + 2 * p.y * p.y * by_r2 + 6 * c->p1 * p.y + 2 * c->p2 * p.x};
+}
+
+static double determinant_of(distortion_slope s)
+{
+    return s.xx * s.yy - s.xy * s.xy;
+}
+
+/* Where the lens has not turned back: its slope is positive definite there. */
+static bool is_on_the_side_of_the_axis(distortion_slope s)
+{
+    return s.xx + s.yy > 0 && determinant_of(s) > 1e-6;
+}
+
+static weft_pixel excess_at(const weft_camera *c, weft_pixel p, weft_pixel wanted)
+{
+    weft_pixel got = distort(c, p);
+    return (weft_pixel){got.x - wanted.x, got.y - wanted.y};
+}
+
+/* How far a straight way goes from a point on the side of the axis before the lens turns back: 1 is all of it. Looked
+ * at every twentieth of the focal length. */
+static double way_on_the_side_of_the_axis(const weft_camera *c, weft_pixel from, weft_pixel to)
+{
+    double length = hypot(to.x - from.x, to.y - from.y);
+    int steps = length < 50 ? (int)ceil(20 * length) : 1000;
+    for (int i = 1; i <= steps; i++) {
+        double share = (double)i / steps;
+        weft_pixel at = {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)};
+        if (!is_on_the_side_of_the_axis(slope_at(c, at)))
+            return (double)(i - 1) / steps;
+    }
+    return 1;
+}
+
+/* One step of Newton's method, shortened until it comes nearer and stays on the side of the axis. False where none
+ * does. */
+static bool step_nearer(const weft_camera *c, weft_pixel wanted, weft_pixel *p, weft_pixel *excess)
+{
+    distortion_slope s = slope_at(c, *p);
+    double determinant = determinant_of(s), distance = hypot(excess->x, excess->y);
+    weft_pixel step = {(s.yy * excess->x - s.xy * excess->y) / determinant,
+                       (s.xx * excess->y - s.xy * excess->x) / determinant};
+    for (int halvings = 0; halvings < 20; halvings++) {
+        double share = ldexp(1, -halvings);
+        weft_pixel next = {p->x - share * step.x, p->y - share * step.y}, left = excess_at(c, next, wanted);
+        if (hypot(left.x, left.y) < distance && way_on_the_side_of_the_axis(c, *p, next) == 1) {
+            *p = next;
+            *excess = left;
+            return true;
+        }
+    }
+    return false;
+}
+
 weft_pixel weft_camera_distort(const weft_camera *camera, weft_pixel undistorted)
 {
-    double x, y, r2 = radius_squared(camera, undistorted, &x, &y);
-    double factor = 1 + r2 * (camera->k1 + r2 * camera->k2);
-    return (weft_pixel){camera->cx + camera->fx * x * factor, camera->cy + camera->fy * y * factor};
+    weft_pixel p;
+    radius_squared(camera, undistorted, &p.x, &p.y);
+    p = distort(camera, p);
+    return (weft_pixel){camera->cx + camera->fx * p.x, camera->cy + camera->fy * p.y};
 }
 
 weft_pixel weft_camera_undistort(const weft_camera *camera, weft_pixel distorted)
 {
-    double x, y, distorted_radius = sqrt(radius_squared(camera, distorted, &x, &y));
-    double radius = distorted_radius;
-    /* Newton on radius (1 + k1 radius^2 + k2 radius^4) = distorted_radius. */
-    for (int iteration = 0; iteration < 20; iteration++) {
-        double r2 = radius * radius;
-        double excess = radius * (1 + r2 * (camera->k1 + r2 * camera->k2)) - distorted_radius;
-        double slope = 1 + r2 * (3 * camera->k1 + 5 * r2 * camera->k2);
-        if (fabs(excess) <= 1e-14 || slope < 1e-3)
+    weft_pixel wanted;
+    radius_squared(camera, distorted, &wanted.x, &wanted.y);
+    double way = way_on_the_side_of_the_axis(camera, (weft_pixel){0, 0}, wanted);
+    weft_pixel p = {way * wanted.x, way * wanted.y};
+    weft_pixel excess = excess_at(camera, p, wanted);
+    for (int iteration = 0; iteration < 50 && hypot(excess.x, excess.y) > 1e-15; iteration++) {
+        if (!step_nearer(camera, wanted, &p, &excess))
             break;
-        radius -= excess / slope;
     }
-    double factor = distorted_radius > 0 ? radius / distorted_radius : 1;
-    return (weft_pixel){camera->cx + camera->fx * x * factor, camera->cy + camera->fy * y * factor};
+    return (weft_pixel){camera->cx + camera->fx * p.x, camera->cy + camera->fy * p.y};
 }
 
 double weft_camera_vignetting(const weft_camera *camera, weft_pixel distorted)

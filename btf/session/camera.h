@@ -1,4 +1,5 @@
-/* A calibrated camera: pinhole with radial distortion (Brown 1966), vignetting, and its pose.
+/* A calibrated camera: pinhole with radial and decentring distortion (Brown 1966; Conrady 1919),
+ * vignetting, and its pose.
  *
  * Pixel coordinates: (0, 0) is the centre of the top left pixel, x right, y down.
  * Camera frame: x right, y down, z forward. Plate frame: millimetres, origin at the centre of the sample,
@@ -8,11 +9,15 @@
 
 #include "btf/direction/direction.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct weft_camera {
-    int width, height;     /* pixels */
-    double fx, fy, cx, cy; /* focal lengths and principal point, pixels */
-    double k1, k2;         /* distorted = undistorted x (1 + k1 r^2 + k2 r^4), r in normalised coordinates */
-    double vignetting[3];  /* relative response 1 + a r^2 + b r^4 + c r^6, r normalised as above, undistorted */
+    int width, height;         /* pixels */
+    double fx, fy, cx, cy;     /* focal lengths and principal point, pixels */
+    double k1, k2, p1, p2, k3; /* of the lens, as OpenCV orders and defines them */
+    double vignetting[3];      /* relative response 1 + a r^2 + b r^4 + c r^6, r normalised as above, undistorted */
 } weft_camera;
 
 typedef struct weft_pixel {
@@ -43,11 +48,21 @@ weft_pixel weft_homography_apply(const weft_homography *homography, double x, do
 /* Errors: none; a singular map gives the zero matrix. */
 weft_homography weft_homography_inverse(const weft_homography *homography);
 
-/* Undistorted pixel <-> pixel of the photograph. The inverse iterates to 1e-12. */
+/* Undistorted pixel -> pixel of the photograph. With normalised coordinates (x, y) = ((u - cx) / fx, (v - cy) / fy) and
+ * r^2 = x^2 + y^2, distorted ones are
+ *   x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2)
+ *   y (1 + k1 r^2 + k2 r^4 + k3 r^6) + p1 (r^2 + 2 y^2) + 2 p2 x y */
 weft_pixel weft_camera_distort(const weft_camera *camera, weft_pixel undistorted);
+
+/* The inverse, by Newton's method to 1e-12 of normalised coordinates, on the side of the axis: far out, a polynomial
+ * may turn back and show a second point in the same pixel, which is none of the lens. A pixel beyond what the
+ * polynomial reaches gets a point whose image is about the nearest to it. */
 weft_pixel weft_camera_undistort(const weft_camera *camera, weft_pixel distorted);
 
 /* Relative response at a pixel of the photograph, 1 on the axis. */
 double weft_camera_vignetting(const weft_camera *camera, weft_pixel distorted);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
+#include "btf/session/camera_json.h"
 #include "btf/session/journal.h"
 
 #include <limits.h>
@@ -19,13 +20,6 @@ static void session_path(const weft_session *session, char path[PATH_MAX])
 }
 
 /* ---- Writing ---- */
-
-static json_t *pack_camera(const weft_camera *c)
-{
-    return json_pack("{si si sf sf sf sf sf sf s[fff]}", "width", c->width, "height", c->height, "fx", c->fx, "fy",
-                     c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2", c->k2, "vignetting", c->vignetting[0],
-                     c->vignetting[1], c->vignetting[2]);
-}
 
 static json_t *pack_target(const weft_target *t)
 {
@@ -58,7 +52,7 @@ static json_t *pack_session(const weft_session *s)
         settings = json_object();
     return json_pack("{si ss so so so sf sf si si so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
                      weft_json_text(s->sample, strlen(s->sample)), "rig_settings", settings, "camera",
-                     pack_camera(&s->camera), "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
+                     weft_camera_pack(&s->camera), "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
                      s->light_distance_mm, "bits", s->bits, "black_level", s->black_level, "target",
                      pack_target(&s->target), "plan", pack_plan(s));
 }
@@ -79,24 +73,7 @@ weft_code weft_session_create(const weft_session *session, weft_error *error)
 
 /* ---- Reading ---- */
 
-/* The nearest int: a value beyond is out of every range, too. */
-static int limited_int(json_int_t value)
-{
-    return value > INT_MAX ? INT_MAX : value < INT_MIN ? INT_MIN : (int)value;
-}
-
 /* This and what follows tell in `cause` why they could not. */
-static bool unpack_camera(json_t *json, weft_camera *c, json_error_t *cause)
-{
-    json_int_t width = 0, height = 0;
-    bool done = json_unpack_ex(json, cause, 0, "{sI sI sF sF sF sF sF sF s[FFF]}", "width", &width, "height", &height,
-                               "fx", &c->fx, "fy", &c->fy, "cx", &c->cx, "cy", &c->cy, "k1", &c->k1, "k2", &c->k2,
-                               "vignetting", &c->vignetting[0], &c->vignetting[1], &c->vignetting[2]) == 0;
-    c->width = limited_int(width);
-    c->height = limited_int(height);
-    return done;
-}
-
 static bool unpack_target(json_t *json, weft_target *t, json_error_t *cause)
 {
     return json_unpack_ex(json, cause, 0, "{sF sF sF sF}", "opening_mm", &t->opening_mm, "white_reflectance",
@@ -183,13 +160,13 @@ static weft_code unpack_fields(json_t *root, const char *path, weft_session *s, 
                        &camera, "target", &target, "rig_settings", &settings, "camera_distance_mm",
                        &s->camera_distance_mm, "light_distance_mm", &s->light_distance_mm, "bits", &bits, "black_level",
                        &black_level) != 0 ||
-        !unpack_camera(camera, &s->camera, &cause) || !unpack_target(target, &s->target, &cause))
+        !weft_camera_unpack(camera, &s->camera, &cause) || !unpack_target(target, &s->target, &cause))
         return weft_json_fail(error, WEFT_BAD_INPUT, "'%s' lacks a field, or one has the wrong type: %s", path,
                               cause.text);
     if (settings && !json_is_object(settings))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'rig_settings' is no object", path);
-    s->bits = limited_int(bits);
-    s->black_level = limited_int(black_level);
+    s->bits = weft_limited_int(bits);
+    s->black_level = weft_limited_int(black_level);
     return copy_texts(rig, sample, settings, s, error);
 }
 

@@ -4,7 +4,7 @@
 
 #include "registration/outcome/survey.h"
 #include "registration/pose/pose_chain.h"
-#include "registration/radiometry/radiometry.h"
+#include "registration/radiometry/vignetting.h"
 
 typedef struct weft_registration_settings {
     int width, height; /* texels of the opening */
@@ -18,10 +18,24 @@ typedef struct weft_fault {
     char reason[200];
 } weft_fault;
 
+/* The bend of the plate, as the photographs show it. */
+typedef struct weft_bend_found {
+    weft_bend bend;
+    double unit_mm, standard_error_mm; /* random error of its height at the distance unit_mm, worst of its terms */
+    int stays;                         /* it was found from; 0: it was not */
+} weft_bend_found;
+
+/* What registration finds of the rig that its calibration does not say. */
+typedef struct weft_rig_found {
+    weft_bend_found bend;
+    weft_vignetting vignetting;
+} weft_rig_found;
+
 /* Indices of shots and stays are those of the session and the survey. */
 typedef struct weft_registration {
     weft_registration_settings settings;
     weft_survey survey;
+    weft_rig_found found;
     weft_view_pose *pose; /* [survey.stay_count] */
     int *used;            /* [survey.stay_count] photographs of the stay that are in the dataset */
     weft_fault *fault;    /* [shot_count] */

@@ -1,6 +1,7 @@
 #include "registration/outcome/outcome.h"
 
 #include "base/text/json_text.h"
+#include "btf/session/camera_json.h"
 
 #include <string.h>
 
@@ -30,11 +31,14 @@ static json_t *pack_session(const weft_session *s)
                      s->black_level);
 }
 
-static json_t *pack_camera(const weft_camera *c)
+static json_t *pack_found(const weft_rig_found *found)
 {
-    return json_pack("{si si sf sf sf sf sf sf s[fff]}", "width", c->width, "height", c->height, "fx", c->fx, "fy",
-                     c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2", c->k2, "vignetting", c->vignetting[0],
-                     c->vignetting[1], c->vignetting[2]);
+    const weft_bend *b = &found->bend.bend;
+    const weft_vignetting *v = &found->vignetting;
+    return json_pack("{s{s[fff] sf sf si} s{sf sf sf sf si}}", "bend", "per_mm", b->xx, b->xy, b->yy, "unit_mm",
+                     found->bend.unit_mm, "standard_error_mm", found->bend.standard_error_mm, "stays",
+                     found->bend.stays, "vignetting", "r2", v->r2, "r4", v->r4, "reach", v->reach, "standard_error",
+                     v->standard_error, "photographs", v->photographs);
 }
 
 static json_t *pack_faults(const weft_session *session, const weft_registration *r)
@@ -52,12 +56,12 @@ char *weft_registration_provenance(const weft_session *session, const weft_regis
     json_t *stays = json_array();
     for (int stay = 0; stay < r->survey.stay_count; stay++)
         weft_json_append(&stays, pack_stay(session, r, stay));
-    json_t *root =
-        json_pack("{ss so so s{si si sf sf} si si so so}", "made_by", "weft register " WEFT_VERSION, "session",
-                  pack_session(session), "camera", pack_camera(&session->camera), "settings", "width",
-                  r->settings.width, "height", r->settings.height, "tolerance_mm", r->settings.limits.tolerance_mm,
-                  "least_correlation", r->settings.limits.least_correlation, "images", r->image_count,
-                  "white_levels_estimated", r->estimated_whites, "faults", pack_faults(session, r), "stays", stays);
+    json_t *root = json_pack("{ss so so so s{si si sf sf} si si so so}", "made_by", "weft register " WEFT_VERSION,
+                             "session", pack_session(session), "camera", weft_camera_pack(&session->camera), "found",
+                             pack_found(&r->found), "settings", "width", r->settings.width, "height",
+                             r->settings.height, "tolerance_mm", r->settings.limits.tolerance_mm, "least_correlation",
+                             r->settings.limits.least_correlation, "images", r->image_count, "white_levels_estimated",
+                             r->estimated_whites, "faults", pack_faults(session, r), "stays", stays);
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(root);
     return text;

@@ -35,3 +35,25 @@ double weft_normal_equations_variance(const weft_normal_equations *factored, int
         sum += forward[i] * forward[i];
     return sum;
 }
+
+void weft_normal_equations_reduce(const weft_normal_equations *factored, int count, int kept, double *information,
+                                  double *gradient)
+{
+    /* With A = L L^T, the complement is M M^T with M the last rows and columns of L. */
+    double forward[WEFT_UNKNOWNS_LIMIT];
+    int first = count - kept;
+    memcpy(forward, factored->right, (size_t)count * sizeof *forward);
+    weft_cholesky_solve_lower(count, WEFT_UNKNOWNS_LIMIT, factored->matrix[0], forward);
+    for (int i = 0; i < kept; i++) {
+        const double *row = factored->matrix[first + i] + first;
+        gradient[i] = 0;
+        for (int k = 0; k <= i; k++)
+            gradient[i] += row[k] * forward[first + k];
+        for (int j = 0; j < kept; j++) {
+            const double *other = factored->matrix[first + j] + first;
+            information[i * kept + j] = 0;
+            for (int k = 0; k <= (i < j ? i : j); k++)
+                information[i * kept + j] += row[k] * other[k];
+        }
+    }
+}

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-enum { WEFT_UNKNOWNS_LIMIT = 18 };
+enum { WEFT_UNKNOWNS_LIMIT = 20 };
 
 typedef struct weft_normal_equations {
     double matrix[WEFT_UNKNOWNS_LIMIT][WEFT_UNKNOWNS_LIMIT]; /* sum of w a a^T; the lower triangle is used */
@@ -35,5 +35,10 @@ bool weft_normal_equations_factor(weft_normal_equations *equations, int count);
 /* After factoring: the solution, and the variance row^T matrix^-1 row of a linear form of it (for unit noise). */
 void weft_normal_equations_solve(const weft_normal_equations *factored, int count, double *solution);
 double weft_normal_equations_variance(const weft_normal_equations *factored, int count, const double *row);
+
+/* After factoring `count` unknowns: what the equations say of the last `kept` of them, all others eliminated (Schur's
+ * complement). information [kept][kept], gradient [kept]: information . x = gradient. */
+void weft_normal_equations_reduce(const weft_normal_equations *factored, int count, int kept, double *information,
+                                  double *gradient);
 
 #endif

@@ -1,60 +1,22 @@
 #include "registration/pose/opencv_bridge.h"
 
-#include <opencv2/aruco.hpp>
+#include "registration/pose/opencv_guard.h"
+
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
-#include <exception>
-#include <new>
-#include <vector>
-
-namespace
-{
-
-template <typename Work> weft_code guarded(const char *what, weft_error *error, Work work)
-{
-    try {
-        return work();
-    } catch (const std::bad_alloc &) {
-        return weft_fail_memory(error, what, 0);
-    } catch (const std::exception &failure) {
-        return weft_fail(error, WEFT_SYSTEM, "%s failed in OpenCV: %s", what, failure.what());
-    } catch (...) {
-        return weft_fail(error, WEFT_SYSTEM, "%s failed in OpenCV", what);
-    }
-}
-
-} // namespace
 
 extern "C" weft_code weft_opencv_find_markers(const uint8_t *grey, int width, int height, weft_marker *marker,
                                               int *count, weft_error *error)
 {
-    *count = 0;
-    return guarded("finding markers", error, [&] {
-        const cv::Mat picture(height, width, CV_8U, const_cast<uint8_t *>(grey));
-        const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
-        const auto parameters = cv::aruco::DetectorParameters::create();
-        parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
-        std::vector<std::vector<cv::Point2f>> corners;
-        std::vector<int> ids;
-        cv::aruco::detectMarkers(picture, dictionary, corners, ids, parameters);
-        for (size_t found = 0; found < ids.size() && *count < WEFT_MARKERS_LIMIT; found++) {
-            weft_marker *next = &marker[(*count)++];
-            next->id = ids[found];
-            for (size_t corner = 0; corner < 4; corner++) {
-                next->corner[corner][0] = corners[found][corner].x;
-                next->corner[corner][1] = corners[found][corner].y;
-            }
-        }
-        return WEFT_OK;
-    });
+    return weft_opencv_find_markers_of("4X4_50", grey, width, height, marker, WEFT_MARKERS_LIMIT, count, error);
 }
 
 extern "C" weft_code weft_opencv_fit_homography(const double (*from)[2], const double (*to)[2], int count, double reach,
                                                 double homography[3][3], uint8_t *agrees, weft_error *error)
 {
-    return guarded("fitting a homography", error, [&] {
+    return weft_opencv_guarded("fitting a homography", error, [&] {
         const cv::Mat source(count, 1, CV_64FC2, const_cast<double(*)[2]>(from));
         const cv::Mat target(count, 1, CV_64FC2, const_cast<double(*)[2]>(to));
         cv::Mat mask;
@@ -70,7 +32,7 @@ extern "C" weft_code weft_opencv_fit_homography(const double (*from)[2], const d
 
 extern "C" weft_code weft_opencv_blur(float *picture, int width, int height, double deviation, weft_error *error)
 {
-    return guarded("blurring", error, [&] {
+    return weft_opencv_guarded("blurring", error, [&] {
         cv::Mat image(height, width, CV_32F, picture);
         cv::GaussianBlur(image, image, cv::Size(), deviation, deviation, cv::BORDER_REPLICATE);
         return WEFT_OK;

@@ -3,6 +3,7 @@
 #define WEFT_REGISTRATION_POSE_OPENCV_BRIDGE_H
 
 #include "base/status.h"
+#include "registration/pose/marker_detector.h"
 
 #include <stdint.h>
 
@@ -10,18 +11,8 @@
 extern "C" {
 #endif
 
-enum { WEFT_MARKERS_LIMIT = 64 };
-
-/* A marker found: its corners in pixels (origin at the centre of the top left pixel), clockwise from the one that is
- * top left when the marker is upright. */
-typedef struct weft_marker {
-    int id;
-    double corner[4][2];
-} weft_marker;
-
-/* Finds ArUco markers of DICT_4X4_50 in an 8-bit grey picture. The corners are refined by the gradients around them,
- * which is true to a fraction of a pixel where the markers are seen from the front. At most WEFT_MARKERS_LIMIT are
- * written to `marker`. Errors: WEFT_SYSTEM with the library's message. */
+/* weft_opencv_find_markers_of for the markers of the target (DICT_4X4_50), at most WEFT_MARKERS_LIMIT. Errors:
+ * WEFT_SYSTEM. */
 weft_code weft_opencv_find_markers(const uint8_t *grey, int width, int height, weft_marker *marker, int *count,
                                    weft_error *error);
 

@@ -1,7 +1,5 @@
 #include "registration/pose/pose_chain.h"
 
-#include "registration/pose/markers.h"
-
 #include <math.h>
 #include <stdio.h>
 
@@ -89,18 +87,24 @@ static void fall_back(const weft_sight *sight, const weft_marker_start *markers,
     pose->uncertainty_mm = px_per_mm > 0 ? markers->rms_px / px_per_mm : 0;
 }
 
+bool weft_markers_trusted(const weft_marker_start *markers, const weft_homography *promised, double opening_mm,
+                          const weft_pose_limits *limits)
+{
+    enum { trusted_corners = 8 };
+    return markers->corners >= trusted_corners &&
+           homography_distance_mm(&markers->homography, promised, opening_mm) <= limits->tolerance_mm;
+}
+
 weft_code weft_pose_find(const weft_sight *sight, const weft_target *target, const float *photograph,
                          const weft_homography *promised, weft_point_spread point_spread,
                          const weft_pose_limits *limits, weft_view_pose *pose, float *fitted, weft_error *error)
 {
-    enum { trusted_corners = 8 };
     weft_marker_start markers;
     *pose = (weft_view_pose){.source = WEFT_POSE_FAILED};
     WEFT_TRY(weft_markers_locate(sight, target, photograph, promised, &markers, error));
     pose->marker_count = markers.found;
     pose->marker_rms_px = markers.rms_px;
-    bool trusted = markers.corners >= trusted_corners &&
-                   homography_distance_mm(&markers.homography, promised, sight->opening_mm) <= limits->tolerance_mm;
+    bool trusted = weft_markers_trusted(&markers, promised, sight->opening_mm, limits);
     if (trusted)
         WEFT_TRY(try_start(sight, photograph, &markers.homography, true, promised, point_spread, limits, pose, fitted,
                            error));

@@ -2,6 +2,7 @@
 #ifndef WEFT_REGISTRATION_POSE_POSE_CHAIN_H
 #define WEFT_REGISTRATION_POSE_POSE_CHAIN_H
 
+#include "registration/pose/markers.h"
 #include "registration/pose/refine.h"
 
 /* What a pose rests on in the end. */
@@ -28,6 +29,10 @@ typedef struct weft_view_pose {
     double shift_mm;       /* against the rig's promise, RMS over the opening */
     char remark[160];      /* why it failed, or fell back; empty when all went well */
 } weft_view_pose;
+
+/* Whether markers are enough to start from: two of them at least agree, near where the rig promised them. Pure. */
+bool weft_markers_trusted(const weft_marker_start *markers, const weft_homography *promised, double opening_mm,
+                          const weft_pose_limits *limits);
 
 /* Finds the pose in `photograph` ([height][width], linear, vignetting removed, NaN where unknown). `point_spread` is
  * the guess the refinement starts from. `fitted` [height][width] may be NULL: the prediction under the fitted lighting,

@@ -114,22 +114,22 @@ typedef struct footprint {
     float x, y, dx[2], dy[2];
 } footprint;
 
-static void plate_point(const weft_homography *inverse, const float undistorted[2], float point[2])
+static void plate_point(const weft_plate_view *view, const float undistorted[2], float point[2])
 {
-    weft_pixel plate = weft_homography_apply(inverse, undistorted[0], undistorted[1]);
+    weft_pixel plate = weft_plate_view_meet(view, undistorted[0], undistorted[1]);
     point[0] = (float)plate.x;
     point[1] = (float)plate.y;
 }
 
-static footprint footprint_of(const weft_sight *sight, const weft_homography *inverse, int x, int y)
+static footprint footprint_of(const weft_sight *sight, const weft_plate_view *view, int x, int y)
 {
     int width = sight->camera.width;
     const float(*here)[2] = (const float(*)[2])sight->undistorted + (long)y * width + x;
     int right = x + 1 < width ? 1 : -1, below = y + 1 < sight->camera.height ? 1 : -1;
     float centre[2], beside[2], under[2];
-    plate_point(inverse, here[0], centre);
-    plate_point(inverse, here[right], beside);
-    plate_point(inverse, here[(long)below * width], under);
+    plate_point(view, here[0], centre);
+    plate_point(view, here[right], beside);
+    plate_point(view, here[(long)below * width], under);
     return (footprint){centre[0],
                        centre[1],
                        {(float)right * (beside[0] - centre[0]), (float)right * (beside[1] - centre[1])},
@@ -161,12 +161,11 @@ WEFT_HOT static float average_over(const weft_drawing *drawing, const footprint 
     return sum / samples_per_pixel;
 }
 
-static void predict_pixel(const weft_sight *sight, const footprint *print, const weft_homography *homography,
+static void predict_pixel(const weft_sight *sight, const footprint *print, const weft_plate_view *view,
                           weft_point_spread point_spread, const sample_pattern *pattern, size_t at,
                           weft_prediction *prediction)
 {
-    /* The last row of the homography is the distance along the camera's axis, up to a factor. */
-    double z = (homography->m[2][0] * print->x + homography->m[2][1] * print->y) / homography->m[2][2] + 1;
+    double z = weft_plate_view_depth(view, print->x, print->y);
     double focus = z > 0 ? (1 - 1 / z) * (1 - 1 / z) : 0;
     double deviation = sqrt(fmax(0, point_spread.constant + point_spread.depth * focus)), reach = 0.5 + 2 * deviation;
     weft_drawing_content around = weft_drawing_content_of(&sight->drawing, reach_of(print, reach + neighbour_reach));
@@ -184,13 +183,13 @@ void weft_prediction_draw(const weft_sight *sight, const weft_homography *homogr
                           weft_prediction *prediction)
 {
     sample_pattern pattern = place_samples();
-    weft_homography inverse = weft_homography_inverse(homography);
+    const weft_plate_view view = weft_plate_view_of(&sight->camera, homography, &sight->bend);
 #pragma omp parallel for schedule(dynamic, 8)
     for (int y = 0; y < sight->camera.height; y++) {
         for (int x = 0; x < sight->camera.width; x++) {
-            footprint print = footprint_of(sight, &inverse, x, y);
+            footprint print = footprint_of(sight, &view, x, y);
             size_t at = (size_t)y * (size_t)sight->camera.width + (size_t)x;
-            predict_pixel(sight, &print, homography, point_spread, &pattern, at, prediction);
+            predict_pixel(sight, &print, &view, point_spread, &pattern, at, prediction);
         }
     }
 }

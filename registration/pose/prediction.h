@@ -4,6 +4,7 @@
 
 #include "btf/session/camera.h"
 #include "registration/pose/drawing.h"
+#include "registration/pose/plate_view.h"
 
 /* The point spread function of the lens, by how wide it is: the variance per axis, in pixels^2 beyond the pixel's own
  * square, of the light of a point of the plate on the sensor. It is constant + depth x (1 - focus / z)^2, with z the
@@ -18,6 +19,7 @@ typedef struct weft_sight {
     weft_camera camera;
     weft_drawing drawing;
     double opening_mm;
+    weft_bend bend;            /* of the plate; weft_sight_create makes it flat */
     float (*undistorted)[2];   /* [height][width] undistorted pixel coordinates of the pixel centres */
     float *inverse_vignetting; /* [height][width] */
 } weft_sight;

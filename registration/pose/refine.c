@@ -18,6 +18,8 @@ enum {
     stray_at = 14,
     spread_at = 15,
     unknown_count = 17,
+    bend_at = 17,
+    bend_count = 3,
     unknown_count_blurred = spread_at,
     strip_count = 32, /* fixed, so that sums do not depend on the number of threads */
     spread_steps = 4, /* the point spread creeps for long in a direction that hardly matters; then it is held */
@@ -32,8 +34,10 @@ typedef struct comparison {
     float *photograph, *weight; /* [height][width]; weight is the blurred mask where blur_px > 0 */
     weft_prediction prediction;
     double gain[gain_count], stray;
-    double deviation;   /* of the residual of the last step, 0 before the first */
-    double focus_limit; /* largest focus factor among the compared pixels */
+    bool weighs_bend;
+    weft_plate_view view; /* where it does */
+    double deviation;     /* of the residual of the last step, 0 before the first */
+    double focus_limit;   /* largest focus factor among the compared pixels */
     weft_normal_equations equations;
 } comparison;
 
@@ -138,6 +142,23 @@ static void motion_rows(const weft_camera *camera, double x, double y, double du
     }
 }
 
+/* The same by the bend of the plate, mm at its unit. */
+static void bend_rows(const comparison *c, const float undistorted[2], double du[bend_count], double dv[bend_count])
+{
+    const weft_plate_view *view = &c->view;
+    const double(*m)[3] = view->homography.m, unit = weft_bend_unit_mm(c->sight);
+    weft_pixel plate = weft_plate_view_meet(view, undistorted[0], undistorted[1]);
+    double x = plate.x / unit, y = plate.y / unit, height = weft_bend_height(&view->bend, plate.x, plate.y);
+    double w = m[2][0] * plate.x + m[2][1] * plate.y + m[2][2] + height * view->lift[2];
+    double rise_u = (view->lift[0] - undistorted[0] * view->lift[2]) / w;
+    double rise_v = (view->lift[1] - undistorted[1] * view->lift[2]) / w;
+    const double rise[bend_count] = {x * x, x * y, y * y};
+    for (int k = 0; k < bend_count; k++) {
+        du[k] = rise_u * rise[k];
+        dv[k] = rise_v * rise[k];
+    }
+}
+
 static void equation_at(const comparison *c, int x, int y, double row[WEFT_UNKNOWNS_LIMIT], double *residual)
 {
     const weft_camera *camera = &c->sight->camera;
@@ -152,6 +173,12 @@ static void equation_at(const comparison *c, int x, int y, double row[WEFT_UNKNO
     double half_laplacian = 0.5 * gain * (t[1] + t[-1] + t[width] + t[-width] - 4 * t[0]);
     for (int k = 0; k < motion_count; k++)
         row[motion_at + k] = -(slope_x * du[k] + slope_y * dv[k]);
+    if (c->weighs_bend) {
+        double bend_u[bend_count], bend_v[bend_count];
+        bend_rows(c, undistorted, bend_u, bend_v);
+        for (int k = 0; k < bend_count; k++)
+            row[bend_at + k] = -(slope_x * bend_u[k] + slope_y * bend_v[k]);
+    }
     for (int k = 0; k < gain_count; k++)
         row[gain_at + k] = basis[k] * t[0];
     row[stray_at] = 1;
@@ -435,6 +462,52 @@ weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, 
         refinement->correlation = correlate(&c);
     if (code == WEFT_OK && fitted)
         write_fitted(&c, fitted);
+    comparison_free(&c);
+    return code;
+}
+
+double weft_bend_unit_mm(const weft_sight *sight)
+{
+    return sight->drawing.half_mm;
+}
+
+/* One step for the lighting, then the equations with the bend among the unknowns. */
+static weft_code weigh_bend(comparison *c, const float *photograph, weft_refinement *refinement,
+                            weft_bend_evidence *evidence, weft_error *error)
+{
+    double motion;
+    WEFT_TRY(look(c, photograph, refinement, error));
+    guess_lighting(c);
+    WEFT_TRY(gather(c, error));
+    if (!step(c, refinement, true, &motion))
+        return WEFT_OK;
+    WEFT_TRY(look(c, photograph, refinement, error));
+    c->weighs_bend = true;
+    c->view = weft_plate_view_of(&c->sight->camera, &refinement->homography, &c->sight->bend);
+    WEFT_TRY(gather(c, error));
+    for (int k = 0; k < 2; k++)
+        c->equations.matrix[spread_at + k][spread_at + k] =
+            c->equations.matrix[spread_at + k][spread_at + k] * held_stiffness + 1;
+    if (!(c->deviation > 0) || !weft_normal_equations_factor(&c->equations, unknown_count + bend_count))
+        return WEFT_OK;
+    weft_normal_equations_reduce(&c->equations, unknown_count + bend_count, bend_count, evidence->information[0],
+                                 evidence->gradient);
+    double precision = 1 / (c->deviation * c->deviation);
+    for (int i = 0; i < bend_count; i++) {
+        evidence->gradient[i] *= precision;
+        for (int j = 0; j < bend_count; j++)
+            evidence->information[i][j] *= precision;
+    }
+    return WEFT_OK;
+}
+
+weft_code weft_refinement_weigh_bend(const weft_sight *sight, const float *photograph, weft_refinement *refinement,
+                                     weft_bend_evidence *evidence, weft_error *error)
+{
+    comparison c;
+    *evidence = (weft_bend_evidence){0};
+    WEFT_TRY(comparison_create(sight, 0, &c, error));
+    weft_code code = weigh_bend(&c, photograph, refinement, evidence, error);
     comparison_free(&c);
     return code;
 }

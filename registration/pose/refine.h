@@ -29,4 +29,18 @@ typedef struct weft_refinement {
 weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, double blur_px,
                               weft_refinement *refinement, float *fitted, weft_error *error);
 
+/* What one photograph says of the bend of the plate, beside what it says of everything else: the change x of the bend
+ * that it asks for has information . x = gradient, in units of the variance of its pixels. x is in mm at the distance
+ * weft_bend_unit_mm from the origin: of xx, xy, yy. */
+typedef struct weft_bend_evidence {
+    double information[3][3], gradient[3];
+} weft_bend_evidence;
+
+double weft_bend_unit_mm(const weft_sight *sight);
+
+/* Weighs the bend of `sight` in a photograph whose refinement has run; makes one more step of the refinement. The
+ * evidence is zero where the photograph says nothing. Errors: WEFT_SYSTEM. Uses OpenMP. */
+weft_code weft_refinement_weigh_bend(const weft_sight *sight, const float *photograph, weft_refinement *refinement,
+                                     weft_bend_evidence *evidence, weft_error *error);
+
 #endif

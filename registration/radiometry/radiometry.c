@@ -16,11 +16,18 @@ static const double dimmest_level = 1;
  * spread adds. */
 static const double border_px = 1;
 
-double weft_relative_irradiance(weft_vec3 light, double x_mm, double y_mm)
+weft_exposure weft_exposure_of(const weft_session *session, int shot)
 {
-    double dx = light.x - x_mm, dy = light.y - y_mm;
-    double squared = dx * dx + dy * dy + light.z * light.z;
-    return light.z * weft_dot(light, light) / (squared * sqrt(squared));
+    weft_vec3 direction = weft_direction_of_angles(session->shot[shot].light_driven);
+    return (weft_exposure){session->black_level, (1 << session->bits) - 1, session->record[shot].exposure_s,
+                           weft_scale(direction, session->light_distance_mm)};
+}
+
+double weft_relative_irradiance(weft_vec3 light, const weft_bend *bend, double x_mm, double y_mm)
+{
+    weft_vec3 place = {x_mm, y_mm, weft_bend_height(bend, x_mm, y_mm)}, beam = weft_subtract(light, place);
+    double squared = weft_dot(beam, beam);
+    return weft_dot(beam, weft_bend_normal(bend, x_mm, y_mm)) * weft_dot(light, light) / (squared * sqrt(squared));
 }
 
 static bool inside(weft_rectangle r, weft_pixel plate)
@@ -29,36 +36,33 @@ static bool inside(weft_rectangle r, weft_pixel plate)
 }
 
 /* Whether the pixel and all within `border` pixels of it lie on the patch. */
-static bool well_inside(weft_rectangle r, const weft_homography *inverse, const float undistorted[2], double border)
+static bool well_inside(weft_rectangle r, const weft_plate_view *view, const float undistorted[2], double border)
 {
-    if (!inside(r, weft_homography_apply(inverse, undistorted[0], undistorted[1])))
+    if (!inside(r, weft_plate_view_meet(view, undistorted[0], undistorted[1])))
         return false;
     for (int corner = 0; corner < 4; corner++) {
         double x = undistorted[0] + (corner % 2 ? border : -border);
         double y = undistorted[1] + (corner / 2 ? border : -border);
-        if (!inside(r, weft_homography_apply(inverse, x, y)))
+        if (!inside(r, weft_plate_view_meet(view, x, y)))
             return false;
     }
     return true;
 }
 
 /* The point spread at the middle of a patch, as a standard deviation, pixels. */
-static double point_spread_deviation(const weft_homography *homography, weft_point_spread point_spread,
-                                     weft_rectangle r)
+static double point_spread_deviation(const weft_plate_view *view, weft_point_spread point_spread, weft_rectangle r)
 {
-    const double *last = homography->m[2];
-    double z = (last[0] * (r.x0 + r.x1) / 2 + last[1] * (r.y0 + r.y1) / 2) / last[2] + 1;
+    double z = weft_plate_view_depth(view, (r.x0 + r.x1) / 2, (r.y0 + r.y1) / 2);
     double variance = point_spread.constant + point_spread.depth * (1 - 1 / z) * (1 - 1 / z);
     return z > 0 && variance > 0 ? sqrt(variance) : 0;
 }
 
 /* Box of the photograph that holds a patch, with a margin for the distortion of the lens. */
-static void box_of(const weft_camera *camera, const weft_homography *homography, weft_rectangle r, int low[2],
-                   int end[2])
+static void box_of(const weft_camera *camera, const weft_plate_view *view, weft_rectangle r, int low[2], int end[2])
 {
     double x0 = camera->width, y0 = camera->height, x1 = 0, y1 = 0;
     for (int corner = 0; corner < 4; corner++) {
-        weft_pixel p = weft_homography_apply(homography, corner % 2 ? r.x1 : r.x0, corner / 2 ? r.y1 : r.y0);
+        weft_pixel p = weft_plate_view_see(view, corner % 2 ? r.x1 : r.x0, corner / 2 ? r.y1 : r.y0);
         p = weft_camera_distort(camera, p);
         x0 = fmin(x0, p.x), x1 = fmax(x1, p.x);
         y0 = fmin(y0, p.y), y1 = fmax(y1, p.y);
@@ -70,14 +74,13 @@ static void box_of(const weft_camera *camera, const weft_homography *homography,
     end[1] = (int)weft_clamp(y1 + margin + 1, 0, camera->height);
 }
 
-static weft_code find_patch(const weft_sight *sight, weft_rectangle r, const weft_homography *homography,
+static weft_code find_patch(const weft_sight *sight, weft_rectangle r, const weft_plate_view *view,
                             weft_point_spread point_spread, weft_reference_pixels *reference, int patch,
                             weft_error *error)
 {
-    weft_homography inverse = weft_homography_inverse(homography);
-    double border = border_px + 2 * point_spread_deviation(homography, point_spread, r), sum_x = 0, sum_y = 0;
+    double border = border_px + 2 * point_spread_deviation(view, point_spread, r), sum_x = 0, sum_y = 0;
     int low[2], end[2], count = 0;
-    box_of(&sight->camera, homography, r, low, end);
+    box_of(&sight->camera, view, r, low, end);
     size_t box = end[0] > low[0] && end[1] > low[1] ? (size_t)(end[0] - low[0]) * (size_t)(end[1] - low[1]) : 0;
     int32_t *pixel = malloc((box + 1) * sizeof *pixel);
     if (!pixel)
@@ -85,9 +88,9 @@ static weft_code find_patch(const weft_sight *sight, weft_rectangle r, const wef
     for (int y = low[1]; y < end[1]; y++) {
         for (int x = low[0]; x < end[0]; x++) {
             int32_t at = y * sight->camera.width + x;
-            if (!well_inside(r, &inverse, sight->undistorted[at], border))
+            if (!well_inside(r, view, sight->undistorted[at], border))
                 continue;
-            weft_pixel plate = weft_homography_apply(&inverse, sight->undistorted[at][0], sight->undistorted[at][1]);
+            weft_pixel plate = weft_plate_view_meet(view, sight->undistorted[at][0], sight->undistorted[at][1]);
             sum_x += plate.x;
             sum_y += plate.y;
             pixel[count++] = at;
@@ -103,10 +106,11 @@ weft_code weft_reference_pixels_find(const weft_sight *sight, const weft_target 
                                      const weft_homography *homography, weft_point_spread point_spread,
                                      weft_reference_pixels *reference, weft_error *error)
 {
+    const weft_plate_view view = weft_plate_view_of(&sight->camera, homography, &sight->bend);
     *reference = (weft_reference_pixels){0};
     for (int patch = 0; patch < WEFT_TARGET_REFERENCE_COUNT; patch++) {
         weft_code code =
-            find_patch(sight, weft_target_reference(target, patch), homography, point_spread, reference, patch, error);
+            find_patch(sight, weft_target_reference(target, patch), &view, point_spread, reference, patch, error);
         if (code != WEFT_OK) {
             weft_reference_pixels_free(reference);
             return code;
@@ -153,71 +157,77 @@ static double total(const double rgb[3])
 }
 
 /* Removes patches that disagree with the median of three or more. */
-static int agreeing_patches(double (*level)[3], int *pixels, int count)
+static int agreeing_patches(weft_patch_level *level, int count)
 {
     double sorted[WEFT_TARGET_REFERENCE_COUNT];
     int kept = 0;
     if (count < 3)
         return count;
     for (int i = 0; i < count; i++)
-        sorted[i] = total(level[i]);
+        sorted[i] = total(level[i].level);
     double median = weft_quantile(sorted, count, 0.5);
     for (int i = 0; i < count; i++) {
-        if (fabs(total(level[i]) - median) > largest_disagreement * median)
-            continue;
-        for (int c = 0; c < 3; c++)
-            level[kept][c] = level[i][c];
-        pixels[kept++] = pixels[i];
+        if (fabs(total(level[i].level) - median) <= largest_disagreement * median)
+            level[kept++] = level[i];
     }
     return kept;
 }
 
-static weft_white mean_of_patches(double (*level)[3], const int *pixels, int count)
+static weft_white mean_of_patches(const weft_patch_level *level, int count)
 {
     weft_white white = {.patches = count};
     double weight = 0;
     for (int i = 0; i < count; i++) {
         for (int c = 0; c < 3; c++)
-            white.level[c] += pixels[i] * level[i][c];
-        weight += pixels[i];
+            white.level[c] += level[i].pixels * level[i].level[c];
+        weight += level[i].pixels;
     }
     for (int c = 0; c < 3 && weight > 0; c++)
         white.level[c] /= weight;
     for (int i = 0; i < count; i++)
-        white.disagreement = fmax(white.disagreement, fabs(total(level[i]) / total(white.level) - 1));
+        white.disagreement = fmax(white.disagreement, fabs(total(level[i].level) / total(white.level) - 1));
     return white;
+}
+
+int weft_patch_levels(const weft_sight *sight, const weft_target *target, const weft_reference_pixels *reference,
+                      const uint16_t *samples, const weft_exposure *exposure,
+                      weft_patch_level level[WEFT_TARGET_REFERENCE_COUNT])
+{
+    int count = 0;
+    for (int patch = 0; patch < WEFT_TARGET_REFERENCE_COUNT; patch++) {
+        if (!mean_of_patch(sight, reference, patch, samples, exposure, level[count].level))
+            continue;
+        double irradiance = weft_relative_irradiance(exposure->light, &sight->bend, reference->centre[patch].x,
+                                                     reference->centre[patch].y);
+        double scale = target->white_reflectance * irradiance * exposure->exposure_s;
+        if (!(scale > 0))
+            continue;
+        for (int c = 0; c < 3; c++)
+            level[count].level[c] /= scale;
+        level[count].patch = patch;
+        level[count++].pixels = reference->count[patch];
+    }
+    return count;
 }
 
 weft_white weft_white_measure(const weft_sight *sight, const weft_target *target,
                               const weft_reference_pixels *reference, const uint16_t *samples,
                               const weft_exposure *exposure)
 {
-    double level[WEFT_TARGET_REFERENCE_COUNT][3];
-    int pixels[WEFT_TARGET_REFERENCE_COUNT], count = 0;
-    for (int patch = 0; patch < WEFT_TARGET_REFERENCE_COUNT; patch++) {
-        if (!mean_of_patch(sight, reference, patch, samples, exposure, level[count]))
-            continue;
-        double irradiance =
-            weft_relative_irradiance(exposure->light, reference->centre[patch].x, reference->centre[patch].y);
-        double scale = target->white_reflectance * irradiance * exposure->exposure_s;
-        if (!(scale > 0))
-            continue;
-        for (int c = 0; c < 3; c++)
-            level[count][c] /= scale;
-        pixels[count++] = reference->count[patch];
-    }
-    count = agreeing_patches(level, pixels, count);
-    return mean_of_patches(level, pixels, count);
+    weft_patch_level level[WEFT_TARGET_REFERENCE_COUNT];
+    int count = agreeing_patches(level, weft_patch_levels(sight, target, reference, samples, exposure, level));
+    return mean_of_patches(level, count);
 }
 
-void weft_reflectance_of_raw(const weft_white *white, const weft_exposure *exposure, double opening_mm, int width,
-                             int height, float *texel)
+void weft_reflectance_of_raw(const weft_white *white, const weft_exposure *exposure, const weft_bend *bend,
+                             double opening_mm, int width, int height, float *texel)
 {
     double cosine = weft_unit(exposure->light).z;
     for (int y = 0; y < height; y++) {
         for (int x = 0; x < width; x++) {
             double x_mm = ((x + 0.5) / width - 0.5) * opening_mm, y_mm = (0.5 - (y + 0.5) / height) * opening_mm;
-            double scale = cosine / (weft_relative_irradiance(exposure->light, x_mm, y_mm) * exposure->exposure_s);
+            double scale =
+                cosine / (weft_relative_irradiance(exposure->light, bend, x_mm, y_mm) * exposure->exposure_s);
             float *value = texel + 3 * ((long)y * width + x);
             for (int c = 0; c < 3; c++)
                 value[c] = (float)(value[c] * scale / white->level[c]);

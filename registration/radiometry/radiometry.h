@@ -3,6 +3,7 @@
 #ifndef WEFT_REGISTRATION_RADIOMETRY_RADIOMETRY_H
 #define WEFT_REGISTRATION_RADIOMETRY_RADIOMETRY_H
 
+#include "btf/session/session.h"
 #include "registration/pose/prediction.h"
 
 /* The pixels of the reference patches under one pose, away from their borders by the point spread of the lens. */
@@ -22,8 +23,8 @@ typedef struct weft_white {
 
 /* Irradiance at a point of the plate (mm) from a point light of unit power at `light` (mm), relative to that at the
  * origin lit along the normal from the same distance: cos(theta) (|light| / r)^2, r the distance from the light to the
- * point. Pure. */
-double weft_relative_irradiance(weft_vec3 light, double x_mm, double y_mm);
+ * point and theta the angle to the normal of the plate there. Pure. */
+double weft_relative_irradiance(weft_vec3 light, const weft_bend *bend, double x_mm, double y_mm);
 
 /* The caller frees with weft_reference_pixels_free. Errors: WEFT_SYSTEM. */
 weft_code weft_reference_pixels_find(const weft_sight *sight, const weft_target *target,
@@ -38,6 +39,20 @@ typedef struct weft_exposure {
     weft_vec3 light; /* place of the light as driven, mm */
 } weft_exposure;
 
+/* Pure. */
+weft_exposure weft_exposure_of(const weft_session *session, int shot);
+
+/* What a patch tells of the light: the white level as below, from it alone. */
+typedef struct weft_patch_level {
+    double level[3];
+    int patch, pixels;
+} weft_patch_level;
+
+/* Fills `level` with the patches that are seen, not saturated and not dark, and returns how many there are. Pure. */
+int weft_patch_levels(const weft_sight *sight, const weft_target *target, const weft_reference_pixels *reference,
+                      const uint16_t *samples, const weft_exposure *exposure,
+                      weft_patch_level level[WEFT_TARGET_REFERENCE_COUNT]);
+
 /* Measures the white level in `samples` [height][width][3]. Patches that are unseen or saturated are left out, and so
  * is one that differs from the median of three or more by over a tenth (a shadow or a stain on it). Pure. */
 weft_white weft_white_measure(const weft_sight *sight, const weft_target *target,
@@ -46,8 +61,8 @@ weft_white weft_white_measure(const weft_sight *sight, const weft_target *target
 
 /* Turns resampled raw values above black, texel [height][width][3], into reflectance times cosine in place:
  * pi BRDF cos(theta_light) with theta_light that of the far direction of the light, the same for all texels; the
- * nearness of the light is taken out. Pure. */
-void weft_reflectance_of_raw(const weft_white *white, const weft_exposure *exposure, double opening_mm, int width,
-                             int height, float *texel);
+ * nearness of the light and the bend of the plate are taken out. Pure. */
+void weft_reflectance_of_raw(const weft_white *white, const weft_exposure *exposure, const weft_bend *bend,
+                             double opening_mm, int width, int height, float *texel);
 
 #endif

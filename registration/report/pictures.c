@@ -49,9 +49,9 @@ static weft_code find_white(const float *value, size_t count, float *white, weft
 }
 
 /* Where the drawing shows at a pixel. */
-static bool is_drawn(const weft_sight *sight, const weft_target *target, const weft_homography *inverse, size_t at)
+static bool is_drawn(const weft_sight *sight, const weft_target *target, const weft_plate_view *view, size_t at)
 {
-    weft_pixel plate = weft_homography_apply(inverse, sight->undistorted[at][0], sight->undistorted[at][1]);
+    weft_pixel plate = weft_plate_view_meet(view, sight->undistorted[at][0], sight->undistorted[at][1]);
     weft_target_region region = weft_target_region_at(target, plate.x, plate.y);
     return region == WEFT_TARGET_PRINT || region == WEFT_TARGET_REFERENCE;
 }
@@ -92,7 +92,7 @@ static weft_code write_comparison(const weft_registration *registration, const w
 {
     const weft_camera *camera = &sight->camera;
     const float *drawing = pictures->fitted ? pictures->fitted : pictures->average;
-    weft_homography inverse = weft_homography_inverse(&registration->pose[stay].homography);
+    const weft_plate_view view = weft_plate_view_of(camera, &registration->pose[stay].homography, &sight->bend);
     int side = (camera->width + widest_picture - 1) / widest_picture;
     weft_image overlay = {0}, difference = {0};
     weft_code code = weft_image_create(camera->width / side, camera->height / side, &overlay, error);
@@ -104,7 +104,7 @@ static weft_code write_comparison(const weft_registration *registration, const w
     for (int y = 0; code == WEFT_OK && y < overlay.height; y++) {
         for (int x = 0; x < overlay.width; x++) {
             size_t at = (size_t)(y * side + side / 2) * (size_t)camera->width + (size_t)(x * side + side / 2);
-            bool drawn = pictures->fitted && is_drawn(sight, target, &inverse, at);
+            bool drawn = pictures->fitted && is_drawn(sight, target, &view, at);
             float seen = mean_of_block(pictures->average, camera->width, x * side, y * side, side);
             float model = mean_of_block(drawing, camera->width, x * side, y * side, side);
             float *rgb = overlay.pixels + 3 * ((long)y * overlay.width + x);

@@ -66,6 +66,7 @@ static weft_code write_page(weft_page *page, const weft_session *session, const 
     weft_write_faults(page, session, r);
     WEFT_TRY(weft_write_rings(page, session, r, error));
     WEFT_TRY(weft_write_whites(page, session, r, error));
+    weft_write_rig(page, session, r);
     write_gallery(page, r);
     weft_write_stays(page, session, r);
     return WEFT_OK;

@@ -18,6 +18,12 @@ typedef struct weft_ring_summary {
 weft_code weft_ring_summarise(const weft_session *session, const weft_registration *registration, int ring,
                               weft_ring_summary *summary, weft_error *error);
 
+/* How deep the plate is bent between its middle and its rim along the direction where that is most, mm. Pure. */
+double weft_bend_depth_mm(const weft_bend_found *found);
+
+/* Share of the light that the vignetting takes at its reach. Pure. */
+double weft_vignetting_loss(const weft_vignetting *vignetting);
+
 /* Sections of the page, each with its heading; nothing where there is nothing to say. Errors: WEFT_SYSTEM where memory
  * is short. */
 void weft_write_faults(weft_page *page, const weft_session *session, const weft_registration *registration);
@@ -25,6 +31,7 @@ weft_code weft_write_rings(weft_page *page, const weft_session *session, const w
                            weft_error *error);
 weft_code weft_write_whites(weft_page *page, const weft_session *session, const weft_registration *registration,
                             weft_error *error);
+void weft_write_rig(weft_page *page, const weft_session *session, const weft_registration *registration);
 void weft_write_stays(weft_page *page, const weft_session *session, const weft_registration *registration);
 
 #endif

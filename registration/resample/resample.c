@@ -21,14 +21,13 @@ typedef struct box {
 static const double least_share_seen = 0.25;
 
 /* How far along x and y, mm, the plate is seen within `reach_px` of a pixel at the plate point (x, y). */
-static weft_pixel reach_on_plate(const weft_homography *homography, const weft_homography *inverse, double x, double y,
-                                 double reach_px)
+static weft_pixel reach_on_plate(const weft_plate_view *view, double x, double y, double reach_px)
 {
-    weft_pixel at = weft_homography_apply(homography, x, y);
-    weft_pixel left = weft_homography_apply(inverse, at.x - 0.5, at.y);
-    weft_pixel right = weft_homography_apply(inverse, at.x + 0.5, at.y);
-    weft_pixel above = weft_homography_apply(inverse, at.x, at.y - 0.5);
-    weft_pixel below = weft_homography_apply(inverse, at.x, at.y + 0.5);
+    weft_pixel at = weft_plate_view_see(view, x, y);
+    weft_pixel left = weft_plate_view_meet(view, at.x - 0.5, at.y);
+    weft_pixel right = weft_plate_view_meet(view, at.x + 0.5, at.y);
+    weft_pixel above = weft_plate_view_meet(view, at.x, at.y - 0.5);
+    weft_pixel below = weft_plate_view_meet(view, at.x, at.y + 0.5);
     return (weft_pixel){reach_px * (fabs(right.x - left.x) + fabs(below.x - above.x)),
                         reach_px * (fabs(right.y - left.y) + fabs(below.y - above.y))};
 }
@@ -44,24 +43,24 @@ static square kept_from_frame(square s, double opening_mm, weft_pixel reach)
 }
 
 /* Whether a pixel sees nothing but the sample: its square, and the point spread around that, lie in the opening. */
-static bool is_clear(const weft_resampling *r, const weft_homography *inverse, int x, int y)
+static bool is_clear(const weft_resampling *r, const weft_plate_view *view, int x, int y)
 {
     weft_pixel at = weft_camera_undistort(r->camera, (weft_pixel){x, y});
     double reach = 0.5 + r->point_spread_px, half = r->opening_mm / 2;
     for (int corner = 0; corner < 4; corner++) {
         double dx = corner % 2 ? reach : -reach, dy = corner / 2 ? reach : -reach;
-        weft_pixel plate = weft_homography_apply(inverse, at.x + dx, at.y + dy);
+        weft_pixel plate = weft_plate_view_meet(view, at.x + dx, at.y + dy);
         if (!(fabs(plate.x) <= half && fabs(plate.y) <= half))
             return false;
     }
     return true;
 }
 
-static void corners_in_photograph(const weft_resampling *r, square s, weft_pixel corner[4])
+static void corners_in_photograph(const weft_resampling *r, const weft_plate_view *view, square s, weft_pixel corner[4])
 {
     for (int i = 0; i < 4; i++) {
         double x = s.left + (i == 1 || i == 2 ? s.width : 0), y = s.top - (i >= 2 ? s.height : 0);
-        corner[i] = weft_camera_distort(r->camera, weft_homography_apply(&r->homography, x, y));
+        corner[i] = weft_camera_distort(r->camera, weft_plate_view_see(view, x, y));
     }
 }
 
@@ -103,9 +102,9 @@ static weft_code reserve_taps(weft_resampler *resampler, taps *t, long count, we
     return WEFT_OK;
 }
 
-/* Appends the clear pixels of a quadrangle behind `first`, weighted by area; returns the end of its taps. `inverse` is
+/* Appends the clear pixels of a quadrangle behind `first`, weighted by area; returns the end of its taps. `view` is
  * NULL where all are clear. *share receives how much of the quadrangle they cover. */
-static long append_taps(const weft_resampling *r, const weft_homography *inverse, const weft_pixel corner[4], box b,
+static long append_taps(const weft_resampling *r, const weft_plate_view *view, const weft_pixel corner[4], box b,
                         long first, weft_resampler *resampler, double *share)
 {
     double whole = 0, clear = 0;
@@ -116,7 +115,7 @@ static long append_taps(const weft_resampling *r, const weft_homography *inverse
             if (area <= 0)
                 continue;
             whole += area;
-            if (inverse && !is_clear(r, inverse, x, y))
+            if (view && !is_clear(r, view, x, y))
                 continue;
             clear += area;
             resampler->pixel[end] = y * r->camera->width + x;
@@ -141,42 +140,41 @@ static float finish_weights(const weft_resampling *r, long first, long end, weft
     return (float)total;
 }
 
-/* Appends the taps of a square; `inverse` as above. *used stays where it is not in the photograph, or less of it seen
- * than `least_share`. */
-static weft_code append_square(const weft_resampling *r, const weft_homography *inverse, square s, double least_share,
-                               weft_resampler *resampler, taps *t, weft_error *error)
+/* Appends the taps of a square, of its clear pixels or of all. *used stays where it is not in the photograph, or less
+ * of it seen than `least_share`. */
+static weft_code append_square(const weft_resampling *r, const weft_plate_view *view, bool clear, square s,
+                               double least_share, weft_resampler *resampler, taps *t, weft_error *error)
 {
     weft_pixel corner[4];
     box b;
     double share;
-    corners_in_photograph(r, s, corner);
+    corners_in_photograph(r, view, s, corner);
     if (!box_of(r->camera, corner, &b))
         return WEFT_OK;
     WEFT_TRY(reserve_taps(resampler, t, (long)(b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1), error));
-    long end = append_taps(r, inverse, corner, b, t->used, resampler, &share);
+    long end = append_taps(r, clear ? view : NULL, corner, b, t->used, resampler, &share);
     if (share >= least_share)
         t->used = end;
     return WEFT_OK;
 }
 
 /* Appends the taps of a texel, none where it is not seen. */
-static weft_code append_texel(const weft_resampling *r, const weft_homography *inverse, square s,
+static weft_code append_texel(const weft_resampling *r, const weft_plate_view *view, square s,
                               weft_resampler *resampler, taps *t, weft_error *error)
 {
     long first = t->used;
-    weft_pixel reach =
-        reach_on_plate(&r->homography, inverse, s.left + s.width / 2, s.top - s.height / 2, 1 + r->point_spread_px);
+    weft_pixel reach = reach_on_plate(view, s.left + s.width / 2, s.top - s.height / 2, 1 + r->point_spread_px);
     square inside = kept_from_frame(s, r->opening_mm, reach);
     bool is_inside = inside.left == s.left && inside.top == s.top;
-    WEFT_TRY(append_square(r, is_inside ? NULL : inverse, s, least_share_seen, resampler, t, error));
+    WEFT_TRY(append_square(r, view, !is_inside, s, least_share_seen, resampler, t, error));
     if (t->used == first && !is_inside && r->fill)
-        WEFT_TRY(append_square(r, NULL, inside, 0, resampler, t, error));
+        WEFT_TRY(append_square(r, view, false, inside, 0, resampler, t, error));
     return WEFT_OK;
 }
 
 static weft_code fill(const weft_resampling *r, weft_resampler *resampler, weft_error *error)
 {
-    const weft_homography inverse = weft_homography_inverse(&r->homography);
+    const weft_plate_view view = weft_plate_view_of(r->camera, &r->homography, &r->bend);
     double width = r->opening_mm / resampler->width, height = r->opening_mm / resampler->height;
     taps t = {0};
     long texel = 0;
@@ -184,7 +182,7 @@ static weft_code fill(const weft_resampling *r, weft_resampler *resampler, weft_
         for (int x = 0; x < resampler->width; x++, texel++) {
             square s = {x * width - r->opening_mm / 2, r->opening_mm / 2 - y * height, width, height};
             resampler->first[texel] = t.used;
-            WEFT_TRY(append_texel(r, &inverse, s, resampler, &t, error));
+            WEFT_TRY(append_texel(r, &view, s, resampler, &t, error));
             resampler->sum[texel] = finish_weights(r, resampler->first[texel], t.used, resampler);
         }
     }

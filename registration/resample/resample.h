@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "btf/session/camera.h"
+#include "registration/pose/plate_view.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -24,6 +25,7 @@ typedef struct weft_resampling {
     const weft_camera *camera;
     const float *inverse_vignetting; /* [camera height][width]; NULL: none */
     weft_homography homography;      /* plate mm to undistorted pixels */
+    weft_bend bend;                  /* of the plate */
     double opening_mm;
     double point_spread_px; /* reach of the point spread of the lens beyond a pixel's own square */
     bool fill;              /* texels that are not seen take the nearest place that is */

@@ -7,7 +7,15 @@
 
 #include <cmocka.h>
 
-static const weft_camera camera = {416, 416, 3850, 3845, 206.3, 209.1, -0.35, 1.2, {-0.4, 0.1, 0}};
+static const weft_camera camera = {.width = 416,
+                                   .height = 416,
+                                   .fx = 3850,
+                                   .fy = 3845,
+                                   .cx = 206.3,
+                                   .cy = 209.1,
+                                   .k1 = -0.35,
+                                   .k2 = 1.2,
+                                   .vignetting = {-0.4, 0.1, 0}};
 static const double distance_mm = 1000;
 
 static void assert_near(double value, double expected, double tolerance)

@@ -49,7 +49,18 @@ static weft_session example(void)
     shots[2] = (weft_shot){angles_deg(15, 60), angles_deg(75, 345), angles_deg(15, 60)};
     memset(records, 0, sizeof records);
     weft_session session = {.folder = folder, .rig = "virtual", .sample = "silk", .rig_settings = "{\"seed\":7}"};
-    session.camera = (weft_camera){416, 400, 3850.25, 3845.5, 206.3, 209.1, -0.35, 1.2, {-0.4, 0.1, 0.01}};
+    session.camera = (weft_camera){.width = 416,
+                                   .height = 400,
+                                   .fx = 3850.25,
+                                   .fy = 3845.5,
+                                   .cx = 206.3,
+                                   .cy = 209.1,
+                                   .k1 = -0.35,
+                                   .k2 = 1.2,
+                                   .p1 = 0.001,
+                                   .p2 = -0.002,
+                                   .k3 = 3.5,
+                                   .vignetting = {-0.4, 0.1, 0.01}};
     session.camera_distance_mm = 1000;
     session.light_distance_mm = 1200;
     session.bits = 12;

@@ -38,12 +38,30 @@ expect_error 2 "would overwrite" eval cloth.wv --at same.csv -o ./same.csv
 expect_error 2 "would overwrite" simulate cloth.stitch --directions same.csv -o ./same.csv
 expect_error 2 "would overwrite" simulate cloth.stitch --directions same.csv --obj ./same.csv
 expect_error 2 "would overwrite" render cloth.weft --environment same.exr -o ./same.exr
+expect_error 2 "needs -o NAME.pdf or NAME.svg" target
+expect_error 2 "the largest that fits is 51.6" target -o no.pdf --opening 52
+expect_error 2 "--paper needs A4, letter or WxH" target -o no.pdf --paper A5
+expect_error 2 "does not end in .pdf or .svg" target -o no.png
+expect_error 2 "--board has no opening" target -o no.pdf --board --opening 40
+expect_error 2 "needs photographs, --board BOARD" lens -o no.json --board plate:50
+expect_error 2 "needs photographs, --board BOARD" lens one.jpg two.jpg -o no.json
+expect_error 2 "--board needs charuco:COLUMNSxROWS:SQUARE_MM,MARKER_MM" lens one.jpg -o no.json --board charuco:7x9:28
+expect_error 2 "would overwrite" lens one.jpg same.csv -o ./same.csv --board plate:50
+expect_error 1 "there is no 'one.jpg'" lens one.jpg two.jpg -o no.json --board plate:50
 expect_error 2 "--size needs WxH" register session -o no.btf.h5 --size 64
 expect_error 2 "--tiles needs two numbers above 0" render --weave cloth.wv --tiles 0,3 -o no.png
 expect_error 2 "--tiles needs two numbers above 0" compare a.btf.h5 a.weft --tiles 2,-1 -o report
 expect_error 2 "--tiles needs --weave" compare a.btf.h5 a.weft --tiles 2,1 -o report
 expect_error 2 "--paths needs --truth" compare a.btf.h5 a.weft --paths 16 -o report
 expect_error 2 "--obj-tiles needs WxH" simulate cloth.stitch --obj cloth.obj --obj-tiles 2,1
+expect_error 2 "needs CLOTH.wv" hand -o folder
+expect_error 2 "one cloth at a time" hand checker cloth.wv -o folder
+expect_error 2 "--rubbish 5 leaves no photograph" hand checker -o folder --photographs 5 --rubbish 5
+expect_error 2 "--set" hand checker -o folder --set handheld
+expect_error 2 "--format" hand checker -o folder --format png
+expect_error 1 "cloth.wv" hand cloth.wv -o folder
+[ ! -e folder ] || fail "weft hand made a folder for nothing"
+expect_error 2 "is not empty" hand checker -o .
 for seed in 0 -1 2147483648; do
     for command in "eval cloth.wv --at directions.csv" "render --weave cloth.wv -o no.png" "play --weave cloth.wv"; do
         expect_error 2 "--noise needs a whole number from 1 to 2147483647, not '$seed'" $command "--noise=$seed"

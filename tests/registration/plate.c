@@ -22,7 +22,15 @@ weft_camera plate_camera(int size, double distance_mm)
 {
     weft_target target = weft_target_for_opening(32);
     double focal = 0.46 * size * distance_mm / weft_target_radius_mm(&target);
-    return (weft_camera){size, size, focal, 1.002 * focal, 0.49 * size, 0.505 * size, -0.15, 0.05, {-0.8, 0.1, 0}};
+    return (weft_camera){.width = size,
+                         .height = size,
+                         .fx = focal,
+                         .fy = 1.002 * focal,
+                         .cx = 0.49 * size,
+                         .cy = 0.505 * size,
+                         .k1 = -0.15,
+                         .k2 = 0.05,
+                         .vignetting = {-0.8, 0.1, 0}};
 }
 
 static weft_pose turned(const weft_pose *pose, weft_vec3 axis_angle, weft_vec3 shift)

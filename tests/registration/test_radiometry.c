@@ -12,6 +12,7 @@ static const double distance_mm = 600, light_mm = 650;
 
 static weft_target target;
 static weft_sight sight;
+static const weft_bend flat = {0, 0, 0};
 static weft_homography homography;
 static weft_reference_pixels reference;
 static uint16_t *samples;
@@ -95,7 +96,7 @@ static void irradiance_at_the_origin_is_the_cosine(void **state)
     (void)state;
     for (int tilt = 0; tilt < 90; tilt += 15) {
         weft_angles light = {weft_rad_of_deg(tilt), 2};
-        double seen = weft_relative_irradiance(weft_scale(weft_direction_of_angles(light), 500), 0, 0);
+        double seen = weft_relative_irradiance(weft_scale(weft_direction_of_angles(light), 500), &flat, 0, 0);
         assert_near(seen, cos(light.theta_rad), 1e-12);
     }
 }
@@ -136,7 +137,7 @@ static void a_white_diffuser_gives_its_reflectance_times_the_cosine_everywhere(v
             for (int c = 0; c < 3; c++)
                 texel[3 * i + c] = (float)(0.7 * white.level[c] * irradiance * exposure.exposure_s);
         }
-        weft_reflectance_of_raw(&white, &exposure, 32, TEXELS, TEXELS, texel);
+        weft_reflectance_of_raw(&white, &exposure, &flat, 32, TEXELS, TEXELS, texel);
         for (int i = 0; i < TEXELS * TEXELS * 3; i++)
             assert_near((double)texel[i], 0.7 * cos(light.theta_rad), 1e-6);
     }

@@ -36,7 +36,7 @@ static void resample_as(weft_resampling resampling)
 
 static void resample(const weft_camera *camera, const float *inverse_vignetting, const weft_homography *homography)
 {
-    resample_as((weft_resampling){camera, inverse_vignetting, *homography, opening_mm, 0, false});
+    resample_as((weft_resampling){camera, inverse_vignetting, *homography, {0, 0, 0}, opening_mm, 0, false});
 }
 
 static void fill_with(double (*value)(double x, double y))
@@ -73,7 +73,7 @@ static void a_constant_stays_constant_under_tilt_and_distortion(void **state)
     weft_pose pose = plate_jittered_pose((weft_angles){weft_rad_of_deg(70), 1}, 600, 3);
     weft_homography homography = weft_homography_of_pose(&camera, &pose);
     fill_with(constant);
-    resample_as((weft_resampling){&camera, NULL, homography, opening_mm, 0, true});
+    resample_as((weft_resampling){&camera, NULL, homography, {0, 0, 0}, opening_mm, 0, true});
     for (int i = 0; i < TEXELS * TEXELS; i++) {
         assert_near((double)texel[3 * i + 1] / 12345, 1, 1e-6);
         assert_int_equal(mask[i], 0);
@@ -207,7 +207,7 @@ static void texels_that_are_filled_take_the_nearest_place_that_is_seen(void **st
     (void)state;
     weft_camera camera = flat_camera();
     fill_with(small_bright_frame);
-    resample_as((weft_resampling){&camera, NULL, frontal(0.4, 99.8, 99.8), opening_mm, 0, true});
+    resample_as((weft_resampling){&camera, NULL, frontal(0.4, 99.8, 99.8), {0, 0, 0}, opening_mm, 0, true});
     for (int i = 0; i < TEXELS * TEXELS; i++) {
         assert_int_equal(mask[i], 0);
         assert_true(texel[3 * i] < 100 * 105.5f);
@@ -220,7 +220,7 @@ static void a_size_without_texels_is_refused(void **state)
 {
     (void)state;
     weft_camera camera = flat_camera();
-    weft_resampling resampling = {&camera, NULL, frontal(1, 0, 0), opening_mm, 0, false};
+    weft_resampling resampling = {&camera, NULL, frontal(1, 0, 0), {0, 0, 0}, opening_mm, 0, false};
     weft_resampler resampler;
     assert_int_equal(weft_resampler_create(&resampling, 0, 4, &resampler, NULL), WEFT_BAD_INPUT);
 }

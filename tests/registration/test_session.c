@@ -248,6 +248,7 @@ static void the_report_names_every_view_and_shows_it(void **state)
     assert_non_null(page);
     page[size] = 0;
     assert_non_null(strstr(page, "tv063_pv229"));
+    assert_non_null(strstr(page, "What they cannot tell"));
     assert_non_null(strstr(page, "the target is not visible"));
     assert_int_equal(access("report/pictures/000_photograph.png", R_OK), 0);
     assert_int_equal(access("report/pictures/000_difference.png", R_OK), 0);

@@ -7,6 +7,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tests/support/virtual_session.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* A session of the virtual rig, registered without its truth, then held against it. */
@@ -53,7 +54,8 @@ static int leave(void **state)
     return scratch_folder_leave(state);
 }
 
-static void poses_agree_with_the_truth_within_half_the_floors(void **state)
+/* Measured: 0.006 texels in the median view, 0.018 in the worst. The floors are 0.05 and 0.15. */
+static void poses_agree_with_the_truth(void **state)
 {
     (void)state;
     double error[STAYS];
@@ -67,11 +69,28 @@ static void poses_agree_with_the_truth_within_half_the_floors(void **state)
                       weft_deg_of_rad(registration.survey.view[registration.survey.stay[stay].view].theta_rad),
                       error[stay]);
     }
-    assert_true(weft_quantile(error, STAYS, 0.5) < 0.025);
-    assert_true(weft_quantile(error, STAYS, 1) < 0.075);
+    assert_true(weft_quantile(error, STAYS, 0.5) < 0.01);
+    assert_true(weft_quantile(error, STAYS, 1) < 0.03);
 }
 
-static void reflectance_agrees_with_the_truth_within_the_floor(void **state)
+/* Nor is the lens that the session calibrates taken for darker at its rim: 0.2 % is that of the white patches. */
+static void a_flat_plate_is_found_flat(void **state)
+{
+    (void)state;
+    const weft_bend_found *found = &registration.found.bend;
+    const weft_vignetting *v = &registration.found.vignetting;
+    const double unit = found->unit_mm * found->unit_mm, loss = (v->r2 + v->r4 * v->reach) * v->reach;
+    print_message("bend %.4f %.4f %.4f mm, vignetting %.4f +- %.4f\n", found->bend.xx * unit, found->bend.xy * unit,
+                  found->bend.yy * unit, loss, v->standard_error);
+    assert_int_equal(found->stays, STAYS);
+    assert_true(fabs(found->bend.xx) * unit < 0.01);
+    assert_true(fabs(found->bend.xy) * unit < 0.01);
+    assert_true(fabs(found->bend.yy) * unit < 0.01);
+    assert_true(fabs(loss) < 0.01);
+}
+
+/* Measured: 1.73 %. The floor is 3 %. */
+static void reflectance_agrees_with_the_truth(void **state)
 {
     (void)state;
     double *up_to_45 = malloc(sizeof *up_to_45 * TRUTH_IMAGES * VALUES);
@@ -91,7 +110,9 @@ static void reflectance_agrees_with_the_truth_within_the_floor(void **state)
                       100 * weft_quantile(error, errors.count[image], 0.5));
     }
     assert_true(count_45 > 0);
-    assert_true(weft_quantile(up_to_45, count_45, 0.5) < 0.03);
+    double median = weft_quantile(up_to_45, count_45, 0.5);
+    print_message("views to 45 degrees: median relative error %.2f %%\n", 100 * median);
+    assert_true(median < 0.019);
     truth_errors_free(&errors);
     weft_dataset_close(dataset);
     free(up_to_45);
@@ -124,8 +145,9 @@ static void texels_beside_the_frame_are_right_or_missing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(poses_agree_with_the_truth_within_half_the_floors),
-        cmocka_unit_test(reflectance_agrees_with_the_truth_within_the_floor),
+        cmocka_unit_test(poses_agree_with_the_truth),
+        cmocka_unit_test(a_flat_plate_is_found_flat),
+        cmocka_unit_test(reflectance_agrees_with_the_truth),
         cmocka_unit_test(texels_beside_the_frame_are_right_or_missing),
     };
     return cmocka_run_group_tests(tests, take_and_register, leave);

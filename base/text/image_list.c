@@ -1,4 +1,4 @@
-#include "import/readers.h"
+#include "base/text/image_list.h"
 
 #include <fts.h>
 #include <stdbool.h>
@@ -7,7 +7,8 @@
 
 static bool is_image(const char *name)
 {
-    static const char *const extension[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff"};
+    static const char *const extension[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".dng", ".cr2",
+                                            ".cr3", ".nef", ".arw",  ".raf", ".orf", ".rw2",  ".pef", ".srw"};
     const char *dot = strrchr(name, '.');
     if (!dot || name[0] == '.')
         return false;

@@ -1,0 +1,55 @@
+#include "base/picture/exif.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <cmath>
+#include <exception>
+#include <initializer_list>
+
+namespace
+{
+
+/* The first of the names that holds a positive number; formats disagree about names. */
+double number_of(const OIIO::ImageSpec &spec, std::initializer_list<const char *> names)
+{
+    for (const char *name : names) {
+        const double value = (double)spec.get_float_attribute(name, 0);
+        if (value > 0 && std::isfinite(value))
+            return value;
+    }
+    return 0;
+}
+
+weft_code read_head(const char *path, weft_exif *exif, weft_error *error)
+{
+    auto input = OIIO::ImageInput::open(path);
+    if (!input) {
+        const std::string why = OIIO::geterror();
+        return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path,
+                         why.empty() ? "damaged, or of no known format" : why.substr(0, why.find('\n')).c_str());
+    }
+    const OIIO::ImageSpec &spec = input->spec();
+    *exif = {};
+    exif->width = spec.width;
+    exif->height = spec.height;
+    exif->is_float = spec.format.is_floating_point();
+    exif->bits = spec.get_int_attribute("oiio:BitsPerSample", (int)(8 * spec.format.size()));
+    exif->exposure_s = number_of(spec, {"ExposureTime"});
+    exif->f_number = number_of(spec, {"FNumber"});
+    exif->iso = number_of(
+        spec, {"Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings", "Exif:ISOSpeed", "ISOSpeed", "raw:iso_speed"});
+    exif->focal_length_mm = number_of(spec, {"Exif:FocalLength"});
+    exif->focal_length_35mm = number_of(spec, {"Exif:FocalLengthIn35mmFilm"});
+    return WEFT_OK;
+}
+
+} // namespace
+
+extern "C" weft_code weft_exif_read(const char *path, weft_exif *exif, weft_error *error)
+{
+    try {
+        return read_head(path, exif, error);
+    } catch (const std::exception &failure) {
+        return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path, failure.what());
+    }
+}

@@ -1,0 +1,30 @@
+/* From light to the numbers of a file: exposure, the sensor's noise, white balance and the tone curve of the camera. */
+#ifndef WEFT_CAPTURE_HAND_DEVELOP_H
+#define WEFT_CAPTURE_HAND_DEVELOP_H
+
+#include "base/status.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct weft_snap_exposure {
+    double seconds, f_number, iso; /* as the camera says */
+    double gain;                   /* part of the sensor's range that 1 cd/m^2 fills, truly */
+    double white_balance[3];       /* multiplies the channels behind the sensor; green is 1 */
+} weft_snap_exposure;
+
+/* gain = seconds iso / (120 f_number^2): the sensor is full where ISO 12232 has it (78 / iso lux seconds, with 0.65 of
+ * the light on the axis). The shutter makes it a little more or less. Pure. */
+double weft_snap_gain(double seconds, double f_number, double iso);
+
+/* linear [count] 0..1 = what the sensor reads of radiance [count] (count = 3 pixels), black level taken off, white
+ * balance applied, clipped: 14 bits, shot and read noise (capture/virtual/sensor.h). `key` alone decides the noise.
+ * Parallel. Errors: WEFT_SYSTEM. */
+weft_code weft_snap_sense(const weft_snap_exposure *exposure, const float *radiance, size_t count, uint64_t key,
+                          float *linear, weft_error *error);
+
+/* The tone curve of the camera's JPEG, 0..1 to 0..1: t = x^2 / (x + 0.002), then t^n / (t^n + m) over the same at x =
+ * 1, n = 0.85, m = 0.4^n: a toe, and a shoulder (the response of Naka and Rushton 1966). Pure. */
+double weft_snap_tone(double linear);
+
+#endif

@@ -1,0 +1,62 @@
+/* All that the camera can see: the sheet with its content, the table, balls, pin and hands, the lamp, and a dark room
+ * with a dim window. Traced, with one bounce off each mirror and direct light elsewhere. */
+#ifndef WEFT_CAPTURE_HAND_SCENE_H
+#define WEFT_CAPTURE_HAND_SCENE_H
+
+#include "capture/hand/content.h"
+#include "capture/hand/lamp.h"
+#include "capture/hand/sheet.h"
+#include "capture/hand/solid.h"
+
+enum { WEFT_SNAP_SOLIDS = 24 };
+
+/* A rectangle upright on a far wall. */
+typedef struct weft_snap_window {
+    weft_vec3 middle, across; /* unit, level */
+    weft_vec3 normal;         /* unit, level, into the room */
+    double half_width_mm, half_height_mm;
+    double luminance; /* cd/m^2; 0: no window */
+} weft_snap_window;
+
+typedef struct weft_snap_scene {
+    const weft_snap_sheet *sheet;
+    const weft_snap_content *content;
+    weft_snap_lamp lamp;
+    weft_snap_window window;
+    double wall_luminance;
+    double gloss; /* of paper and ink: a highlight over the diffuse reflection, 0 = none */
+    weft_snap_solid solid[WEFT_SNAP_SOLIDS];
+    int solid_count;
+} weft_snap_scene;
+
+/* Random numbers of a sample: where on the lamp it looks, and the path that it follows in a stitch. */
+typedef struct weft_snap_chance {
+    double lamp[2]; /* unit square */
+    uint64_t key;
+    uint32_t index;
+} weft_snap_chance;
+
+/* Radiance (luminance, cd/m^2, times a colour) along a ray, `along` a unit vector away from the eye. Pure. */
+weft_rgb weft_snap_scene_look(const weft_snap_scene *scene, weft_vec3 from, weft_vec3 along,
+                              const weft_snap_chance *chance);
+
+/* The same for a point of the plane z = 0 that nothing hides from the eye; `lit` false where it is known to see nothing
+ * but the whole lamp: no shadow is looked for. */
+weft_rgb weft_snap_scene_shade(const weft_snap_scene *scene, weft_vec3 point, weft_vec3 toward_eye,
+                               const weft_snap_chance *chance, bool may_be_shaded);
+
+/* Illuminance of the plane at a point, unshaded: lamp, window, and the lamp's mirror images in the balls, by colour. */
+weft_rgb weft_snap_scene_illuminance(const weft_snap_scene *scene, weft_vec3 point);
+
+/* Whether a solid may stand between a place within `reach` of `p` and one within `q_reach` of `q`. It errs on the safe
+ * side. */
+bool weft_snap_scene_may_hide(const weft_snap_scene *scene, weft_vec3 p, double reach, weft_vec3 q, double q_reach);
+
+/* Adds the balls and the pin of the sheet at their places. */
+void weft_snap_scene_put_balls(weft_snap_scene *scene);
+void weft_snap_scene_put_pin(weft_snap_scene *scene);
+
+/* Adds a hand: its fingers point along `along` (unit), its palm is at `middle`. */
+void weft_snap_scene_put_hand(weft_snap_scene *scene, weft_vec3 middle, weft_vec3 along);
+
+#endif

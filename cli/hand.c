@@ -1,0 +1,101 @@
+#include "capture/hand/hand.h"
+#include "cli/arguments.h"
+
+#include <stdlib.h>
+
+typedef struct hand_command {
+    weft_common_options common;
+    weft_snap_request request;
+} hand_command;
+
+static const char *const set_names[] = {"free", "flash", "tripod", "stepped", NULL};
+static const char *const format_names[] = {"jpeg", "tiff", "exr", NULL};
+
+#define PLACE(field) offsetof(hand_command, request.field)
+
+static const weft_option option_table[] = {
+    {.argument = "CLOTH", .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = PLACE(content)},
+    {"output", 'o', "FOLDER", "The folder for the photographs, empty or new", .is_required = true,
+     .kind = WEFT_OPTION_TEXT, .offset = PLACE(folder)},
+    {"set", .argument = "WHICH",
+     .help =
+         "How they are taken: free (default; camera and lamp in the hands), flash (on the camera), tripod (the lamp "
+         "moves) or stepped (turntable and arms)",
+     .kind = WEFT_OPTION_CHOICE, .offset = PLACE(set), .words = set_names},
+    {"photographs", .argument = "N", .help = "How many (default: 60)", .kind = WEFT_OPTION_WHOLE,
+     .offset = PLACE(photograph_count), .low = 1, .high = 5000},
+    {"rubbish", .argument = "N", .help = "How many of them are good for nothing (default: 0)",
+     .kind = WEFT_OPTION_WHOLE, .offset = PLACE(rubbish_count), .low = 0, .high = 5000},
+    {"seed", .argument = "N", .help = "Start of the random numbers (default: 1)", .kind = WEFT_OPTION_SEED,
+     .offset = PLACE(seed)},
+    {"format", .argument = "FORMAT", .help = "jpeg (default), tiff (16 bits, linear) or exr (half floats, linear)",
+     .kind = WEFT_OPTION_CHOICE, .offset = PLACE(format), .words = format_names},
+    {"width", .argument = "N", .help = "Pixels across; the height is two thirds (default: 3000)",
+     .kind = WEFT_OPTION_WHOLE, .offset = PLACE(width), .low = 300, .high = 8000},
+    {"opening", .argument = "MM", .help = "Side of the opening of the printed sheet (default: 50)",
+     .kind = WEFT_OPTION_NUMBER, .offset = PLACE(opening_mm), .low = 20, .high = 200},
+    {"focal-length", .argument = "MM", .help = "Of the lens, before a sensor of APS-C (default: 35)",
+     .kind = WEFT_OPTION_NUMBER, .offset = PLACE(focal_length_mm), .low = 18, .high = 120},
+    {"max-view", .argument = "DEGREES", .help = "How slant views become (default: 65)", .kind = WEFT_OPTION_ANGLE,
+     .offset = PLACE(max_view_rad), .low = 0, .high = 80},
+    {"lamp-radius", .argument = "MM", .help = "Half the size of the lamp (default: 12)", .kind = WEFT_OPTION_NUMBER,
+     .offset = PLACE(lamp_radius_mm), .low = 0.1, .high = 100},
+    {"hand-shadows", .argument = "PERCENT", .help = "Of the photographs, where a hand shades the sheet (default: 0)",
+     .kind = WEFT_OPTION_NUMBER, .offset = PLACE(hand_shadows), .low = 0, .high = 100, .divisor = 100},
+    {"gloss", .argument = "PERCENT", .help = "Of light that paper and ink reflect in a highlight (default: 0)",
+     .kind = WEFT_OPTION_NUMBER, .offset = PLACE(gloss), .low = 0, .high = 20, .divisor = 100},
+    {"window", .argument = "LUMINANCE", .help = "Of the window of the dark room, cd/m^2 (default: 100)",
+     .kind = WEFT_OPTION_NUMBER, .offset = PLACE(window), .low = 0, .high = 10000},
+    {"white-balance", .argument = "PERCENT", .help = "By which the gains of red and blue change (default: 0)",
+     .kind = WEFT_OPTION_NUMBER, .offset = PLACE(white_balance), .low = 0, .high = 20, .divisor = 100},
+    {"breathing", .argument = "PERCENT",
+     .help = "How much of a simple lens's change of focal length the focus brings (default: 0)",
+     .kind = WEFT_OPTION_NUMBER, .offset = PLACE(breathing), .low = 0, .high = 100, .divisor = 100},
+    {"no-balls", .help = "Without the mirror balls", .kind = WEFT_OPTION_FLAG, .offset = PLACE(no_balls)},
+    {"no-pin", .help = "Without the pin", .kind = WEFT_OPTION_FLAG, .offset = PLACE(no_pin)},
+    {"truth-size", .argument = "N", .help = "Texels along a side of the true reflectance; 0: none (default: 64)",
+     .kind = WEFT_OPTION_WHOLE, .offset = PLACE(truth_size), .low = 0, .high = 4096},
+    {0},
+};
+
+static weft_code check(void *values, weft_error *error)
+{
+    const weft_snap_request *request = &((const hand_command *)values)->request;
+    if (request->rubbish_count >= request->photograph_count)
+        return weft_fail(error, WEFT_BAD_USAGE, "--rubbish %d leaves no photograph of %d", request->rubbish_count,
+                         request->photograph_count);
+    return WEFT_OK;
+}
+
+static int run(int argc, char **argv)
+{
+    hand_command command = {.request = weft_snap_request_default()};
+    char warning[WEFT_MESSAGE_SIZE] = "";
+    weft_error error = {0};
+    weft_arguments_parse(&weft_command_hand, argc, argv, &command);
+    weft_progress progress = weft_command_progress(&command.common);
+    weft_code code = weft_snap_run(&command.request, &progress, warning, &error);
+    if (warning[0])
+        weft_command_say(&command.common, "%s", warning);
+    if (code == WEFT_OK)
+        weft_command_say(&command.common, "%s: %d photographs", command.request.folder,
+                         command.request.photograph_count);
+    return weft_command_exit("hand", &command.common, code, &error);
+}
+
+const weft_command weft_command_hand = {
+    .name = "hand",
+    .summary = "photograph a printed sheet as a hand would: the virtual hand",
+    .usage = "CLOTH -o FOLDER",
+    .documentation =
+        "Example: weft hand assets/weaves/silk_charmeuse.wv -o silk/\n\n"
+        "Takes photographs of a cloth in the opening of the printed sheet, as a person would with a camera, a lamp, "
+        "two "
+        "mirror balls and a pin. What is true of them goes to FOLDER.truth.json and FOLDER.truth.btf.h5, beside the "
+        "folder. CLOTH is a weave, a stitch, or the word checker: patches whose reflectance is a formula.",
+    .options = option_table,
+    .needs = "CLOTH.wv, CLOTH.stitch or checker, and -o FOLDER",
+    .surplus = "one cloth at a time",
+    .check = check,
+    .run = run,
+};

@@ -1,0 +1,210 @@
+#include "base/atomic_file.h"
+#include "base/text/json_text.h"
+#include "cli/arguments.h"
+#include "registration/lens/calibration.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+typedef struct lens_command {
+    weft_common_options common;
+    weft_lines input; /* folders and files */
+    const char *output;
+    int model;
+    weft_lens_settings settings;
+} lens_command;
+
+enum { MODEL_CHOSEN, MODEL_FULL };
+
+static const char *const model_words[] = {"chosen", "full", NULL};
+
+static const char *const extensions[] = {".jpg", ".jpeg", ".png", ".tif", ".tiff"};
+
+static weft_code read_input(const weft_option *option, const char *text, void *target, weft_error *error)
+{
+    (void)option;
+    return weft_lines_add(&((lens_command *)target)->input, error, "%s", text);
+}
+
+static weft_code read_board(const weft_option *option, const char *text, void *target, weft_error *error)
+{
+    (void)option;
+    return weft_board_parse(text, &((lens_command *)target)->settings.board, error);
+}
+
+static const weft_option option_table[] = {
+    {.argument = "FOLDER|FILE...", .kind = WEFT_OPTION_OTHER, .read = read_input, .repeats = true},
+    {"board", .argument = "BOARD",
+     .help = "What was photographed, sizes in mm: plate:OPENING (the target), chessboard:COLUMNSxROWS:SQUARE (inner "
+             "corners), charuco:COLUMNSxROWS:SQUARE,MARKER[:DICTIONARY] (squares), "
+             "aruco:COLUMNSxROWS:MARKER,GAP[:DICTIONARY], apriltag:COLUMNSxROWS:TAG,GAP[:DICTIONARY]",
+     .kind = WEFT_OPTION_OTHER, .read = read_board},
+    {"output", 'o', "LENS.json", "The lens to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
+     .offset = offsetof(lens_command, output)},
+    {"model", .argument = "WHICH",
+     .help = "Which of k2, p1, p2, k3 are told: those that the photographs carry (chosen, default) or all (full)",
+     .kind = WEFT_OPTION_CHOICE, .offset = offsetof(lens_command, model), .words = model_words},
+    {0},
+};
+
+static weft_code check(void *values, weft_error *error)
+{
+    lens_command *command = values;
+    if (command->input.count == 0 || !command->settings.board.text[0])
+        return weft_fail(error, WEFT_BAD_USAGE, "needs %s", weft_command_lens.needs);
+    for (int i = 0; i < command->input.count; i++)
+        if (weft_is_same_file(command->input.line[i], command->output))
+            return weft_fail(error, WEFT_BAD_USAGE, "'%s' would overwrite what it is made from", command->output);
+    command->settings.full_model = command->model == MODEL_FULL;
+    return WEFT_OK;
+}
+
+/* ---- Photographs ---- */
+
+static int is_photograph(const struct dirent *entry)
+{
+    const char *dot = strrchr(entry->d_name, '.');
+    for (size_t i = 0; dot && entry->d_name[0] != '.' && i < sizeof extensions / sizeof extensions[0]; i++)
+        if (strcasecmp(dot, extensions[i]) == 0)
+            return 1;
+    return 0;
+}
+
+static weft_code add_folder(const char *folder, weft_lines *names, weft_error *error)
+{
+    struct dirent **entry;
+    int count = scandir(folder, &entry, is_photograph, alphasort);
+    if (count < 0)
+        return weft_fail_errno(error, "open", folder);
+    weft_code code =
+        count > 0 ? WEFT_OK
+                  : weft_fail(error, WEFT_BAD_INPUT, "the folder '%s' has no photographs (.jpg, .png, .tif)", folder);
+    for (int i = 0; i < count; i++) {
+        if (code == WEFT_OK)
+            code = weft_lines_add(names, error, "%s/%s", folder, entry[i]->d_name);
+        free(entry[i]);
+    }
+    free(entry);
+    return code;
+}
+
+static weft_code list_photographs(const weft_lines *input, weft_lines *names, weft_error *error)
+{
+    for (int i = 0; i < input->count; i++) {
+        struct stat found;
+        if (stat(input->line[i], &found) != 0)
+            return weft_fail(error, WEFT_BAD_INPUT, "there is no '%s'", input->line[i]);
+        WEFT_TRY(S_ISDIR(found.st_mode) ? add_folder(input->line[i], names, error)
+                                        : weft_lines_add(names, error, "%s", input->line[i]));
+    }
+    return WEFT_OK;
+}
+
+/* ---- Words ---- */
+
+static void say_lines(const weft_common_options *common, const char *before, const weft_lines *lines)
+{
+    for (int i = 0; i < lines->count; i++)
+        weft_command_say(common, "%s%s", before, lines->line[i]);
+}
+
+static void say_left_out(const weft_common_options *common, const weft_lens_report *report)
+{
+    for (int i = 0; i < report->count; i++)
+        if (report->photograph[i].left_out)
+            weft_command_say(common, "left out %s: %s", report->photograph[i].name, report->photograph[i].left_out);
+    if (report->stray_count > 0)
+        weft_command_say(common, "left out %d corners far from where the lens puts them", report->stray_count);
+}
+
+static void say_lens(const lens_command *command, const weft_lens_report *report)
+{
+    const weft_common_options *common = &command->common;
+    const weft_lens *lens = &report->lens;
+    weft_command_say(common, "%s: %d x %d pixels, %d of %d photographs, %d corners, RMS %.3f pixels", command->output,
+                     lens->camera.width, lens->camera.height, report->used, report->count, report->point_count,
+                     lens->rms_px);
+    for (int i = 0; i < WEFT_LENS_PARAMETERS; i++)
+        weft_command_say(common, "  %s %12.*f +- %.*f", weft_lens_parameter_name[i], i < 4 ? 3 : 6,
+                         weft_lens_parameter(&lens->camera, i), i < 4 ? 3 : 6, lens->standard_error[i]);
+    weft_command_say(common, "the focal length is known to %.2f %%, the middle to %.1f, %.1f pixels",
+                     100 * report->focal_error, lens->standard_error[2], lens->standard_error[3]);
+    say_lines(common, "", &report->fixed);
+    say_lines(common, "warning: ", &report->warnings);
+}
+
+static void add_values(json_t **event, const weft_lens *lens)
+{
+    json_t *errors = json_object();
+    for (int i = 0; i < WEFT_LENS_PARAMETERS; i++) {
+        weft_json_put(event, weft_lens_parameter_name[i], json_real(weft_lens_parameter(&lens->camera, i)));
+        weft_json_put(&errors, weft_lens_parameter_name[i], json_real(lens->standard_error[i]));
+    }
+    weft_json_put(event, "standard_error", errors);
+}
+
+static weft_code show_event(const lens_command *command, const weft_lens_report *report, weft_error *error)
+{
+    json_t *event = json_pack("{ss si si sf si si sf sf sf sf}", "event", "lens", "width", report->lens.camera.width,
+                              "height", report->lens.camera.height, "rms_px", report->lens.rms_px, "used", report->used,
+                              "photographs", report->count, "tilt_deg", weft_deg_of_rad(report->tilt_rad), "reach",
+                              report->reach, "pattern_px", report->pattern, "noise_px", report->noise);
+    add_values(&event, &report->lens);
+    char *line = event ? json_dumps(event, JSON_COMPACT) : NULL;
+    json_decref(event);
+    if (!line)
+        return weft_fail_memory(error, "event", 0);
+    weft_command_event(&command->common, line);
+    free(line);
+    return WEFT_OK;
+}
+
+static weft_code calibrate(lens_command *command, const weft_lines *names, weft_error *error)
+{
+    weft_progress progress = weft_command_progress(&command->common);
+    weft_lens_report report;
+    weft_code code = weft_lens_calibrate(&command->settings, names, &progress, &report, error);
+    say_left_out(&command->common, &report);
+    if (code == WEFT_OK)
+        code = weft_lens_write(command->output, &report.lens, command->settings.board.text, report.photograph,
+                               report.count, error);
+    if (code == WEFT_OK) {
+        say_lens(command, &report);
+        code = show_event(command, &report, error);
+    }
+    weft_lens_report_free(&report);
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    lens_command command = {0};
+    weft_lines names = {0};
+    weft_error error = {0};
+    weft_arguments_parse(&weft_command_lens, argc, argv, &command);
+    weft_code code = list_photographs(&command.input, &names, &error);
+    if (code == WEFT_OK)
+        code = calibrate(&command, &names, &error);
+    weft_lines_free(&names);
+    weft_lines_free(&command.input);
+    return weft_command_exit("lens", &command.common, code, &error);
+}
+
+const weft_command weft_command_lens = {
+    .name = "lens",
+    .summary = "find out the lens of a camera from photographs of a board",
+    .usage = "FOLDER|FILE... --board BOARD -o LENS.json",
+    .documentation = "Example: weft lens photographs/ --board charuco:7x9:28,21:5X5_100 -o lens.json\n\n"
+                     "Calibrates a camera from photographs of a board with known corners, all taken with one lens at "
+                     "one focus and zoom. 'weft target --board' prints such a board. Photographs that do not help are "
+                     "named and left out. Pixels are taken as they are stored: a note in a file that it is to be shown "
+                     "turned (EXIF orientation) is not followed, because the lens does not turn with it.",
+    .options = option_table,
+    .needs = "photographs, --board BOARD and -o LENS.json",
+    .surplus = "any number of photographs",
+    .check = check,
+    .run = run,
+};

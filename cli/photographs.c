@@ -1,0 +1,101 @@
+#include "btf/session/lens.h"
+#include "cli/arguments.h"
+#include "registration/hand/hand.h"
+#include "registration/hand/report.h"
+
+#include <math.h>
+#include <stdio.h>
+
+typedef struct photographs_command {
+    weft_common_options common;
+    const char *input, *output, *report_folder, *lens;
+    double opening_mm, paper_reflectance;
+    weft_hand_settings settings;
+} photographs_command;
+
+enum { LARGEST_SIZE = 8192 };
+
+static const weft_option option_table[] = {
+    {.argument = "FOLDER",
+     .is_required = true,
+     .kind = WEFT_OPTION_INPUT,
+     .offset = offsetof(photographs_command, input)},
+    {"output", 'o', "NAME.btf.h5", "The dataset to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
+     .offset = offsetof(photographs_command, output)},
+    {"opening", .argument = "MM", .help = "Side of the target's opening as printed (default: 50)",
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, opening_mm), .low = 1, .high = 10000},
+    {"size", 's', "WxH", "Texels of the opening (default: 256x256)", .kind = WEFT_OPTION_SIZE,
+     .offset = offsetof(photographs_command, settings.width), .high = LARGEST_SIZE},
+    {"lens", .argument = "LENS.json", .help = "The lens, from weft lens (default: found in the photographs)",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(photographs_command, lens)},
+    {"flash", .help = "The lamp is the camera's flash, or fixed to the camera", .kind = WEFT_OPTION_FLAG,
+     .offset = offsetof(photographs_command, settings.flash)},
+    {"balls", .argument = "MM", .help = "Diameter of the mirror balls on the sheet; 0: there are none (default: 20)",
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, settings.ball_diameter_mm), .low = 0,
+     .high = 1000},
+    {"paper", .argument = "SHARE", .help = "Reflectance of the bare paper, 0 to 1 (default: 0.85)",
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, paper_reflectance), .low = 0.01, .high = 1},
+    {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_TEXT,
+     .offset = offsetof(photographs_command, report_folder)},
+    {"linear", .help = "8- and 16-bit files hold linear values, without a tone curve", .kind = WEFT_OPTION_FLAG,
+     .offset = offsetof(photographs_command, settings.linear)},
+    {0},
+};
+
+static void say_left_out(const photographs_command *command, const weft_hand *hand)
+{
+    for (int i = 0; i < hand->count; i++) {
+        if (!weft_hand_used(&hand->photograph[i]))
+            weft_command_say(&command->common, "left out '%s': %s", hand->photograph[i].name,
+                             hand->photograph[i].remark);
+    }
+}
+
+static void say_outcome(const photographs_command *command, const weft_hand *hand)
+{
+    const weft_camera *camera = &hand->lens.camera;
+    say_left_out(command, hand);
+    weft_command_say(&command->common,
+                     "lens: focal length %.1f pixels, k1 %.4f, k2 %.4f; markers lie %.2f pixels off, RMS", camera->fx,
+                     camera->k1, camera->k2, hand->lens.rms_px);
+    weft_command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %.0f s", command->output,
+                     command->settings.width, command->settings.height, hand->used_count, hand->count, hand->seconds);
+}
+
+static int run(int argc, char **argv)
+{
+    photographs_command command = {.opening_mm = 50, .paper_reflectance = 0.85, .settings = weft_hand_defaults()};
+    weft_arguments_parse(&weft_command_photographs, argc, argv, &command);
+    weft_progress progress = weft_command_progress(&command.common);
+    command.settings.target = weft_target_printed(command.opening_mm);
+    command.settings.target.paper_reflectance = command.settings.target.white_reflectance = command.paper_reflectance;
+    weft_hand hand;
+    weft_error error = {0};
+    weft_lens lens;
+    weft_code code = command.lens ? weft_lens_read(command.lens, &lens, &error) : WEFT_OK;
+    if (command.lens)
+        command.settings.lens = &lens.camera;
+    if (code == WEFT_OK)
+        code = weft_hand_register(command.input, command.output, &command.settings, &progress, &hand, &error);
+    if (code == WEFT_OK) {
+        say_outcome(&command, &hand);
+        if (command.report_folder)
+            code = weft_hand_report(command.report_folder, command.output, &command.settings, &hand, &error);
+        weft_hand_free(&hand);
+    }
+    return weft_command_exit("photographs", &command.common, code, &error);
+}
+
+const weft_command weft_command_photographs = {
+    .name = "photographs",
+    .summary = "turn your own photographs of the printed target into a dataset",
+    .usage = "FOLDER -o NAME.btf.h5",
+    .documentation = "Example: weft photographs felt/ -o felt.btf.h5 --opening 50\n\n"
+                     "Turns a folder of photographs of a sample in the printed target (weft target) into a dataset. "
+                     "Names and order do not matter. Lens, poses, lamps, exposures and the camera's tone curve are "
+                     "found in the photographs. Those that cannot be used are left out and named.",
+    .options = option_table,
+    .needs = "a folder of photographs and -o NAME.btf.h5",
+    .surplus = "one folder at a time",
+    .run = run,
+};

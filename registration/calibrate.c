@@ -1,0 +1,226 @@
+#include "registration/calibrate.h"
+
+#include "base/numeric/cholesky.h"
+#include "registration/photographs.h"
+#include "registration/pose/markers.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { most_stays = 16, most_photographs = 8, most_rounds = 6 };
+
+static const size_t average_bytes = (size_t)256 << 20;
+
+/* Before anything is seen, the rim of the plate is flat to so many mm. */
+static const double prior_mm = 1;
+
+/* A round that moves the rim by less is the last. */
+static const double settled_mm = 0.01;
+
+/* One of the stays it is found from. */
+typedef struct witness {
+    int stay;       /* index into the survey */
+    weft_stay some; /* of its photographs */
+    int shot[most_photographs];
+    float *average; /* NULL: it says nothing */
+    bool located;
+    weft_refinement refinement;
+} witness;
+
+typedef struct court {
+    const weft_session *session;
+    weft_registration *registration;
+    weft_sight *sight;
+    int count;
+    witness witness[most_stays];
+} court;
+
+/* Stays evenly spread over the survey, and of each some photographs evenly spread over its lights. */
+static void call_witnesses(court *c)
+{
+    const weft_survey *survey = &c->registration->survey;
+    size_t bytes = weft_photograph_sample_count(c->session) / 3 * sizeof(float);
+    int room = (int)fmin(most_stays, fmax(1, (double)(average_bytes / bytes)));
+    c->count = survey->stay_count < room ? survey->stay_count : room;
+    for (int i = 0; i < c->count; i++) {
+        witness *w = &c->witness[i];
+        w->stay = (int)((long)i * survey->stay_count / c->count);
+        const weft_stay *all = &survey->stay[w->stay];
+        int count = all->count < most_photographs ? all->count : most_photographs;
+        for (int k = 0; k < count; k++)
+            w->shot[k] = all->shot[(long)k * all->count / count];
+        w->some = (weft_stay){all->view, all->stay, count, w->shot};
+    }
+}
+
+static weft_code read_average(court *c, witness *w, weft_error *error)
+{
+    weft_photographs photographs;
+    WEFT_TRY(weft_photographs_read(c->session, c->sight, &w->some, 0, c->registration->fault, &photographs, error));
+    if (photographs.usable_count > 0) {
+        w->average = photographs.average;
+        photographs.average = NULL;
+    }
+    weft_photographs_free(&photographs);
+    return WEFT_OK;
+}
+
+/* A first pose: the markers are enough. Without them, that of the chain. */
+static weft_code locate(court *c, witness *w, weft_error *error)
+{
+    const weft_pose_limits *limits = &c->registration->settings.limits;
+    weft_angles view = c->registration->survey.view[w->some.view];
+    weft_pose promised_pose = weft_pose_of_view(view, c->session->camera_distance_mm);
+    weft_homography promised = weft_homography_of_pose(&c->session->camera, &promised_pose);
+    weft_marker_start markers;
+    weft_view_pose pose;
+    WEFT_TRY(weft_markers_locate(c->sight, &c->session->target, w->average, &promised, &markers, error));
+    w->located = weft_markers_trusted(&markers, &promised, c->sight->opening_mm, limits);
+    w->refinement.homography = markers.homography;
+    if (w->located)
+        return WEFT_OK;
+    WEFT_TRY(weft_pose_find(c->sight, &c->session->target, w->average, &promised, (weft_point_spread){0, 0}, limits,
+                            &pose, NULL, error));
+    w->refinement.homography = pose.homography;
+    w->located = pose.source == WEFT_POSE_DRAWING;
+    return WEFT_OK;
+}
+
+static weft_code locate_all(court *c, weft_error *error)
+{
+    for (int i = 0; i < c->count; i++) {
+        witness *w = &c->witness[i];
+        WEFT_TRY(read_average(c, w, error));
+        if (w->average)
+            WEFT_TRY(locate(c, w, error));
+    }
+    return WEFT_OK;
+}
+
+/* Sums what the stays say of the bend, each refined under the present one. */
+static weft_code hear(court *c, weft_bend_evidence *sum, int *heard, weft_error *error)
+{
+    *sum = (weft_bend_evidence){0};
+    *heard = 0;
+    for (int i = 0; i < c->count; i++) {
+        witness *w = &c->witness[i];
+        weft_bend_evidence own;
+        if (!w->located)
+            continue;
+        WEFT_TRY(weft_refinement_run(c->sight, w->average, 0, &w->refinement, NULL, error));
+        if (!(w->refinement.correlation >= c->registration->settings.limits.least_correlation))
+            continue;
+        WEFT_TRY(weft_refinement_weigh_bend(c->sight, w->average, &w->refinement, &own, error));
+        for (int k = 0; k < 3; k++) {
+            sum->gradient[k] += own.gradient[k];
+            for (int j = 0; j < 3; j++)
+                sum->information[k][j] += own.information[k][j];
+        }
+        (*heard)++;
+    }
+    return WEFT_OK;
+}
+
+/* Moves the bend to where evidence and prior meet. Returns by how much, mm at the unit; negative where it cannot. */
+static double judge(court *c, const weft_bend_evidence *evidence)
+{
+    double unit = weft_bend_unit_mm(c->sight), square = unit * unit, matrix[3][3], change[3], largest = 0;
+    weft_bend *bend = &c->sight->bend;
+    weft_bend_found *found = &c->registration->found.bend;
+    const double now[3] = {bend->xx * square, bend->xy * square, bend->yy * square};
+    memcpy(matrix, evidence->information, sizeof matrix);
+    for (int k = 0; k < 3; k++) {
+        matrix[k][k] += 1 / (prior_mm * prior_mm);
+        change[k] = evidence->gradient[k] - now[k] / (prior_mm * prior_mm);
+    }
+    if (!weft_cholesky_factor(3, 3, matrix[0]))
+        return -1;
+    weft_cholesky_solve(3, 3, matrix[0], change);
+    bend->xx += change[0] / square;
+    bend->xy += change[1] / square;
+    bend->yy += change[2] / square;
+    found->standard_error_mm = 0;
+    for (int k = 0; k < 3; k++) {
+        double axis[3] = {k == 0, k == 1, k == 2};
+        weft_cholesky_solve(3, 3, matrix[0], axis);
+        found->standard_error_mm = fmax(found->standard_error_mm, sqrt(axis[k]));
+        largest = fmax(largest, fabs(change[k]));
+    }
+    return largest;
+}
+
+static weft_code find_bend(court *c, weft_error *error)
+{
+    weft_bend_found *found = &c->registration->found.bend;
+    double change = INFINITY;
+    for (int round = 0; round < most_rounds && change > settled_mm; round++) {
+        weft_bend_evidence evidence;
+        WEFT_TRY(hear(c, &evidence, &found->stays, error));
+        if (found->stays == 0)
+            return WEFT_OK;
+        change = judge(c, &evidence);
+    }
+    found->bend = c->sight->bend;
+    found->unit_mm = weft_bend_unit_mm(c->sight);
+    return WEFT_OK;
+}
+
+static weft_code add_vignetting(const court *c, const witness *w, const weft_reference_pixels *reference,
+                                weft_vignetting_sums *sums, weft_error *error)
+{
+    weft_photographs photographs;
+    uint16_t *scratch = malloc(weft_photograph_sample_count(c->session) * sizeof *scratch);
+    if (!scratch)
+        return weft_fail_memory(error, "a photograph", weft_photograph_sample_count(c->session) * sizeof *scratch);
+    weft_code code =
+        weft_photographs_read(c->session, c->sight, &w->some, 0, c->registration->fault, &photographs, error);
+    for (int i = 0; code == WEFT_OK && i < w->some.count; i++) {
+        const uint16_t *samples = photographs.usable[i] ? weft_photographs_samples(&photographs, i, scratch) : NULL;
+        weft_exposure exposure = weft_exposure_of(c->session, w->shot[i]);
+        if (samples)
+            weft_vignetting_add(c->sight, &c->session->target, reference, samples, &exposure, sums);
+    }
+    if (code == WEFT_OK)
+        weft_photographs_free(&photographs);
+    free(scratch);
+    return code;
+}
+
+static weft_code find_vignetting(court *c, weft_error *error)
+{
+    weft_vignetting_sums sums = {0};
+    for (int i = 0; i < c->count; i++) {
+        const witness *w = &c->witness[i];
+        weft_reference_pixels reference;
+        if (!w->located)
+            continue;
+        WEFT_TRY(weft_reference_pixels_find(c->sight, &c->session->target, &w->refinement.homography,
+                                            w->refinement.point_spread, &reference, error));
+        weft_code code = add_vignetting(c, w, &reference, &sums, error);
+        weft_reference_pixels_free(&reference);
+        WEFT_TRY(code);
+    }
+    c->registration->found.vignetting = weft_vignetting_solve(&sums);
+    weft_vignetting_apply(&c->registration->found.vignetting, c->sight);
+    return WEFT_OK;
+}
+
+weft_code weft_calibrate(const weft_session *session, weft_registration *registration, weft_sight *sight,
+                         weft_error *error)
+{
+    court *c = calloc(1, sizeof *c);
+    if (!c)
+        return weft_fail_memory(error, "a calibration", sizeof *c);
+    *c = (court){.session = session, .registration = registration, .sight = sight};
+    call_witnesses(c);
+    weft_code code = locate_all(c, error);
+    if (code == WEFT_OK)
+        code = find_bend(c, error);
+    if (code == WEFT_OK)
+        code = find_vignetting(c, error);
+    for (int i = 0; i < c->count; i++)
+        free(c->witness[i].average);
+    free(c);
+    return code;
+}

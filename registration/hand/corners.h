@@ -1,0 +1,13 @@
+/* The corners of the target's markers in a photograph of unknown pose. */
+#ifndef WEFT_REGISTRATION_HAND_CORNERS_H
+#define WEFT_REGISTRATION_HAND_CORNERS_H
+
+#include "registration/hand/photograph.h"
+#include "registration/hand/read.h"
+
+/* Fills marker_count, corner_count, plate and seen with corners that one plane explains, and the remark where there are
+ * too few. Errors: WEFT_SYSTEM. */
+weft_code weft_corners_find(const weft_target *target, const weft_light_values *values,
+                            weft_hand_photograph *photograph, weft_error *error);
+
+#endif

@@ -1,0 +1,382 @@
+#include "registration/hand/hand.h"
+
+#include "base/clock.h"
+#include "base/text/image_list.h"
+#include "registration/hand/corners.h"
+#include "registration/hand/material.h"
+#include "registration/hand/pose.h"
+#include "registration/hand/thumbnail.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Fewer photographs than this make no material. */
+enum { fewest_photographs = 3 };
+
+/* Everything at work. */
+typedef struct work {
+    const char *folder;
+    const weft_hand_settings *settings;
+    const weft_progress *progress;
+    weft_hand *hand;
+    weft_paper_places places;
+    weft_lamp_evidence *evidence; /* [count] */
+    weft_reduced_sight sight;     /* while poses are refined */
+} work;
+
+weft_hand_settings weft_hand_defaults(void)
+{
+    return (weft_hand_settings){weft_target_printed(50), 256, 256, 20, false, false, 250.0 / 255, NULL};
+}
+
+void weft_hand_free(weft_hand *hand)
+{
+    for (int i = 0; i < hand->count; i++) {
+        free(hand->photograph[i].name);
+        weft_image_free(&hand->photograph[i].thumbnail);
+        weft_image_free(&hand->photograph[i].rectified);
+    }
+    free(hand->photograph);
+    *hand = (weft_hand){0};
+}
+
+/* ---- The folder ---- */
+
+static char *path_of(const char *folder, const char *name)
+{
+    char *path = NULL;
+    return asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : path;
+}
+
+static void read_exif(const char *folder, weft_hand_photograph *photograph)
+{
+    weft_error error = {0};
+    char *path = path_of(folder, photograph->name);
+    if (!path)
+        snprintf(photograph->remark, sizeof photograph->remark, "memory is short");
+    else if (weft_exif_read(path, &photograph->exif, &error) != WEFT_OK)
+        snprintf(photograph->remark, sizeof photograph->remark, "%.180s", error.message);
+    free(path);
+}
+
+/* The size that most photographs have. */
+static const weft_exif *common_size(const weft_hand *hand)
+{
+    const weft_exif *best = NULL;
+    int most = 0;
+    for (int i = 0; i < hand->count; i++) {
+        const weft_exif *one = &hand->photograph[i].exif;
+        int same = 0;
+        for (int k = 0; k < hand->count && weft_hand_used(&hand->photograph[i]); k++)
+            same += weft_hand_used(&hand->photograph[k]) && hand->photograph[k].exif.width == one->width &&
+                    hand->photograph[k].exif.height == one->height;
+        if (same > most)
+            most = same, best = one;
+    }
+    return best;
+}
+
+static void leave_out_other_sizes(weft_hand *hand, const weft_exif *common)
+{
+    for (int i = 0; i < hand->count; i++) {
+        weft_hand_photograph *p = &hand->photograph[i];
+        if (!weft_hand_used(p) || (p->exif.width == common->width && p->exif.height == common->height))
+            continue;
+        bool turned = p->exif.width == common->height && p->exif.height == common->width;
+        snprintf(p->remark, sizeof p->remark, "it has %d x %d pixels, most have %d x %d%s", p->exif.width,
+                 p->exif.height, common->width, common->height,
+                 turned ? ": a program turned it; copy the files as the camera wrote them" : "");
+    }
+}
+
+static weft_code list_photographs(work *w, weft_error *error)
+{
+    weft_lines names;
+    WEFT_TRY(weft_images_list(w->folder, &names, error));
+    weft_hand *hand = w->hand;
+    weft_code code = WEFT_OK;
+    if (names.count == 0)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no photograph (JPEG, PNG, TIFF, EXR or camera raw)",
+                         w->folder);
+    else if (!(hand->photograph = calloc((size_t)names.count, sizeof *hand->photograph)) ||
+             !(w->evidence = calloc((size_t)names.count, sizeof *w->evidence)))
+        code = weft_fail_memory(error, "photographs", (size_t)names.count * sizeof *hand->photograph);
+    for (int i = 0; code == WEFT_OK && i < names.count; i++, hand->count++) {
+        if (!(hand->photograph[i].name = strdup(names.line[i])))
+            code = weft_fail_memory(error, names.line[i], strlen(names.line[i]));
+    }
+    weft_lines_free(&names);
+    if (code != WEFT_OK)
+        return code;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int i = 0; i < hand->count; i++)
+        read_exif(w->folder, &hand->photograph[i]);
+    const weft_exif *common = common_size(hand);
+    if (!common)
+        return weft_fail(error, WEFT_BAD_INPUT, "none of the %d images in '%s' can be read: %s", hand->count, w->folder,
+                         hand->photograph[0].remark);
+    leave_out_other_sizes(hand, common);
+    return WEFT_OK;
+}
+
+/* ---- Looking at all photographs ---- */
+
+/* What is done with one photograph: fills it from its pixels. */
+typedef weft_code (*look)(work *w, int index, const weft_light_values *values, weft_error *error);
+
+static weft_code look_at(work *w, int index, look what, weft_error *error)
+{
+    weft_hand_photograph *p = &w->hand->photograph[index];
+    weft_light_values values;
+    char *path = path_of(w->folder, p->name);
+    if (!path)
+        return weft_fail_memory(error, p->name, strlen(p->name));
+    weft_error own = {0};
+    float clipped_at = p->exif.is_float ? INFINITY : (float)w->settings->clipped_at;
+    weft_code code =
+        weft_light_values_read(path, p->exif.width, p->exif.height, &w->hand->tone, clipped_at, &values, &own);
+    free(path);
+    if (code == WEFT_BAD_INPUT) {
+        snprintf(p->remark, sizeof p->remark, "%.180s", own.message);
+        return WEFT_OK;
+    }
+    if (code != WEFT_OK) {
+        *error = own;
+        return code;
+    }
+    code = what(w, index, &values, error);
+    weft_light_values_free(&values);
+    return code;
+}
+
+/* Looks at every photograph that is used still. */
+static weft_code look_at_all(work *w, const char *doing, look what, weft_error *error)
+{
+    weft_code result = WEFT_OK;
+    long done = 0;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int i = 0; i < w->hand->count; i++) {
+        weft_error own = {0};
+        weft_code code = weft_hand_used(&w->hand->photograph[i]) ? look_at(w, i, what, &own) : WEFT_OK;
+#pragma omp critical(weft_hand_look)
+        {
+            weft_progress_report(w->progress, doing, ++done, w->hand->count);
+            if (code != WEFT_OK && result == WEFT_OK) {
+                result = code;
+                *error = own;
+            }
+        }
+    }
+    return result;
+}
+
+static weft_code look_for_corners(work *w, int index, const weft_light_values *values, weft_error *error)
+{
+    WEFT_TRY(weft_thumbnail_of_photograph(values, &w->hand->photograph[index].thumbnail, error));
+    return weft_corners_find(&w->settings->target, values, &w->hand->photograph[index], error);
+}
+
+/* Pixels per mm in the middle of the plate: the median photograph decides how finely the target is drawn. */
+static double typical_scale(const weft_hand *hand)
+{
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < hand->count; i++) {
+        const weft_hand_photograph *p = &hand->photograph[i];
+        if (!weft_hand_used(p))
+            continue;
+        sum += hand->lens.camera.fx / p->pose.translation.z;
+        count++;
+    }
+    return count ? sum / count : 0;
+}
+
+static weft_code look_for_light(work *w, int index, const weft_light_values *values, weft_error *error)
+{
+    weft_hand_photograph *p = &w->hand->photograph[index];
+    weft_lamp_evidence *evidence = &w->evidence[index];
+    const weft_camera *camera = &w->hand->lens.camera;
+    WEFT_TRY(weft_hand_pose_refine(&w->sight, camera, values, p, error));
+    if (!weft_hand_used(p))
+        return WEFT_OK;
+    const weft_exif *exif = &p->exif;
+    evidence->pose = p->pose;
+    evidence->exposure = exif->f_number > 0 ? exif->exposure_s * exif->iso / (exif->f_number * exif->f_number) : 0;
+    WEFT_TRY(weft_paper_sample_all(&w->places, camera, &p->homography, values, &evidence->paper, error));
+    for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT && w->settings->ball_diameter_mm > 0; ball++) {
+        double place[2];
+        weft_target_ball(&w->settings->target, ball, place);
+        evidence->highlight[ball] = weft_ball_highlight(camera, &p->pose, values, place, w->settings->ball_diameter_mm);
+    }
+    return WEFT_OK;
+}
+
+static int count_used(const weft_hand *hand)
+{
+    int used = 0;
+    for (int i = 0; i < hand->count; i++)
+        used += weft_hand_used(&hand->photograph[i]);
+    return used;
+}
+
+static weft_code check_enough(const work *w, const char *missing, weft_error *error)
+{
+    int used = count_used(w->hand), first = 0;
+    if (used >= fewest_photographs)
+        return WEFT_OK;
+    while (first < w->hand->count - 1 && weft_hand_used(&w->hand->photograph[first]))
+        first++;
+    return weft_fail(error, WEFT_BAD_INPUT, "'%s': %d of %d photographs %s, %d are needed; '%s': %s", w->folder, used,
+                     w->hand->count, missing, fewest_photographs, w->hand->photograph[first].name,
+                     w->hand->photograph[first].remark);
+}
+
+/* ---- The lamps ---- */
+
+/* Photographs that show too little paper have no lamp. */
+static void leave_out_paperless(work *w)
+{
+    const int fewest_samples = 40;
+    for (int i = 0; i < w->hand->count; i++) {
+        weft_hand_photograph *p = &w->hand->photograph[i];
+        if (weft_hand_used(p) && w->evidence[i].paper.count < fewest_samples)
+            snprintf(p->remark, sizeof p->remark,
+                     "its paper is overexposed or too small: nothing tells how much light there was");
+    }
+}
+
+/* light = decoded light x exp(sum_k tone[k] (2 encoded - 1)^(k + 1)), made to end at 1 and never to fall. Levels
+ * follow.
+ */
+static void correct_tone(weft_hand *hand)
+{
+    const double *term = hand->lamps.tone;
+    weft_tone_curve first = hand->tone;
+    double last = 0;
+    for (int i = 0; i <= WEFT_TONE_STEPS; i++) {
+        double power = 1, sum = 0, encoded = 2 * (i / (double)WEFT_TONE_STEPS) - 1;
+        for (int k = 0; k < WEFT_TONE_TERMS; k++)
+            sum += term[k] * (power *= encoded);
+        double light = (double)first.linear[i] * exp(sum);
+        last = i ? fmax(last, light) : light;
+        hand->tone.linear[i] = (float)last;
+    }
+    for (int i = 0; i <= WEFT_TONE_STEPS; i++)
+        hand->tone.linear[i] /= (float)last;
+    for (int i = 0; i < hand->count; i++) {
+        for (int c = 0; c < 3; c++)
+            hand->photograph[i].lamp.level[c] /= last;
+    }
+}
+
+/* Of the corner of the photograph that lies farthest from the axis, in focal lengths. */
+static double corner_radius_squared(const weft_camera *camera)
+{
+    double x = fmax(camera->cx, camera->width - 1 - camera->cx) / camera->fx;
+    double y = fmax(camera->cy, camera->height - 1 - camera->cy) / camera->fy;
+    return x * x + y * y;
+}
+
+static weft_code find_lamps(work *w, weft_error *error)
+{
+    weft_hand *hand = w->hand;
+    int used = count_used(hand), next = 0;
+    weft_lamp_evidence *evidence = malloc((size_t)used * sizeof *evidence);
+    hand->lamps.place = calloc((size_t)used, sizeof *hand->lamps.place);
+    weft_code code = WEFT_OK;
+    if (!evidence || !hand->lamps.place)
+        code = weft_fail_memory(error, "lamps", (size_t)used * sizeof *evidence);
+    for (int i = 0; code == WEFT_OK && i < hand->count; i++) {
+        if (weft_hand_used(&hand->photograph[i]))
+            evidence[next++] = w->evidence[i];
+    }
+    weft_lamp_problem problem = {.target = &w->settings->target,
+                                 .places = &w->places,
+                                 .count = used,
+                                 .evidence = evidence,
+                                 .ball_diameter_mm = w->settings->ball_diameter_mm,
+                                 .corner_radius_squared = corner_radius_squared(&hand->lens.camera),
+                                 .flash = w->settings->flash,
+                                 .tone_unknown = hand->tone_found};
+    if (code == WEFT_OK) {
+        weft_lamp_guess(&problem, &hand->lamps);
+        code = weft_lamp_solve(&problem, &hand->lamps, error);
+    }
+    for (int i = 0, from = 0; code == WEFT_OK && i < hand->count; i++) {
+        if (weft_hand_used(&hand->photograph[i]))
+            hand->photograph[i].lamp = hand->lamps.place[from++];
+    }
+    free(hand->lamps.place);
+    hand->lamps.place = NULL;
+    free(evidence);
+    if (code != WEFT_OK)
+        return code;
+    memcpy(hand->lens.camera.vignetting, hand->lamps.vignetting, sizeof hand->lamps.vignetting);
+    if (hand->tone_found)
+        correct_tone(hand);
+    return WEFT_OK;
+}
+
+/* Photographs so dark that their noise would be most of what they say. */
+static void leave_out_underexposed(weft_hand *hand)
+{
+    const double darkest_paper = 0.01;
+    for (int i = 0; i < hand->count; i++) {
+        weft_hand_photograph *p = &hand->photograph[i];
+        double paper = p->lamp.level[1] * weft_unit(p->lamp.position_mm).z;
+        if (weft_hand_used(p) && !(paper >= darkest_paper))
+            snprintf(p->remark, sizeof p->remark, "it is underexposed: white paper reaches %.1f %% of full scale",
+                     100 * paper);
+    }
+}
+
+static weft_code refine_and_sample(work *w, weft_error *error)
+{
+    WEFT_TRY(weft_reduced_sight_create(&w->hand->lens.camera, &w->settings->target, typical_scale(w->hand), &w->sight,
+                                       error));
+    weft_code code = look_at_all(w, "finding poses and lamps", look_for_light, error);
+    weft_reduced_sight_free(&w->sight);
+    return code;
+}
+
+static weft_code run(work *w, const char *output, weft_error *error)
+{
+    weft_hand *hand = w->hand;
+    WEFT_TRY(list_photographs(w, error));
+    WEFT_TRY(check_enough(w, "can be read", error));
+    const weft_exif *common = common_size(hand);
+    hand->tone_found = !w->settings->linear && !common->is_float;
+    hand->tone = hand->tone_found ? weft_tone_srgb() : weft_tone_linear();
+    WEFT_TRY(look_at_all(w, "looking for the target", look_for_corners, error));
+    WEFT_TRY(check_enough(w, "show the target", error));
+    WEFT_TRY(weft_lens_estimate_from(hand->photograph, hand->count, common->width, common->height, w->settings->lens,
+                                     &hand->lens, error));
+    WEFT_TRY(weft_paper_places_create(&w->settings->target, &w->places, error));
+    WEFT_TRY(refine_and_sample(w, error));
+    leave_out_paperless(w);
+    WEFT_TRY(check_enough(w, "can be used", error));
+    WEFT_TRY(find_lamps(w, error));
+    leave_out_underexposed(hand);
+    WEFT_TRY(check_enough(w, "can be used", error));
+    return weft_hand_write_dataset(w->folder, output, w->settings, w->progress, hand, error);
+}
+
+weft_code weft_hand_register(const char *folder, const char *output, const weft_hand_settings *settings,
+                             const weft_progress *progress, weft_hand *hand, weft_error *error)
+{
+    work w = {.folder = folder, .settings = settings, .progress = progress, .hand = hand};
+    double began_s = weft_now_s();
+    *hand = (weft_hand){0};
+    weft_code code = run(&w, output, error);
+    for (int i = 0; w.evidence && i < hand->count; i++)
+        free(w.evidence[i].paper.sample);
+    free(w.evidence);
+    weft_paper_places_free(&w.places);
+    hand->used_count = count_used(hand);
+    hand->seconds = weft_now_s() - began_s;
+    if (code != WEFT_OK)
+        weft_hand_free(hand);
+    return code;
+}

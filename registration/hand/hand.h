@@ -1,0 +1,44 @@
+/* Registration of photographs from a camera in the hand: a folder of photographs of the printed target becomes a
+ * dataset. Nothing is known beforehand but the target: lens, poses, lamps, tone curve and exposure are found in the
+ * pictures. */
+#ifndef WEFT_REGISTRATION_HAND_HAND_H
+#define WEFT_REGISTRATION_HAND_HAND_H
+
+#include "base/progress.h"
+#include "registration/hand/lamp.h"
+#include "registration/hand/lens.h"
+
+typedef struct weft_hand_settings {
+    weft_target target;
+    int width, height;       /* texels */
+    double ball_diameter_mm; /* 0: no balls stand on the sheet */
+    bool flash;              /* the lamp is fixed to the camera */
+    bool linear;             /* integer files hold linear values; else a tone curve is found */
+    double clipped_at;       /* encoded value of an integer file, 0..1, from which a sample counts as clipped */
+    const weft_camera *lens; /* NULL: found in the photographs */
+} weft_hand_settings;
+
+/* What came of it. Freed with weft_hand_free. */
+typedef struct weft_hand {
+    int count;
+    weft_hand_photograph *photograph; /* [count], by name */
+    int used_count;
+    weft_lens_estimate lens; /* with the vignetting found */
+    weft_tone_curve tone;
+    bool tone_found;          /* else the files are linear */
+    weft_lamp_solution lamps; /* without places: those are in the photographs */
+    double seconds;
+} weft_hand;
+
+/* An opening of 50 mm, 256 x 256 texels, balls of 20 mm, a lamp that moves freely, clipped from 250/255. */
+weft_hand_settings weft_hand_defaults(void);
+
+/* Registers the image files in `folder` into the dataset `output` (near lights and cameras, reflectance times cosine).
+ * A photograph that cannot be used is left out, with the reason in its remark. The caller frees `hand` with
+ * weft_hand_free on success. Errors: WEFT_BAD_INPUT where nothing can be made of the folder, saying what was found and
+ * what is missing; WEFT_SYSTEM. Uses OpenMP; memory: two photographs a thread. */
+weft_code weft_hand_register(const char *folder, const char *output, const weft_hand_settings *settings,
+                             const weft_progress *progress, weft_hand *hand, weft_error *error);
+void weft_hand_free(weft_hand *hand);
+
+#endif

@@ -1,0 +1,61 @@
+/* Where the lamp stood in every photograph, and how bright it was: from the fall of its light over the paper, and from
+ * its highlights on mirror balls. The tone curve of the camera and the vignetting of its lens are found with it,
+ * because the same brightness tells all three. */
+#ifndef WEFT_REGISTRATION_HAND_LAMP_H
+#define WEFT_REGISTRATION_HAND_LAMP_H
+
+#include "registration/hand/ball.h"
+#include "registration/hand/paper.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Corrections of the logarithm of light: coefficients of powers of the encoded value, which is stretched to -1..1. */
+enum { WEFT_TONE_TERMS = 5 };
+
+/* What one photograph tells. */
+typedef struct weft_lamp_evidence {
+    weft_pose pose;
+    weft_paper_samples paper;
+    weft_highlight highlight[WEFT_TARGET_BALL_COUNT];
+    double exposure; /* time x sensitivity / f-number^2 as the camera wrote it; 0: it wrote none */
+} weft_lamp_evidence;
+
+typedef struct weft_lamp_problem {
+    const weft_target *target;
+    const weft_paper_places *places;
+    int count;
+    const weft_lamp_evidence *evidence; /* [count] */
+    double ball_diameter_mm;            /* 0: no balls */
+    double corner_radius_squared;       /* of the photograph, in the units of the samples' radius_squared */
+    bool flash;                         /* the lamp is fixed to the camera */
+    bool tone_unknown;                  /* find the corrections of the tone curve, too */
+} weft_lamp_problem;
+
+typedef struct weft_lamp_solution {
+    weft_lamp_place *place;       /* [count]; in: where the search starts */
+    double tone[WEFT_TONE_TERMS]; /* light = decoded light x exp(sum_k tone[k] (2 encoded - 1)^(k + 1)) */
+    double vignetting[3];         /* as weft_camera has it */
+    double ink;                   /* reflectance of ink over that of paper */
+    double ball_shift_mm[WEFT_TARGET_BALL_COUNT][2]; /* from its place on the sheet */
+    double flash_mm[3];                              /* in the frame of the camera */
+} weft_lamp_solution;
+
+/* Fills solution->place with a first guess: where the rays from the balls meet, else by a search over directions and
+ * distances for what the paper shows; the flash at the camera. Pure. */
+void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solution);
+
+/* Least squares over all photographs together (Ceres), from the guess. A sample of paper at place x under a lamp at L
+ * obeys
+ *     log light = log level + log(L_z |L|^2 / |L - x|^3) + log V(r^2) + [ink] log ink
+ * after Lambert's and the inverse square law; a highlight obeys the law of reflection on a sphere. Shadows and stains
+ * hardly count (Cauchy's weight). One lamp has one power: level |L|^2 / exposure is the same in all photographs, within
+ * a tenth, where the camera wrote its exposure. Deviations from this model are smooth over the sheet, so the samples of
+ * one photograph count as `independent_samples` in all. Errors: WEFT_SYSTEM. */
+weft_code weft_lamp_solve(const weft_lamp_problem *problem, weft_lamp_solution *solution, weft_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,429 @@
+#include "base/picture/colour.h"
+#include "registration/hand/lamp.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace
+{
+
+/* Lengths inside the solver, so that all unknowns are of the order of 1. */
+constexpr double unit_mm = 100;
+
+/* Standard deviations of the model, not of the noise: paper is no perfect diffuser, and ink shines. */
+constexpr double paper_deviation = 0.01, ink_deviation = 0.05;
+constexpr double independent_samples = 30;
+
+/* What is known beforehand: lamps stand at some 700 mm, within a factor of e; a ball stands within a millimetre of its
+ * place; tone curves differ from sRGB by some tens of percent; ink within a fifth. */
+constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, tone_deviation = 1;
+constexpr double power_deviation = 0.1, ink_prior_deviation = 0.2, vignetting_deviation = 0.2, flash_deviation_mm = 60;
+
+using vec3 = std::array<double, 3>;
+
+/* Unknowns of one photograph: the lamp in units, and the logarithm of its level in three channels. */
+struct photograph_unknowns {
+    double lamp[3], level[3];
+};
+
+/* Unknowns that all photographs share. */
+struct shared_unknowns {
+    double tone[WEFT_TONE_TERMS], vignetting[2], ink, power, shift[WEFT_TARGET_BALL_COUNT][2], flash[3];
+};
+
+/* From the lamp's unknowns to its place on the plate: itself, or moved with the camera. */
+struct mounting {
+    bool is_flash;
+    weft_pose pose;
+
+    template <typename T> void place(const T *unknown, T *lamp) const
+    {
+        if (!is_flash) {
+            std::copy_n(unknown, 3, lamp);
+            return;
+        }
+        T there[3] = {unknown[0] - pose.translation.x / unit_mm, unknown[1] - pose.translation.y / unit_mm,
+                      unknown[2] - pose.translation.z / unit_mm};
+        for (int axis = 0; axis < 3; axis++)
+            lamp[axis] = pose.rotation[0][axis] * there[0] + pose.rotation[1][axis] * there[1] +
+                         pose.rotation[2][axis] * there[2];
+    }
+};
+
+struct paper_residual {
+    mounting mount;
+    double x, y, log_light[3], power[3][WEFT_TONE_TERMS], radius_squared, weight;
+    bool is_ink;
+
+    template <typename T>
+    bool operator()(const T *unknown, const T *level, const T *tone, const T *vignetting, const T *ink,
+                    T *residual) const
+    {
+        T lamp[3];
+        mount.place(unknown, lamp);
+        if (lamp[2] <= T(0.01))
+            return false;
+        const T dx = lamp[0] - x, dy = lamp[1] - y;
+        const T near_squared = dx * dx + dy * dy + lamp[2] * lamp[2];
+        const T far_squared = lamp[0] * lamp[0] + lamp[1] * lamp[1] + lamp[2] * lamp[2];
+        const T fall = 1.0 + radius_squared * (vignetting[0] + radius_squared * vignetting[1]);
+        if (fall <= T(0.05))
+            return false;
+        T common = log(lamp[2]) + log(far_squared) - 1.5 * log(near_squared) + log(fall);
+        if (is_ink)
+            common += ink[0];
+        for (int c = 0; c < 3; c++) {
+            T value = T(log_light[c]);
+            for (int k = 0; k < WEFT_TONE_TERMS; k++)
+                value += tone[k] * power[c][k];
+            residual[c] = weight * (value - level[c] - common);
+        }
+        return true;
+    }
+};
+
+struct highlight_residual {
+    mounting mount;
+    vec3 eye, ray, touch; /* in units; `touch` is where the ball touches the sheet by the drawing */
+    double radius, deviation_rad;
+
+    template <typename T> bool operator()(const T *unknown, const T *shift, T *residual) const
+    {
+        const T centre[3] = {touch[0] + shift[0], touch[1] + shift[1], T(radius)};
+        T offset[3], half = T(0), square = T(0);
+        for (int i = 0; i < 3; i++) {
+            offset[i] = eye[i] - centre[i];
+            half += offset[i] * ray[i];
+            square += offset[i] * offset[i];
+        }
+        const T under = half * half - square + radius * radius;
+        if (under <= T(1e-9)) /* the ray passes the ball */
+            return false;
+        const T along = -half - sqrt(under);
+        T point[3], lamp[3], normal_part = T(0), normal[3], to[3], length = T(0);
+        mount.place(unknown, lamp);
+        for (int i = 0; i < 3; i++) {
+            point[i] = eye[i] + ray[i] * along;
+            normal[i] = (point[i] - centre[i]) / radius;
+            normal_part += ray[i] * normal[i];
+            to[i] = lamp[i] - point[i];
+            length += to[i] * to[i];
+        }
+        length = sqrt(length);
+        T mirrored[3];
+        for (int i = 0; i < 3; i++)
+            mirrored[i] = ray[i] - 2.0 * normal_part * normal[i];
+        for (int i = 0; i < 3; i++) {
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
+            residual[i] = (to[j] * mirrored[k] - to[k] * mirrored[j]) / (length * deviation_rad);
+        }
+        return true;
+    }
+};
+
+/* The power of the lamp: the level times the squared distance, for the exposure. */
+struct power_residual {
+    mounting mount;
+    double log_exposure;
+
+    template <typename T> bool operator()(const T *unknown, const T *level, const T *power, T *residual) const
+    {
+        T lamp[3];
+        mount.place(unknown, lamp);
+        const T squared = lamp[0] * lamp[0] + lamp[1] * lamp[1] + lamp[2] * lamp[2];
+        residual[0] = (level[1] + log(squared) - log_exposure - power[0]) / power_deviation;
+        return true;
+    }
+};
+
+/* (value - mean) / deviation of every unknown in a block. */
+template <int N> struct prior_residual {
+    std::array<double, N> mean;
+    double deviation;
+
+    template <typename T> bool operator()(const T *value, T *residual) const
+    {
+        for (int i = 0; i < N; i++)
+            residual[i] = (value[i] - mean[i]) / deviation;
+        return true;
+    }
+};
+
+struct distance_residual {
+    template <typename T> bool operator()(const T *lamp, T *residual) const
+    {
+        const T squared = lamp[0] * lamp[0] + lamp[1] * lamp[1] + lamp[2] * lamp[2];
+        residual[0] = (0.5 * log(squared) - std::log(typical_mm / unit_mm)) / distance_deviation;
+        return true;
+    }
+};
+
+/* The mean is where the block stands now. */
+template <int N> void add_prior(ceres::Problem &problem, double *block, double deviation)
+{
+    std::array<double, N> mean;
+    std::copy_n(block, N, mean.begin());
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<prior_residual<N>, N, N>(new prior_residual<N>{mean, deviation}), nullptr,
+        block);
+}
+
+class lamp_search
+{
+  public:
+    lamp_search(const weft_lamp_problem *given, weft_lamp_solution *wanted)
+        : input(given), output(wanted), own((size_t)given->count)
+    {
+        shared = {};
+        shared.ink = std::log(wanted->ink);
+        for (int i = 0; i < input->count; i++)
+            start(i);
+        for (int i = 0; i < input->count; i++) {
+            add_paper(i);
+            add_highlights(i);
+        }
+        add_power();
+        add_priors();
+    }
+
+    weft_code solve(weft_error *error)
+    {
+        ceres::Solver::Options options;
+        options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+        options.num_threads = 2;
+        options.max_num_iterations = 200;
+        options.function_tolerance = 1e-9;
+        options.logging_type = ceres::SILENT;
+        ceres::Solver::Summary summary;
+        ceres::Solve(options, &problem, &summary);
+        if (!summary.IsSolutionUsable())
+            return weft_fail(error, WEFT_SYSTEM, "the lamps cannot be found: %s", summary.message.c_str());
+        for (int i = 0; i < input->count; i++)
+            write_place(i);
+        find_uncertainties();
+        write_shared();
+        return WEFT_OK;
+    }
+
+  private:
+    const weft_lamp_problem *input;
+    weft_lamp_solution *output;
+    std::vector<photograph_unknowns> own;
+    shared_unknowns shared;
+    ceres::Problem problem;
+
+    double *lamp_of(int i)
+    {
+        return input->flash ? shared.flash : own[(size_t)i].lamp;
+    }
+
+    mounting mount_of(int i) const
+    {
+        return {input->flash, input->evidence[i].pose};
+    }
+
+    /* The level that the guess of the lamp leaves at the median. */
+    void start(int i)
+    {
+        const weft_lamp_evidence &evidence = input->evidence[i];
+        const weft_vec3 lamp = output->place[i].position_mm;
+        const double squared = (double)weft_dot(lamp, lamp);
+        photograph_unknowns &unknowns = own[(size_t)i];
+        unknowns = {{lamp.x / unit_mm, lamp.y / unit_mm, lamp.z / unit_mm}, {0, 0, 0}};
+        for (int c = 0; c < 3; c++) {
+            std::vector<double> level;
+            for (int k = 0; k < evidence.paper.count; k++) {
+                const weft_paper_sample &s = evidence.paper.sample[k];
+                const double *at = input->places->place[s.place];
+                const double dx = lamp.x - at[0], dy = lamp.y - at[1], near = dx * dx + dy * dy + lamp.z * lamp.z;
+                if (!input->places->is_ink[s.place] && s.light[c] > 0)
+                    level.push_back(std::log((double)s.light[c]) - std::log(lamp.z * squared) + 1.5 * std::log(near));
+            }
+            if (level.empty())
+                continue;
+            std::nth_element(level.begin(), level.begin() + (long)level.size() / 2, level.end());
+            unknowns.level[c] = level[level.size() / 2];
+        }
+    }
+
+    void add_paper(int i)
+    {
+        const weft_paper_samples &paper = input->evidence[i].paper;
+        const double share = std::sqrt(std::min(1.0, independent_samples / std::max(1, 3 * paper.count)));
+        for (int k = 0; k < paper.count; k++) {
+            const weft_paper_sample &s = paper.sample[k];
+            const bool is_ink = input->places->is_ink[s.place];
+            auto residual = std::make_unique<paper_residual>();
+            residual->mount = mount_of(i);
+            residual->x = input->places->place[s.place][0] / unit_mm;
+            residual->y = input->places->place[s.place][1] / unit_mm;
+            residual->radius_squared = (double)s.radius_squared / input->corner_radius_squared;
+            residual->is_ink = is_ink;
+            residual->weight = share / (is_ink ? ink_deviation : paper_deviation);
+            if (!(std::min({s.light[0], s.light[1], s.light[2]}) > 1e-4f))
+                continue;
+            for (int c = 0; c < 3; c++) {
+                residual->log_light[c] = std::log((double)s.light[c]);
+                double power = 1, encoded = 2 * (double)weft_srgb_of_linear(s.light[c]) - 1;
+                for (int term = 0; term < WEFT_TONE_TERMS; term++)
+                    residual->power[c][term] = power *= encoded;
+            }
+            problem.AddResidualBlock(
+                new ceres::AutoDiffCostFunction<paper_residual, 3, 3, 3, WEFT_TONE_TERMS, 2, 1>(residual.release()),
+                new ceres::ScaledLoss(new ceres::CauchyLoss(3 * share), 1, ceres::TAKE_OWNERSHIP), lamp_of(i),
+                own[(size_t)i].level, shared.tone, shared.vignetting, &shared.ink);
+        }
+    }
+
+    void add_highlights(int i)
+    {
+        const weft_lamp_evidence &evidence = input->evidence[i];
+        const weft_vec3 eye = weft_pose_camera_position(&evidence.pose);
+        for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT; ball++) {
+            const weft_highlight &seen = evidence.highlight[ball];
+            if (!seen.found || !(input->ball_diameter_mm > 0))
+                continue;
+            double place[2];
+            weft_target_ball(input->target, ball, place);
+            auto residual = new highlight_residual{mount_of(i),
+                                                   {eye.x / unit_mm, eye.y / unit_mm, eye.z / unit_mm},
+                                                   {seen.ray.x, seen.ray.y, seen.ray.z},
+                                                   {place[0] / unit_mm, place[1] / unit_mm, 0},
+                                                   input->ball_diameter_mm / 2 / unit_mm,
+                                                   seen.deviation_rad};
+            double vanishing[3];
+            if (!(*residual)(lamp_of(i), shared.shift[ball], vanishing)) {
+                delete residual;
+                continue;
+            }
+            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<highlight_residual, 3, 3, 2>(residual),
+                                     new ceres::CauchyLoss(3), lamp_of(i), shared.shift[ball]);
+        }
+    }
+
+    double log_power(int i) const
+    {
+        const weft_vec3 lamp = output->place[i].position_mm;
+        const double squared = (double)weft_dot(lamp, lamp) / (unit_mm * unit_mm);
+        return own[(size_t)i].level[1] + std::log(squared) - std::log(input->evidence[i].exposure);
+    }
+
+    /* One lamp has one power; it begins at the median. */
+    void add_power()
+    {
+        std::vector<double> power;
+        for (int i = 0; i < input->count; i++)
+            if (input->evidence[i].exposure > 0)
+                power.push_back(log_power(i));
+        if (power.size() < 2)
+            return;
+        std::nth_element(power.begin(), power.begin() + (long)power.size() / 2, power.end());
+        shared.power = power[power.size() / 2];
+        for (int i = 0; i < input->count; i++) {
+            if (!(input->evidence[i].exposure > 0))
+                continue;
+            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<power_residual, 1, 3, 3, 1>(
+                                         new power_residual{mount_of(i), std::log(input->evidence[i].exposure)}),
+                                     new ceres::CauchyLoss(2), lamp_of(i), own[(size_t)i].level, &shared.power);
+        }
+    }
+
+    void hold(double *block)
+    {
+        if (problem.HasParameterBlock(block))
+            problem.SetParameterBlockConstant(block);
+    }
+
+    void add_priors()
+    {
+        add_prior<WEFT_TONE_TERMS>(problem, shared.tone, tone_deviation);
+        /* Natural vignetting is cos^4 = 1 - 2 r^2 + ...; the rims of a lens take more, its design less. */
+        shared.vignetting[0] = -2 * input->corner_radius_squared;
+        add_prior<2>(problem, shared.vignetting, vignetting_deviation);
+        add_prior<1>(problem, &shared.ink, ink_prior_deviation);
+        for (auto &shift : shared.shift)
+            add_prior<2>(problem, shift, shift_deviation_mm / unit_mm);
+        if (input->flash)
+            add_prior<3>(problem, shared.flash, flash_deviation_mm / unit_mm);
+        for (int i = 0; !input->flash && i < input->count; i++)
+            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<distance_residual, 1, 3>(new distance_residual),
+                                     nullptr, lamp_of(i));
+        if (!input->tone_unknown)
+            hold(shared.tone);
+    }
+
+    /* Standard errors of the lamps' directions from the middle of the sample. */
+    void find_uncertainties()
+    {
+        using block_pair = std::pair<const double *, const double *>;
+        ceres::Covariance::Options options;
+        options.algorithm_type = ceres::SPARSE_QR;
+        ceres::Covariance covariance(options);
+        std::vector<block_pair> wanted;
+        for (int i = 0; i < (input->flash ? 1 : input->count); i++)
+            wanted.emplace_back(lamp_of(i), lamp_of(i));
+        const bool known = covariance.Compute(wanted, &problem);
+        for (int i = 0; i < input->count; i++)
+            output->place[i].uncertainty_deg = known ? uncertainty_deg(covariance, i) : 90;
+    }
+
+    /* From the part of the covariance across the direction; of a flash two thirds of it. */
+    double uncertainty_deg(const ceres::Covariance &covariance, int i)
+    {
+        double matrix[9], lamp[3], *block = lamp_of(i), along = 0;
+        if (!covariance.GetCovarianceBlock(block, block, matrix))
+            return 90;
+        mount_of(i).place(block, lamp);
+        const double squared = lamp[0] * lamp[0] + lamp[1] * lamp[1] + lamp[2] * lamp[2];
+        const double trace = matrix[0] + matrix[4] + matrix[8];
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                along += lamp[r] * matrix[3 * r + c] * lamp[c] / squared;
+        along = input->flash ? trace / 3 : along;
+        return std::sqrt(std::max(0.0, trace - along) / squared) * 180 / WEFT_PI;
+    }
+
+    void write_place(int i)
+    {
+        double lamp[3];
+        mount_of(i).place(lamp_of(i), lamp);
+        weft_lamp_place *place = &output->place[i];
+        place->position_mm = weft_vec3_of(lamp[0] * unit_mm, lamp[1] * unit_mm, lamp[2] * unit_mm);
+        for (int c = 0; c < 3; c++)
+            place->level[c] = std::exp(own[(size_t)i].level[c]) / input->target->paper_reflectance;
+    }
+
+    void write_shared()
+    {
+        std::copy_n(shared.tone, WEFT_TONE_TERMS, output->tone);
+        const double corner = input->corner_radius_squared;
+        output->vignetting[0] = shared.vignetting[0] / corner;
+        output->vignetting[1] = shared.vignetting[1] / (corner * corner);
+        output->vignetting[2] = 0;
+        output->ink = std::exp(shared.ink);
+        for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT; ball++)
+            for (int axis = 0; axis < 2; axis++)
+                output->ball_shift_mm[ball][axis] = shared.shift[ball][axis] * unit_mm;
+        for (int axis = 0; axis < 3; axis++)
+            output->flash_mm[axis] = shared.flash[axis] * unit_mm;
+    }
+};
+
+} // namespace
+
+extern "C" weft_code weft_lamp_solve(const weft_lamp_problem *problem, weft_lamp_solution *solution, weft_error *error)
+try {
+    return lamp_search(problem, solution).solve(error);
+} catch (const std::bad_alloc &) {
+    return weft_fail_memory(error, "the search for lamps", 0);
+} catch (const std::exception &failure) {
+    return weft_fail(error, WEFT_SYSTEM, "the search for lamps: %s", failure.what());
+}

@@ -1,0 +1,121 @@
+#include "registration/hand/lamp.h"
+
+#include "base/numeric/statistics.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* The search over directions and distances. */
+enum { ring_count = 8, azimuth_count = 24 };
+static const double distances_mm[] = {300, 500, 900, 1600};
+static const double first_ring_deg = 4, ring_step_deg = 10;
+
+/* The ray that a highlight reflects, from its place on the ball. False where the camera's ray misses the ball. */
+static bool reflected_ray(const weft_lamp_problem *problem, const weft_lamp_evidence *evidence, int ball,
+                          weft_vec3 *from, weft_vec3 *along)
+{
+    double place[2], radius = problem->ball_diameter_mm / 2;
+    if (!evidence->highlight[ball].found || !(radius > 0))
+        return false;
+    weft_target_ball(problem->target, ball, place);
+    weft_vec3 centre = weft_vec3_of(place[0], place[1], radius), eye = weft_pose_camera_position(&evidence->pose);
+    weft_vec3 ray = evidence->highlight[ball].ray, offset = weft_subtract(eye, centre);
+    double half = weft_dot(offset, ray), root = half * half - weft_dot(offset, offset) + radius * radius;
+    if (!(root >= 0))
+        return false;
+    *from = weft_add(eye, weft_scale(ray, -half - sqrt(root)));
+    weft_vec3 normal = weft_scale(weft_subtract(*from, centre), 1 / radius);
+    *along = weft_subtract(ray, weft_scale(normal, 2 * weft_dot(ray, normal)));
+    return true;
+}
+
+/* Midway between the two rays where they come closest; false where they never meet in front of the balls. */
+static bool meet(const weft_vec3 from[2], const weft_vec3 along[2], weft_vec3 *place)
+{
+    weft_vec3 between = weft_subtract(from[1], from[0]);
+    double b = weft_dot(along[0], along[1]), d = weft_dot(along[0], between), e = weft_dot(along[1], between);
+    double determinant = 1 - b * b;
+    if (determinant < 1e-6)
+        return false;
+    double s = (d - b * e) / determinant, t = (b * d - e) / determinant;
+    weft_vec3 p = weft_add(from[0], weft_scale(along[0], s)), q = weft_add(from[1], weft_scale(along[1], t));
+    *place = weft_scale(weft_add(p, q), 0.5);
+    return s > 0 && t > 0 && place->z > 0;
+}
+
+static bool guess_from_balls(const weft_lamp_problem *problem, const weft_lamp_evidence *evidence, weft_vec3 *place)
+{
+    weft_vec3 from[2], along[2];
+    bool seen[2];
+    for (int ball = 0; ball < 2; ball++)
+        seen[ball] = reflected_ray(problem, evidence, ball, &from[ball], &along[ball]);
+    if (seen[0] && seen[1] && meet(from, along, place))
+        return true;
+    for (int ball = 0; ball < 2; ball++) {
+        const double typical_mm = 700;
+        if (!seen[ball] || !(along[ball].z > 0.05))
+            continue;
+        *place = weft_add(from[ball], weft_scale(along[ball], typical_mm));
+        return true;
+    }
+    return false;
+}
+
+static double log_irradiance(weft_vec3 lamp, const double place[2])
+{
+    weft_vec3 to = weft_vec3_of(lamp.x - place[0], lamp.y - place[1], lamp.z);
+    return log(lamp.z * weft_dot(lamp, lamp)) - 1.5 * log(weft_dot(to, to));
+}
+
+/* Median modulus of what a lamp leaves unexplained of the bare paper, after the median. */
+static double misfit(const weft_lamp_problem *problem, const weft_lamp_evidence *evidence, weft_vec3 lamp,
+                     double *scratch)
+{
+    size_t count = 0;
+    for (int i = 0; i < evidence->paper.count; i++) {
+        const weft_paper_sample *s = &evidence->paper.sample[i];
+        if (problem->places->is_ink[s->place])
+            continue;
+        double light = (s->light[0] + s->light[1] + s->light[2]) / 3.0;
+        scratch[count++] = log(fmax(light, 1e-6)) - log_irradiance(lamp, problem->places->place[s->place]);
+    }
+    double median = weft_quantile(scratch, count, 0.5);
+    for (size_t i = 0; i < count; i++)
+        scratch[i] = fabs(scratch[i] - median);
+    return count > 0 ? weft_quantile(scratch, count, 0.5) : 0;
+}
+
+static weft_vec3 guess_from_paper(const weft_lamp_problem *problem, const weft_lamp_evidence *evidence)
+{
+    weft_vec3 best = weft_vec3_of(0, 0, distances_mm[1]);
+    double *scratch = malloc(((size_t)evidence->paper.count + 1) * sizeof *scratch), least = INFINITY;
+    for (int i = 0; scratch && i < ring_count * azimuth_count * 4; i++) {
+        double theta = weft_rad_of_deg(first_ring_deg + ring_step_deg * (i / 4 / azimuth_count));
+        weft_angles angles = {theta, 2 * WEFT_PI * (i / 4 % azimuth_count) / azimuth_count};
+        weft_vec3 lamp = weft_scale(weft_direction_of_angles(angles), distances_mm[i % 4]);
+        double left = misfit(problem, evidence, lamp, scratch);
+        if (left < least)
+            least = left, best = lamp;
+    }
+    free(scratch);
+    return best;
+}
+
+void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solution)
+{
+    *solution = (weft_lamp_solution){.place = solution->place,
+                                     .ink = problem->target->ink_reflectance / problem->target->paper_reflectance};
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int i = 0; i < problem->count; i++) {
+        const weft_lamp_evidence *evidence = &problem->evidence[i];
+        weft_lamp_place *place = &solution->place[i];
+        place->source = WEFT_LAMP_PAPER;
+        if (problem->flash) {
+            place->source = WEFT_LAMP_FLASH;
+            place->position_mm = weft_pose_camera_position(&evidence->pose);
+        } else if (guess_from_balls(problem, evidence, &place->position_mm))
+            place->source = WEFT_LAMP_BALLS;
+        else
+            place->position_mm = guess_from_paper(problem, evidence);
+    }
+}

@@ -1,0 +1,222 @@
+#include "registration/hand/material.h"
+
+#include "base/text/json_text.h"
+#include "btf/dataset/dataset.h"
+#include "registration/hand/read.h"
+#include "registration/hand/thumbnail.h"
+#include "registration/resample/resample.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct work {
+    const char *folder;
+    const weft_hand_settings *settings;
+    const weft_progress *progress;
+    weft_hand *hand;
+    weft_dataset_writer *writer;
+    float *inverse_vignetting;
+    int *photograph; /* [used_count] index of every image of the dataset */
+} work;
+
+static weft_code index_images(work *w, int *count, weft_error *error)
+{
+    w->photograph = malloc((size_t)w->hand->count * sizeof *w->photograph);
+    if (!w->photograph)
+        return weft_fail_memory(error, "images", (size_t)w->hand->count * sizeof *w->photograph);
+    *count = 0;
+    for (int i = 0; i < w->hand->count; i++) {
+        if (weft_hand_used(&w->hand->photograph[i]))
+            w->photograph[(*count)++] = i;
+    }
+    return WEFT_OK;
+}
+
+static weft_code describe(const work *w, int count, weft_dataset_layout *layout, weft_error *error)
+{
+    *layout = (weft_dataset_layout){.width = w->settings->width,
+                                    .height = w->settings->height,
+                                    .image_count = count,
+                                    .view_count = count,
+                                    .values = WEFT_REFLECTANCE_COSINE,
+                                    .distance = WEFT_NEAR,
+                                    .texel_pitch_mm = w->settings->target.opening_mm / w->settings->width};
+    WEFT_TRY(weft_dataset_layout_allocate(layout, error));
+    layout->view_count = 0;
+    for (int image = 0; image < count; image++) {
+        const weft_hand_photograph *p = &w->hand->photograph[w->photograph[image]];
+        weft_vec3 eye = weft_pose_camera_position(&p->pose);
+        int view = 0;
+        while (view < layout->view_count && weft_length(weft_subtract(layout->view[view], eye)) > 0)
+            view++;
+        if (view == layout->view_count)
+            layout->view[layout->view_count++] = eye;
+        layout->view_of_image[image] = view;
+        layout->light[image] = p->lamp.position_mm;
+    }
+    return WEFT_OK;
+}
+
+static weft_code invert_vignetting(work *w, weft_error *error)
+{
+    const weft_camera *camera = &w->hand->lens.camera;
+    size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    w->inverse_vignetting = malloc(pixels * sizeof *w->inverse_vignetting);
+    if (!w->inverse_vignetting)
+        return weft_fail_memory(error, "the vignetting", pixels * sizeof *w->inverse_vignetting);
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < camera->height; y++) {
+        for (int x = 0; x < camera->width; x++)
+            w->inverse_vignetting[(long)y * camera->width + x] =
+                (float)(1 / weft_camera_vignetting(camera, (weft_pixel){x, y}));
+    }
+    return WEFT_OK;
+}
+
+/* Divides weighted sums of light by what a perfect white diffuser would show at each texel; sets the mask where the
+ * quotient is beyond half floats. */
+static void normalise(const weft_hand_settings *settings, const weft_lamp_place *lamp, const float *texel,
+                      weft_half *half, uint8_t *mask)
+{
+    weft_vec3 l = lamp->position_mm;
+    for (int y = 0; y < settings->height; y++) {
+        for (int x = 0; x < settings->width; x++) {
+            long at = (long)y * settings->width + x;
+            double side = settings->target.opening_mm, dx = l.x - ((x + 0.5) / settings->width - 0.5) * side;
+            double dy = l.y - (0.5 - (y + 0.5) / settings->height) * side;
+            double nearness = weft_dot(l, l) / (dx * dx + dy * dy + l.z * l.z) * WEFT_HAND_FULL_SCALE;
+            for (int c = 0; c < 3; c++) {
+                half[3 * at + c] = weft_half_of_float((float)((double)texel[3 * at + c] / (lamp->level[c] * nearness)));
+                if (!isfinite(weft_float_of_half(half[3 * at + c])))
+                    mask[at] |= WEFT_MASK_MISSING;
+            }
+        }
+    }
+}
+
+static weft_code resample(const work *w, int image, const weft_light_values *values, float *texel, weft_half *half,
+                          uint8_t *mask, weft_error *error)
+{
+    weft_hand_photograph *p = &w->hand->photograph[w->photograph[image]];
+    weft_resampler resampler;
+    weft_resampling resampling = {.camera = &w->hand->lens.camera,
+                                  .inverse_vignetting = w->inverse_vignetting,
+                                  .homography = p->homography,
+                                  .opening_mm = w->settings->target.opening_mm,
+                                  .point_spread_px = 2 * sqrt(fmax(0, p->point_spread.constant))};
+    WEFT_TRY(weft_resampler_create(&resampling, w->settings->width, w->settings->height, &resampler, error));
+    weft_resampler_apply(&resampler, values->samples, 0, WEFT_HAND_FULL_SCALE, texel, mask);
+    weft_resampler_free(&resampler);
+    normalise(w->settings, &p->lamp, texel, half, mask);
+    WEFT_TRY(weft_thumbnail_of_texels(half, w->settings->width, w->settings->height, &p->rectified, error));
+    return weft_dataset_writer_put_image(w->writer, image, half, mask, error);
+}
+
+static weft_code put_image(const work *w, int image, weft_error *error)
+{
+    const weft_hand_photograph *p = &w->hand->photograph[w->photograph[image]];
+    size_t texels = (size_t)w->settings->width * (size_t)w->settings->height;
+    float *texel = malloc(texels * 3 * sizeof *texel);
+    weft_half *half = malloc(texels * 3 * sizeof *half);
+    uint8_t *mask = calloc(texels, 1);
+    char *path = NULL;
+    weft_light_values values = {0};
+    weft_code code = WEFT_OK;
+    if (!texel || !half || !mask || asprintf(&path, "%s/%s", w->folder, p->name) < 0)
+        code = weft_fail_memory(error, p->name, texels * 19);
+    if (code == WEFT_OK)
+        code = weft_light_values_read(path, p->exif.width, p->exif.height, &w->hand->tone,
+                                      p->exif.is_float ? INFINITY : (float)w->settings->clipped_at, &values, error);
+    if (code == WEFT_OK)
+        code = resample(w, image, &values, texel, half, mask, error);
+    weft_light_values_free(&values);
+    free(path);
+    free(texel);
+    free(half);
+    free(mask);
+    return code;
+}
+
+static weft_code put_all(work *w, int count, weft_error *error)
+{
+    weft_code result = WEFT_OK;
+    long done = 0;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int image = 0; image < count; image++) {
+        weft_error own = {0};
+        weft_code code = put_image(w, image, &own);
+#pragma omp critical(weft_hand_put)
+        {
+            weft_progress_report(w->progress, "writing the dataset", ++done, count);
+            if (code != WEFT_OK && result == WEFT_OK) {
+                result = code;
+                *error = own;
+            }
+        }
+    }
+    return result;
+}
+
+static json_t *pack_photograph(const weft_hand_photograph *p)
+{
+    if (!weft_hand_used(p))
+        return json_pack("{so ss}", "file", weft_json_text(p->name, strlen(p->name)), "left_out", p->remark);
+    weft_vec3 eye = weft_pose_camera_position(&p->pose), lamp = p->lamp.position_mm;
+    return json_pack("{so sf sf sf s[fff] s[fff] sf s[fff]}", "file", weft_json_text(p->name, strlen(p->name)),
+                     "corner_rms_px", p->corner_rms_px, "correlation", p->correlation, "standard_error_mm",
+                     p->uncertainty_mm, "camera_mm", eye.x, eye.y, eye.z, "lamp_mm", lamp.x, lamp.y, lamp.z,
+                     "lamp_uncertainty_deg", p->lamp.uncertainty_deg, "white_level", p->lamp.level[0], p->lamp.level[1],
+                     p->lamp.level[2]);
+}
+
+static char *provenance(const work *w)
+{
+    const weft_camera *c = &w->hand->lens.camera;
+    json_t *photographs = json_array(), *tone = json_array();
+    for (int i = 0; i <= WEFT_TONE_STEPS; i += WEFT_TONE_STEPS / 64)
+        weft_json_append(&tone, json_real((double)w->hand->tone.linear[i]));
+    for (int i = 0; i < w->hand->count; i++)
+        weft_json_append(&photographs, pack_photograph(&w->hand->photograph[i]));
+    json_t *root = json_pack(
+        "{ss s{si si sf sf sf sf sf sf s[fff]} sf sf so so}", "program", "weft photographs " WEFT_VERSION, "lens",
+        "width", c->width, "height", c->height, "fx", c->fx, "fy", c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2",
+        c->k2, "vignetting", c->vignetting[0], c->vignetting[1], c->vignetting[2], "opening_mm",
+        w->settings->target.opening_mm, "ink_over_paper", w->hand->lamps.ink, "tone", tone, "photographs", photographs);
+    char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
+    json_decref(root);
+    return text;
+}
+
+static weft_code write(work *w, const char *output, int count, weft_dataset_layout *layout, weft_error *error)
+{
+    WEFT_TRY(describe(w, count, layout, error));
+    WEFT_TRY(invert_vignetting(w, error));
+    WEFT_TRY(weft_dataset_writer_create(output, layout, &w->writer, error));
+    WEFT_TRY(put_all(w, count, error));
+    char *text = provenance(w);
+    if (!text)
+        return weft_fail_memory(error, "provenance", 0);
+    weft_dataset_writer *writer = w->writer;
+    w->writer = NULL;
+    weft_code code = weft_dataset_writer_finish(writer, text, error);
+    free(text);
+    return code;
+}
+
+weft_code weft_hand_write_dataset(const char *folder, const char *output, const weft_hand_settings *settings,
+                                  const weft_progress *progress, weft_hand *hand, weft_error *error)
+{
+    work w = {.folder = folder, .settings = settings, .progress = progress, .hand = hand};
+    weft_dataset_layout layout = {0};
+    int count = 0;
+    weft_code code = index_images(&w, &count, error);
+    if (code == WEFT_OK)
+        code = write(&w, output, count, &layout, error);
+    weft_dataset_writer_abandon(w.writer);
+    weft_dataset_layout_free(&layout);
+    free(w.inverse_vignetting);
+    free(w.photograph);
+    return code;
+}

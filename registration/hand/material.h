@@ -1,0 +1,12 @@
+/* The used photographs as images of a dataset. */
+#ifndef WEFT_REGISTRATION_HAND_MATERIAL_H
+#define WEFT_REGISTRATION_HAND_MATERIAL_H
+
+#include "registration/hand/hand.h"
+
+/* Resamples the photographs under their poses, divides by what a perfect white diffuser would show at every texel, and
+ * writes the dataset. Errors: WEFT_BAD_INPUT where a file has gone since; WEFT_SYSTEM. Uses OpenMP. */
+weft_code weft_hand_write_dataset(const char *folder, const char *output, const weft_hand_settings *settings,
+                                  const weft_progress *progress, weft_hand *hand, weft_error *error);
+
+#endif

@@ -1,0 +1,55 @@
+/* One photograph of a camera in the hand, and what is found out about it. */
+#ifndef WEFT_REGISTRATION_HAND_PHOTOGRAPH_H
+#define WEFT_REGISTRATION_HAND_PHOTOGRAPH_H
+
+#include "base/picture/exif.h"
+#include "base/picture/image.h"
+#include "btf/session/camera.h"
+#include "btf/session/target.h"
+#include "registration/pose/prediction.h"
+
+#include <stdbool.h>
+
+enum { WEFT_PLATE_CORNERS = 4 * WEFT_SHEET_MARKER_COUNT };
+
+/* What tells where the lamp stood. */
+typedef enum weft_lamp_source {
+    WEFT_LAMP_UNKNOWN,
+    WEFT_LAMP_PAPER, /* the fall of light over the paper alone */
+    WEFT_LAMP_BALLS, /* highlights on mirror balls, and the paper */
+    WEFT_LAMP_FLASH  /* fixed to the camera, the same in all photographs */
+} weft_lamp_source;
+
+typedef struct weft_lamp_place {
+    weft_lamp_source source;
+    weft_vec3 position_mm;  /* in the plate frame */
+    double uncertainty_deg; /* standard error of its direction from the middle of the sample */
+    double level[3]; /* linear value of a perfect white diffuser in the middle, lit along its normal from there */
+    double residual; /* of the paper, RMS of the logarithm */
+} weft_lamp_place;
+
+typedef struct weft_hand_photograph {
+    char *name; /* of the file, in its folder */
+    weft_exif exif;
+    char remark[192]; /* why it is left out; empty where it is used */
+
+    int marker_count, corner_count;
+    double plate[WEFT_PLATE_CORNERS][2], seen[WEFT_PLATE_CORNERS][2]; /* corners: mm, and pixels */
+    double corner_rms_px;                                             /* under the lens of all photographs */
+
+    weft_pose pose;
+    weft_homography homography; /* plate mm to undistorted pixels, refined against the drawing */
+    weft_point_spread point_spread;
+    double correlation, uncertainty_mm;
+
+    weft_lamp_place lamp;
+
+    weft_image thumbnail, rectified; /* for the report, sRGB; without pixels where there is none */
+} weft_hand_photograph;
+
+static inline bool weft_hand_used(const weft_hand_photograph *photograph)
+{
+    return photograph->remark[0] == 0;
+}
+
+#endif

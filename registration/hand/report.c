@@ -1,0 +1,235 @@
+#include "registration/hand/report.h"
+
+#include "base/numeric/statistics.h"
+#include "base/picture/colour.h"
+#include "base/text/html_page.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static weft_vec3 view_of(const weft_hand_photograph *p)
+{
+    return weft_pose_camera_position(&p->pose);
+}
+
+static double median_lamp_error(const weft_hand *hand)
+{
+    double *value = malloc(((size_t)hand->count + 1) * sizeof *value), median = 0;
+    size_t count = 0;
+    for (int i = 0; value && i < hand->count; i++) {
+        if (weft_hand_used(&hand->photograph[i]))
+            value[count++] = hand->photograph[i].lamp.uncertainty_deg;
+    }
+    if (value)
+        median = weft_quantile(value, count, 0.5);
+    free(value);
+    return median;
+}
+
+static void write_tiles(weft_page *page, const weft_hand *hand)
+{
+    fputs("<div class=\"tiles\">\n", page->html);
+    weft_page_tile(page, "photographs in the dataset", "%d of %d", hand->used_count, hand->count);
+    weft_page_tile(page, "pixels: corners of markers about the lens, RMS", "%.2f", hand->lens.rms_px);
+    weft_page_tile(page, "direction of the lamp, standard error, median", "%.2f\xc2\xb0", median_lamp_error(hand));
+    weft_page_tile(page, "distinct views", "%d", hand->lens.distinct_views);
+    weft_page_tile(page, "time taken", "%.0f s", hand->seconds);
+    fputs("</div>\n", page->html);
+}
+
+static const char *knowledge_name(weft_lens_knowledge knowledge)
+{
+    switch (knowledge) {
+    case WEFT_LENS_UNKNOWN:
+        return "found in the photographs";
+    case WEFT_LENS_FOCAL_ONLY:
+        return "focal length as the camera wrote it: there are too few distinct views to find it";
+    case WEFT_LENS_KNOWN:
+        break;
+    }
+    return "from the lens file";
+}
+
+static void write_camera(weft_page *page, const weft_hand *hand)
+{
+    const weft_camera *c = &hand->lens.camera;
+    double corner = hypot(c->width, c->height) / 2 / c->fx, r2 = corner * corner;
+    fputs("<h2>Camera</h2>\n<table>\n", page->html);
+    weft_page_fact(page, "lens", "%s", knowledge_name(hand->lens.knowledge));
+    weft_page_fact(page, "focal length", "%.1f pixels", c->fx);
+    weft_page_fact(page, "principal point", "%.1f, %.1f", c->cx, c->cy);
+    weft_page_fact(page, "distortion", "k1 %.4f, k2 %.4f", c->k1, c->k2);
+    weft_page_fact(page, "light in the corner of the picture", "%.0f %% of that in the middle",
+                   100 * (1 + r2 * (c->vignetting[0] + r2 * (c->vignetting[1] + r2 * c->vignetting[2]))));
+    weft_page_fact(page, "ink against paper", "%.3f", hand->lamps.ink);
+    weft_page_fact(page, "tone curve", "%s", hand->tone_found ? "found in the photographs" : "the files are linear");
+    fputs("</table>\n", page->html);
+}
+
+/* ---- Charts ---- */
+
+static void plot_directions(weft_page *page, const weft_hand *hand, const char *title, bool lamps)
+{
+    enum { side = 260, radius = 110 };
+    fprintf(
+        page->html,
+        "<figure><svg viewBox=\"0 0 %d %d\" width=\"%d\" font-size=\"11\" fill=\"#5b6675\" style=\"background:#fff\">",
+        side, side, side);
+    for (int ring = 30; ring <= 90; ring += 30)
+        fprintf(page->html,
+                "<circle cx=\"%d\" cy=\"%d\" r=\"%d\" fill=\"none\" stroke=\"#dfe3e8\"/><text x=\"%d\" "
+                "y=\"%d\">%d&deg;</text>",
+                side / 2, side / 2, radius * ring / 90, side / 2 + 3, side / 2 - radius * ring / 90 + 11, ring);
+    for (int i = 0; i < hand->count; i++) {
+        const weft_hand_photograph *p = &hand->photograph[i];
+        if (!weft_hand_used(p))
+            continue;
+        weft_angles angles = weft_angles_of_direction(weft_unit(lamps ? p->lamp.position_mm : view_of(p)));
+        double reach = radius * weft_deg_of_rad(angles.theta_rad) / 90;
+        fprintf(page->html, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3.5\" fill=\"%s\"><title>",
+                side / 2 + reach * cos(angles.phi_rad), side / 2 - reach * sin(angles.phi_rad),
+                lamps ? "#b7791f" : "#2b6cb0");
+        weft_page_text(page, p->name);
+        fputs("</title></circle>", page->html);
+    }
+    fprintf(page->html, "</svg><figcaption>%s</figcaption></figure>\n", title);
+}
+
+static void plot_curve(weft_page *page, const weft_tone_curve *tone, const char *stroke)
+{
+    fputs("<polyline fill=\"none\" stroke-width=\"2\" points=\"", page->html);
+    for (int i = 0; i <= WEFT_TONE_STEPS; i += WEFT_TONE_STEPS / 64)
+        fprintf(page->html, "%.1f,%.1f ", 30 + 220.0 * i / WEFT_TONE_STEPS, 230 - 220 * (double)tone->linear[i]);
+    fprintf(page->html, "\" stroke=\"%s\"/>", stroke);
+}
+
+static void plot_tone(weft_page *page, const weft_hand *hand)
+{
+    weft_tone_curve srgb = weft_tone_srgb();
+    fputs(
+        "<figure><svg viewBox=\"0 0 260 260\" width=\"260\" font-size=\"11\" fill=\"#5b6675\" "
+        "style=\"background:#fff\">"
+        "<path d=\"M30 10V230H250\" fill=\"none\" stroke=\"#dfe3e8\"/><text x=\"90\" y=\"250\">value in the file</text>"
+        "<text transform=\"rotate(-90)\" x=\"-140\" y=\"20\">light</text>",
+        page->html);
+    plot_curve(page, &srgb, "#cbd5e0");
+    plot_curve(page, &hand->tone, "#2b6cb0");
+    fputs("</svg><figcaption>The camera's tone curve (blue) and sRGB (grey)</figcaption></figure>\n", page->html);
+}
+
+/* ---- Photographs ---- */
+
+static void write_left_out(weft_page *page, const weft_hand *hand)
+{
+    if (hand->used_count == hand->count)
+        return;
+    fputs("<h2>Left out</h2>\n<table class=\"long\">\n<tr><th>photograph</th><th class=\"text\">why</th></tr>\n",
+          page->html);
+    for (int i = 0; i < hand->count; i++) {
+        if (weft_hand_used(&hand->photograph[i]))
+            continue;
+        fputs("<tr class=\"bad\"><td>", page->html);
+        weft_page_text(page, hand->photograph[i].name);
+        fputs("</td><td class=\"text\">", page->html);
+        weft_page_text(page, hand->photograph[i].remark);
+        fputs("</td></tr>\n", page->html);
+    }
+    fputs("</table>\n", page->html);
+}
+
+static void write_row(weft_page *page, const weft_hand_photograph *p)
+{
+    weft_vec3 eye = view_of(p), lamp = p->lamp.position_mm;
+    weft_angles view = weft_angles_of_direction(weft_unit(eye)), light = weft_angles_of_direction(weft_unit(lamp));
+    fputs("<tr><td>", page->html);
+    weft_page_text(page, p->name);
+    fprintf(page->html,
+            "</td><td>%.1f, %.1f</td><td>%.0f</td><td>%.1f, %.1f</td><td>%.0f</td><td>%.2f</td><td>%.2f</td>"
+            "<td>%.4f</td><td>%d</td></tr>\n",
+            weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), (double)weft_length(eye),
+            weft_deg_of_rad(light.theta_rad), weft_deg_of_rad(light.phi_rad), (double)weft_length(lamp),
+            p->lamp.uncertainty_deg, p->corner_rms_px, p->uncertainty_mm, p->marker_count);
+}
+
+static void write_table(weft_page *page, const weft_hand *hand)
+{
+    fputs("<h2>All that are used</h2>\n<table class=\"long\">\n<tr><th>photograph</th><th>view: theta, phi, "
+          "degrees</th><th>camera, mm</th><th>lamp: theta, phi, degrees</th><th>lamp, mm</th><th>lamp: standard error, "
+          "degrees</th><th>corners, pixels RMS</th><th>warp: standard error, mm</th><th>markers</th></tr>\n",
+          page->html);
+    for (int i = 0; i < hand->count; i++) {
+        if (weft_hand_used(&hand->photograph[i]))
+            write_row(page, &hand->photograph[i]);
+    }
+    fputs("</table>\n", page->html);
+}
+
+static weft_code write_thumbnail(const char *folder, int index, const char *what, const weft_image *image,
+                                 weft_error *error)
+{
+    char path[PATH_MAX];
+    if (snprintf(path, sizeof path, "%s/%03d_%s.png", folder, index, what) >= (int)sizeof path)
+        return weft_fail(error, WEFT_BAD_USAGE, "the report's folder has too long a name");
+    return weft_image_write(path, image, NULL, error);
+}
+
+static weft_code write_gallery(weft_page *page, const weft_hand *hand, weft_error *error)
+{
+    fputs(
+        "<h2>Pictures</h2>\n<p>Left: the photograph. Right: the sample in it, seen straight from above, white paper as "
+        "white.</p>\n<div class=\"gallery\">\n",
+        page->html);
+    for (int i = 0; i < hand->count; i++) {
+        const weft_hand_photograph *p = &hand->photograph[i];
+        fprintf(page->html, "<figure%s><div>", weft_hand_used(p) ? "" : " class=\"bad\"");
+        if (p->thumbnail.pixels) {
+            WEFT_TRY(write_thumbnail(page->folder, i, "photograph", &p->thumbnail, error));
+            fprintf(page->html, "<img loading=\"lazy\" alt=\"photograph\" src=\"%03d_photograph.png\">", i);
+        }
+        if (p->rectified.pixels) {
+            WEFT_TRY(write_thumbnail(page->folder, i, "sample", &p->rectified, error));
+            fprintf(page->html, "<img class=\"texels\" loading=\"lazy\" alt=\"sample\" src=\"%03d_sample.png\">", i);
+        }
+        fputs("</div><figcaption>", page->html);
+        weft_page_text(page, p->name);
+        if (!weft_hand_used(p))
+            fputs(": left out", page->html);
+        fputs("</figcaption></figure>\n", page->html);
+    }
+    fputs("</div>\n", page->html);
+    return WEFT_OK;
+}
+
+static weft_code write_page(weft_page *page, const char *dataset, const weft_hand_settings *settings,
+                            const weft_hand *hand, weft_error *error)
+{
+    fputs("<p class=\"note\">Dataset ", page->html);
+    weft_page_text(page, dataset);
+    fprintf(page->html, ", %d &times; %d texels of %.3f mm</p>\n", settings->width, settings->height,
+            settings->target.opening_mm / settings->width);
+    write_tiles(page, hand);
+    write_left_out(page, hand);
+    fputs("<h2>Where camera and lamp stood</h2>\n<div class=\"row\">\n", page->html);
+    plot_directions(page, hand, "Views, as seen from above the sample", false);
+    plot_directions(page, hand, "Lamps", true);
+    plot_tone(page, hand);
+    fputs("</div>\n", page->html);
+    write_camera(page, hand);
+    WEFT_TRY(write_gallery(page, hand, error));
+    write_table(page, hand);
+    return WEFT_OK;
+}
+
+weft_code weft_hand_report(const char *folder, const char *dataset, const weft_hand_settings *settings,
+                           const weft_hand *hand, weft_error *error)
+{
+    weft_page page;
+    WEFT_TRY(weft_page_begin(folder, "From your photographs to a dataset", &page, error));
+    weft_code code = write_page(&page, dataset, settings, hand, error);
+    if (code == WEFT_OK)
+        return weft_page_finish(&page, error);
+    weft_page_abandon(&page);
+    return code;
+}

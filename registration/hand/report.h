@@ -1,0 +1,12 @@
+/* The report on photographs of a camera in the hand: one page with what was found of every one, and why some were left
+ * out. */
+#ifndef WEFT_REGISTRATION_HAND_REPORT_H
+#define WEFT_REGISTRATION_HAND_REPORT_H
+
+#include "registration/hand/hand.h"
+
+/* Writes index.html and its pictures into `folder`; `dataset` is the path of what was made. Errors: WEFT_SYSTEM. */
+weft_code weft_hand_report(const char *folder, const char *dataset, const weft_hand_settings *settings,
+                           const weft_hand *hand, weft_error *error);
+
+#endif

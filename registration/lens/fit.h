@@ -1,0 +1,26 @@
+/* One calibration over the photographs that are used. */
+#ifndef WEFT_REGISTRATION_LENS_FIT_H
+#define WEFT_REGISTRATION_LENS_FIT_H
+
+#include "registration/lens/calibrate_bridge.h"
+#include "registration/lens/photographs.h"
+
+typedef struct weft_lens_fit {
+    double value[WEFT_LENS_VALUES], standard_error[WEFT_LENS_VALUES], rms_px;
+    int views;
+    int *photograph;                                       /* [views]: which */
+    int *point_count;                                      /* [views]: used */
+    double (*rotation)[3];                                 /* [views] */
+    int points;                                            /* of all views */
+    double (*board_mm)[2], (*pixel)[2], (*residual_px)[2]; /* [points] */
+    int *source;                                           /* [points]: index into the points of the photograph */
+} weft_lens_fit;
+
+/* Fits the photographs that are used, without stray corners, and without those with index `fold` modulo `folds` among
+ * the used ones (0 folds: with all). The caller frees with weft_lens_fit_free. Errors: WEFT_BAD_INPUT where no lens
+ * fits; WEFT_SYSTEM. */
+weft_code weft_lens_fit_run(const weft_board_photograph *photograph, int count, const weft_lens_model *model, int fold,
+                            int folds, weft_lens_fit *fit, weft_error *error);
+void weft_lens_fit_free(weft_lens_fit *fit);
+
+#endif

@@ -1,0 +1,43 @@
+"""Holds NAME.btf.h5, registered from the photographs in NAME/, against NAME.truth.json and NAME.truth.btf.h5."""
+import json
+import sys
+
+import h5py
+import numpy as np
+
+name = sys.argv[1]
+found = h5py.File(name + ".btf.h5")
+true = h5py.File(name + ".truth.btf.h5")
+truth = {p["name"]: (i, p) for i, p in enumerate(json.load(open(name + ".truth.json"))["photographs"])}
+told = json.loads(found["provenance"][()])
+used = [p for p in told["photographs"] if "left_out" not in p]
+
+
+def angle_deg(a, b):
+    a, b = np.array(a), np.array(b)
+    return np.degrees(np.arccos(np.clip(a @ b / np.linalg.norm(a) / np.linalg.norm(b), -1, 1)))
+
+
+def check(what, value, limit):
+    print("%-60s %.4f (at most %.4f)" % (what, value, limit))
+    return value <= limit
+
+
+good = all(truth[p["file"]][1]["fault"] == "good" for p in used)
+view, lamp, covered, error = [], [], [], []
+for k, p in enumerate(used):
+    index, t = truth[p["file"]]
+    view.append(angle_deg(p["camera_mm"], t["pose"]["camera_mm"]))
+    lamp.append(angle_deg(p["lamp_mm"], t["lamp"]["at_mm"]))
+    covered.append(lamp[-1] <= 2 * p["lamp_uncertainty_deg"])
+    if angle_deg(t["pose"]["camera_mm"], [0, 0, 1]) <= 45:
+        seen = found["mask"][:, :, k] == 0
+        ratio = found["samples"][:, :, k][seen].astype(float) / true["samples"][:, :, index][seen].astype(float)
+        error.append(np.median(np.abs(ratio - 1)))
+print(name, "lens", told["lens"], "lamps", np.round(lamp, 2))
+limits = {"free": (0.03, 0.8, 0.07), "tripod": (0.08, 0.6, 0.07), "linear": (0.03, 0.8, 0.015)}[name]
+good &= check("direction of the view, degrees, median", np.median(view), limits[0])
+good &= check("direction of the lamp, degrees, median", np.median(lamp), limits[1])
+good &= check("reflectance to 45 degrees, relative, median", np.median(error), limits[2])
+good &= check("share of lamps not within two standard errors", 1 - np.mean(covered), 0.35)
+sys.exit(0 if good else 1)

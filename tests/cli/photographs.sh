@@ -1,0 +1,53 @@
+#!/bin/sh
+# From photographs of a hand to a dataset, as a user does it, held against what is true of the photographs. The virtual
+# hand that takes them shares no formula with what registers them (docs/reference/hand.md).
+set -eu
+weft=$1
+python=$3
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT INT TERM
+cd "$work"
+
+fail() {
+    echo "photographs.sh: $*" >&2
+    exit 1
+}
+
+# One line on stderr that holds the words given, exit code 1, and no dataset.
+refused() {
+    words=$1
+    shift
+    if "$weft" photographs "$@" -o refused.btf.h5 -q >out 2>err; then
+        fail "accepted: $*"
+    fi
+    [ "$(wc -l <err)" = 1 ] && grep -q "$words" err || fail "'$words' is not said of $*: $(cat err)"
+    [ ! -e refused.btf.h5 ] || fail "a dataset was left behind"
+}
+
+"$weft" hand checker --opening 40 -o free --photographs 12 --rubbish 4 --width 1100 --truth-size 32 -q
+"$weft" photographs free -o free.btf.h5 --opening 40 --size 32x32 --report report >said 2>/dev/null
+"$python" "$here/photographs.py" free || fail "set free is wrong"
+for fault in "blurred" "something else" "lens covered" "covered"; do
+    grep -q "left out.*$fault" said || fail "nobody said '$fault'"
+done
+[ "$(grep -c "left out '" said)" = 4 ] || fail "not four are left out: $(cat said)"
+[ -s report/index.html ] || fail "no report"
+
+"$weft" hand checker --opening 40 -o tripod --photographs 8 --set tripod --width 900 --truth-size 32 -q
+"$weft" photographs tripod -o tripod.btf.h5 --opening 40 --size 32x32 -q 2>/dev/null
+"$python" "$here/photographs.py" tripod || fail "set tripod is wrong"
+
+"$weft" hand checker --opening 40 -o linear --photographs 10 --format exr --width 900 --truth-size 32 -q
+"$weft" photographs linear -o linear.btf.h5 --opening 40 --size 32x32 -q 2>/dev/null
+"$python" "$here/photographs.py" linear || fail "set linear is wrong"
+
+mkdir empty
+refused "holds no photograph" empty
+mkdir other
+for name in free/*; do
+    cp report/000_sample.png "other/$(basename "$name").png"
+done
+refused "show the target" other
+echo nothing >free/broken.jpg
+"$weft" photographs free -o again.btf.h5 --opening 40 --size 8x8 2>/dev/null | grep -q "left out 'broken.jpg'" || fail "broken.jpg is not named"
