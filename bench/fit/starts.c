@@ -18,7 +18,7 @@ enum { MOST_LOBES = 3, TRUTH_VIEWS = 40, TRUTH_LIGHTS = 60, MOST_DATASETS = 64 }
 #define ABOVE 1.02 /* times the least RMSE */
 
 typedef struct arguments {
-    int texel_count, start_count, truth_count;
+    int texel_count, start_count, truth_count, first_seed;
     const char *dataset[MOST_DATASETS];
     int dataset_count;
     bool per_texel;
@@ -173,7 +173,7 @@ static weft_code run_tape(const arguments *given, tally *sum, weft_error *error)
 static weft_code run_truths(const arguments *given, tally *sum, weft_error *error)
 {
     texel_source source;
-    WEFT_TRY(texel_source_truths(TRUTH_VIEWS, TRUTH_LIGHTS, &source, error));
+    WEFT_TRY(texel_source_truths(TRUTH_VIEWS, TRUTH_LIGHTS, given->first_seed, &source, error));
     weft_code code = run_source(given, &source, given->truth_count, source.name, sum, error);
     texel_source_free(&source);
     return code;
@@ -194,12 +194,13 @@ static weft_code run(const arguments *given, weft_error *error)
     return WEFT_OK;
 }
 
-enum { OPTION_JSON = 256, OPTION_MARKDOWN, OPTION_EACH };
+enum { OPTION_JSON = 256, OPTION_MARKDOWN, OPTION_EACH, OPTION_FIRST };
 
 static const struct argp_option option[] = {
     {"texels", 'n', "N", 0, "Texels of each invented family and dataset (default 50)", 0},
     {"truths", 't', "N", 0, "Random truths (default 500)", 0},
     {"starts", 's', "N", 0, "Random starts of each (default 60)", 0},
+    {"first", OPTION_FIRST, "N", 0, "Seed of the first random truth (default 0)", 0},
     {"each", OPTION_EACH, NULL, 0, "Print each fit that is above", 0},
     {"json", OPTION_JSON, NULL, 0, "Print the table as JSON", 0},
     {"markdown", OPTION_MARKDOWN, NULL, 0, "Print the table as Markdown", 0},
@@ -227,6 +228,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case 's':
         to->start_count = whole_number(text, state);
+        return 0;
+    case OPTION_FIRST:
+        to->first_seed = whole_number(text, state);
         return 0;
     case OPTION_EACH:
         to->per_texel = true;

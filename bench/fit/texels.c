@@ -27,9 +27,9 @@ weft_code texel_source_invent(synthetic_kind kind, texel_source *source, weft_er
     return allocate(source, error);
 }
 
-weft_code texel_source_truths(int view_count, int light_count, texel_source *source, weft_error *error)
+weft_code texel_source_truths(int view_count, int light_count, int first_seed, texel_source *source, weft_error *error)
 {
-    *source = (texel_source){.name = "random truths", .is_random = true};
+    *source = (texel_source){.name = "random truths", .is_random = true, .first_seed = first_seed};
     WEFT_TRY(random_truth_layout(view_count, light_count, &source->layout, error));
     return allocate(source, error);
 }
@@ -91,7 +91,7 @@ weft_code texel_source_load(texel_source *source, int index, int total, bool nei
         WEFT_TRY(read_texel(source, x, y, error));
     } else {
         /* A material of its own for every texel; seeds that differ in the last bit are neighbours. */
-        uint64_t seed = (uint64_t)(64 * index + index % 64) ^ neighbour;
+        uint64_t seed = (uint64_t)source->first_seed + ((uint64_t)(64 * index + index % 64) ^ neighbour);
         if (source->is_random)
             random_truth_samples(layout, seed, 0.01, source->sum);
         else
