@@ -21,6 +21,7 @@ enum {
 #define START_TOLERANCE 1e-2
 #define BEATEN 1.2 /* a start that has so many times the residual of the best after RACE_PASSES is not followed */
 #define CLOSE 1.3  /* a challenger that leaves so many times what the incumbent leaves is not refined */
+#define NEAR 2     /* nor is one that leaves so many times what the refined incumbent leaves after RACE_PASSES */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
 
 /* A search that grows lobe by lobe. The incumbent comes from the usual starts, which cloth mostly wants; the challenger
@@ -62,11 +63,6 @@ static double least_so_far(const search *own)
     return own->has_challenger ? fmin(least, own->left[CHALLENGER]) : least;
 }
 
-static void count_passes(search *own, bool coarse)
-{
-    own->quarters += (coarse ? 1 : 4) * own->workspace->trial[0].fit.passes;
-}
-
 /* Follows a start that has been looked at once; to the end only if it does not fall behind. */
 static void follow(search *own, bool is_usual)
 {
@@ -78,7 +74,7 @@ static void follow(search *own, bool is_usual)
         weft_workspace_refine(own->bundle, own->samples, own->channel, &race, workspace, 0.1);
     if (workspace->trial[0].residual < BEATEN * least)
         weft_workspace_refine(own->bundle, own->samples, own->channel, &own->options, workspace, 0.1);
-    count_passes(own, own->options.coarse);
+    own->quarters += (own->options.coarse ? 1 : 4) * workspace->trial[0].fit.passes;
     keep(own, is_usual);
 }
 
@@ -148,30 +144,102 @@ static void grow(search *own)
     settle(own);
 }
 
-/* From few passes over the coarse lights to a fit. */
-static void refine(search *own, const weft_fit_options *options, weft_fit *fit, double *table)
+/* What stage `lobe_count` of a search found. */
+static void note_stage(const search *own, weft_starts *to)
 {
-    weft_trial *now = &own->workspace->trial[0];
-    weft_workspace_refine(own->bundle, own->samples, own->channel, options, own->workspace, 0.01);
-    weft_workspace_finish(own->bundle, options, now, fit, table);
-    count_passes(own, false);
-    now->fit.passes = 0;
+    const weft_trial *trial = own->workspace->trial;
+    int lobes = own->options.lobe_count;
+    bool is_close = own->has_challenger && (lobes == 1 || own->left[CHALLENGER] < CLOSE * own->left[INCUMBENT]);
+    to->count[lobes] = is_close ? 2 : 1;
+    to->start[lobes][0] = trial[INCUMBENT].fit;
+    if (is_close)
+        to->start[lobes][1] = trial[CHALLENGER].fit;
 }
 
-/* Returns what is left where T keeps within a moderate contrast. */
-static double refine_finalist(search *own, int place, const weft_fit_options *options, bool turn, weft_finalist *to)
+void weft_fit_find_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                          const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
+                          weft_starts *starts)
+{
+    const weft_fit nothing = {.frame = *frame};
+    search own = {
+        .bundle = bundle, .samples = samples, .channel = channel, .options = *options, .workspace = workspace};
+    starts->passes = 0;
+    for (int lobes = 0; lobes <= options->lobe_count; lobes++) {
+        starts->count[lobes] = 1;
+        starts->start[lobes][0] = (weft_fit){.frame = *frame, .lobe_count = lobes};
+    }
+    if (!(samples->energy[channel] > 0) || samples->valid_count == 0)
+        return;
+    own.options.coarse = bundle->is_coarse;
+    own.options.max_passes = START_PASSES;
+    own.options.tolerance = START_TOLERANCE;
+    own.options.lobe_count = 0;
+    try_shapes(&own, &nothing, true);
+    note_stage(&own, starts);
+    while (own.options.lobe_count < options->lobe_count) {
+        grow(&own);
+        note_stage(&own, starts);
+    }
+    starts->passes = own.quarters / 4;
+}
+
+/* ---- From a start to a fit ---- */
+
+/* What a refinement needs. */
+typedef struct refinement {
+    const weft_bundle *bundle;
+    const weft_samples *samples;
+    int channel;
+    weft_fit_options options;
+    bool turn;
+    weft_fit_workspace *workspace;
+} refinement;
+
+/* The first look at all lights. */
+static void begin(const refinement *own, const weft_fit *start)
 {
     weft_trial *now = &own->workspace->trial[0];
-    weft_fit_options turning = *options;
-    turning.fit_frame = true;
-    weft_trial_swap(now, &own->workspace->trial[place]);
+    now->fit = *start;
     now->fit.passes = 0;
-    if (own->options.coarse)
-        weft_workspace_complete(own->bundle, own->samples, own->channel, options, now);
-    refine(own, options, &to->upright, to->upright_table);
-    if (turn)
+    weft_workspace_begin_cold(own->bundle, own->samples, own->channel, &own->options, now);
+}
+
+/* A T that is not finite comes of a model that vanishes in all of a view but for rounding: such a fit is worth nothing.
+ */
+static double left_at_moderate_contrast(const refinement *own)
+{
+    const weft_trial *now = &own->workspace->trial[0];
+    double left = own->options.table ? weft_trial_moderate_residual(own->bundle, now) : now->residual;
+    return isfinite(left) ? left : INFINITY;
+}
+
+static void refine(const refinement *own, const weft_fit_options *options, weft_fit *fit, double *table)
+{
+    weft_workspace_refine(own->bundle, own->samples, own->channel, options, own->workspace, 0.01);
+    weft_workspace_finish(own->bundle, options, &own->workspace->trial[0], fit, table);
+}
+
+/* Returns what is left upright, or turned if it is turned. */
+static double finish(const refinement *own, weft_finalist *to)
+{
+    weft_trial *now = &own->workspace->trial[0];
+    weft_fit_options turning = own->options;
+    turning.fit_frame = true;
+    refine(own, &own->options, &to->upright, to->upright_table);
+    if (own->turn) {
+        now->fit.passes = 0;
         refine(own, &turning, &to->turned, to->turned_table);
-    return moderate_residual(own);
+    }
+    return left_at_moderate_contrast(own);
+}
+
+/* Whether a start that had a few passes over all lights has come near what another left in the end. */
+static bool catches_up(const refinement *own, double left)
+{
+    weft_fit_options race = own->options;
+    race.max_passes = RACE_PASSES;
+    weft_workspace_refine(own->bundle, own->samples, own->channel, &race, own->workspace, 0.01);
+    return left_at_moderate_contrast(own) < NEAR * left;
 }
 
 static void swap_finalists(weft_finalist *a, weft_finalist *b)
@@ -181,58 +249,59 @@ static void swap_finalists(weft_finalist *a, weft_finalist *b)
     *b = swap;
 }
 
-int weft_fit_search(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                    const weft_fit_options *options, bool turn, weft_fit_workspace *workspace, const weft_frame *frame,
-                    weft_finalist finalist[WEFT_FINALISTS], double share[WEFT_MATERIAL_MAX_LOBES + 1])
+static int finish_empty(const refinement *own, const weft_fit *start, weft_finalist *to)
 {
-    weft_finalist *best = &finalist[0], *other = &finalist[1];
-    best->upright = (weft_fit){.frame = *frame, .lobe_count = options->lobe_count};
-    share[options->lobe_count] = 1;
-    if (weft_workspace_finish_empty(bundle, samples, channel, &best->upright, best->upright_table)) {
-        for (int i = 0; i < options->lobe_count; i++)
-            share[i] = 1;
-        best->turned = best->upright;
-        if (turn)
-            weft_workspace_finish_empty(bundle, samples, channel, &best->turned, best->turned_table);
-        return 1;
-    }
-    search own = {
-        .bundle = bundle, .samples = samples, .channel = channel, .options = *options, .workspace = workspace};
-    const weft_trial *trial = workspace->trial;
-    const weft_fit nothing = {.frame = *frame};
-    own.options.coarse = bundle->is_coarse;
-    own.options.max_passes = START_PASSES;
-    own.options.tolerance = START_TOLERANCE;
-    own.options.lobe_count = 0;
-    try_shapes(&own, &nothing, true);
-    share[0] = trial[INCUMBENT].residual;
-    while (own.options.lobe_count < options->lobe_count) {
-        grow(&own);
-        share[own.options.lobe_count] = trial[INCUMBENT].residual;
-    }
-    double whole = share[options->lobe_count];
-    for (int i = 0; i <= options->lobe_count; i++)
-        share[i] = whole > 0 ? share[i] / whole : 1;
-    bool two = own.has_challenger && (options->lobe_count == 1 || own.left[CHALLENGER] < CLOSE * own.left[INCUMBENT]);
-    double left = refine_finalist(&own, INCUMBENT, options, turn, best);
-    if (two) {
-        weft_trial_swap(&workspace->trial[0], &workspace->trial[INCUMBENT]);
-        if (refine_finalist(&own, CHALLENGER, options, turn, other) < CLEARLY_BETTER * left)
-            swap_finalists(best, other);
+    to->upright = to->turned = *start;
+    weft_workspace_finish_empty(own->bundle, own->samples, own->channel, &to->upright, to->upright_table);
+    if (own->turn)
+        weft_workspace_finish_empty(own->bundle, own->samples, own->channel, &to->turned, to->turned_table);
+    return 1;
+}
+
+int weft_fit_refine_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                           const weft_fit_options *options, bool turn, weft_fit_workspace *workspace,
+                           const weft_starts *starts, int most, weft_finalist *finalist)
+{
+    const weft_fit *start = starts->start[options->lobe_count];
+    const refinement own = {bundle, samples, channel, *options, turn, workspace};
+    weft_trial *now = &workspace->trial[0], *best = &workspace->trial[INCUMBENT];
+    if (!(samples->energy[channel] > 0) || samples->valid_count == 0)
+        return finish_empty(&own, &start[0], &finalist[0]);
+    begin(&own, &start[0]);
+    if (!isfinite(left_at_moderate_contrast(&own)))
+        begin(&own, &starts->start[0][0]);
+    double left = finish(&own, &finalist[0]);
+    int passes = finalist[0].upright.passes + (int)ceil(starts->passes), count = 1;
+    if (weft_smaller(starts->count[options->lobe_count], most) > 1) {
+        weft_trial_swap(now, best);
+        begin(&own, &start[1]);
+        count += options->lobe_count == 1 || catches_up(&own, left);
+        bool is_better = count > 1 && finish(&own, &finalist[1]) < CLEARLY_BETTER * left;
+        passes += count > 1 ? finalist[1].upright.passes : now->fit.passes;
+        if (is_better)
+            swap_finalists(&finalist[0], &finalist[1]);
         else
-            weft_trial_swap(&workspace->trial[0], &workspace->trial[INCUMBENT]);
+            weft_trial_swap(now, best);
     }
-    best->upright.passes = (int)ceil(own.quarters / 4);
-    return two ? 2 : 1;
+    finalist[0].upright.passes = passes;
+    return count;
+}
+
+void weft_fit_from_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                          const weft_fit_options *options, weft_fit_workspace *workspace, const weft_starts *starts,
+                          weft_fit *fit, double *table)
+{
+    weft_finalist finalist[WEFT_FINALISTS] = {{.upright_table = workspace->finalist_table[0]},
+                                              {.upright_table = workspace->finalist_table[1]}};
+    weft_fit_refine_starts(bundle, samples, channel, options, false, workspace, starts, WEFT_FINALISTS, finalist);
+    *fit = finalist[0].upright;
+    memcpy(table, finalist[0].upright_table, (size_t)bundle->view_count * sizeof *table);
 }
 
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table)
 {
-    double share[WEFT_MATERIAL_MAX_LOBES + 1];
-    weft_finalist finalist[WEFT_FINALISTS] = {{.upright_table = workspace->finalist_table[0]},
-                                              {.upright_table = workspace->finalist_table[1]}};
-    weft_fit_search(bundle, samples, channel, options, false, workspace, frame, finalist, share);
-    *fit = finalist[0].upright;
-    memcpy(table, finalist[0].upright_table, (size_t)bundle->view_count * sizeof *table);
+    weft_starts starts;
+    weft_fit_find_starts(bundle, samples, channel, options, workspace, frame, &starts);
+    weft_fit_from_starts(bundle, samples, channel, options, workspace, &starts, fit, table);
 }

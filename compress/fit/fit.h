@@ -62,20 +62,37 @@ void weft_fit_refine(const weft_bundle *bundle, const weft_samples *samples, int
 void weft_fit_cold(const weft_bundle *bundle, const weft_samples *samples, int channel, const weft_fit_options *options,
                    weft_fit_workspace *workspace, const weft_frame *frame, weft_fit *fit, double *table);
 
-/* Where a search from nothing ended, in the frame that it began with and, if wanted, turned from there. The tables
- * [view_count] are the caller's. */
+/* Where a search from nothing stands after few passes over few lights: with every number of lobes, shapes to refine. */
 enum { WEFT_FINALISTS = 2 };
+typedef struct weft_starts {
+    int count[WEFT_MATERIAL_MAX_LOBES + 1]; /* of starts with so many lobes, the best first */
+    weft_fit start[WEFT_MATERIAL_MAX_LOBES + 1][WEFT_FINALISTS];
+    double passes; /* over all samples that this took */
+} weft_starts;
+
+/* Finds starts with up to options->lobe_count lobes, each number from the one before. */
+void weft_fit_find_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                          const weft_fit_options *options, weft_fit_workspace *workspace, const weft_frame *frame,
+                          weft_starts *starts);
+
+/* Where a start ended, in the frame that it began with and, if wanted, turned from there. The tables [view_count] are
+ * the caller's. */
 typedef struct weft_finalist {
     weft_fit upright, turned;
     double *upright_table, *turned_table; /* turned_table: NULL if not wanted */
 } weft_finalist;
 
-/* The same, with all that it found. Returns the number of finalists, the best first; the second, where there is one,
- * ended in another minimum. share [lobe_count + 1]: what the best with so many lobes left, over what that of the whole
- * left, by the few passes that either got before it was refined. The workspace keeps the last pass of the best. */
-int weft_fit_search(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                    const weft_fit_options *options, bool turn, weft_fit_workspace *workspace, const weft_frame *frame,
-                    weft_finalist finalist[WEFT_FINALISTS], double share[WEFT_MATERIAL_MAX_LOBES + 1]);
+/* Refines the starts with options->lobe_count lobes, which need not be as many as were sought, and no more than `most`
+ * of them, into finalist [most]. Returns the number of finalists, the best first; the second, where there is one, ended
+ * in another minimum. The workspace keeps the last pass of the best. */
+int weft_fit_refine_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                           const weft_fit_options *options, bool turn, weft_fit_workspace *workspace,
+                           const weft_starts *starts, int most, weft_finalist *finalist);
+
+/* The same upright, the better one alone. */
+void weft_fit_from_starts(const weft_bundle *bundle, const weft_samples *samples, int channel,
+                          const weft_fit_options *options, weft_fit_workspace *workspace, const weft_starts *starts,
+                          weft_fit *fit, double *table);
 
 /* The model at every sample, without T: [sample_count], valid until the workspace is used again. */
 const float *weft_fit_evaluate(const weft_bundle *bundle, const weft_samples *samples, weft_fit_workspace *workspace,

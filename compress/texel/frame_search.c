@@ -39,29 +39,74 @@ static weft_grey_fit choose_frame(const weft_finalist *from, bool turn)
     return (weft_grey_fit){from->upright, from->upright_table, false};
 }
 
+void weft_frame_search_forget(weft_frame_search *search)
+{
+    search->starts[0].found = search->starts[1].found = false;
+}
+
+/* A diffuse term has no use for a frame. */
+static bool may_turn(const weft_frame_request *request)
+{
+    return request->choice == WEFT_FRAMES_FITTED && request->options.lobe_count > 0;
+}
+
+static const weft_starts *find_starts(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,
+                                      weft_fit_workspace *workspace, const weft_frame_request *request)
+{
+    const weft_frame surface = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
+    weft_frame_starts *starts = &search->starts[request->options.table];
+    weft_fit_options options = request->options;
+    bool use_given = request->choice == WEFT_FRAMES_GIVEN && request->given;
+    if (starts->found)
+        return &starts->surface;
+    options.lobe_count = request->most_lobes;
+    weft_fit_find_starts(bundle, samples, WEFT_GREY, &options, workspace, use_given ? request->given : &surface,
+                         &starts->surface);
+    if (request->choice == WEFT_FRAMES_FITTED && request->given)
+        weft_fit_find_starts(bundle, samples, WEFT_GREY, &options, workspace, request->given, &starts->given);
+    starts->found = true;
+    return &starts->surface;
+}
+
 void weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,
                            weft_fit_workspace *workspace, const weft_frame_request *request)
 {
-    const weft_frame surface = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
     weft_fit_options options = request->options;
+    const weft_starts *starts = find_starts(search, bundle, samples, workspace, request);
+    bool turn = may_turn(request);
     options.tolerance = GREY_TOLERANCE;
-    /* A diffuse term has no use for a frame. */
-    bool turn = request->choice == WEFT_FRAMES_FITTED && options.lobe_count > 0;
-    bool use_given = request->choice == WEFT_FRAMES_GIVEN && request->given;
-    int count = weft_fit_search(bundle, samples, WEFT_GREY, &options, turn, workspace,
-                                use_given ? request->given : &surface, search->surface, search->share);
+    int most = request->most_finalists;
+    int count =
+        weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, starts, most, search->surface);
     search->best = choose_frame(&search->surface[0], turn);
     search->has_other = count > 1;
     if (count > 1)
         search->other = choose_frame(&search->surface[1], turn);
     if (!turn || !request->given)
         return;
-    double share[WEFT_MATERIAL_MAX_LOBES + 1];
-    weft_fit_search(bundle, samples, WEFT_GREY, &options, turn, workspace, request->given, search->given, share);
+    starts = &search->starts[request->options.table].given;
+    weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, starts, most, search->given);
     weft_grey_fit given = choose_frame(&search->given[0], turn);
     if (given.fit.residual < search->best.fit.residual) {
         search->other = search->best;
         search->best = given;
         search->has_other = true;
     }
+}
+
+bool weft_frame_search_other(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,
+                             weft_fit_workspace *workspace, const weft_frame_request *request)
+{
+    weft_starts second = search->starts[request->options.table].surface;
+    int lobes = request->options.lobe_count;
+    bool turn = may_turn(request);
+    if (search->has_other || second.count[lobes] < 2)
+        return search->has_other;
+    second.start[lobes][0] = second.start[lobes][1];
+    weft_fit_options options = request->options;
+    options.tolerance = GREY_TOLERANCE;
+    weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, &second, 1, &search->surface[1]);
+    search->other = choose_frame(&search->surface[1], turn);
+    search->has_other = true;
+    return true;
 }

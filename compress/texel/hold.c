@@ -92,15 +92,23 @@ static void lower_terms(weft_texel_fitter *fitter, int channel, double share)
     *fit = weft_unpack(&fitter->now.packed[channel], fit->lobe_count, &frame, fitter->samples.scale);
 }
 
-/* Fits again; no term may be brighter than `most`. */
-static void fit_dimmer(weft_texel_fitter *fitter, int channel, const weft_fit_options *options, double most)
+/* Fits again, from the starts of the grey samples and then from what was fitted; no term may be brighter than
+ * `most`. */
+static void fit_dimmer(weft_texel_fitter *fitter, int channel, const weft_fit_options *options, int round, double most)
 {
-    weft_fit *fit = &fitter->now.as_read[channel], dimmer;
+    weft_fit *fit = &fitter->now.as_read[channel], dimmer = *fit;
     weft_fit_options own = *options;
     weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
     uint8_t *code = fitter->now.code + (size_t)channel * (size_t)fitter->bundle.view_count;
     own.max_amplitude = most;
-    weft_fit_cold(&fitter->bundle, &lit, channel, &own, fitter->workspace, &fit->frame, &dimmer, fitter->table);
+    if (round == 0) {
+        weft_starts starts = fitter->frames.starts[false].surface;
+        for (int i = 0; i < WEFT_FINALISTS; i++)
+            starts.start[own.lobe_count][i].frame = fit->frame;
+        weft_fit_from_starts(&fitter->bundle, &lit, channel, &own, fitter->workspace, &starts, &dimmer, fitter->table);
+    } else {
+        weft_fit_refine(&fitter->bundle, &lit, channel, &own, fitter->workspace, &dimmer, fitter->table);
+    }
     weft_pack_channel(&fitter->bundle, &lit, channel, &own, fitter->workspace, &dimmer, fitter->table,
                       &fitter->now.packed[channel], code);
     *fit = weft_unpack(&fitter->now.packed[channel], own.lobe_count, &dimmer.frame, fitter->samples.scale);
@@ -130,7 +138,7 @@ void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_opti
     /* Terms may add up. */
     double term = FOR_ROUNDING * fmin(most.r, most.f);
     for (int round = 0; round < 4 && options && options->lobe_count > 0 && exceeds(peak, most); round++) {
-        fit_dimmer(fitter, channel, options, term);
+        fit_dimmer(fitter, channel, options, round, term);
         peak = weft_peak_of_fit(&fitter->net[1], fit, &tables);
         term *= 0.75;
     }

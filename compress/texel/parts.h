@@ -24,6 +24,7 @@ struct weft_texel_fitter {
     weft_samples samples;
     weft_fit_workspace *workspace;
     weft_frame_search frames;
+    int most_lobes;                /* that the samples of the texel can carry */
     double *table;                 /* [2][view_count] of one channel; then room */
     int *seen;                     /* [view_count] valid samples */
     weft_texel_result now;         /* the last model that was fitted */

@@ -134,19 +134,34 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
         weft_unpack(&fitter->now.packed[channel], options->lobe_count, frame, fitter->samples.scale);
     if (options->table)
         weft_texel_limit_unseen(fitter, channel);
-    weft_texel_hold(fitter, channel, options);
 }
 
-/* The grey fit, without S, that a model begins from. */
-static const weft_grey_fit *find_start(weft_texel_fitter *fitter, const weft_fit_options *options,
+static weft_frame_request request_of(const weft_texel_fitter *fitter, const weft_fit_options *options, int most,
+                                     const weft_frame *given)
+{
+    return (weft_frame_request){fitter->source->frames, given, *options, fitter->most_lobes, most};
+}
+
+/* The grey fit, without S, that a model begins from: the best of `most` refined starts. */
+static const weft_grey_fit *find_start(weft_texel_fitter *fitter, const weft_fit_options *options, int most,
                                        const weft_frame *given)
 {
-    weft_frame_request request = {fitter->source->frames, given, *options};
+    weft_frame_request request = request_of(fitter, options, most, given);
     weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
     return &fitter->frames.best;
 }
 
-/* Fits and packs one model, with S or without, from its start; `fitter` holds the result. */
+/* Another; NULL where there is none. */
+static const weft_grey_fit *find_other(weft_texel_fitter *fitter, const weft_fit_options *options,
+                                       const weft_frame *given)
+{
+    weft_frame_request request = request_of(fitter, options, WEFT_FINALISTS, given);
+    bool found =
+        weft_frame_search_other(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+    return found ? &fitter->frames.other : NULL;
+}
+
+/* Fits and packs one model, with S or without, from its start; `fitter` holds the result, which may yet glare. */
 static void fit_from(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_grey_fit *start)
 {
     if (light)
@@ -161,19 +176,26 @@ static void fit_from(weft_texel_fitter *fitter, const weft_fit_options *options,
         fit_channel(fitter, options, light, channel, start, &frame);
 }
 
+static void hold(weft_texel_fitter *fitter, const weft_fit_options *options)
+{
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+        weft_texel_hold(fitter, channel, options);
+}
+
 static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given)
 {
-    fit_from(fitter, options, light, find_start(fitter, options, given));
+    fit_from(fitter, options, light, find_start(fitter, options, WEFT_FINALISTS, given));
+    hold(fitter, options);
 }
 
 /* ---- The best model ---- */
 
 /* A fit may end in a lesser minimum than that of a smaller model, rounding may spoil it, and it may have been held. Not
- * so, as far as was ever seen, where there are so many samples, the grey search left so much less than with fewer
- * lobes, and rounding cost next to nothing. */
+ * so, as far as was ever seen, where there are so many samples, the grey fit leaves so much less than that of the
+ * smaller model, and rounding cost next to nothing. */
 enum { MANY_SAMPLES = 2000 };
-#define CLEARLY_LESS 0.9     /* by few samples, which any model follows too closely */
-#define CLEARLY_LESS_LIT 0.7 /* the same where S is to be fitted, of which the search knows nothing */
+#define CLEARLY_LESS 0.97
+#define CLEARLY_LESS_LIT 0.7 /* where S is to be fitted, of which the grey fit knows nothing */
 #define BARELY_MORE 1.01
 
 static void swap_results(weft_texel_fitter *fitter)
@@ -186,24 +208,23 @@ static void swap_results(weft_texel_fitter *fitter)
 /* A model of the texel and what the last ones of its kind left. */
 typedef struct contest {
     double least;      /* squared error of the best, as it will be read */
+    double grey;       /* of the grey fit that the whole model began from */
     bool is_sure;      /* that only a grey fit which leaves about as much needs a look */
     bool stepped_down; /* the best is not the whole model */
 } contest;
 
-/* Was the last model that was fitted held, or did rounding cost much? */
-static bool is_spoilt(const weft_texel_fitter *fitter, double error)
-{
-    return fitter->now.held || error >= BARELY_MORE * fitter->now.residual;
-}
-
-/* Fits a model from one start, and keeps the better one; returns whether it was spoilt. */
+/* Fits a model from one start, and keeps the better one; returns whether it was spoilt: held, or by rounding. A model
+ * that leaves too much before it is rounded and held leaves more afterwards. */
 static bool try_start(weft_texel_fitter *fitter, const weft_fit_options *options, bool light,
                       const weft_grey_fit *start, contest *state)
 {
     swap_results(fitter);
     fit_from(fitter, options, light, start);
-    double own = weft_texel_weighted_error(fitter);
-    bool spoilt = is_spoilt(fitter, own);
+    bool is_beaten = fitter->now.residual >= state->least;
+    if (!is_beaten)
+        hold(fitter, options);
+    double own = is_beaten ? INFINITY : weft_texel_weighted_error(fitter);
+    bool spoilt = !is_beaten && (fitter->now.held || own >= BARELY_MORE * fitter->now.residual);
     if (own < state->least)
         state->least = own;
     else
@@ -216,34 +237,38 @@ static bool try_start(weft_texel_fitter *fitter, const weft_fit_options *options
 static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given,
                       contest *state)
 {
-    bool spoilt = try_start(fitter, options, light, find_start(fitter, options, given), state);
-    if (spoilt && fitter->frames.has_other)
-        try_start(fitter, options, light, &fitter->frames.other, state);
+    bool spoilt = try_start(fitter, options, light, &fitter->frames.best, state);
+    const weft_grey_fit *other = spoilt ? find_other(fitter, options, given) : NULL;
+    if (other)
+        try_start(fitter, options, light, other, state);
     return spoilt;
 }
 
-/* Without S, without T and with fewer lobes. A grey fit says nothing of S. */
+/* Whether the grey fit of a smaller model leaves so little that the model needs a look. */
+static bool may_serve(weft_texel_fitter *fitter, const weft_fit_options *options, const weft_frame *given,
+                      const contest *state)
+{
+    double clear = fitter->light_count > 0 ? CLEARLY_LESS_LIT : CLEARLY_LESS;
+    double left = find_start(fitter, options, WEFT_FINALISTS, given)->fit.residual;
+    return !state->is_sure || state->grey >= clear * left;
+}
+
+/* Without S, without T and with fewer lobes. */
 static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given,
                             contest *state)
 {
-    double share[WEFT_MATERIAL_MAX_LOBES + 1];
-    memcpy(share, fitter->frames.share, sizeof share);
-    bool light = fitter->light_count > 0;
-    double clear = light ? CLEARLY_LESS_LIT : CLEARLY_LESS;
+    bool light = fitter->light_count > 0, is_few = fitter->samples.valid_count <= MANY_SAMPLES;
     weft_fit_options options = *whole;
     for (options.lobe_count = whole->lobe_count; options.lobe_count >= 0; options.lobe_count--) {
         for (int with_table = whole->table; with_table >= 0; with_table--) {
             for (int with_light = light; with_light >= 0; with_light--) {
-                bool is_whole =
-                    options.lobe_count == whole->lobe_count && with_table == whole->table && with_light == light;
-                bool is_few = fitter->samples.valid_count <= MANY_SAMPLES;
-                if (is_whole || (!is_few && (with_table != whole->table || with_light != light)))
-                    continue;
-                if (state->is_sure && clear * share[options.lobe_count] > 1)
-                    continue;
+                bool is_part = with_table != whole->table || with_light != light;
                 options.table = with_table;
+                if (is_part ? !is_few : options.lobe_count == whole->lobe_count)
+                    continue;
                 double before = state->least;
-                try_model(fitter, &options, with_light, given, state);
+                if (may_serve(fitter, &options, given, state))
+                    try_model(fitter, &options, with_light, given, state);
                 state->stepped_down |= state->least < before;
             }
         }
@@ -254,7 +279,7 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
  * whole one. */
 static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
 {
-    contest state = {.least = INFINITY};
+    contest state = {.least = INFINITY, .grey = find_start(fitter, whole, WEFT_FINALISTS, given)->fit.residual};
     bool spoilt = try_model(fitter, whole, fitter->light_count > 0, given, &state);
     state.is_sure = !spoilt && fitter->samples.valid_count > MANY_SAMPLES;
     try_all_smaller(fitter, whole, given, &state);
@@ -372,7 +397,9 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         return;
     }
     weft_texel_limit(fitter);
+    weft_frame_search_forget(&fitter->frames);
     weft_fit_options whole = whole_model(fitter);
+    fitter->most_lobes = whole.lobe_count;
     weft_frame frame;
     const weft_frame *given = find_given(fitter->source->given, level, x, y, &frame);
     if (fitter->source->tables)
