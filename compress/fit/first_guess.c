@@ -21,7 +21,7 @@ enum {
 #define START_TOLERANCE 1e-2
 #define BEATEN 1.2 /* a start that has so many times the residual of the best after RACE_PASSES is not followed */
 #define CLOSE 1.3  /* a challenger that leaves so many times what the incumbent leaves is not refined */
-#define NEAR 2     /* nor is one that leaves so many times what the refined incumbent leaves after RACE_PASSES */
+#define NEAR 1.1   /* nor is one that leaves so many times what the refined incumbent leaves after RACE_PASSES */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
 
 /* A search that grows lobe by lobe. The incumbent comes from the usual starts, which cloth mostly wants; the challenger
