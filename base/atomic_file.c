@@ -72,6 +72,12 @@ static char *final_name(const char *path)
     return target ? target : strdup(path);
 }
 
+weft_code weft_output_check(const char *path, weft_error *error)
+{
+    WEFT_TRY(check_name(path, error));
+    return check_folder(path, error);
+}
+
 weft_code weft_atomic_file_begin(const char *path, weft_atomic_file *file, weft_error *error)
 {
     *file = (weft_atomic_file){0};

@@ -23,6 +23,9 @@ typedef struct weft_atomic_file {
  * a folder, device or pipe; WEFT_SYSTEM for memory, or where its folder does not exist or is not writable. */
 weft_code weft_atomic_file_begin(const char *path, weft_atomic_file *file, weft_error *error);
 
+/* Whether a file could be begun there. Errors: as above. */
+weft_code weft_output_check(const char *path, weft_error *error);
+
 /* Syncs the temporary file to disk, renames it to its final name and syncs the folder. On failure the
  * temporary file is removed and the final one is as it was. Frees `file` either way. */
 weft_code weft_atomic_file_commit(weft_atomic_file *file, weft_error *error);

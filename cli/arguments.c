@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "base/atomic_file.h"
 
 #include <argp.h>
 #include <omp.h>
@@ -164,6 +165,17 @@ static void refuse_overwriting(const arguments *a, struct argp_state *state)
     }
 }
 
+/* Before hours of work whose result has no place. */
+static void check_outputs(const arguments *a, struct argp_state *state)
+{
+    weft_error error = {0};
+    for (int row = 0; row < a->row_count; row++) {
+        const char *output = a->row[row].option->kind == WEFT_OPTION_OUTPUT ? text_of(a, row) : NULL;
+        if (output)
+            insist(weft_output_check(output, &error), &error, state);
+    }
+}
+
 static void complete(arguments *a, struct argp_state *state)
 {
     weft_error error = {0};
@@ -173,6 +185,7 @@ static void complete(arguments *a, struct argp_state *state)
     if (a->command->shows_scene)
         insist(weft_scene_request_complete(scene_of(a), &error), &error, state);
     refuse_overwriting(a, state);
+    check_outputs(a, state);
     if (a->command->check)
         insist(a->command->check(a->values, &error), &error, state);
 }

@@ -1,5 +1,6 @@
 #include "study/compare/compare.h"
 #include "cli/arguments.h"
+#include "cli/describe.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -108,6 +109,22 @@ static void say_weave(const weft_common_options *common, const weft_comparison *
                          100 * before->percentile80_relative, 100 * after->percentile80_relative);
 }
 
+/* The error to judge the material by, before any other. */
+static weft_code say_held_out(const weft_common_options *common, const weft_comparison *comparison, weft_error *error)
+{
+    char line[WEFT_HOLD_OUT_LINE];
+    if (!comparison->has_held_out) {
+        weft_command_say(common, "compressed, on directions that were not fitted: not measured by `weft compress`");
+        return WEFT_OK;
+    }
+    weft_hold_out_headline(&comparison->held_out, line);
+    weft_command_say(common, "compressed, %s", line);
+    json_t *object = common->json ? weft_hold_out_to_json(&comparison->held_out) : NULL;
+    weft_code code = object ? weft_command_describe(common, "held_out", object, error) : WEFT_OK;
+    json_decref(object);
+    return code;
+}
+
 static void say_numbers(const compare_command *command, const weft_comparison *comparison)
 {
     const weft_common_options *common = &command->common;
@@ -115,7 +132,8 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
         weft_command_say(common, "warning: %s", comparison->warning);
     say_weave(common, comparison);
     for (int i = 0; i < comparison->model_count; i++) {
-        say_error(common, comparison->model[i].name, "samples", &comparison->model[i].texture.all);
+        say_error(common, comparison->model[i].name, i == 0 ? "fitted samples" : "samples",
+                  &comparison->model[i].texture.all);
         say_error(common, comparison->model[i].name, "mean BRDF", &comparison->model[i].mean);
     }
     weft_command_say(common, "size: %.0f bytes, 1:%.1f of the half floats", comparison->material_bytes,
@@ -142,6 +160,7 @@ static int run(int argc, char **argv)
     weft_error error = {0};
     weft_code code = weft_compare(&command.options, &progress, &comparison, &error);
     if (code == WEFT_OK) {
+        code = say_held_out(&command.common, &comparison, &error);
         say_numbers(&command, &comparison);
         weft_comparison_free(&comparison);
     }

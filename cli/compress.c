@@ -1,6 +1,8 @@
 #include "compress/compress.h"
 #include "base/atomic_file.h"
 #include "cli/arguments.h"
+#include "cli/describe.h"
+#include "study/hold_out/record.h"
 #include "study/inspect/model_report.h"
 
 #include <limits.h>
@@ -14,7 +16,11 @@ typedef struct compress_command {
     weft_common_options common;
     const char *input, *output, *report;
     weft_compress_options options;
+    int hold_out;     /* splits; 0: off */
+    int lobes, table; /* NOT_GIVEN, or as in the options */
 } compress_command;
+
+enum { NOT_GIVEN = -1 };
 
 static weft_code read_tables(const weft_option *option, const char *text, void *values, weft_error *error)
 {
@@ -45,8 +51,18 @@ static weft_code read_memory(const weft_option *option, const char *text, void *
     return WEFT_OK;
 }
 
+static weft_code read_hold_out(const weft_option *option, const char *text, void *values, weft_error *error)
+{
+    unsigned long long splits = 0;
+    if (strcmp(text, "off") != 0)
+        WEFT_TRY(weft_option_whole(option->name, text, 1, WEFT_SPLIT_MOST, &splits, error));
+    ((compress_command *)values)->hold_out = (int)splits;
+    return WEFT_OK;
+}
+
 /* In the order of weft_frame_choice and of weft_sample_weights. */
 static const char *const frame_words[] = {"off", "given", "on", NULL};
+static const char *const switch_words[] = {"off", "on", NULL};
 static const char *const weight_words[] = {"even", "screen", NULL};
 
 static const weft_option option_table[] = {
@@ -57,10 +73,16 @@ static const weft_option option_table[] = {
     {"output", 'o', "NAME.weft", "The material to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(compress_command, output)},
     {"lobes", .argument = "0..3", .help = "Lafortune lobes a texel and channel, at most (default: 2)",
-     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, options.lobe_count), .low = 0,
-     .high = WEFT_MATERIAL_MAX_LOBES},
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, lobes), .low = 0, .high = WEFT_MATERIAL_MAX_LOBES},
     {"table", .argument = "on|off", .help = "View table T, where the samples can carry it (default: on)",
-     .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.table)},
+     .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, table), .words = switch_words},
+    {"layers", .argument = "K",
+     .help =
+         "Add K linear layers, 4 to 64, a multiple of 4: K bytes a texel and tables that all texels share. They come "
+         "nearer to the photographs than lobes do, most of all between them. Without --lobes and --table the lobes "
+         "beside them are a diffuse term (default: 0)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, options.layer_count), .low = 0,
+     .high = WEFT_LAYERS_MAX},
     {"light-table", .argument = "on|off",
      .help = "Light table S beside T, as large and several times the time; where lights repeat (default: off)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.light_table)},
@@ -91,6 +113,10 @@ static const weft_option option_table[] = {
      .help = "Choose the model of each texel so that the error is least and the file no larger; tables may have fewer "
              "bits. Fits every model first, without a checkpoint",
      .read = read_budget},
+    {"hold-out", .argument = "off|N",
+     .help = "Fit some texels N times without about a tenth of the views and of the lights, others each time, and say "
+             "how well the material predicts these (default: 1); the material itself is fitted to all images",
+     .read = read_hold_out},
     {"report", .argument = "DIR",
      .help = "With --error or --budget: a page with a map of the models that were chosen, and their shares by level",
      .kind = WEFT_OPTION_TEXT, .offset = offsetof(compress_command, report)},
@@ -103,7 +129,13 @@ static weft_code check(void *values, weft_error *error)
 {
     const compress_command *command = values;
     const weft_compress_options *o = &command->options;
+    if (o->layer_count % WEFT_LAYERS_GROUP != 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "--layers is a multiple of %d, not %d", WEFT_LAYERS_GROUP,
+                         o->layer_count);
     bool chooses = o->target_error > 0 || o->budget_bytes > 0;
+    if (o->layer_count > 0 && chooses)
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "--error and --budget choose lobes and tables for each texel: leave out --layers");
     if (o->target_error > 0 && o->budget_bytes > 0)
         return weft_fail(error, WEFT_BAD_USAGE, "give --error or --budget, not both");
     if (o->table_components > 0 && chooses)
@@ -127,7 +159,8 @@ static void say_idle(const weft_common_options *common, const weft_compress_opti
         weft_command_say(common, "with so few images --max-exponent changes nothing");
 }
 
-static void say_model(const compress_command *command, const weft_dataset *dataset, const weft_compress_report *report)
+static void say_model(const compress_command *command, const weft_compress_options *options,
+                      const weft_dataset *dataset, const weft_compress_report *report)
 {
     const weft_common_options *common = &command->common;
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
@@ -135,21 +168,20 @@ static void say_model(const compress_command *command, const weft_dataset *datas
     weft_command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height,
                      layout->image_count, report->lobe_count, table,
                      report->light_count > 0 ? " and a light table" : "");
-    if (command->options.table_components > 0 && report->table_components == 0)
+    if (options->table_components > 0 && report->table_components == 0)
         weft_command_say(common, "these images carry no tables: --tables changes nothing");
-    if (command->options.light_table && report->light_count == 0)
+    if (options->light_table && report->light_count == 0)
         weft_command_say(common, "these images carry no light table: --light-table changes nothing");
     if (report->model == WEFT_COMPRESS_SPARSE)
-        say_idle(common, &command->options);
-    else if (command->options.frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(dataset))
+        say_idle(common, options);
+    else if (options->frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(dataset))
         weft_command_say(common, "the dataset gives no frames: --frames given is that of the surface");
     if (report->model == WEFT_COMPRESS_SPARSE)
         weft_command_say(common,
                          "%d images cannot carry lobes in every texel: exponents and normals are shared with the "
                          "neighbours, only amplitudes are the texel's own",
                          layout->image_count);
-    else if (report->lobe_count < command->options.lobe_count ||
-             (command->options.table && report->model != WEFT_COMPRESS_TABLE))
+    else if (report->lobe_count < options->lobe_count || (options->table && report->model != WEFT_COMPRESS_TABLE))
         weft_command_say(common, "%s: fitted %d lobes without a table",
                          layout->distance == WEFT_NEAR ? "near cameras or too few images" : "too few images",
                          report->lobe_count);
@@ -174,8 +206,26 @@ static void say_target(const compress_command *command, const weft_compress_repo
                          100 * command->options.target_error, report->missed_texel_count, report->texel_count);
 }
 
+/* An event of what is in the metadata, too. */
+static weft_code say_hold_out(const weft_common_options *common, const weft_hold_out *result, weft_error *error)
+{
+    char line[WEFT_HOLD_OUT_LINE];
+    weft_hold_out_headline(result, line);
+    weft_command_say(common, "%s", line);
+    weft_hold_out_explain(result, line);
+    weft_command_say(common, "  %s", line);
+    if (!common->json)
+        return WEFT_OK;
+    json_t *object = weft_hold_out_to_json(result);
+    weft_code code =
+        object ? weft_command_describe(common, "held_out", object, error) : weft_fail_memory(error, "event", 0);
+    json_decref(object);
+    return code;
+}
+
 static void say_errors(const weft_common_options *common, const weft_material *material)
 {
+    weft_command_say(common, "on the samples that were fitted:");
     weft_command_say(common, "level       texels   median rel.  80 %% rel.  RMSE       rel. RMSE  PSNR dB");
     for (int k = 0; k < material->level_count; k++) {
         const weft_material_level *level = &material->level[k];
@@ -191,6 +241,26 @@ static void say_errors(const weft_common_options *common, const weft_material *m
                  error->relative_rmse, isfinite(error->psnr_db) ? error->psnr_db : 0);
         weft_command_event(common, event);
     }
+}
+
+static void say_layers(const weft_common_options *common, const weft_compress_options *options,
+                       const weft_compress_report *report)
+{
+    static const char *const kind[] = {"the light", "the half vector"};
+    const weft_layers_report *layers = &report->layers;
+    if (options->layer_count == 0)
+        return;
+    weft_command_say(common,
+                     "%d layers over %s, learned from %d texels; on images held out to choose: %.4f over the light, "
+                     "%.4f over the half vector (relative RMSE)",
+                     options->layer_count, kind[layers->kind], layers->training_texels, layers->trial_error[0],
+                     layers->trial_error[1]);
+    weft_command_say(common,
+                     "layers at those texels, fitted samples: median rel. %.4f, 80 %% rel. %.4f, rel. RMSE %.4f, "
+                     "PSNR %.2f dB",
+                     layers->fitted.median_relative, layers->fitted.percentile80_relative, layers->fitted.relative_rmse,
+                     layers->fitted.psnr_db);
+    weft_command_say(common, "the lobes beside them, for players without layers:");
 }
 
 static void say_sizes(const compress_command *command, const weft_dataset_layout *layout,
@@ -218,18 +288,61 @@ static weft_code check_output(const char *path, weft_error *error)
     return code;
 }
 
+/* Beside layers lobes are for those who cannot play layers, unless they were asked for; opacity lies in the table. */
+static weft_compress_options resolve(const compress_command *command, const weft_dataset *dataset)
+{
+    weft_compress_options options = command->options;
+    bool alone = options.layer_count == 0;
+    options.lobe_count = command->lobes != NOT_GIVEN ? command->lobes : alone ? options.lobe_count : 0;
+    options.table = command->table != NOT_GIVEN ? command->table : alone || weft_dataset_has_opacity(dataset);
+    return options;
+}
+
+/* Where it cannot be measured, for want of memory say, or because the texels that were chosen are holes, the user is
+ * told: what concerns the whole, too, its fit will say. The options learn how much is added to the file. */
+static weft_code measure_hold_out(const compress_command *command, weft_dataset *dataset,
+                                  weft_compress_options *options, const weft_progress *progress, weft_hold_out *result,
+                                  weft_error *error)
+{
+    char scratch_path[PATH_MAX];
+    weft_error own = {0};
+    *result = (weft_hold_out){0};
+    if (command->hold_out == 0)
+        return WEFT_OK;
+    snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
+    weft_code code = weft_hold_out_measure(dataset, options, command->hold_out, scratch_path, progress, result, &own);
+    if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT) {
+        weft_command_say(&command->common, "error on directions that were not fitted: not measured: %s", own.message);
+        *result = (weft_hold_out){0};
+        return WEFT_OK;
+    }
+    if (code == WEFT_OK)
+        code = weft_hold_out_bytes(result, &options->added_bytes, &own);
+    if (code != WEFT_OK)
+        *error = own;
+    return code;
+}
+
 static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
 {
     weft_progress progress = weft_command_progress(&command->common);
     weft_compress_options options = command->options;
-    options.checkpoint_path = partial_path;
-    options.log = weft_command_log(&command->common);
     weft_dataset *dataset = NULL;
     weft_material material = {0};
     weft_compress_report report;
+    weft_hold_out held_out;
     weft_code code = weft_dataset_open(command->input, &dataset, error);
-    if (code == WEFT_OK)
+    if (code == WEFT_OK) {
+        options = resolve(command, dataset);
+        code = measure_hold_out(command, dataset, &options, &progress, &held_out, error);
+    }
+    if (code == WEFT_OK) {
+        options.checkpoint_path = partial_path;
+        options.log = weft_command_log(&command->common);
         code = weft_compress(dataset, &options, &progress, &material, &report, error);
+    }
+    if (code == WEFT_OK && held_out.split_count > 0)
+        code = weft_hold_out_store(&held_out, &material, error);
     if (code == WEFT_OK)
         code = weft_material_write(command->output, &material, error);
     if (code == WEFT_OK && command->report)
@@ -237,8 +350,11 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     if (code == WEFT_OK) {
         const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
         unlink(partial_path);
-        say_model(command, dataset, &report);
+        say_model(command, &options, dataset, &report);
         say_target(command, &report);
+        if (held_out.split_count > 0)
+            code = say_hold_out(&command->common, &held_out, error);
+        say_layers(&command->common, &options, &report);
         say_errors(&command->common, &material);
         say_sizes(command, layout, &report);
     }
@@ -249,7 +365,8 @@ static weft_code compress_dataset(const compress_command *command, const char *p
 
 static int run(int argc, char **argv)
 {
-    compress_command command = {.options = weft_compress_default_options()};
+    compress_command command = {
+        .options = weft_compress_default_options(), .hold_out = 1, .lobes = NOT_GIVEN, .table = NOT_GIVEN};
     weft_arguments_parse(&weft_command_compress, argc, argv, &command);
     weft_error error = {0};
     char partial_path[PATH_MAX];
@@ -267,7 +384,8 @@ const weft_command weft_command_compress = {
     .usage = "NAME.btf.h5 -o NAME.weft",
     .documentation = "Example: weft compress cloth.btf.h5 -o cloth.weft --lobes 2\n\n"
                      "Fits Lafortune lobes with a view table to every texel of every mip level of a "
-                     "dataset, and measures what the result leaves. With too few images for that, "
+                     "dataset, and measures what the result leaves: of the samples that it was fitted to, and of "
+                     "directions that it was not. With too few images for that, "
                      "fits what they can carry and says so.\n\n"
                      "Samples are read in blocks while the blocks before are fitted. What is done is "
                      "kept in NAME.weft.partial: killed, the same command goes on where it stopped and "

@@ -45,6 +45,8 @@ static const weft_option option_table[] = {
      .offset = offsetof(eval_command, output)},
     {"noise", .argument = "SEED|off", .help = "Evaluate a weave with its noise (default: off)",
      .kind = WEFT_OPTION_NOISE, .offset = offsetof(eval_command, noise_seed)},
+    {"lobes", .help = "Evaluate the lobes of a .weft that has layers, too", .kind = WEFT_OPTION_FLAG,
+     .offset = offsetof(eval_command, options.lobes)},
     {"as-printed", .help = "Weigh the threads of a .mc as its article prints it, not by area", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(eval_command, options.as_printed)},
     {"set", 's', "NAME=R[,G,B]", "Value of a $NAME in a weave or .mc; may be repeated", .read = add_parameter},

@@ -66,10 +66,10 @@ const weft_command weft_command_play = {
     .name = "play",
     .summary = "draw a material in a window",
     .usage = "[NAME.weft]",
-    .documentation =
-        "Example: weft play silk.weft --raw silk.btf.h5 --weave silk.wv\n\n"
-        "Shows a material in a window; drag to turn it, drag with the right button to move the light, H for all keys. "
-        "Files may be dropped on it, and are read again when they change.",
+    .documentation = "Example: weft play silk.weft --raw silk.btf.h5 --weave silk.wv\n\n"
+                     "Shows a material, a dataset or a cloth in a window; drag to turn it, drag with the right button "
+                     "to move the light, H for all keys. "
+                     "Files may be dropped on it, and are read again when they change.",
     .options = option_table,
     .shows_scene = true,
     .run = run,

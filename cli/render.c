@@ -1,6 +1,7 @@
 #include "capture/settings.h"
 #include "cli/arguments.h"
 #include "player/gl/context.h"
+#include "player/settings/exposure.h"
 #include "player/settings/sequence.h"
 #include "player/window/scene_loader.h"
 #include "study/error/scene_error.h"
@@ -61,9 +62,29 @@ static weft_code check(void *values, weft_error *error)
 {
     const render_command *command = values;
     WEFT_TRY(refuse_idle(command, error));
+    if (!weft_settings_is_picture(command->output))
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s' names no kind of picture: -o takes .png, .exr or .tif",
+                         command->output);
     if (command->path_file && !weft_sequence_is_pattern(command->output))
         return weft_fail(error, WEFT_BAD_USAGE,
                          "--path needs one place for a number in -o, as in frame-%%04d.png, not '%s'", command->output);
+    return WEFT_OK;
+}
+
+/* Chooses what the command line left open, and says what that was. A linear picture keeps its numbers. */
+static weft_code look(const render_command *command, weft_player *player, weft_scene *scene, weft_error *error)
+{
+    const weft_common_options *common = &command->values.common;
+    const weft_scene_request *request = &command->values.scene;
+    char text[WEFT_MESSAGE_SIZE];
+    bool exposed = false;
+    if (!weft_settings_is_linear(command->output))
+        WEFT_TRY(weft_expose(request, player, scene, &exposed, error));
+    if (exposed)
+        weft_command_say(common, "exposure %.3g (--exposure 1 shows reflectance)", scene->exposure);
+    WEFT_TRY(weft_describe_unmeasured(request, player, scene, text, error));
+    if (text[0])
+        weft_command_say(common, "%s", text);
     return WEFT_OK;
 }
 
@@ -91,6 +112,7 @@ static weft_code draw(render_command *command, weft_player *player, weft_error *
     if (command->path_file)
         WEFT_TRY(weft_path_read(command->path_file, &command->path, error));
     WEFT_TRY(weft_scene_load(scene, weft_rig_settings_default().opening_mm, player, &progress, &log, error));
+    WEFT_TRY(look(command, player, &scene->settings.scene, error));
     if (!command->path_file)
         return draw_picture(command, player, error);
     double frames_per_second = command->frames_per_second > 0 ? command->frames_per_second : DEFAULT_FPS;

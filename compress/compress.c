@@ -4,6 +4,7 @@
 #include "base/processor.h"
 #include "btf/dataset/fingerprint.h"
 #include "btf/material/models.h"
+#include "compress/layers/layers_fit.h"
 #include "compress/metadata.h"
 #include "compress/run/budget.h"
 #include "compress/run/given_frames.h"
@@ -14,6 +15,7 @@
 
 #include <inttypes.h>
 #include <malloc.h>
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,6 +45,31 @@ static void plan(const weft_dataset_layout *layout, const weft_compress_options 
     } else if (options->lobe_count > 1) {
         report->lobe_count = 1;
     }
+}
+
+weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const weft_compress_options *options,
+                                       int *lobe_count)
+{
+    weft_compress_report report = {0};
+    plan(layout, options, &report);
+    *lobe_count = report.lobe_count;
+    return report.model;
+}
+
+weft_code weft_compress_share_budget(const weft_dataset_layout *whole, const weft_dataset_layout *part,
+                                     const weft_compress_options *options, uint64_t *bytes, weft_error *error)
+{
+    uint64_t beside_whole, beside_part;
+    *bytes = 0;
+    if (options->budget_bytes == 0)
+        return WEFT_OK;
+    WEFT_TRY(weft_compress_metadata_bytes(whole, &beside_whole, error));
+    WEFT_TRY(weft_compress_metadata_bytes(part, &beside_part, error));
+    double texels = (double)whole->width * whole->height * (options->levels ? 4.0 / 3 : 1);
+    double share = fmin(1, (double)part->width * part->height / texels);
+    uint64_t left = options->budget_bytes > beside_whole ? options->budget_bytes - beside_whole : 0;
+    *bytes = beside_part + (uint64_t)ceil(share * (double)left);
+    return WEFT_OK;
 }
 
 /* The directions of S: those that the bundle of the fit labels. */
@@ -129,6 +156,7 @@ static weft_code fit_chosen(fitting *work, const weft_texel_source *source, cons
 {
     weft_budget_plan plan = {.bytes = work->options->budget_bytes};
     WEFT_TRY(weft_compress_metadata_bytes(source->layout, &plan.reserve, error));
+    plan.reserve += work->options->added_bytes;
     if (plan.bytes > 0)
         return weft_budget_fit(work->dataset, source, job, &plan, material, result, error);
     WEFT_TRY(weft_dense_fit(work->dataset, source, job, material, result, error));
@@ -157,10 +185,11 @@ static weft_code reduce_tables(fitting *work, const weft_texel_source *source, c
 static weft_code fit_dense(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     const weft_compress_options *options = work->options;
-    identity_text identity;
+    identity_text identity = {0};
     weft_dense_result result;
     WEFT_TRY(weft_given_frames_store(work->dataset, material, error));
-    WEFT_TRY(identify(work->dataset, options, report, &work->fingerprint, &identity, error));
+    if (options->checkpoint_path)
+        WEFT_TRY(identify(work->dataset, options, report, &work->fingerprint, &identity, error));
     weft_dense_job job = {.budget = work->budget,
                           .checkpoint_path = options->checkpoint_path,
                           .identity = {identity.program, identity.dataset, identity.options},
@@ -221,6 +250,17 @@ static weft_code fit_sparse(fitting *work, weft_material *material, weft_compres
                                     &work->counts, &report->masked_count, error);
 }
 
+static weft_code fit_layers(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
+{
+    weft_layers_options options = {.layer_count = work->options->layer_count,
+                                   .held_out = work->options->held_out,
+                                   .for_screen = work->options->weights == WEFT_WEIGHTS_SCREEN,
+                                   .budget = work->budget};
+    return options.layer_count > 0
+               ? weft_layers_fit(work->dataset, &options, work->progress, material, &report->layers, error)
+               : WEFT_OK;
+}
+
 static weft_code fit_material(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
@@ -232,6 +272,7 @@ static weft_code fit_material(fitting *work, weft_material *material, weft_compr
         WEFT_TRY(fit_dense(work, material, report, error));
     if (work->counts.empty == work->counts.texels && !work->options->held_out)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(work->dataset));
+    WEFT_TRY(fit_layers(work, material, report, error));
     report->texel_count = work->counts.texels;
     report->empty_texel_count = work->counts.empty;
     report->turned_frame_count = work->counts.turned;
@@ -250,6 +291,8 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
     weft_compress_report own = {0};
     double began = weft_now_s();
     WEFT_TRY(weft_compress_options_check(options, dataset, error));
+    if (options->layer_count > 0)
+        WEFT_TRY(weft_layers_check(dataset, options->layer_count, error));
     plan(weft_dataset_get_layout(dataset), options, &own);
     fitting work = {.dataset = dataset,
                     .options = options,

@@ -3,6 +3,7 @@
 #define WEFT_COMPRESS_COMPRESS_H
 
 #include "btf/material/material.h"
+#include "compress/layers/layers_fit.h"
 #include "compress/options/options.h"
 
 /* What the number of samples a texel allows: at least four for every free parameter. */
@@ -14,18 +15,19 @@ typedef enum weft_compress_model {
 
 typedef struct weft_compress_report {
     weft_compress_model model;
-    int lobe_count;          /* of the material */
-    int light_count;         /* directions of S; 0 without */
-    int table_components;    /* that T and S are stored by; 0: by 8 bits, or there are none */
-    long sample_count;       /* of level 0: texels times images that were not held out */
-    long masked_count;       /* of these, not used: masked, not finite, or light below the horizon */
-    long texel_count;        /* of all levels */
-    long empty_texel_count;  /* without any valid sample; they are black */
-    long turned_frame_count; /* texels whose frame was fitted rather than the surface's own */
-    long second_start_count; /* texels whose fit began with a lobe thrown back to the light rather than mirrored */
-    long missed_texel_count; /* that no model brings to the target error */
-    long held_texel_count;   /* that would have exceeded WEFT_BRIGHTEST_MULTIPLE */
-    long stepped_down_count; /* that fewer lobes serve better than all */
+    int lobe_count;            /* of the material */
+    int light_count;           /* directions of S; 0 without */
+    int table_components;      /* that T and S are stored by; 0: by 8 bits, or there are none */
+    long sample_count;         /* of level 0: texels times images that were not held out */
+    long masked_count;         /* of these, not used: masked, not finite, or light below the horizon */
+    long texel_count;          /* of all levels */
+    long empty_texel_count;    /* without any valid sample; they are black */
+    long turned_frame_count;   /* texels whose frame was fitted rather than the surface's own */
+    long second_start_count;   /* texels whose fit began with a lobe thrown back to the light rather than mirrored */
+    long missed_texel_count;   /* that no model brings to the target error */
+    long held_texel_count;     /* that would have exceeded WEFT_BRIGHTEST_MULTIPLE */
+    long stepped_down_count;   /* that fewer lobes serve better than all */
+    weft_layers_report layers; /* where there are any */
     double seconds;
     long block_count;         /* of a dense model */
     long resumed_block_count; /* of these, taken from the checkpoint */
@@ -33,6 +35,16 @@ typedef struct weft_compress_report {
     double read_seconds;      /* that the reading thread read */
     double starved_seconds;   /* that the fit waited for it */
 } weft_compress_report;
+
+/* The model that weft_compress fits to a dataset with this layout, and how many lobes. Pure. */
+weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const weft_compress_options *options,
+                                       int *lobe_count);
+
+/* The budget for the finest level of `part`, some texels of `whole`: what the budget of the options leaves for texels,
+ * in proportion to their number, and what a file has besides. 0 where the options have no budget. Errors: WEFT_SYSTEM
+ * for memory. */
+weft_code weft_compress_share_budget(const weft_dataset_layout *whole, const weft_dataset_layout *part,
+                                     const weft_compress_options *options, uint64_t *bytes, weft_error *error);
 
 /* Fits `material`, which the caller frees with weft_material_free; errors by level are in it. `report` may be NULL. The
  * result depends neither on the number of threads (OpenMP) nor on the order of the images, the memory allowed or

@@ -1,7 +1,9 @@
 #include "compress/metadata.h"
 
 #include "base/text/json_text.h"
+#include "btf/dataset/measured.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,6 +26,18 @@ weft_code weft_compress_metadata_bytes(const weft_dataset_layout *layout, uint64
     return WEFT_OK;
 }
 
+static json_t *describe_layers(const weft_compress_options *options, const weft_layers_report *report)
+{
+    static const char *const kind[] = {"light", "half vector"};
+    const weft_error_summary *fitted = &report->fitted;
+    return json_pack("{s:i, s:s, s:[f,f], s:i, s:{s:f, s:f, s:f, s:f, s:f}}", "count", options->layer_count,
+                     "maps_over", kind[report->kind], "trial_relative_rmse", report->trial_error[0],
+                     report->trial_error[1], "learned_from_texels", report->training_texels, "fitted",
+                     "median_relative", fitted->median_relative, "percentile80_relative", fitted->percentile80_relative,
+                     "rmse", fitted->rmse, "relative_rmse", fitted->relative_rmse, "psnr_db",
+                     isfinite(fitted->psnr_db) ? fitted->psnr_db : 0);
+}
+
 static json_t *describe_fit(const weft_compress_options *options, const weft_compress_report *report,
                             const weft_sparse_setting *setting)
 {
@@ -44,6 +58,8 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
     }
     if (options->budget_bytes > 0)
         weft_json_put(&fit, "budget_bytes", json_integer((json_int_t)options->budget_bytes));
+    if (options->layer_count > 0)
+        weft_json_put(&fit, "layers", describe_layers(options, &report->layers));
     if (report->table_components > 0)
         weft_json_put(&fit, "table_components", json_integer(report->table_components));
     if (report->model == WEFT_COMPRESS_SPARSE) {
@@ -61,8 +77,10 @@ weft_code weft_compress_describe(const weft_dataset_layout *layout, const weft_c
     weft_checksum_print(fingerprint->layout, layout_text);
     weft_checksum_print(fingerprint->samples, samples_text);
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
-    json_t *object = json_pack("{s:o, s:{s:s, s:s}, s:o}", "provenance", provenance, "dataset", "layout", layout_text,
-                               "samples", samples_text, "fit", describe_fit(options, report, setting));
+    weft_measured measured = weft_measured_of(layout);
+    json_t *object = json_pack("{s:o, s:o, s:{s:s, s:s}, s:o}", "measured", weft_measured_pack(&measured), "provenance",
+                               provenance, "dataset", "layout", layout_text, "samples", samples_text, "fit",
+                               describe_fit(options, report, setting));
     char *text = object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
     json_decref(object);
     if (!text)

@@ -29,6 +29,13 @@ step "4/5 Draw: raw BTF, compressed material and analytic cloth side by side"
 step "5/5 Compare them with numbers"
 "$weft" compare "$out/gabardine.btf.h5" "$out/gabardine.weft" --weave "$weave" --fit -o "$out/compare"
 
+step "60 photographs to a picture: a camera and a lamp in the hand, as you would take them yourself"
+rm -rf "$out/hand"
+"$weft" hand "$weave" --photographs 60 --width 900 --truth-size 0 -q -o "$out/hand"
+"$weft" photographs "$out/hand" --size 96x96 --report "$out/hand-report" -o "$out/hand.btf.h5"
+"$weft" compress "$out/hand.btf.h5" -q -o "$out/hand.weft"
+"$weft" render "$out/hand.weft" -o "$out/hand.png"
+
 if [ -d "$shared/cards-blue" ]; then
     step "And real photographs: nine flash pictures of a card"
     "$weft" import "$shared/cards-blue" --size 256 -o "$out/cards.btf.h5"
@@ -40,6 +47,6 @@ else
 fi
 
 printf '\nDone. Look at:\n'
-for result in side-by-side.png registration/index.html compare/index.html cards-moved-light.png cards-compare/index.html; do
+for result in side-by-side.png registration/index.html compare/index.html hand.png hand-report/index.html cards-moved-light.png cards-compare/index.html; do
     [ ! -e "$out/$result" ] || printf '    %s\n' "$out/$result"
 done

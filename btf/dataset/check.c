@@ -7,6 +7,12 @@ enum { MAX_SIDE = 65536, MAX_IMAGES = 1 << 24 };
 
 const char *const weft_values_name[2] = {"reflectance_cosine", "reflectance"};
 const char *const weft_distance_name[2] = {"far", "near"};
+const char *const weft_image_figure_name[WEFT_IMAGE_FIGURES] = {
+    [WEFT_IMAGE_WEIGHT] = "weight",
+    [WEFT_IMAGE_VIEW_ERROR] = "view_standard_error_deg",
+    [WEFT_IMAGE_LIGHT_ERROR] = "light_standard_error_deg",
+    [WEFT_IMAGE_VALUE_ERROR] = "value_relative_standard_error",
+};
 
 static weft_code check_count(const char *path, const char *what, int count, int most, weft_code code, weft_error *error)
 {
@@ -69,6 +75,22 @@ weft_code weft_dataset_frames_check(const float *frames, size_t count, int row, 
     return WEFT_OK;
 }
 
+weft_code weft_dataset_figure_check(const weft_dataset_layout *layout, weft_image_figure figure, const char *path,
+                                    weft_code code, weft_error *error)
+{
+    const double *value = layout->figure[figure];
+    double most = 0;
+    for (int i = 0; value && i < layout->image_count; i++) {
+        if (!(value[i] >= 0) || !isfinite(value[i]))
+            return weft_fail(error, code, "'%s': %s of image %d is %g, must be finite and not negative", path,
+                             weft_image_figure_name[figure], i, value[i]);
+        most = fmax(most, value[i]);
+    }
+    if (value && figure == WEFT_IMAGE_WEIGHT && !(most > 0))
+        return weft_fail(error, code, "'%s': the weight of every image is 0", path);
+    return WEFT_OK;
+}
+
 weft_code weft_dataset_provenance_check(const char *text, const char *path, weft_code code, weft_error *error)
 {
     json_error_t where;
@@ -90,5 +112,7 @@ weft_code weft_dataset_layout_check(const weft_dataset_layout *layout, const cha
         if (view < 0 || view >= layout->view_count)
             return weft_fail(error, code, "'%s': image %d has view %d of %d", path, i, view, layout->view_count);
     }
+    for (int i = 0; i < WEFT_IMAGE_FIGURES; i++)
+        WEFT_TRY(weft_dataset_figure_check(layout, (weft_image_figure)i, path, code, error));
     return weft_dataset_provenance_check(layout->provenance, path, code, error);
 }

@@ -232,6 +232,19 @@ weft_code weft_dataset_file_write_frames(const weft_dataset_file *file, const we
     return write_floats(file, layout, "frame", 4, 2, frames, error);
 }
 
+weft_code weft_dataset_file_write_figures(const weft_dataset_file *file, const weft_dataset_layout *layout,
+                                          weft_error *error)
+{
+    const hsize_t images = (hsize_t)layout->image_count;
+    bool done = true;
+    for (int i = 0; i < WEFT_IMAGE_FIGURES; i++) {
+        if (layout->figure[i])
+            done = done && put_array(file->file, weft_image_figure_name[i], H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1,
+                                     &images, layout->figure[i]);
+    }
+    return done ? WEFT_OK : fail(file->path, error);
+}
+
 weft_code weft_dataset_file_write_provenance(const weft_dataset_file *file, const char *text, weft_error *error)
 {
     hid_t type = text_type(strlen(text)), space = H5Screate(H5S_SCALAR);

@@ -13,8 +13,8 @@ typedef struct weft_dataset_file {
 /* Width and height of a chunk, texels (docs/reference/dataset-format.md, Storage). Pure. */
 void weft_dataset_chunk(const weft_dataset_layout *layout, int *width, int *height);
 
-/* Creates `temporary_path` with everything but samples, masks, provenance, opacity and frames, and reserves the disk
- * space of the samples. Errors: WEFT_SYSTEM, with messages that name `path`. */
+/* Creates `temporary_path` with everything but samples, masks, figures, provenance, opacity and frames, and reserves
+ * the disk space of the samples. Errors: WEFT_SYSTEM, with messages that name `path`. */
 weft_code weft_dataset_create(const char *temporary_path, const char *path, const weft_dataset_layout *layout,
                               weft_error *error);
 
@@ -35,6 +35,10 @@ weft_code weft_dataset_file_write_opacity(const weft_dataset_file *file, const w
 /* frames [height][width][2][3]. Errors: WEFT_SYSTEM. */
 weft_code weft_dataset_file_write_frames(const weft_dataset_file *file, const weft_dataset_layout *layout,
                                          const float *frames, weft_error *error);
+
+/* The figures of the layout that are known. Errors: WEFT_SYSTEM. */
+weft_code weft_dataset_file_write_figures(const weft_dataset_file *file, const weft_dataset_layout *layout,
+                                          weft_error *error);
 
 /* Errors: WEFT_SYSTEM. */
 weft_code weft_dataset_file_write_provenance(const weft_dataset_file *file, const char *text, weft_error *error);

@@ -31,6 +31,15 @@ enum {
     WEFT_MASK_SATURATED = 2 /* the sensor clipped */
 };
 
+/* Numbers that may be known about every image. */
+typedef enum weft_image_figure {
+    WEFT_IMAGE_WEIGHT,      /* what its samples count for in a fit; only ratios matter */
+    WEFT_IMAGE_VIEW_ERROR,  /* standard error of the direction of its view, degrees */
+    WEFT_IMAGE_LIGHT_ERROR, /* standard error of the direction of its light, degrees */
+    WEFT_IMAGE_VALUE_ERROR, /* relative standard error of its samples, as far as they share it */
+    WEFT_IMAGE_FIGURES
+} weft_image_figure;
+
 /* Everything but the samples. */
 typedef struct weft_dataset_layout {
     int width, height; /* texels; row 0 is the top row (v near 1) */
@@ -39,14 +48,19 @@ typedef struct weft_dataset_layout {
     weft_values values;
     weft_distance distance;
     double texel_pitch_mm;
-    weft_vec3 *light;       /* [image_count] direction or position */
-    weft_vec3 *view;        /* [view_count] direction or position */
-    int32_t *view_of_image; /* [image_count] index into view */
-    char *provenance;       /* JSON text: where the samples come from and what was done to them; never NULL once read */
+    weft_vec3 *light;                   /* [image_count] direction or position */
+    weft_vec3 *view;                    /* [view_count] direction or position */
+    int32_t *view_of_image;             /* [image_count] index into view */
+    double *figure[WEFT_IMAGE_FIGURES]; /* [image_count] each, finite and >= 0; NULL: not known */
+    char *provenance; /* JSON text: where the samples come from and what was done to them; never NULL once read */
 } weft_dataset_layout;
 
-/* Allocates the arrays of a layout whose counts are set (provenance becomes "{}"). Errors: WEFT_SYSTEM. */
+/* Allocates the arrays of a layout whose counts are set (provenance becomes "{}", no figure is known). Errors:
+ * WEFT_SYSTEM. */
 weft_code weft_dataset_layout_allocate(weft_dataset_layout *layout, weft_error *error);
+
+/* Zeros for one figure of every image, in layout->figure. Errors: WEFT_SYSTEM. */
+weft_code weft_dataset_layout_allocate_figure(weft_dataset_layout *layout, weft_image_figure figure, weft_error *error);
 void weft_dataset_layout_free(weft_dataset_layout *layout);
 
 /* Unit direction from the centre of texel (x, y) to the light of an image, or to the camera of a view.
@@ -116,6 +130,11 @@ weft_code weft_dataset_writer_put_opacity(weft_dataset_writer *writer, const flo
 /* Optional, once: frames [height][width][2][3] as weft_dataset_read_frames gives them, copied. Errors: WEFT_BAD_INPUT
  * for one that is none, WEFT_SYSTEM. */
 weft_code weft_dataset_writer_put_frames(weft_dataset_writer *writer, const float *frames, weft_error *error);
+
+/* Optional: a figure of every image [image_count], copied; replaces that of the layout. Errors: WEFT_BAD_INPUT for one
+ * that is not finite or negative, or weights that are all 0; WEFT_SYSTEM. */
+weft_code weft_dataset_writer_put_figure(weft_dataset_writer *writer, weft_image_figure figure, const double *value,
+                                         weft_error *error);
 
 /* Writes the file under its final name (atomically) and frees the writer, also on failure. `provenance`
  * (JSON text, may be NULL) replaces the one of the layout. */

@@ -10,6 +10,16 @@
 
 enum { PROBES = 4 }; /* along each side */
 
+/* Even weights are the same as none. */
+static bool has_uneven_weights(const weft_dataset_layout *layout)
+{
+    const double *weight = layout->figure[WEFT_IMAGE_WEIGHT];
+    bool uneven = false;
+    for (int i = 0; weight && i < layout->image_count; i++)
+        uneven = uneven || weight[i] != weight[0];
+    return uneven;
+}
+
 static uint32_t layout_checksum(const weft_dataset_layout *layout)
 {
     const int32_t numbers[6] = {layout->width,      layout->height,          layout->image_count,
@@ -20,6 +30,8 @@ static uint32_t layout_checksum(const weft_dataset_layout *layout)
     checksum = crc32_z(checksum, (const Bytef *)layout->light, images * sizeof *layout->light);
     checksum = crc32_z(checksum, (const Bytef *)layout->view, views * sizeof *layout->view);
     checksum = crc32_z(checksum, (const Bytef *)layout->view_of_image, images * sizeof *layout->view_of_image);
+    if (has_uneven_weights(layout))
+        checksum = crc32_z(checksum, (const Bytef *)layout->figure[WEFT_IMAGE_WEIGHT], images * sizeof(double));
     return (uint32_t)checksum;
 }
 

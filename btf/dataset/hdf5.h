@@ -14,6 +14,7 @@ enum { WEFT_DATASET_VERSION = 1 };
 
 extern const char *const weft_values_name[2];   /* by weft_values */
 extern const char *const weft_distance_name[2]; /* by weft_distance */
+extern const char *const weft_image_figure_name[WEFT_IMAGE_FIGURES];
 
 /* An open dataset. */
 struct weft_dataset {
@@ -43,8 +44,8 @@ hid_t weft_hdf5_whole_transfer(void);
 /* Opens a dataset of the file so that its filtered chunks, once decoded, are kept for a while. Negative on failure. */
 hid_t weft_hdf5_open_cached(hid_t file, const char *name);
 
-/* Checks every count, index, direction and the provenance of a layout. Errors: `code` with a message that starts with
- * `path`. */
+/* Checks every count, index, direction, figure and the provenance of a layout. Errors: `code` with a message that
+ * starts with `path`. */
 weft_code weft_dataset_layout_check(const weft_dataset_layout *layout, const char *path, weft_code code,
                                     weft_error *error);
 
@@ -55,6 +56,11 @@ weft_code weft_dataset_layout_check_counts(const weft_dataset_layout *layout, co
 /* That each of `count` frames [2][3] is a unit normal not below the horizon and a unit tangent perpendicular to it, to
  * 0.001; `row` is the first of them, `width` frames long. Errors as above. */
 weft_code weft_dataset_frames_check(const float *frames, size_t count, int row, int width, const char *path,
+                                    weft_code code, weft_error *error);
+
+/* That a figure, where it is known, is finite and not negative for every image, and weights are not all 0. Errors as
+ * above. */
+weft_code weft_dataset_figure_check(const weft_dataset_layout *layout, weft_image_figure figure, const char *path,
                                     weft_code code, weft_error *error);
 
 /* That `text` is a JSON object. Errors as above. */

@@ -10,14 +10,26 @@ weft_code weft_dataset_layout_allocate(weft_dataset_layout *layout, weft_error *
     layout->view = calloc(views, sizeof *layout->view);
     layout->view_of_image = calloc(images, sizeof *layout->view_of_image);
     layout->provenance = strdup("{}");
+    memset(layout->figure, 0, sizeof layout->figure);
     if (layout->light && layout->view && layout->view_of_image && layout->provenance)
         return WEFT_OK;
     weft_dataset_layout_free(layout);
     return weft_fail_memory(error, "layout of a dataset", (images + views) * sizeof *layout->light);
 }
 
+weft_code weft_dataset_layout_allocate_figure(weft_dataset_layout *layout, weft_image_figure figure, weft_error *error)
+{
+    size_t images = (size_t)layout->image_count;
+    layout->figure[figure] = calloc(images, sizeof *layout->figure[figure]);
+    return layout->figure[figure] ? WEFT_OK : weft_fail_memory(error, "figures of images", images * sizeof(double));
+}
+
 void weft_dataset_layout_free(weft_dataset_layout *layout)
 {
+    for (int i = 0; i < WEFT_IMAGE_FIGURES; i++) {
+        free(layout->figure[i]);
+        layout->figure[i] = NULL;
+    }
     free(layout->light);
     free(layout->view);
     free(layout->view_of_image);

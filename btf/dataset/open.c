@@ -268,6 +268,21 @@ static weft_code read_array(const weft_dataset *dataset, const char *name, int r
     return code;
 }
 
+/* A file may hold none of them. */
+static weft_code read_figures(weft_dataset *dataset, weft_error *error)
+{
+    weft_dataset_layout *layout = &dataset->layout;
+    const hsize_t images = (hsize_t)layout->image_count;
+    for (int i = 0; i < WEFT_IMAGE_FIGURES; i++) {
+        const char *name = weft_image_figure_name[i];
+        if (H5Lexists(dataset->file, name, H5P_DEFAULT) <= 0)
+            continue;
+        WEFT_TRY(weft_dataset_layout_allocate_figure(layout, (weft_image_figure)i, error));
+        WEFT_TRY(read_array(dataset, name, 1, &images, H5T_NATIVE_DOUBLE, layout->figure[i], error));
+    }
+    return WEFT_OK;
+}
+
 static weft_code read_provenance(weft_dataset *dataset, weft_error *error)
 {
     if (H5Lexists(dataset->file, "provenance", H5P_DEFAULT) == 0)
@@ -311,6 +326,7 @@ static weft_code read_layout(weft_dataset *dataset, weft_error *error)
     WEFT_TRY(read_array(dataset, "light", 2, images, H5T_NATIVE_DOUBLE, layout->light, error));
     WEFT_TRY(read_array(dataset, "view", 2, views, H5T_NATIVE_DOUBLE, layout->view, error));
     WEFT_TRY(read_array(dataset, "view_of_image", 1, images, H5T_NATIVE_INT32, layout->view_of_image, error));
+    WEFT_TRY(read_figures(dataset, error));
     WEFT_TRY(read_provenance(dataset, error));
     WEFT_TRY(weft_dataset_layout_check(layout, dataset->path, WEFT_BAD_INPUT, error));
     if (layout->distance == WEFT_FAR) {
@@ -320,6 +336,18 @@ static weft_code read_layout(weft_dataset *dataset, weft_error *error)
     return WEFT_OK;
 }
 
+/* Whether the file begins as a material does. */
+static bool is_material(const char *path)
+{
+    static const char magic[5] = {(char)0x89, 'W', 'E', 'F', 'T'};
+    char head[sizeof magic] = "";
+    FILE *file = fopen(path, "rb");
+    bool found = file && fread(head, sizeof head, 1, file) == 1 && memcmp(head, magic, sizeof magic) == 0;
+    if (file)
+        fclose(file);
+    return found;
+}
+
 static weft_code open_file(weft_dataset *dataset, weft_error *error)
 {
     struct stat status;
@@ -327,6 +355,9 @@ static weft_code open_file(weft_dataset *dataset, weft_error *error)
         return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s': %s", dataset->path, strerror(errno));
     if (!S_ISREG(status.st_mode))
         return weft_fail(error, WEFT_BAD_INPUT, "cannot open '%s': not a regular file", dataset->path);
+    if (is_material(dataset->path))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a material: a dataset (NAME.btf.h5) belongs in its place",
+                         dataset->path);
     dataset->file_size = (uint64_t)status.st_size;
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);

@@ -29,6 +29,12 @@ static weft_code copy_layout(weft_dataset_layout *copy, const weft_dataset_layou
     memcpy(copy->light, layout->light, images * sizeof *copy->light);
     memcpy(copy->view, layout->view, views * sizeof *copy->view);
     memcpy(copy->view_of_image, layout->view_of_image, images * sizeof *copy->view_of_image);
+    for (int i = 0; i < WEFT_IMAGE_FIGURES; i++) {
+        if (!layout->figure[i])
+            continue;
+        WEFT_TRY(weft_dataset_layout_allocate_figure(copy, (weft_image_figure)i, error));
+        memcpy(copy->figure[i], layout->figure[i], images * sizeof *copy->figure[i]);
+    }
     if (!layout->provenance)
         return WEFT_OK;
     free(copy->provenance);
@@ -101,6 +107,16 @@ weft_code weft_dataset_writer_put_frames(weft_dataset_writer *writer, const floa
         return weft_fail_memory(error, "frames", bytes);
     memcpy(writer->frames, frames, bytes);
     return WEFT_OK;
+}
+
+weft_code weft_dataset_writer_put_figure(weft_dataset_writer *writer, weft_image_figure figure, const double *value,
+                                         weft_error *error)
+{
+    weft_dataset_layout *layout = &writer->layout;
+    if (!layout->figure[figure])
+        WEFT_TRY(weft_dataset_layout_allocate_figure(layout, figure, error));
+    memcpy(layout->figure[figure], value, (size_t)layout->image_count * sizeof *value);
+    return weft_dataset_figure_check(layout, figure, writer->path, WEFT_BAD_INPUT, error);
 }
 
 /* ---- From images to texels ---- */
@@ -210,6 +226,7 @@ static weft_code fill(const weft_dataset_writer *writer, const weft_dataset_file
         WEFT_TRY(weft_dataset_file_write_opacity(file, &writer->layout, writer->opacity, error));
     if (writer->frames)
         WEFT_TRY(weft_dataset_file_write_frames(file, &writer->layout, writer->frames, error));
+    WEFT_TRY(weft_dataset_file_write_figures(file, &writer->layout, error));
     return weft_dataset_file_write_provenance(file, provenance, error);
 }
 

@@ -92,6 +92,7 @@ weft_code weft_dataset_block_writer_put_opacity(weft_dataset_block_writer *write
 static weft_code finish(weft_dataset_block_writer *writer, const char *provenance, weft_error *error)
 {
     WEFT_TRY(weft_dataset_provenance_check(provenance, writer->path, WEFT_BAD_USAGE, error));
+    WEFT_TRY(weft_dataset_file_write_figures(&writer->file, writer->layout, error));
     WEFT_TRY(weft_dataset_file_write_provenance(&writer->file, provenance, error));
     writer->is_open = false;
     WEFT_TRY(weft_dataset_file_close(&writer->file, error));

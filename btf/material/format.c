@@ -6,8 +6,8 @@
 
 const unsigned char weft_format_magic[8] = {0x89, 'W', 'E', 'F', 'T', '\r', '\n', 0x1a};
 
-const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ", "LOBE", "TABL",
-                                                       "STAB", "MODL", "TPCA", "SPCA", "ALPH", "ERRO"};
+const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ", "LOBE", "TABL", "STAB",
+                                                       "MODL", "TPCA", "SPCA", "ALPH", "ERRO", "LAYR", "LCOE", "CEIL"};
 
 weft_section_kind weft_section_kind_of(const char type[5])
 {
@@ -40,6 +40,11 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind)
         return material->has_opacity && material->has_table_bases ? material->level_count : 0;
     case WEFT_SECTION_MODL:
         return material->has_models ? material->level_count : 0;
+    case WEFT_SECTION_LAYR:
+        return material->has_layers;
+    case WEFT_SECTION_LCOE:
+    case WEFT_SECTION_CEIL:
+        return material->has_layers ? material->level_count : 0;
     default:
         return material->level_count;
     }
@@ -69,6 +74,12 @@ uint64_t weft_section_size(const weft_material *material, weft_section_kind kind
         return texels;
     case WEFT_SECTION_ERRO:
         return WEFT_FORMAT_ERRORS * sizeof(double);
+    case WEFT_SECTION_LAYR:
+        return material->layers ? weft_layers_header_size(material->layers) : 0;
+    case WEFT_SECTION_LCOE:
+        return material->layers ? texels * (uint64_t)material->layers->layer_count : 0;
+    case WEFT_SECTION_CEIL:
+        return weft_ceiling_count(material->level[level].width, material->level[level].height);
     default:
         return 0;
     }
@@ -90,6 +101,10 @@ void *weft_section_texels(const weft_material *material, weft_section_kind kind,
         return at->light_table;
     case WEFT_SECTION_MODL:
         return at->model;
+    case WEFT_SECTION_LCOE:
+        return material->layers->level[level].coefficient;
+    case WEFT_SECTION_CEIL:
+        return material->layers->level[level].ceiling;
     default:
         return NULL;
     }
@@ -130,6 +145,15 @@ static const char *fault_of_errors(const double *value, size_t count)
     return NULL;
 }
 
+static const char *fault_of_coefficients(const int8_t *coefficient, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (coefficient[i] < -WEFT_LAYERS_LARGEST_CODE)
+            return "holds a coefficient of -128";
+    }
+    return NULL;
+}
+
 static const char *fault_of_models(const uint8_t *model, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -152,6 +176,8 @@ const char *weft_section_fault(weft_section_kind kind, const void *bytes, size_t
         return fault_of_models(bytes, size);
     case WEFT_SECTION_ERRO:
         return fault_of_errors(bytes, size / sizeof(double));
+    case WEFT_SECTION_LCOE:
+        return fault_of_coefficients(bytes, size);
     default:
         return NULL;
     }

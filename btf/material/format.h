@@ -40,6 +40,9 @@ typedef enum weft_section_kind {
     WEFT_SECTION_SPCA,
     WEFT_SECTION_ALPH,
     WEFT_SECTION_ERRO,
+    WEFT_SECTION_LAYR,
+    WEFT_SECTION_LCOE,
+    WEFT_SECTION_CEIL,
     WEFT_SECTION_KINDS /* their number; stands for an unknown type */
 } weft_section_kind;
 
@@ -58,11 +61,11 @@ weft_section_kind weft_section_kind_of(const char type[5]);
 /* Number of levels that hold a section of this kind: 0 where the material has none. Uses the counts only. Pure. */
 int weft_section_levels(const weft_material *material, weft_section_kind kind);
 
-/* Decoded bytes of a section, from the counts and level sizes only; 0 for META, TPCA and SPCA, whose sizes are free.
- * Pure. */
+/* Decoded bytes of a section, from the counts and level sizes only; 0 for META, TPCA and SPCA, whose sizes are free,
+ * and for LAYR and LCOE while the layers are not read. Pure. */
 uint64_t weft_section_size(const weft_material *material, weft_section_kind kind, int level);
 
-/* The texels of FRAM, RHO, LOBE, TABL, STAB and MODL in memory; NULL for the other kinds. */
+/* The texels of FRAM, RHO, LOBE, TABL, STAB, MODL, LCOE and CEIL in memory; NULL for the other kinds. */
 void *weft_section_texels(const weft_material *material, weft_section_kind kind, int level);
 
 /* What is wrong with decoded contents ("holds ..."), NULL where they are fine: numbers that are not finite, negative

@@ -140,6 +140,7 @@ void weft_material_free(weft_material *material)
         weft_table_basis_free(material->level[k].table_basis);
         weft_table_basis_free(material->level[k].light_table_basis);
     }
+    weft_layers_free(material->layers);
     free(material->view);
     free(material->light);
     free(material->metadata);

@@ -11,6 +11,7 @@
 #include "base/numeric/error_summary.h"
 #include "base/status.h"
 #include "btf/direction/frame.h"
+#include "btf/material/layers.h"
 #include "btf/material/table_basis.h"
 
 #include <stdbool.h>
@@ -49,11 +50,13 @@ typedef struct weft_material {
     bool has_models;       /* every level says which model each texel has */
     bool has_table_bases;  /* tables are stored by components, and so */
     bool has_opacity;      /* are opacities by themselves, if any is below 1 */
+    bool has_layers;       /* `layers` is, or will be, set */
     double texel_pitch_mm; /* of level 0 */
     weft_vec3 *view;       /* [view_count], unit, upper hemisphere */
     weft_vec3 *light;      /* [light_count], unit, upper hemisphere */
     weft_material_level level[WEFT_MATERIAL_MAX_LEVELS];
-    char *metadata; /* JSON text: provenance, fit settings; never NULL once read */
+    weft_layers *layers; /* the same reflectance a second time, nearer to the photographs; NULL without */
+    char *metadata;      /* JSON text: provenance, fit settings; never NULL once read */
 } weft_material;
 
 /* Allocates all arrays of a material (zeroed) for a level 0 of width x height; full mip chain when
@@ -79,5 +82,8 @@ weft_code weft_material_size(const weft_material *material, uint64_t *size, weft
 /* Reads and checks all of a file: every size against the file before anything is allocated, every checksum.
  * Errors: WEFT_BAD_INPUT naming the file and the section. The caller frees with weft_material_free. */
 weft_code weft_material_read(const char *path, weft_material *material, weft_error *error);
+
+/* The metadata alone; the caller frees. Errors: as above, as far as the container and the metadata show them. */
+weft_code weft_material_read_metadata(const char *path, char **metadata, weft_error *error);
 
 #endif

@@ -122,6 +122,31 @@ static weft_code read_opacity(const weft_file_image *file, const weft_section *s
     return code;
 }
 
+/* Before LCOE, whose sizes show that the file is as large as the layers it claims. */
+static weft_code read_layers(const weft_file_image *file, const weft_section *section, weft_material *material,
+                             weft_error *error)
+{
+    const weft_material_level *level = material->level;
+    uint8_t *bytes = malloc(section->decoded_size + 1);
+    if (!bytes)
+        return weft_fail_memory(error, "layers", section->decoded_size + 1);
+    weft_code code = decode(file, section, bytes, error);
+    const char *fault = NULL;
+    uint32_t layers = 0;
+    if (code == WEFT_OK && section->decoded_size >= 8)
+        memcpy(&layers, bytes + 4, sizeof layers);
+    for (int k = 0; k < material->level_count && code == WEFT_OK; k++) {
+        if (weft_file_section(file, WEFT_SECTION_LCOE, k)->decoded_size !=
+            (uint64_t)layers * (uint64_t)level[k].width * (uint64_t)level[k].height)
+            code = weft_fail_section(file, section, error, "its layers are not those of the coefficients");
+    }
+    if (code == WEFT_OK)
+        code = weft_layers_header_read(bytes, section->decoded_size, level[0].width, level[0].height,
+                                       material->level_count, &material->layers, &fault, error);
+    free(bytes);
+    return fault ? weft_fail_section(file, section, error, fault) : code;
+}
+
 static weft_code read_section(const weft_file_image *file, weft_material *material, weft_section_kind kind, int k,
                               weft_error *error)
 {
@@ -140,6 +165,8 @@ static weft_code read_section(const weft_file_image *file, weft_material *materi
         return read_basis(file, section, material, kind, k, error);
     case WEFT_SECTION_ALPH:
         return read_opacity(file, section, material, k, error);
+    case WEFT_SECTION_LAYR:
+        return read_layers(file, section, material, error);
     default:
         if (section->decoded_size < weft_section_size(material, kind, k))
             return read_compact(file, section, material, kind, k, error);
@@ -181,6 +208,24 @@ weft_code weft_material_read(const char *path, weft_material *material, weft_err
     weft_code code = read_image(&file, material, error);
     if (code != WEFT_OK)
         weft_material_free(material);
+    free(file.section);
+    free(file.bytes);
+    return code;
+}
+
+weft_code weft_material_read_metadata(const char *path, char **metadata, weft_error *error)
+{
+    weft_material material = {0};
+    weft_file_image file = {.path = path};
+    *metadata = NULL;
+    WEFT_TRY(weft_read_file(path, largest_file, (char **)&file.bytes, &file.size, error));
+    weft_code code = weft_file_image_open(&file, &material, error);
+    if (code == WEFT_OK)
+        code = read_kind(&file, &material, WEFT_SECTION_META, error);
+    if (code == WEFT_OK)
+        *metadata = material.metadata;
+    else
+        free(material.metadata);
     free(file.section);
     free(file.bytes);
     return code;

@@ -24,6 +24,10 @@ static uint64_t u64_at(const unsigned char *bytes)
 static weft_code check_header(const weft_file_image *file, weft_error *error)
 {
     size_t start = file->size < sizeof weft_format_magic ? file->size : sizeof weft_format_magic;
+    static const unsigned char hdf5[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
+    if (file->size >= sizeof hdf5 && memcmp(file->bytes, hdf5, sizeof hdf5) == 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a dataset: a material (NAME.weft) belongs in its place",
+                         file->path);
     if (memcmp(file->bytes, weft_format_magic, start) != 0)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no .weft file", file->path);
     if (file->size < WEFT_FORMAT_HEADER_SIZE)
@@ -138,10 +142,11 @@ static weft_code note_section(weft_file_image *file, int index, weft_material *m
     if (kind == WEFT_SECTION_KINDS)
         return WEFT_OK;
     material->has_models = material->has_models || kind == WEFT_SECTION_MODL;
+    material->has_layers = material->has_layers || kind == WEFT_SECTION_LAYR;
     material->has_opacity = material->has_opacity || kind == WEFT_SECTION_ALPH;
     material->has_table_bases = material->has_table_bases || kind == WEFT_SECTION_TPCA || kind == WEFT_SECTION_SPCA;
     /* Whether there are TABL or TPCA is known at the end of the table alone. */
-    if (section->level >= (uint32_t)material->level_count ||
+    if (section->level >= (uint32_t)material->level_count || (kind == WEFT_SECTION_LAYR && section->level > 0) ||
         (kind <= WEFT_SECTION_LITE && section->level >= (uint32_t)weft_section_levels(material, kind)))
         return weft_fail_section(file, section, error, "the material has no such section");
     if (file->found[kind][section->level])
@@ -176,6 +181,17 @@ static weft_code check_basis(const weft_file_image *file, const weft_material *m
     return WEFT_OK;
 }
 
+/* Coefficients are four to a texel and group; how many groups, LAYR says, which a reader holds against it. */
+static weft_code check_coefficients(const weft_file_image *file, const weft_material *material, int k,
+                                    weft_error *error)
+{
+    const weft_section *section = weft_file_section(file, WEFT_SECTION_LCOE, k);
+    uint64_t texels = texels_of(material, k);
+    if (section->decoded_size % texels != 0 || section->decoded_size / texels > WEFT_LAYERS_MAX)
+        return weft_fail_section(file, section, error, "its size does not fit the material");
+    return WEFT_OK;
+}
+
 /* Of a compact section the exact size is known only once the map of its level is; until then that it is smaller, and
  * that a small file does not claim a large material. */
 static weft_code check_size(const weft_file_image *file, const weft_material *material, weft_section_kind kind, int k,
@@ -185,6 +201,10 @@ static weft_code check_size(const weft_file_image *file, const weft_material *ma
     uint64_t whole = weft_section_size(material, kind, k);
     if (kind == WEFT_SECTION_TPCA || kind == WEFT_SECTION_SPCA)
         return check_basis(file, material, kind, k, error);
+    if (kind == WEFT_SECTION_LCOE)
+        return check_coefficients(file, material, k, error);
+    if (kind == WEFT_SECTION_LAYR)
+        return WEFT_OK;
     bool compact = weft_section_may_be_compact(material, kind) && section->decoded_size < whole;
     if (kind != WEFT_SECTION_META && section->decoded_size != whole && !compact)
         return weft_fail_section(file, section, error, "its size does not fit the material");

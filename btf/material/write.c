@@ -101,7 +101,7 @@ static weft_code add_section(file_image *file, weft_section_kind kind, int level
                          weft_section_type[kind], level, fault);
     size_t offset = aligned(file->size), bound = ZSTD_compressBound(size);
     unsigned char *stored = file->bytes + offset;
-    bool is_texels = kind >= WEFT_SECTION_FRAM && kind <= WEFT_SECTION_ALPH;
+    bool is_texels = kind >= WEFT_SECTION_FRAM && kind != WEFT_SECTION_ERRO;
     size_t packed = is_texels ? compress_section(stored, bound, bytes, size) : 0;
     size_t stored_size = packed > 0 ? packed : size;
     if (packed == 0)
@@ -176,6 +176,18 @@ static weft_code add_opacity(file_image *file, const weft_material *material, in
     return code;
 }
 
+static weft_code add_layers(file_image *file, const weft_material *material, weft_error *error)
+{
+    size_t size = weft_layers_header_size(material->layers);
+    uint8_t *bytes = malloc(size);
+    if (!bytes)
+        return weft_fail_memory(error, "layers", size);
+    weft_layers_header_write(material->layers, bytes);
+    weft_code code = add_section(file, WEFT_SECTION_LAYR, 0, bytes, size, error);
+    free(bytes);
+    return code;
+}
+
 static weft_code add_level_section(file_image *file, const weft_material *material, weft_section_kind kind, int k,
                                    weft_error *error)
 {
@@ -198,6 +210,8 @@ static weft_code add_level_section(file_image *file, const weft_material *materi
     }
     case WEFT_SECTION_ALPH:
         return add_opacity(file, material, k, error);
+    case WEFT_SECTION_LAYR:
+        return add_layers(file, material, error);
     default:
         return add_texels(file, material, kind, k, error);
     }

@@ -120,6 +120,18 @@ static void place_image(weft_bundle *bundle, const weft_strip *strip, int view, 
     bundle->image[strip->first + slot * WEFT_STRIP_LANES + lane] = image;
 }
 
+/* The mean over the bundled images is 1, so that only ratios matter to a fit. Where all have weight 0, none counts. */
+static void weigh_images(weft_bundle *bundle, const weft_dataset_layout *layout)
+{
+    const double *weight = layout->figure[WEFT_IMAGE_WEIGHT];
+    double sum = 0;
+    for (int i = 0; weight && i < bundle->sample_count; i++)
+        sum += bundle->image[i] < 0 ? 0 : weight[bundle->image[i]];
+    double scale = sum > 0 ? bundle->image_count / sum : 1;
+    for (int i = 0; i < bundle->sample_count; i++)
+        bundle->weight[i] = weight && bundle->image[i] >= 0 ? (float)(scale * weight[bundle->image[i]]) : 1;
+}
+
 static void place_images(weft_bundle *bundle, entry *entries, const int *images)
 {
     for (int i = 0; i < bundle->sample_count; i++)
@@ -238,7 +250,8 @@ static weft_code allocate_samples(weft_bundle *bundle, weft_error *error)
     size_t samples = (size_t)bundle->sample_count + 1;
     bundle->image = allocate_rows(samples);
     bundle->view_of = allocate_rows(samples);
-    bool complete = bundle->image && bundle->view_of;
+    bundle->weight = allocate_rows(samples);
+    bool complete = bundle->image && bundle->view_of && bundle->weight;
     for (int k = 0; k < 3; k++) {
         bundle->light[k] = allocate_rows(samples);
         bundle->view_xyz[k] = allocate_rows((size_t)bundle->view_stride);
@@ -253,6 +266,7 @@ static weft_code fill_bundle(weft_bundle *bundle, const weft_dataset_layout *lay
     plan_strips(bundle, images);
     WEFT_TRY(allocate_samples(bundle, error));
     place_images(bundle, entries, images);
+    weigh_images(bundle, layout);
     WEFT_TRY(label_lights(bundle, layout, entries, error));
     weft_bundle_aim(bundle, layout, 0, 0);
     return WEFT_OK;
@@ -284,6 +298,7 @@ void weft_bundle_free(weft_bundle *bundle)
     free(bundle->strip);
     free(bundle->image);
     free(bundle->view_of);
+    free(bundle->weight);
     free(bundle->view);
     free(bundle->distinct);
     free(bundle->light_of);

@@ -34,6 +34,7 @@ typedef struct weft_bundle {
     weft_strip *strip;   /* [strip_count] */
     int32_t *image;      /* [sample_count] the image whose sample stands here, -1 in the padding */
     int32_t *view_of;    /* [sample_count] */
+    float *weight;       /* [sample_count] of the image, 1 in the mean over the bundled images */
     weft_vec3 *view;     /* [view_count] unit, in the frame of the surface */
     float *view_xyz[3];  /* [view_stride] the same; 0 in the padding */
     float *light[3];     /* [sample_count] unit, in the frame of the surface; 0 in the padding */
@@ -72,7 +73,8 @@ weft_code weft_samples_create(const weft_bundle *bundle, weft_samples *samples, 
 void weft_samples_free(weft_samples *samples);
 
 /* Gathers sums of samples over a group of texels: sum [image_count][3], count [image_count] valid texels among
- * `group_size`. Value = mean over the valid ones, weight = their share; lights at or below the horizon get weight 0.
+ * `group_size`. Value = mean over the valid ones, weight = their share times that of the image; lights at or
+ * below the horizon get weight 0.
  * Samples without the cosine (WEFT_REFLECTANCE) are multiplied by it. Returns nothing; not-finite sums get weight 0. */
 void weft_samples_gather(const weft_bundle *bundle, weft_values values, const float *sum, const float *count,
                          int group_size, weft_samples *samples);

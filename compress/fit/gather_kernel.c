@@ -26,8 +26,10 @@ WEFT_INLINE void gather_vector(const weft_bundle *bundle, weft_values values, co
     lanes light_z = lanes_load(bundle->light[2] + at), n = lanes_gather(count, index), rgb[WEFT_CHANNELS];
     for (int k = 0; k < WEFT_CHANNELS; k++)
         rgb[k] = lanes_gather(sum, 3 * index + k);
-    lane_bits valid = is_there & (n > 0.0f) & (light_z > 0.0f) & is_finite(rgb[0] + rgb[1] + rgb[2]);
-    lanes weight = lanes_where(valid, n * share), root = lanes_sqrt(weight);
+    lanes of_image = lanes_load(bundle->weight + at);
+    lane_bits valid =
+        is_there & (n > 0.0f) & (of_image > 0.0f) & (light_z > 0.0f) & is_finite(rgb[0] + rgb[1] + rgb[2]);
+    lanes weight = lanes_where(valid, n * share * of_image), root = lanes_sqrt(weight);
     lanes factor = root / lanes_select(valid, n, lanes_of(1));
     if (values == WEFT_REFLECTANCE)
         factor *= light_z;

@@ -35,11 +35,14 @@ typedef struct weft_compress_options {
     double max_exponent;   /* N <= this */
     double target_error;   /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
     uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
+    uint64_t added_bytes;  /* of a file in the budget: metadata that the caller adds to the material afterwards */
+    int layer_count;       /* linear layers beside the lobes: 4..64, a multiple of 4; 0: none */
     int table_components;  /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
     uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */
-    const char *checkpoint_path; /* keeps what is done of a dense model until the caller removes it; NULL: none */
+    const char *checkpoint_path; /* keeps what is done of a dense model until the caller removes it; NULL: none,
+                                    and the dataset may have lost its name */
     weft_log log;                /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 

@@ -100,3 +100,14 @@ uint64_t weft_memory_budget_taken(const weft_memory_budget *budget)
 {
     return budget->overhead + allocated_bytes();
 }
+
+weft_code weft_memory_budget_require(const weft_memory_budget *budget, uint64_t bytes, const char *path,
+                                     const char *what, weft_error *error)
+{
+    uint64_t needed = weft_memory_budget_taken(budget) + bytes;
+    if (needed <= budget->limit)
+        return WEFT_OK;
+    return weft_fail(error, WEFT_BAD_USAGE,
+                     "'%s' needs %" PRIu64 " MB of memory for %s, more than the limit of %" PRIu64 " MB", path,
+                     needed / 1000000 + 1, what, budget->limit / 1000000);
+}

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 static weft_code allocate(int width, int height, int image_count, weft_sparse_field *field, weft_error *error)
 {
@@ -14,7 +15,8 @@ static weft_code allocate(int width, int height, int image_count, weft_sparse_fi
     field->view = calloc(3 * samples, sizeof(float));
     field->value = calloc(3 * samples, sizeof(float));
     field->weight = calloc(samples, sizeof(float));
-    if (field->light && field->view && field->value && field->weight)
+    field->image_weight = calloc((size_t)image_count, sizeof(float));
+    if (field->light && field->view && field->value && field->weight && field->image_weight)
         return WEFT_OK;
     weft_sparse_field_free(field);
     return weft_fail_memory(error, "samples of all texels", 10 * samples * sizeof(float));
@@ -26,6 +28,7 @@ void weft_sparse_field_free(weft_sparse_field *field)
     free(field->view);
     free(field->value);
     free(field->weight);
+    free(field->image_weight);
     *field = (weft_sparse_field){0};
 }
 
@@ -49,8 +52,22 @@ static bool store_sample(const weft_dataset_layout *layout, int image, int x, in
     float factor = layout->values == WEFT_REFLECTANCE ? (float)light.z : 1;
     for (int k = 0; k < 3; k++)
         field->value[3 * at + (size_t)k] = valid ? factor * weft_float_of_half(half[k]) : 0;
-    field->weight[at] = valid;
+    field->weight[at] = valid && field->image_weight[at % (size_t)field->image_count] > 0;
     return valid;
+}
+
+/* Weights of the images that are not held out: 1 in the mean, so that only ratios matter. */
+static void weigh_images(const weft_dataset_layout *layout, const uint8_t *held_out, const weft_sparse_field *field)
+{
+    const double *weight = layout->figure[WEFT_IMAGE_WEIGHT];
+    double sum = 0;
+    for (int image = 0; weight && image < layout->image_count; image++)
+        sum += held_out && held_out[image] ? 0 : weight[image];
+    double scale = sum > 0 ? field->image_count / sum : 1;
+    for (int image = 0, at = 0; image < layout->image_count; image++) {
+        if (!(held_out && held_out[image]))
+            field->image_weight[at++] = weight ? (float)(scale * weight[image]) : 1;
+    }
 }
 
 static long store_row(const weft_dataset_layout *layout, const uint8_t *held_out, int y, const weft_half *half,
@@ -78,6 +95,7 @@ weft_code weft_sparse_field_read(weft_dataset *dataset, const uint8_t *held_out,
     WEFT_TRY(allocate(layout->width, layout->height, images, field, error));
     field->whole_width = layout->width;
     field->whole_height = layout->height;
+    weigh_images(layout, held_out, field);
     size_t samples = (size_t)layout->width * (size_t)layout->image_count;
     weft_half *half = malloc(3 * samples * sizeof *half);
     uint8_t *mask = malloc(samples);
@@ -140,6 +158,7 @@ weft_code weft_sparse_field_halve(const weft_sparse_field *field, weft_sparse_fi
     half->level = field->level + 1;
     half->whole_width = field->whole_width;
     half->whole_height = field->whole_height;
+    memcpy(half->image_weight, field->image_weight, (size_t)field->image_count * sizeof *half->image_weight);
     size_t at = 0;
     for (int y = 0; y < half->height; y++) {
         for (int x = 0; x < half->width; x++) {

@@ -12,6 +12,7 @@ typedef struct weft_sparse_field {
     float *light, *view;                  /* x 3: unit directions */
     float *value;                         /* x 3: reflectance times cosine */
     float *weight;                        /* 0: not to be used; the share of valid texels in a group */
+    float *image_weight;                  /* [image_count] what an image counts for, 1 in the mean */
 } weft_sparse_field;
 
 /* Reads a whole dataset; *masked_count receives the samples that cannot be used. Errors: those of reading, WEFT_SYSTEM

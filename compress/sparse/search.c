@@ -165,13 +165,14 @@ static void weigh_samples(search *run)
     double sum = 0, count = 0;
     for (size_t i = 0; i < samples; i++) {
         run->grey[i] = (field->value[3 * i] + field->value[3 * i + 1] + field->value[3 * i + 2]) / 3;
-        sum += (double)(field->weight[i] * run->grey[i]);
-        count += (double)field->weight[i];
+        run->weight[i] = field->weight[i] * field->image_weight[i % images];
+        sum += (double)(run->weight[i] * run->grey[i]);
+        count += (double)run->weight[i];
     }
     float dark = sum > 0 ? DARK_SHARE * (float)(sum / count) : 1;
     for (size_t i = 0; i < samples; i++) {
         float size = fmaxf(run->grey[i], 0) + dark;
-        run->weight[i] = (int)(i % images) == run->left_out ? 0 : field->weight[i] / (size * size);
+        run->weight[i] = (int)(i % images) == run->left_out ? 0 : run->weight[i] / (size * size);
     }
 }
 

@@ -24,7 +24,7 @@ weft_code weft_sparse_fit(const weft_sparse_field *field, const weft_sparse_sett
 
 /* ---- Cross-validation ---- */
 
-/* Relative RMSE plus median relative error of the left-out image; `value` [texel][3] is scratch. */
+/* Relative RMSE plus median relative error of the left-out image, times its weight; `value` [texel][3] is scratch. */
 static weft_code add_score(const weft_sparse_search *run, int setting, weft_compared *value, double *score)
 {
     const weft_sparse_field *field = run->field;
@@ -41,7 +41,7 @@ static weft_code add_score(const weft_sparse_search *run, int setting, weft_comp
     }
     weft_error_summary summary;
     weft_code code = weft_error_summary_of(value, count, &summary, NULL);
-    *score += summary.relative_rmse + summary.median_relative;
+    *score += (summary.relative_rmse + summary.median_relative) * (double)field->image_weight[run->left_out];
     return code;
 }
 

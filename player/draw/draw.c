@@ -74,7 +74,7 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
         weft_raw_texture_bind(&p->raw, program);
         break;
     case WEFT_MODE_COMPRESSED:
-        weft_material_texture_bind(&p->material, program);
+        weft_material_texture_bind(&p->material, program, scene->layers);
         glUniform1fv(glGetUniformLocation(program, "lobe_share"), WEFT_SCENE_MAX_LOBES,
                      (const GLfloat[]){scene->lobe[0], scene->lobe[1], scene->lobe[2]});
         weft_gl_set_float(program, "view_table_share", scene->view_table);
@@ -115,6 +115,9 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         kind.view_table = p->material.table.count > 0;
         kind.light_table = p->material.light_table.count > 0;
         kind.fewer_bits = scene->table_bits < 8;
+        kind.layer_groups = scene->layers > 0 ? p->material.layers.group_count : 0;
+        kind.half_vector = p->material.layers.half_vector;
+        kind.opacity = kind.layer_groups > 0 && !p->material.opaque;
     }
     return kind;
 }

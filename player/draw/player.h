@@ -58,6 +58,8 @@ size_t weft_player_bytes(const weft_player *player, weft_mode mode);
 
 /* How the samples of raw are kept: "half floats", ...; "" where there are none. */
 const char *weft_player_raw_format(const weft_player *player);
+/* Number of linear layers of the material; 0 without. */
+int weft_player_layer_count(const weft_player *player);
 /* What the material has: lobes, and whether T and S. */
 void weft_player_material_parts(const weft_player *player, int *lobe_count, bool *view_table, bool *light_table);
 /* Largest measured angle of the views and lights of a mode, from the normal. */

@@ -9,8 +9,9 @@ static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
 {
     return a->mode == b->mode && a->stochastic == b->stochastic && a->shadows == b->shadows &&
            a->one_light == b->one_light && a->plot == b->plot && a->opacity == b->opacity && a->threads == b->threads &&
-           a->noise == b->noise && a->lobe_count == b->lobe_count && a->view_table == b->view_table &&
-           a->light_table == b->light_table && a->fewer_bits == b->fewer_bits;
+           a->noise == b->noise && a->layer_groups == b->layer_groups && a->half_vector == b->half_vector &&
+           a->lobe_count == b->lobe_count && a->view_table == b->view_table && a->light_table == b->light_table &&
+           a->fewer_bits == b->fewer_bits;
 }
 
 static const char *name_of(bool value)
@@ -24,23 +25,40 @@ static void define(const weft_program_kind *kind, char *text, size_t size)
         text, size,
         "#define MAX_LIGHTS %d\n#define LEVEL_COLOURS %d\n#define LIGHT_COUNT %s\n#define ONE_LIGHT %s\n"
         "#define STOCHASTIC %s\n#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
-        "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n",
+        "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n"
+        "#define LAYER_GROUPS %d\n#define HALF_VECTOR %s\n",
         WEFT_MAX_LIGHTS, WEFT_LEVEL_COLOURS, kind->one_light ? "1" : "light_count", name_of(kind->one_light),
         name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity), kind->lobe_count,
-        name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits), name_of(kind->noise));
+        name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits), name_of(kind->noise),
+        kind->layer_groups, name_of(kind->half_vector));
 }
 
 static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)
 {
-    char constants[512];
+    char constants[640];
     define(kind, constants, sizeof constants);
     const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
     const char *const raw[] = {
         constants, weft_glsl_rotation, weft_glsl_surface, weft_glsl_directions, weft_glsl_raw, weft_glsl_shade_frag,
         NULL};
-    const char *const compressed[] = {
-        constants,           weft_glsl_rotation,   weft_glsl_surface,    weft_glsl_directions,
-        weft_glsl_lafortune, weft_glsl_compressed, weft_glsl_shade_frag, NULL};
+    const char *const compressed[] = {constants,
+                                      weft_glsl_rotation,
+                                      weft_glsl_surface,
+                                      weft_glsl_directions,
+                                      weft_glsl_tables,
+                                      weft_glsl_lafortune,
+                                      weft_glsl_compressed,
+                                      weft_glsl_shade_frag,
+                                      NULL};
+    const char *const layered[] = {constants,
+                                   weft_glsl_rotation,
+                                   weft_glsl_surface,
+                                   weft_glsl_directions,
+                                   weft_glsl_tables,
+                                   weft_glsl_layers,
+                                   weft_glsl_layered,
+                                   weft_glsl_shade_frag,
+                                   NULL};
     const char *const analytic[] = {constants,
                                     weft_glsl_rotation,
                                     weft_glsl_surface,
@@ -57,7 +75,8 @@ static weft_code build(const weft_program_kind *kind, GLuint *program, weft_erro
                                    weft_glsl_threads,
                                    weft_glsl_shade_frag,
                                    NULL};
-    const char *const *const fragment[WEFT_MODE_COUNT] = {raw, compressed, kind->threads ? threads : analytic};
+    const char *const *const fragment[WEFT_MODE_COUNT] = {raw, kind->layer_groups > 0 ? layered : compressed,
+                                                          kind->threads ? threads : analytic};
     return weft_gl_program(weft_mode_name(kind->mode), vertex, fragment[kind->mode], program, error);
 }
 
@@ -116,7 +135,7 @@ weft_code weft_programs_find_geometry(weft_programs *p, bool shadows, GLuint *pr
     GLuint *wanted = &p->geometry[shadows];
     if (!*wanted) {
         const weft_program_kind kind = {.shadows = shadows};
-        char constants[512];
+        char constants[640];
         define(&kind, constants, sizeof constants);
         const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
         const char *const fragment[] = {constants, weft_glsl_rotation, weft_glsl_surface, weft_glsl_geometry_frag,

@@ -12,10 +12,12 @@ typedef struct weft_program_kind {
     weft_mode mode;
     bool stochastic, shadows, one_light;
     int plot;     /* 0: of the picture; 1, 2: of lights, of views (player/draw/probe.h) */
-    bool opacity; /* raw: some is below 1 */
+    bool opacity; /* raw and layers: some is below 1 */
     bool threads; /* analytic: microcylinders, else a weave */
     bool noise;   /* analytic: that of the weave */
     /* Of the compressed material: */
+    int layer_groups; /* four layers each, in the place of lobes; 0: lobes */
+    bool half_vector; /* the maps of the layers are over it */
     int lobe_count;
     bool view_table, light_table;
     bool fewer_bits; /* of T and S than they have */

@@ -37,11 +37,12 @@ enum { MAX_PARTS = 16 };
 
 static const char *preamble(void)
 {
-    return epoxy_is_desktop_gl() ? "#version 330 core\n"
-                                 : "#version 300 es\n"
-                                   "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
-                                   "precision highp sampler2DArray;\nprecision highp isampler2D;\n"
-                                   "precision highp usampler2DArray;\n";
+    return epoxy_is_desktop_gl()
+               ? "#version 330 core\n"
+               : "#version 300 es\n"
+                 "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+                 "precision highp sampler2DArray;\nprecision highp sampler3D;\nprecision highp isampler2D;\n"
+                 "precision highp usampler2DArray;\n";
 }
 
 static weft_code fail_log(const char *name, const char *stage, char *log, weft_error *error)

@@ -69,6 +69,7 @@ typedef struct weft_scene {
     int pane_count; /* of WEFT_LAYOUT_PANES; the others show two */
     weft_mode pane[WEFT_MODE_COUNT];
     /* What the compressed material is evaluated with */
+    int layers;                      /* its first linear layers, where it has some; 0: its lobes */
     bool lobe[WEFT_SCENE_MAX_LOBES]; /* each lobe on or off */
     bool view_table, light_table;
     int table_bits; /* 1 to 8: T and S as if coded with so many */

@@ -1,5 +1,6 @@
 #include "player/settings/choices.h"
 
+#include "btf/file_kind.h"
 #include "player/settings/scene_options.h"
 
 #include <math.h>
@@ -24,6 +25,22 @@ static weft_code take_words(const weft_option *option, const char *text, const c
 }
 
 /* ---- What is shown ---- */
+
+weft_code weft_choose_file(const weft_option *option, const char *text, void *target, weft_error *error)
+{
+    (void)option;
+    weft_settings *s = &((weft_scene_request *)target)->settings;
+    weft_file_kind kind;
+    /* A file of another kind, or none, is left to the reader of materials to refuse. */
+    if (weft_file_kind_of(text, &kind, NULL) != WEFT_OK)
+        kind = WEFT_FILE_MATERIAL;
+    char **shown = kind == WEFT_FILE_DATASET                                    ? &s->dataset
+                   : kind == WEFT_FILE_WEAVE || kind == WEFT_FILE_MICROCYLINDER ? &s->weave
+                                                                                : &s->material;
+    if (*shown && shown != &s->material)
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s' and '%s' are of one kind: one at a time", text, *shown);
+    return weft_option_copy(text, shown, error);
+}
 
 /* `split` is known once the files are: no pane as yet. */
 static weft_code take_mode(weft_scene_request *request, int mode, weft_error *error)
@@ -124,6 +141,11 @@ static weft_code read_light(const char *text, weft_light *light, weft_error *err
     if (count != 2 && count != 3 && count != 5)
         return weft_fail(error, WEFT_BAD_USAGE, "--light needs 2, 3 or 5 numbers with commas, not '%s'", text);
     WEFT_TRY(weft_option_numbers("light", text, count, number, error));
+    if (fabs(number[0]) > 90)
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "--light %s stands below the horizon: its first number is degrees from up, "
+                         "at most 90",
+                         text);
     if (count < 5)
         number[3] = number[4] = number[2];
     *light = (weft_light){{weft_rad_of_deg(number[0]), weft_rad_of_deg(number[1])}, {number[2], number[3], number[4]}};

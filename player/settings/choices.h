@@ -7,6 +7,9 @@
 
 typedef weft_code weft_choice(const weft_option *option, const char *text, void *request, weft_error *error);
 
+/* The file that is shown, whatever of the three it is: material, dataset or cloth. */
+weft_choice weft_choose_file;
+
 /* A map lights everything by itself, unless lights are asked for; "off": none. */
 weft_choice weft_choose_environment;
 

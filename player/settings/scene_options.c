@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static bool is_material(const weft_setting *setting)
 {
@@ -56,6 +57,19 @@ static weft_code start(weft_scene_request *r, weft_error *error)
     return weft_settings_check_files(&r->settings, r->source, error);
 }
 
+/* Before any work is done, and before a window opens. */
+static weft_code check_files(const weft_settings *s, weft_error *error)
+{
+    const char *const file[] = {s->material, s->dataset, s->weave, s->environment};
+    for (size_t i = 0; i < sizeof file / sizeof file[0]; i++)
+        if (file[i] && access(file[i], F_OK) != 0)
+            return weft_fail(error, WEFT_BAD_INPUT, "there is no file '%s'", file[i]);
+    if (!weft_mesh_is_built_in(s->mesh) && access(s->mesh, F_OK) != 0)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "there is no mesh '%s': --mesh takes drape, sphere, plane or an OBJ file", s->mesh);
+    return WEFT_OK;
+}
+
 static weft_code check(const weft_scene_request *r, weft_error *error)
 {
     const weft_settings *s = &r->settings;
@@ -71,7 +85,7 @@ static weft_code check(const weft_scene_request *r, weft_error *error)
         return weft_fail(error, WEFT_BAD_USAGE, "--light none needs --environment");
     if (s->scene.environment && !s->environment)
         return weft_fail(error, WEFT_BAD_USAGE, "--environment-... needs --environment MAP.hdr");
-    return WEFT_OK;
+    return check_files(s, error);
 }
 
 weft_code weft_scene_request_complete(weft_scene_request *r, weft_error *error)

@@ -2,6 +2,7 @@
 #ifndef WEFT_PLAYER_SETTINGS_SCENE_OPTIONS_H
 #define WEFT_PLAYER_SETTINGS_SCENE_OPTIONS_H
 
+#include "btf/dataset/measured.h"
 #include "player/settings/schema.h"
 #include "player/settings/settings.h"
 
@@ -12,6 +13,8 @@ typedef struct weft_scene_request {
     const char *source;     /* the picture or text that they start from, or NULL */
     bool has_modes, split;  /* modes were asked for; as "split" */
     bool has_camera, has_lights;
+    bool knows_measured[WEFT_MODE_COUNT]; /* what the files that are shown were measured from, where they say it */
+    weft_measured measured[WEFT_MODE_COUNT];
     /* Kept until all are there, because --settings comes before all others, wherever it stands */
     int option_count;
     struct {

@@ -49,7 +49,7 @@ static const weft_setting light[] = {
 
 /* In the order of the text. */
 static const weft_setting schema[] = {
-    SETTING("files.material", .argument = "NAME.weft", NAME(material)),
+    SETTING("files.material", .argument = "NAME.weft", NAME(material), .read = weft_choose_file),
     SETTING("files.dataset", OPTION("raw", "NAME.btf.h5", SHOWN, "Show this dataset in mode raw"), NAME(dataset)),
     SETTING("files.weave",
             OPTION("weave", "CLOTH.wv|CLOTH.mc", SHOWN, "Show this weave or microcylinder cloth in mode analytic"),
@@ -150,6 +150,10 @@ static const weft_setting schema[] = {
                    "Keep its samples as half floats (8 bytes), with a shared exponent (4) or in compressed blocks (1); "
                    "auto: the best that fits"),
             CHOICE(raw_format, raw_format_words)),
+    SETTING("model.layers",
+            OPTION("layers", "N", EVALUATION,
+                   "Only the first N linear layers of the material, in steps of 4; 0: its lobes (default: all layers)"),
+            WHOLE(scene.layers, 0, WEFT_LAYERS_MAX)),
     ARRAY(WEFT_SCENE_MAX_LOBES, "model.lobes",
           OPTION("lobes-on", "N[,N...]|none", EVALUATION, "Only these lobes of the material, counted from 1"),
           SWITCH(scene.lobe), .read = weft_choose_lobes),

@@ -84,6 +84,11 @@ double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh
 
 /* ---- Pictures ---- */
 
+bool weft_settings_is_picture(const char *path)
+{
+    return has_extension(path, ".png") || weft_settings_is_linear(path);
+}
+
 bool weft_settings_is_linear(const char *path)
 {
     return has_extension(path, ".exr") || has_extension(path, ".tif") || has_extension(path, ".tiff");

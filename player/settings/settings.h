@@ -50,6 +50,9 @@ weft_code weft_settings_check_files(const weft_settings *settings, const char *s
  * material_width_mm wide on it (once across the plane, unless the plane has a size), else what the scene says. Pure. */
 double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm);
 
+/* Whether a picture can be written under this name: .png, .exr, .tif. Pure. */
+bool weft_settings_is_picture(const char *path);
+
 /* Whether a picture of this name holds linear values, which no tone bends. Pure. */
 bool weft_settings_is_linear(const char *path);
 

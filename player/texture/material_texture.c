@@ -137,6 +137,8 @@ weft_code weft_material_texture_upload(const weft_material *material, weft_mater
     WEFT_TRY(upload_texels(material, t, error));
     WEFT_TRY(upload_table(material, &t->layout, false, &t->table, error));
     WEFT_TRY(upload_table(material, &t->layout, true, &t->light_table, error));
+    if (material->layers)
+        WEFT_TRY(weft_layer_texture_upload(material->layers, &t->layers, error));
     return upload_directions(material, t, error);
 }
 
@@ -146,6 +148,7 @@ void weft_material_texture_free(weft_material_texture *t)
     glDeleteTextures(1, &t->table.name);
     glDeleteTextures(1, &t->light_table.name);
     weft_direction_texture_free(&t->directions);
+    weft_layer_texture_free(&t->layers);
     *t = (weft_material_texture){0};
 }
 
@@ -153,11 +156,14 @@ size_t weft_material_texture_bytes(const weft_material_texture *t)
 {
     size_t texels = (size_t)t->layout.width * (size_t)t->layout.height;
     size_t layers = 1 + (3 * (size_t)t->lobe_count + 1) / 2;
-    return texels * (16 * layers + 4 * (size_t)(t->table.count + t->light_table.count));
+    size_t shared, of_layers = weft_layer_texture_bytes(&t->layers, &shared);
+    return of_layers + texels * (16 * layers + 4 * (size_t)(t->table.count + t->light_table.count));
 }
 
-void weft_material_texture_bind(const weft_material_texture *t, GLuint program)
+void weft_material_texture_bind(const weft_material_texture *t, GLuint program, int layer_count)
 {
+    if (t->layers.group_count > 0 && layer_count > 0)
+        weft_layer_texture_bind(&t->layers, program, 5, layer_count);
     weft_gl_bind(program, "material_texel", 0, GL_TEXTURE_2D_ARRAY, t->texel);
     weft_gl_bind(program, "material_table", 1, GL_TEXTURE_2D_ARRAY, t->table.name);
     weft_gl_bind(program, "material_light_table", 2, GL_TEXTURE_2D_ARRAY, t->light_table.name);

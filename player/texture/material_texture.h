@@ -4,6 +4,7 @@
 
 #include "btf/material/material.h"
 #include "player/texture/direction_texture.h"
+#include "player/texture/layer_texture.h"
 #include "player/texture/mip_layout.h"
 
 #include <stdbool.h>
@@ -25,6 +26,7 @@ typedef struct weft_material_texture {
     weft_table_texture table, light_table;
     weft_direction_texture directions; /* set 0: views, set 1: lights */
     weft_mip_layout layout;
+    weft_layer_texture layers;
     int lobe_count;
     bool opaque;
 } weft_material_texture;
@@ -38,7 +40,8 @@ void weft_material_texture_free(weft_material_texture *texture);
 /* Of graphics memory, without the directions. */
 size_t weft_material_texture_bytes(const weft_material_texture *texture);
 
-/* Sets the uniforms of compressed.glsl; `program` is in use. */
-void weft_material_texture_bind(const weft_material_texture *texture, GLuint program);
+/* Sets the uniforms of compressed.glsl, and those of layered.glsl to evaluate the first layer_count layers; `program`
+ * is in use. */
+void weft_material_texture_bind(const weft_material_texture *texture, GLuint program, int layer_count);
 
 #endif

@@ -1,6 +1,7 @@
 #include "player/window/panel.h"
 
 #include "base/clock.h"
+#include "player/settings/exposure.h"
 #include "player/window/keys.h"
 #include "player/window/ui_bridge.h"
 
@@ -159,7 +160,7 @@ static weft_code prepare_canvas(weft_application *a, int width, int height, weft
         weft_canvas_clear(&a->canvas);
         a->moved_s = weft_now_s();
         a->rests = false;
-        a->errors[0] = 0;
+        a->errors[0] = a->unmeasured[0] = 0;
     } else if (!a->rests && weft_now_s() - a->moved_s > settle_s) {
         weft_canvas_clear(&a->canvas);
         a->rests = true;
@@ -232,6 +233,24 @@ static void measure(weft_application *a)
     if (a->setup.measure(a->player, &a->interaction.scene, a->canvas.width, a->canvas.height, a->errors, &error) !=
         WEFT_OK)
         weft_application_tell(a, true, error.message);
+    if (weft_describe_unmeasured(a->setup.request, a->player, &a->interaction.scene, a->unmeasured, &error) != WEFT_OK)
+        weft_application_tell(a, true, error.message);
+}
+
+/* When all is there that the command line named; later the user's is the exposure. */
+static weft_code expose_once(weft_application *a, weft_error *error)
+{
+    weft_interaction *i = &a->interaction;
+    bool changed = false;
+    if (a->is_exposed || a->progress >= 0)
+        return WEFT_OK;
+    a->is_exposed = true;
+    if (i->scene.exposure == i->start.exposure)
+        WEFT_TRY(weft_expose(a->setup.request, a->player, &i->scene, &changed, error));
+    if (changed)
+        i->start.exposure = i->scene.exposure;
+    i->changed |= changed;
+    return WEFT_OK;
 }
 
 /* One frame more, unless the mean is finished or a moving picture stands. */
@@ -353,6 +372,7 @@ static weft_code step(weft_application *a, weft_error *error)
         return WEFT_OK;
     WEFT_TRY(prepare_canvas(a, width - left, height, error));
     if (has_something(a)) {
+        WEFT_TRY(expose_once(a, error));
         WEFT_TRY(advance(a, error));
         WEFT_TRY(probe(a, error));
     }

@@ -37,9 +37,11 @@ struct weft_application {
     weft_weave_edit weave; /* what the sliders change */
     int noise_seed;        /* of the noise that was on last; 0: none yet */
     double progress;
-    weft_error failure;          /* of reading, last */
-    char errors[WEFT_NOTE_SIZE]; /* of what is shown, "" until it rests */
-    char note[WEFT_NOTE_SIZE];   /* told to the user */
+    weft_error failure;                 /* of reading, last */
+    char errors[WEFT_NOTE_SIZE];        /* of what is shown, "" until it rests */
+    char unmeasured[WEFT_MESSAGE_SIZE]; /* how much of it was, the same */
+    bool is_exposed;                    /* once, when all files have arrived */
+    char note[WEFT_NOTE_SIZE];          /* told to the user */
     bool note_is_error;
     double note_ends_s;
 };

@@ -191,11 +191,30 @@ static void light_section(weft_application *a)
 
 /* ---- Material ---- */
 
+/* Fewer layers are a coarser material that is drawn faster. */
+static void layer_rows(weft_application *a)
+{
+    weft_interaction *i = &a->interaction;
+    int count = weft_player_layer_count(a->player), groups = i->scene.layers / WEFT_LAYERS_GROUP;
+    if (count == 0)
+        return;
+    groups = groups < count / WEFT_LAYERS_GROUP ? groups : count / WEFT_LAYERS_GROUP;
+    if (weft_ui_whole("Layers / 4", &groups, 0, count / WEFT_LAYERS_GROUP)) {
+        i->scene.layers = WEFT_LAYERS_GROUP * groups;
+        i->changed = true;
+    }
+    char text[64];
+    snprintf(text, sizeof text, groups > 0 ? "%d of %d layers, %d bytes a texel" : "Lobes in the place of layers",
+             WEFT_LAYERS_GROUP * groups, count, WEFT_LAYERS_GROUP * groups);
+    weft_ui_text(text);
+}
+
 static void material_section(weft_application *a)
 {
     weft_interaction *i = &a->interaction;
     weft_scene *scene = &i->scene;
     int lobes;
+    layer_rows(a);
     bool view_table, light_table;
     weft_player_material_parts(a->player, &lobes, &view_table, &light_table);
     for (int lobe = 0; lobe < lobes; lobe++) {

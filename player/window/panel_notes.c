@@ -78,6 +78,16 @@ static void show_errors(const weft_application *a, double right, double bottom)
     weft_ui_panel_end();
 }
 
+static void show_unmeasured(const weft_application *a, double left)
+{
+    if (!a->unmeasured[0])
+        return;
+    weft_ui_note_begin("unmeasured", left + 12 * a->scale, 12 * a->scale, 0, 0);
+    weft_ui_wrap_within(a->canvas.width - 24 * a->scale);
+    weft_ui_text(a->unmeasured);
+    weft_ui_panel_end();
+}
+
 /* ---- Mouse and keys ---- */
 
 /* The heading that parts the list into two of about the same length. */
@@ -109,6 +119,7 @@ void weft_panel_show_notes(const weft_application *a, int width, int height)
     double left = weft_panel_width(a), middle = (left + width) / 2, bottom = height - MARGIN * a->scale;
     show_colours(&a->interaction.scene, left, height, a->scale);
     show_errors(a, width, height);
+    show_unmeasured(a, left);
     const weft_ui_box room = {left, 0, width - left, height};
     if (a->progress >= 0) {
         show_progress(a, middle, bottom);

@@ -1,6 +1,7 @@
 #include "player/window/scene_loader.h"
 
 #include "btf/file_kind.h"
+#include "player/settings/first_look.h"
 #include "player/window/scene_part.h"
 
 #include <stdlib.h>
@@ -43,13 +44,6 @@ static weft_code start_all(weft_scene_loader *l, weft_error *error)
     return WEFT_OK;
 }
 
-static void look_down_on_a_plane(weft_scene_request *o)
-{
-    if (strcmp(o->settings.mesh, "plane") == 0 && !o->has_camera && !o->source)
-        o->settings.scene.orbit =
-            (weft_orbit){.azimuth_rad = weft_rad_of_deg(-90), .elevation_rad = weft_rad_of_deg(75), .distance = 3};
-}
-
 weft_code weft_scene_loader_create(weft_scene_request *request, double cloth_width_mm, weft_scene_loader **result,
                                    weft_error *error)
 {
@@ -59,8 +53,9 @@ weft_code weft_scene_loader_create(weft_scene_request *request, double cloth_wid
         return weft_fail_memory(error, "loader", sizeof *l);
     l->stage.request = request;
     l->stage.cloth_width_mm = cloth_width_mm;
-    look_down_on_a_plane(request);
-    weft_code code = weft_loader_create(&l->loader, error);
+    weft_code code = weft_first_look(request, error);
+    if (code == WEFT_OK)
+        code = weft_loader_create(&l->loader, error);
     if (code == WEFT_OK)
         code = start_all(l, error);
     if (code == WEFT_OK)

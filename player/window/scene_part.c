@@ -16,6 +16,8 @@ typedef struct part {
     bool is_threads; /* a weave that is microcylinder cloth */
     char *path;
     double width_mm, tiles[2];
+    bool knows_measured;
+    weft_measured measured; /* of a material or a dataset */
     weft_weave_layout layout;
     char note[WEFT_MESSAGE_SIZE];
     /* One of these */
@@ -46,6 +48,7 @@ static weft_code read_material(part *p, weft_error *error)
 {
     WEFT_TRY(weft_material_read(p->path, &p->material, error));
     p->width_mm = p->material.level[0].width * p->material.texel_pitch_mm;
+    p->knows_measured = weft_measured_parse(p->material.metadata, &p->measured);
     free(p->stage->metadata);
     p->stage->metadata = p->material.metadata;
     p->material.metadata = NULL;
@@ -72,6 +75,8 @@ static weft_code read_samples(part *p, weft_dataset *dataset, weft_load *load, w
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     char difference[WEFT_MESSAGE_SIZE] = "";
+    p->measured = weft_measured_of(layout);
+    p->knows_measured = true;
     p->width_mm = layout->width * layout->texel_pitch_mm;
     if (p->stage->metadata)
         WEFT_TRY(weft_dataset_fingerprint_compare(dataset, p->stage->metadata, difference, error));
@@ -181,6 +186,16 @@ static void lay_out(weft_scene_stage *stage)
     settings->scene.repeat = weft_settings_repeat(settings, &stage->mesh, width_mm);
 }
 
+static void note_measured(const part *p)
+{
+    weft_scene_request *request = p->stage->request;
+    if (p->slot != WEFT_SLOT_MATERIAL && p->slot != WEFT_SLOT_DATASET)
+        return;
+    weft_mode mode = p->slot == WEFT_SLOT_MATERIAL ? WEFT_MODE_COMPRESSED : WEFT_MODE_RAW;
+    request->knows_measured[mode] = p->knows_measured;
+    request->measured[mode] = p->measured;
+}
+
 static weft_code show_part(void *data, weft_error *error)
 {
     part *p = data;
@@ -191,6 +206,7 @@ static weft_code show_part(void *data, weft_error *error)
     *path = p->path;
     p->path = NULL;
     stage->width_mm[p->slot] = p->width_mm;
+    note_measured(p);
     stage->slot = p->slot;
     stage->by_user = p->by_user;
     memcpy(stage->note, p->note, sizeof stage->note);

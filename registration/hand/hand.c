@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/text/image_list.h"
+#include "registration/hand/certainty.h"
 #include "registration/hand/corners.h"
 #include "registration/hand/material.h"
 #include "registration/hand/pose.h"
@@ -279,6 +280,22 @@ static double corner_radius_squared(const weft_camera *camera)
     return x * x + y * y;
 }
 
+/* How far views and lamps can be trusted. Before the tone curve is corrected: the evidence is what the first one made.
+ */
+static weft_code judge_photographs(work *w, weft_error *error)
+{
+    weft_hand *hand = w->hand;
+    for (int i = 0; i < hand->count; i++) {
+        weft_hand_photograph *p = &hand->photograph[i];
+        if (!weft_hand_used(p))
+            continue;
+        p->view_uncertainty_deg = weft_hand_view_error_deg(&hand->lens.camera, p);
+        WEFT_TRY(weft_hand_paper_residual(&w->places, &w->evidence[i].paper, &hand->lamps, &p->lamp, &p->lamp.residual,
+                                          error));
+    }
+    return WEFT_OK;
+}
+
 static weft_code find_lamps(work *w, weft_error *error)
 {
     weft_hand *hand = w->hand;
@@ -308,6 +325,8 @@ static weft_code find_lamps(work *w, weft_error *error)
         if (weft_hand_used(&hand->photograph[i]))
             hand->photograph[i].lamp = hand->lamps.place[from++];
     }
+    if (code == WEFT_OK)
+        code = judge_photographs(w, error);
     free(hand->lamps.place);
     hand->lamps.place = NULL;
     free(evidence);

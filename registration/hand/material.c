@@ -2,6 +2,7 @@
 
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
+#include "registration/hand/certainty.h"
 #include "registration/hand/read.h"
 #include "registration/hand/thumbnail.h"
 #include "registration/resample/resample.h"
@@ -105,11 +106,13 @@ static weft_code resample(const work *w, int image, const weft_light_values *val
                                   .inverse_vignetting = w->inverse_vignetting,
                                   .homography = p->homography,
                                   .opening_mm = w->settings->target.opening_mm,
-                                  .point_spread_px = 2 * sqrt(fmax(0, p->point_spread.constant))};
+                                  .point_spread_px = 2 * sqrt(fmax(0, p->point_spread.constant)),
+                                  .fill = true};
     WEFT_TRY(weft_resampler_create(&resampling, w->settings->width, w->settings->height, &resampler, error));
     weft_resampler_apply(&resampler, values->samples, 0, WEFT_HAND_FULL_SCALE, texel, mask);
     weft_resampler_free(&resampler);
     normalise(w->settings, &p->lamp, texel, half, mask);
+    p->contrast = weft_hand_contrast(half, mask, (size_t)w->settings->width * (size_t)w->settings->height);
     WEFT_TRY(weft_thumbnail_of_texels(half, w->settings->width, w->settings->height, &p->rectified, error));
     return weft_dataset_writer_put_image(w->writer, image, half, mask, error);
 }
@@ -195,6 +198,7 @@ static weft_code write(work *w, const char *output, int count, weft_dataset_layo
     WEFT_TRY(invert_vignetting(w, error));
     WEFT_TRY(weft_dataset_writer_create(output, layout, &w->writer, error));
     WEFT_TRY(put_all(w, count, error));
+    WEFT_TRY(weft_hand_put_figures(w->hand, w->photograph, count, layout->texel_pitch_mm, w->writer, error));
     char *text = provenance(w);
     if (!text)
         return weft_fail_memory(error, "provenance", 0);

@@ -25,7 +25,7 @@ typedef struct weft_lamp_place {
     weft_vec3 position_mm;  /* in the plate frame */
     double uncertainty_deg; /* standard error of its direction from the middle of the sample */
     double level[3]; /* linear value of a perfect white diffuser in the middle, lit along its normal from there */
-    double residual; /* of the paper, RMS of the logarithm */
+    double residual; /* of bare paper: standard deviation of the logarithm of light */
 } weft_lamp_place;
 
 typedef struct weft_hand_photograph {
@@ -42,7 +42,11 @@ typedef struct weft_hand_photograph {
     weft_point_spread point_spread;
     double correlation, uncertainty_mm;
 
+    double view_uncertainty_deg; /* standard error of the direction of the camera */
+
     weft_lamp_place lamp;
+
+    double contrast; /* of the texels: relative standard deviation */
 
     weft_image thumbnail, rectified; /* for the report, sRGB; without pixels where there is none */
 } weft_hand_photograph;

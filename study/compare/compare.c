@@ -44,7 +44,7 @@ static weft_code measure_material(const compared_files *files, const weft_progre
                                   weft_comparison *comparison, weft_error *error)
 {
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_material(files->dataset, &files->material, &predictor, error));
+    WEFT_TRY(weft_predictor_of_material(weft_dataset_get_layout(files->dataset), &files->material, &predictor, error));
     weft_code code = measure_texture(files->dataset, predictor, "compressed", progress, comparison, error);
     weft_predictor_free(predictor);
     return code;
@@ -111,6 +111,7 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(files->dataset);
     weigh(options, layout, comparison);
+    comparison->has_held_out = weft_hold_out_read(files->material.metadata, &comparison->held_out);
     WEFT_TRY(weft_dataset_fingerprint_compare(files->dataset, files->material.metadata, comparison->warning, error));
     WEFT_TRY(measure_material(files, progress, comparison, error));
     if (options->weave)

@@ -8,6 +8,7 @@
 #include "study/compare/slices.h"
 #include "study/error/measurement.h"
 #include "study/fit_weave/fit_weave.h"
+#include "study/hold_out/record.h"
 #include "study/truth/comparison.h"
 
 typedef struct weft_compare_options {
@@ -44,6 +45,8 @@ typedef struct weft_comparison {
     bool weave_on_yarns;                                 /* laid by the tiles that a fit found */
     weft_slices slices;
     weft_leave_one_out left_out; /* count 0 where the dataset has too many images */
+    bool has_held_out;
+    weft_hold_out held_out; /* what the material says of its error where it was not fitted, if it does */
     double dataset_bytes, half_float_bytes, material_bytes;
     weft_scenes scenes;
     weft_traced_truth truth;         /* nothing drawn without a stitch */

@@ -47,7 +47,7 @@ static weft_code predict(weft_dataset *dataset, const weft_material *material, w
                          weft_error *error)
 {
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_material(dataset, material, &predictor, error));
+    WEFT_TRY(weft_predictor_of_material(weft_dataset_get_layout(dataset), material, &predictor, error));
     weft_code code = read_pair(dataset, predictor, &photograph->pair, error);
     weft_predictor_free(predictor);
     return code == WEFT_OK ? weft_image_pair_error(&photograph->pair, &photograph->error, error) : code;

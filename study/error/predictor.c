@@ -1,6 +1,7 @@
 #include "study/error/predictor.h"
 
 #include "reflectance/lafortune/lafortune.h"
+#include "reflectance/layers/layers.h"
 #include "reflectance/weave/batch.h"
 
 #include <stdlib.h>
@@ -13,6 +14,7 @@ struct weft_predictor {
     const weft_dataset_layout *layout;
     const weft_material *material;
     weft_table_directions directions; /* of the material */
+    float *factor;                    /* of its layers: [image][layer][3]; NULL without */
     const weft_weave *weave;
     weft_woven_table *table; /* of the weave */
     weft_weave_layout tiles;
@@ -23,14 +25,14 @@ struct weft_predictor {
     uint8_t *mask;
 };
 
-static weft_code create(const weft_dataset *dataset, predict_function *predict, weft_predictor **result,
+static weft_code create(const weft_dataset_layout *layout, predict_function *predict, weft_predictor **result,
                         weft_error *error)
 {
     *result = calloc(1, sizeof **result);
     if (!*result)
         return weft_fail_memory(error, "predictor", sizeof **result);
     (*result)->predict = predict;
-    (*result)->layout = weft_dataset_get_layout(dataset);
+    (*result)->layout = layout;
     return WEFT_OK;
 }
 
@@ -39,6 +41,7 @@ void weft_predictor_free(weft_predictor *predictor)
     if (!predictor)
         return;
     weft_table_directions_free(&predictor->directions);
+    free(predictor->factor);
     weft_woven_table_free(predictor->table);
     weft_dataset_close(predictor->other);
     free(predictor->samples);
@@ -77,18 +80,54 @@ static void predict_by_material(const weft_predictor *predictor, int x, int y, c
     }
 }
 
-weft_code weft_predictor_of_material(const weft_dataset *dataset, const weft_material *material,
+/* ---- Layers of a material ---- */
+
+static void predict_by_layers(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                              weft_rgb *prediction)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    const weft_layers *layers = predictor->material->layers;
+    size_t series = 3 * (size_t)layers->layer_count;
+    for (int i = 0; i < image_count; i++) {
+        weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
+        weft_rgb value = weft_layers_texel(layers, layers->layer_count, predictor->factor + (size_t)image[i] * series,
+                                           0, x, y, light.z);
+        prediction[i] = light.z > 0 ? scaled(quantity(layout, light) / light.z, value) : (weft_rgb){0};
+    }
+}
+
+/* In a far dataset, as layers come from, all texels see an image under the same light and view. */
+static weft_code prepare_layers(weft_predictor *predictor, weft_error *error)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    const weft_layers *layers = predictor->material->layers;
+    size_t series = 3 * (size_t)layers->layer_count, bytes = (size_t)layout->image_count * series * sizeof(float);
+    weft_layer_maps maps;
+    predictor->factor = malloc(bytes);
+    if (!predictor->factor)
+        return weft_fail_memory(error, "factors of layers", bytes);
+    WEFT_TRY(weft_layer_maps_create(layers, &maps, error));
+    for (int i = 0; i < layout->image_count; i++)
+        weft_layer_factors(&maps, weft_dataset_light_direction(layout, i, 0, 0),
+                           weft_dataset_view_direction(layout, layout->view_of_image[i], 0, 0),
+                           predictor->factor + (size_t)i * series);
+    weft_layer_maps_free(&maps);
+    predictor->predict = predict_by_layers;
+    return WEFT_OK;
+}
+
+weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const weft_material *material,
                                      weft_predictor **result, weft_error *error)
 {
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     if (material->level[0].width != layout->width || material->level[0].height != layout->height)
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' has %d x %d texels, but the material %d x %d: it is not made from it",
-                         weft_dataset_path(dataset), layout->width, layout->height, material->level[0].width,
-                         material->level[0].height);
-    WEFT_TRY(create(dataset, predict_by_material, result, error));
+                         "the dataset has %d x %d texels, but the material %d x %d: it is not made from it",
+                         layout->width, layout->height, material->level[0].width, material->level[0].height);
+    WEFT_TRY(create(layout, predict_by_material, result, error));
     (*result)->material = material;
     weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
+    if (code == WEFT_OK && material->layers && layout->distance == WEFT_FAR)
+        code = prepare_layers(*result, error);
     if (code != WEFT_OK)
         weft_predictor_free(*result);
     return code;
@@ -146,7 +185,7 @@ static void predict_by_weave(const weft_predictor *predictor, int x, int y, cons
 weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,
                                   weft_predictor **result, weft_error *error)
 {
-    WEFT_TRY(create(dataset, predict_by_weave, result, error));
+    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_weave, result, error));
     (*result)->weave = weave;
     (*result)->tiles = *layout;
     weft_code code = weft_woven_table_create(weave, &(*result)->table, error);
@@ -172,7 +211,7 @@ static void predict_by_threads(const weft_predictor *predictor, int x, int y, co
 weft_code weft_predictor_of_threads(const weft_dataset *dataset, const weft_microcylinder_cloth *cloth,
                                     weft_predictor **result, weft_error *error)
 {
-    WEFT_TRY(create(dataset, predict_by_threads, result, error));
+    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_threads, result, error));
     (*result)->threads = weft_microcylinder_prepare(cloth);
     return WEFT_OK;
 }
@@ -211,7 +250,7 @@ weft_code weft_predictor_of_dataset(const weft_dataset *dataset, const char *pat
                                     weft_error *error)
 {
     weft_predictor *predictor;
-    WEFT_TRY(create(dataset, predict_by_dataset, &predictor, error));
+    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_dataset, &predictor, error));
     weft_code code = weft_dataset_open(path, &predictor->other, error);
     if (code == WEFT_OK && !same_images(predictor->layout, weft_dataset_get_layout(predictor->other)))
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' does not have the texels, images and quantity of '%s'", path,

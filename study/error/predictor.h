@@ -12,8 +12,9 @@ typedef struct weft_predictor weft_predictor;
 
 /* Predictions for one dataset, whose layout outlives the predictor. The caller frees with weft_predictor_free. */
 
-/* Level 0 of a material, which stays the caller's. Errors: WEFT_BAD_INPUT where its size is not that of the dataset. */
-weft_code weft_predictor_of_material(const weft_dataset *dataset, const weft_material *material,
+/* Level 0 of a material, which stays the caller's: its layers where it has some, else its lobes. The layout of the
+ * dataset is enough. Errors: WEFT_BAD_INPUT where its size is not that of the dataset. */
+weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const weft_material *material,
                                      weft_predictor **result, weft_error *error);
 
 /* A weave without its noise, laid on the material; a texel is the mean of 4 x 4 points. The weave stays the caller's.

@@ -1,6 +1,7 @@
 #include "study/inspect/inspect.h"
 
 #include "base/atomic_file.h"
+#include "base/numeric/statistics.h"
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
 #include "btf/direction/direction.h"
@@ -10,10 +11,13 @@
 #include "geometry/yarn/tile_mesh.h"
 #include "reflectance/microcylinder/file.h"
 #include "reflectance/weave/weave.h"
+#include "study/hold_out/record.h"
 #include "study/inspect/verify.h"
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
 
 static const size_t longest_list = 16;
 
@@ -87,17 +91,48 @@ static json_t *describe_level(const weft_material *material, int k)
     return described;
 }
 
+/* The error to judge a material by, then that on what it was fitted to. What says how it was measured is in the
+ * metadata. */
+static json_t *describe_error(const weft_material *material)
+{
+    weft_hold_out held_out;
+    json_t *described = json_object();
+    if (weft_hold_out_read(material->metadata, &held_out)) {
+        char how[WEFT_HOLD_OUT_LINE];
+        weft_hold_out_explain(&held_out, how);
+        weft_json_put(&described, "not_fitted", json_real(held_out.material.all.relative_rmse));
+        weft_json_put(&described, "photographs_interpolated", json_real(held_out.photographs.all.relative_rmse));
+        weft_json_put(&described, "fitted", json_real(held_out.fitted.relative_rmse));
+        weft_json_put(&described, "how", json_string(how));
+    } else {
+        weft_json_put(&described, "not_fitted", json_string("not measured"));
+    }
+    weft_json_put(&described, "fitted_level_0", json_real(material->level[0].error.relative_rmse));
+    return described;
+}
+
+static json_t *describe_layers(const weft_layers *layers)
+{
+    return json_pack("{s:i, s:s, s:i, s:i}", "count", layers->layer_count, "maps_over",
+                     layers->kind == WEFT_LAYERS_OF_LIGHT ? "light" : "half vector", "views", layers->view_count,
+                     "images", layers->image_count);
+}
+
 static json_t *describe_material(const char *path, const weft_material *material)
 {
     /* First: reading numbers, jansson sets errno to 0. */
     json_t *metadata = parsed(material->metadata), *levels = json_array();
     for (int i = 0; i < material->level_count; i++)
         weft_json_append(&levels, describe_level(material, i));
-    return json_pack("{s:s, s:s, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material", "bytes",
-                     (json_int_t)weft_file_bytes(path), "texels", material->level[0].width, material->level[0].height,
-                     "lobes", material->lobe_count, "views_in_table", material->view_count, "lights_in_table",
-                     material->light_count, "texel_pitch_mm", material->texel_pitch_mm, "levels", levels, "metadata",
-                     metadata);
+    json_t *described =
+        json_pack("{s:s, s:s, s:o, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material",
+                  "relative_rmse", describe_error(material), "bytes", (json_int_t)weft_file_bytes(path), "texels",
+                  material->level[0].width, material->level[0].height, "lobes", material->lobe_count, "views_in_table",
+                  material->view_count, "lights_in_table", material->light_count, "texel_pitch_mm",
+                  material->texel_pitch_mm, "levels", levels, "metadata", metadata);
+    if (material->layers)
+        weft_json_put(&described, "layers", describe_layers(material->layers));
+    return described;
 }
 
 static weft_code inspect_material(const char *path, json_t **result, weft_error *error)
@@ -113,18 +148,43 @@ static weft_code inspect_material(const char *path, json_t **result, weft_error 
 
 /* ---- Dataset ---- */
 
+/* Smallest, median and largest of what is known about every image; nothing where nothing is. */
+static void put_figures(json_t **described, const weft_dataset_layout *layout)
+{
+    static const char *const name[WEFT_IMAGE_FIGURES] = {
+        [WEFT_IMAGE_WEIGHT] = "image_weights",
+        [WEFT_IMAGE_VIEW_ERROR] = "view_standard_errors_deg",
+        [WEFT_IMAGE_LIGHT_ERROR] = "light_standard_errors_deg",
+        [WEFT_IMAGE_VALUE_ERROR] = "value_relative_standard_errors",
+    };
+    int count = layout->image_count;
+    double *sorted = malloc((size_t)count * sizeof *sorted);
+    for (int i = 0; sorted && i < WEFT_IMAGE_FIGURES; i++) {
+        if (!layout->figure[i])
+            continue;
+        memcpy(sorted, layout->figure[i], (size_t)count * sizeof *sorted);
+        weft_json_put(described, name[i],
+                      json_pack("{s:f, s:f, s:f}", "smallest", weft_quantile(sorted, count, 0), "median",
+                                weft_quantile(sorted, count, 0.5), "largest", weft_quantile(sorted, count, 1)));
+    }
+    free(sorted);
+}
+
 static json_t *describe_dataset(const char *path, const weft_dataset *dataset)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     json_int_t raw =
         (json_int_t)layout->width * layout->height * layout->image_count * 3 * (json_int_t)sizeof(weft_half);
-    return json_pack("{s:s, s:s, s:I, s:I, s:[ii], s:i, s:i, s:s, s:s, s:s, s:f, s:o}", "file", path, "kind", "dataset",
-                     "bytes", (json_int_t)weft_file_bytes(path), "half_float_bytes", raw, "texels", layout->width,
-                     layout->height, "images", layout->image_count, "views", layout->view_count, "values",
-                     layout->values == WEFT_REFLECTANCE ? "reflectance" : "reflectance times cosine",
-                     "lights_and_views", layout->distance == WEFT_NEAR ? "positions (near)" : "directions (far)",
-                     "frames", weft_dataset_has_frames(dataset) ? "given" : "of the surface", "texel_pitch_mm",
-                     layout->texel_pitch_mm, "provenance", parsed(layout->provenance));
+    json_t *described =
+        json_pack("{s:s, s:s, s:I, s:I, s:[ii], s:i, s:i, s:s, s:s, s:s, s:f, s:o}", "file", path, "kind", "dataset",
+                  "bytes", (json_int_t)weft_file_bytes(path), "half_float_bytes", raw, "texels", layout->width,
+                  layout->height, "images", layout->image_count, "views", layout->view_count, "values",
+                  layout->values == WEFT_REFLECTANCE ? "reflectance" : "reflectance times cosine", "lights_and_views",
+                  layout->distance == WEFT_NEAR ? "positions (near)" : "directions (far)", "frames",
+                  weft_dataset_has_frames(dataset) ? "given" : "of the surface", "texel_pitch_mm",
+                  layout->texel_pitch_mm, "provenance", parsed(layout->provenance));
+    put_figures(&described, layout);
+    return described;
 }
 
 static weft_code inspect_dataset(const char *path, const weft_progress *progress, bool all, json_t **result,

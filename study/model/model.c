@@ -2,6 +2,7 @@
 
 #include "btf/file_kind.h"
 #include "reflectance/lafortune/lafortune.h"
+#include "reflectance/layers/layers.h"
 #include "reflectance/microcylinder/file.h"
 #include "study/model/raw_btf.h"
 
@@ -13,6 +14,7 @@ struct weft_model {
     uint64_t noise_seed;
     weft_material material;
     weft_table_directions directions; /* of the material */
+    weft_layer_maps maps;             /* of its layers; empty without, or where its lobes are asked for */
     weft_dataset *dataset;
     weft_raw_btf *raw;
     weft_weave weave;
@@ -22,9 +24,12 @@ struct weft_model {
 
 /* ---- Opening ---- */
 
-static weft_code open_material(weft_model *model, const char *path, weft_error *error)
+static weft_code open_material(weft_model *model, const char *path, const weft_model_options *options,
+                               weft_error *error)
 {
     WEFT_TRY(weft_material_read(path, &model->material, error));
+    if (model->material.layers && !options->lobes)
+        WEFT_TRY(weft_layer_maps_create(model->material.layers, &model->maps, error));
     return weft_table_directions_create(&model->material, &model->directions, error);
 }
 
@@ -62,7 +67,7 @@ weft_code weft_model_open(const char *path, const weft_model_options *options, w
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a stitch, not a model; weft simulate makes a .btf.h5 of it",
                          path);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_MATERIAL)
-        code = open_material(model, path, error);
+        code = open_material(model, path, options, error);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_DATASET)
         code = open_dataset(model, path, error);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_MICROCYLINDER)
@@ -85,6 +90,7 @@ void weft_model_close(weft_model *model)
     weft_raw_btf_free(model->raw);
     weft_dataset_close(model->dataset);
     weft_table_directions_free(&model->directions);
+    weft_layer_maps_free(&model->maps);
     weft_material_free(&model->material);
     weft_weave_free(&model->weave);
     free(model);
@@ -92,12 +98,35 @@ void weft_model_close(weft_model *model)
 
 /* ---- Evaluating ---- */
 
+static weft_rgb divided(weft_rgb value, weft_real divisor)
+{
+    return (weft_rgb){value.r / divisor, value.g / divisor, value.b / divisor};
+}
+
+/* BRDF x pi; `factor` is that of the layers, where those are evaluated. */
+static weft_rgb texel_value(const weft_model *model, int level, int x, int y, const weft_query *query,
+                            const float *factor)
+{
+    const weft_layers *layers = model->maps.layers;
+    if (layers)
+        return divided(weft_layers_texel(layers, layers->layer_count, factor, level, x, y, query->light.z),
+                       fmax(query->light.z, (weft_real)1e-6));
+    weft_rgba value = weft_material_texel(&model->material, &model->directions, level, x, y, query->light, query->view);
+    return (weft_rgb){value.r, value.g, value.b};
+}
+
+static void find_factor(const weft_model *model, const weft_query *query, float factor[3 * WEFT_LAYERS_MAX])
+{
+    if (model->maps.layers)
+        weft_layer_factors(&model->maps, query->light, query->view, factor);
+}
+
 /* Sum over the texels of a row, BRDF x pi. */
-static void add_row(const weft_model *model, int level, int y, const weft_query *query, double sum[3])
+static void add_row(const weft_model *model, int level, int y, const weft_query *query, const float *factor,
+                    double sum[3])
 {
     for (int x = 0; x < model->material.level[level].width; x++) {
-        weft_rgba value =
-            weft_material_texel(&model->material, &model->directions, level, x, y, query->light, query->view);
+        weft_rgb value = texel_value(model, level, x, y, query, factor);
         sum[0] += value.r;
         sum[1] += value.g;
         sum[2] += value.b;
@@ -112,10 +141,12 @@ static weft_rgb level_mean(const weft_model *model, int level, const weft_query 
 {
     const weft_material_level *at = &model->material.level[level];
     double r = 0, g = 0, b = 0;
+    float factor[3 * WEFT_LAYERS_MAX];
+    find_factor(model, query, factor);
 #pragma omp parallel for reduction(+ : r, g, b) if (at->height > FEW_ROWS)
     for (int y = 0; y < at->height; y++) {
         double sum[3] = {0};
-        add_row(model, level, y, query, sum);
+        add_row(model, level, y, query, factor, sum);
         r += sum[0];
         g += sum[1];
         b += sum[2];
@@ -138,17 +169,25 @@ static weft_rgb material_mean(const weft_model *model, const weft_query *query)
                       mean.b + share * (coarse.b - mean.b)};
 }
 
+/* BRDF x pi at a place. */
+static weft_rgb material_sample(const weft_model *model, const weft_query *query)
+{
+    const weft_layers *layers = model->maps.layers;
+    float factor[3 * WEFT_LAYERS_MAX];
+    if (layers) {
+        find_factor(model, query, factor);
+        return divided(
+            weft_layers_sample(layers, layers->layer_count, factor, query->level, query->u, query->v, query->light.z),
+            fmax(query->light.z, (weft_real)1e-6));
+    }
+    weft_rgba sample = weft_material_sample(&model->material, &model->directions, query->level, query->u, query->v,
+                                            query->light, query->view);
+    return (weft_rgb){sample.r, sample.g, sample.b};
+}
+
 static weft_rgb material_brdf(const weft_model *model, const weft_query *query)
 {
-    weft_rgb value;
-    if (query->has_place) {
-        weft_rgba sample = weft_material_sample(&model->material, &model->directions, query->level, query->u, query->v,
-                                                query->light, query->view);
-        value = (weft_rgb){sample.r, sample.g, sample.b};
-    } else {
-        value = material_mean(model, query);
-    }
-    return (weft_rgb){value.r / WEFT_PI, value.g / WEFT_PI, value.b / WEFT_PI};
+    return divided(query->has_place ? material_sample(model, query) : material_mean(model, query), WEFT_PI);
 }
 
 static weft_rgb weave_brdf(const weft_model *model, const weft_query *query)

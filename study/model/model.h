@@ -14,6 +14,7 @@ typedef struct weft_model_options {
     uint64_t noise_seed;             /* of a weave; 0 = without its noise */
     const weft_parameter *parameter; /* [parameter_count] for the $names of a weave or cloth */
     int parameter_count;
+    bool lobes;      /* of a material that has layers, too: its lobes */
     bool as_printed; /* weights of a microcylinder cloth: of the article, not by area */
 } weft_model_options;
 

@@ -34,7 +34,7 @@ weft_code weft_raw_btf_create(weft_dataset *dataset, weft_raw_btf **result, weft
     if (!raw->samples || !raw->mask)
         code = weft_fail_memory(error, "texel", images * 7);
     if (code == WEFT_OK)
-        code = weft_view_order_create(raw->layout, &raw->order, error);
+        code = weft_view_order_create(raw->layout, NULL, &raw->order, error);
     if (code == WEFT_OK)
         code = weft_raw_directions_create(raw->layout, &raw->order, raw->layout->width / 2, raw->layout->height / 2,
                                           &raw->centre, error);
@@ -91,7 +91,7 @@ static void add_image(const weft_raw_btf *raw, const place *at, int image, doubl
     double cosine = 1;
     if (raw->layout->values == WEFT_REFLECTANCE_COSINE)
         cosine = weft_dataset_light_direction(raw->layout, image, at->x, at->y).z;
-    if (at->mask[image] || !(cosine > 0) || !(weight > 0))
+    if (at->mask[image] || !(cosine > 0))
         return;
     double value[3];
     for (int c = 0; c < 3; c++) {
@@ -104,17 +104,9 @@ static void add_image(const weft_raw_btf *raw, const place *at, int image, doubl
 static void interpolate(const weft_raw_btf *raw, const weft_raw_directions *d, const place *at, weft_vec3 light,
                         weft_vec3 view, blend *b)
 {
-    weft_barycentric views = weft_triangulation_lookup(d->views, view);
-    for (int i = 0; i < 3; i++) {
-        if (views.index[i] < 0 || !d->lights[views.index[i]])
-            continue;
-        weft_barycentric lights = weft_triangulation_lookup(d->lights[views.index[i]], light);
-        const int *image = raw->order.image + raw->order.first[views.index[i]];
-        for (int k = 0; k < 3; k++) {
-            if (lights.index[k] >= 0)
-                add_image(raw, at, image[lights.index[k]], views.weight[i] * lights.weight[k], b);
-        }
-    }
+    weft_raw_stencil stencil = weft_raw_stencil_of(d, &raw->order, light, view);
+    for (int i = 0; i < stencil.count; i++)
+        add_image(raw, at, stencil.image[i], stencil.weight[i], b);
 }
 
 static weft_code sample_texel(weft_raw_btf *raw, int x, int y, weft_vec3 light, weft_vec3 view, weft_rgb *brdf,

@@ -1,4 +1,5 @@
 #include "btf/dataset/dataset.h"
+#include "btf/dataset/write_blocks.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/tiny_dataset.h"
@@ -205,6 +206,41 @@ static void frames_are_kept_and_are_those_of_the_surface_where_absent(void **sta
     weft_dataset_layout_free(&layout);
 }
 
+/* Those of the layout by both writers, those that are put by the one that takes images. */
+static void figures_of_images_are_kept_and_unknown_where_absent(void **state)
+{
+    (void)state;
+    weft_dataset_layout layout = tiny_layout(4, 3, 2, 2);
+    weft_dataset_writer *writer;
+    weft_dataset_block_writer *blocks;
+    weft_dataset *dataset;
+    const double weight[4] = {0.25, 0, 3, 0.75}, light[4] = {0.5, 90, 0, 1e-9};
+    weft_half samples[4 * 3 * 4 * 3] = {0};
+    uint8_t mask[4 * 3 * 4] = {0};
+    assert_int_equal(weft_dataset_layout_allocate_figure(&layout, WEFT_IMAGE_WEIGHT, NULL), WEFT_OK);
+    memcpy(layout.figure[WEFT_IMAGE_WEIGHT], weight, sizeof weight);
+    assert_int_equal(weft_dataset_writer_create("figures.btf.h5", &layout, &writer, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_writer_put_figure(writer, WEFT_IMAGE_LIGHT_ERROR, light, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_writer_finish(writer, NULL, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_block_writer_create("blocks.btf.h5", &layout, &blocks, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_block_writer_put(blocks, 0, 0, 4, 3, samples, mask, NULL), WEFT_OK);
+    assert_int_equal(weft_dataset_block_writer_finish(blocks, "{}", NULL), WEFT_OK);
+    for (int file = 0; file < 2; file++) {
+        assert_int_equal(weft_dataset_open(file ? "blocks.btf.h5" : "figures.btf.h5", &dataset, NULL), WEFT_OK);
+        double *const *figure = weft_dataset_get_layout(dataset)->figure;
+        assert_memory_equal(figure[WEFT_IMAGE_WEIGHT], weight, sizeof weight);
+        assert_null(figure[WEFT_IMAGE_VIEW_ERROR]);
+        assert_null(figure[WEFT_IMAGE_VALUE_ERROR]);
+        assert_int_equal(figure[WEFT_IMAGE_LIGHT_ERROR] != NULL, file == 0);
+        if (file == 0)
+            assert_memory_equal(figure[WEFT_IMAGE_LIGHT_ERROR], light, sizeof light);
+        weft_dataset_close(dataset);
+    }
+    layout.figure[WEFT_IMAGE_WEIGHT][1] = -1;
+    assert_int_equal(weft_dataset_writer_create("figures.btf.h5", &layout, &writer, NULL), WEFT_BAD_INPUT);
+    weft_dataset_layout_free(&layout);
+}
+
 static void opacity_is_kept_and_is_one_where_absent(void **state)
 {
     (void)state;
@@ -315,6 +351,7 @@ int main(void)
         cmocka_unit_test(a_row_larger_than_the_writers_memory_reads_back),
         cmocka_unit_test(samples_and_mask_can_be_read_alone),
         cmocka_unit_test(images_come_in_any_order_and_absent_ones_are_missing),
+        cmocka_unit_test(figures_of_images_are_kept_and_unknown_where_absent),
         cmocka_unit_test(opacity_is_kept_and_is_one_where_absent),
         cmocka_unit_test(frames_are_kept_and_are_those_of_the_surface_where_absent),
         cmocka_unit_test(near_lights_are_seen_from_each_texel),

@@ -172,6 +172,8 @@ static void shapes_that_disagree_are_refused(void **state)
         {"view_of_image", 1, {IMAGES - 1}, "'view_of_image'"},
         {"opacity", 3, {HEIGHT, WIDTH, VIEWS + 1}, "'opacity'"},
         {"frame", 4, {HEIGHT, WIDTH, 3, 3}, "dimension 2 of 'frame' is 3, must be 2"},
+        {"weight", 1, {IMAGES - 1}, "dimension 0 of 'weight' is 5, must be 6"},
+        {"light_standard_error_deg", 2, {IMAGES, 1}, "must be numbers in 1 dimensions, has 2"},
         {"view", 2, {1 << 24, 3}, "too few for"},
     };
     for (size_t i = 0; i < sizeof edit / sizeof edit[0]; i++) {
@@ -222,6 +224,37 @@ static void directions_and_indices_out_of_range_are_named(void **state)
         H5Fclose(file);
         assert_refused(damaged, edit[i].cause);
     }
+}
+
+static void put_figure(hid_t file, const char *name, const double value[IMAGES])
+{
+    const hsize_t size = IMAGES;
+    hid_t space = H5Screate_simple(1, &size, NULL);
+    hid_t object = H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    assert_true(H5Dwrite(object, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0);
+    H5Dclose(object);
+    H5Sclose(space);
+}
+
+static void figures_of_images_that_are_none_are_named(void **state)
+{
+    (void)state;
+    static const char *const name[WEFT_IMAGE_FIGURES] = {"weight", "view_standard_error_deg",
+                                                         "light_standard_error_deg", "value_relative_standard_error"};
+    static const double wrong[3] = {NAN, -1, INFINITY};
+    for (int i = 0; i < 3 * WEFT_IMAGE_FIGURES; i++) {
+        double value[IMAGES] = {1, 1, wrong[i % 3], 1, 1, 1};
+        char cause[96];
+        hid_t file = open_copy();
+        put_figure(file, name[i / 3], value);
+        H5Fclose(file);
+        snprintf(cause, sizeof cause, "%s of image 2 is", name[i / 3]);
+        assert_refused(damaged, cause);
+    }
+    hid_t file = open_copy();
+    put_figure(file, "weight", (double[IMAGES]){0});
+    H5Fclose(file);
+    assert_refused(damaged, "the weight of every image is 0");
 }
 
 static void a_valid_sample_that_is_not_finite_is_named_and_a_masked_one_cleared(void **state)
@@ -390,6 +423,7 @@ int main(void)
         cmocka_unit_test(shapes_that_disagree_are_refused),
         cmocka_unit_test(a_size_that_the_file_cannot_hold_is_refused),
         cmocka_unit_test(directions_and_indices_out_of_range_are_named),
+        cmocka_unit_test(figures_of_images_that_are_none_are_named),
         cmocka_unit_test(a_valid_sample_that_is_not_finite_is_named_and_a_masked_one_cleared),
         cmocka_unit_test(opacity_out_of_range_is_refused),
         cmocka_unit_test(frames_that_are_none_are_refused),

@@ -40,4 +40,9 @@ good &= check("direction of the view, degrees, median", np.median(view), limits[
 good &= check("direction of the lamp, degrees, median", np.median(lamp), limits[1])
 good &= check("reflectance to 45 degrees, relative, median", np.median(error), limits[2])
 good &= check("share of lamps not within two standard errors", 1 - np.mean(covered), 0.35)
+view_error, weight = found["view_standard_error_deg"][()], found["weight"][()]
+good &= check("share of views not within two standard errors", np.mean(np.array(view) > 2 * view_error), 0.35)
+good &= check("standard errors of views over their errors, median", np.median(view_error / np.array(view)), 6)
+good &= check("weights, mean from 1", abs(np.mean(weight) - 1), 1e-9)
+good &= check("share of weights that are alike", np.mean(np.abs(weight - 1) < 1e-6), 0.5)
 sys.exit(0 if good else 1)

@@ -53,6 +53,43 @@ static void a_dataset_becomes_a_material_with_a_table_of_errors(void **state)
     weft_material_free(&material);
 }
 
+static void the_error_where_it_was_not_fitted_is_said_and_kept(void **state)
+{
+    (void)state;
+    weft_material material;
+    char said[8192];
+    expect_weft("compress command.btf.h5 -o held.weft", 0, "on directions that were not fitted: relative RMSE 0.");
+    assert_int_equal(weft_material_read("held.weft", &material, NULL), WEFT_OK);
+    assert_non_null(strstr(material.metadata, "\"held_out\":{"));
+    weft_material_free(&material);
+    assert_int_equal(run_weft("", "compress command.btf.h5 -o held.weft --hold-out 2 --json", said), 0);
+    assert_non_null(strstr(said, "{\"event\":\"held_out\""));
+    assert_non_null(strstr(said, "\"splits\":2"));
+    assert_int_equal(run_weft("", "info held.weft", said), 0);
+    const char *not_fitted = strstr(said, "not_fitted: 0."), *level = strstr(said, "levels 0:");
+    assert_true(not_fitted && level && not_fitted < level);
+    expect_weft_after("ls > listed && ! grep held-out listed &&", "info held.weft", 0, "photographs_interpolated: ");
+}
+
+static void the_fit_itself_has_all_images_with_or_without(void **state)
+{
+    (void)state;
+    weft_material with, without;
+    expect_weft("compress command.btf.h5 -o with.weft --hold-out 1", 0, "not fitted");
+    assert_int_equal(weft_material_read("with.weft", &with, NULL), WEFT_OK);
+    char said[8192];
+    assert_int_equal(run_weft("", "compress command.btf.h5 -o without.weft --hold-out off", said), 0);
+    assert_null(strstr(said, "not fitted"));
+    assert_int_equal(weft_material_read("without.weft", &without, NULL), WEFT_OK);
+    assert_null(strstr(without.metadata, "held_out"));
+    assert_int_equal(with.view_count, without.view_count);
+    assert_memory_equal(with.level[0].table, without.level[0].table, (size_t)with.view_count * 3 * 2 * 4);
+    assert_memory_equal(with.level[0].lobe, without.level[0].lobe, (size_t)with.lobe_count * 3 * 3 * 2 * 4 * 2);
+    weft_material_free(&with);
+    weft_material_free(&without);
+    expect_weft("compress command.btf.h5 -o with.weft --hold-out 0", 2, "--hold-out");
+}
+
 static void weights_are_kept_with_the_material(void **state)
 {
     (void)state;
@@ -80,8 +117,8 @@ static void a_budget_is_kept_and_reported_in_a_picture(void **state)
 {
     (void)state;
     weft_image picture;
-    expect_weft("compress command.btf.h5 -o budget.weft --budget 0.006 --report report", 0, "budget.weft: 0.0");
-    assert_in_range(weft_file_bytes("budget.weft"), 1, 6000);
+    expect_weft("compress command.btf.h5 -o budget.weft --budget 0.008 --report report", 0, "budget.weft: 0.0");
+    assert_in_range(weft_file_bytes("budget.weft"), 1, 8000);
     assert_int_equal(weft_image_read("report/models.png", &picture, NULL, NULL), WEFT_OK);
     weft_image_free(&picture);
     assert_int_equal(access("report/index.html", F_OK), 0);
@@ -168,6 +205,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dataset_becomes_a_material_with_a_table_of_errors),
+        cmocka_unit_test(the_error_where_it_was_not_fitted_is_said_and_kept),
+        cmocka_unit_test(the_fit_itself_has_all_images_with_or_without),
         cmocka_unit_test(weights_are_kept_with_the_material),
         cmocka_unit_test(a_target_error_says_how_many_texels_miss_it),
         cmocka_unit_test(a_budget_is_kept_and_reported_in_a_picture),

@@ -215,3 +215,80 @@ stage_difference stage_compare(weft_player *player, weft_scene scene, weft_mode 
     weft_image_free(&image);
     return difference;
 }
+
+/* ---- Linear layers ---- */
+
+enum { LAYER_DIRECTIONS = 37 };
+
+static weft_vec3 direction_at(const float xyz[3])
+{
+    return weft_vec3_of((weft_real)xyz[0], (weft_real)xyz[1], (weft_real)xyz[2]);
+}
+
+/* Anything smooth in light and view that is positive on the whole. */
+static double factor_of(int layer, int colour, weft_vec3 light, weft_vec3 view)
+{
+    double phase = 0.7 * layer + 0.3 * colour;
+    double wave = cos(phase + 2.3 * light.x - 1.1 * view.y) * cos(1.9 * light.y + 1.3 * view.x + layer);
+    return light.z * (layer == 0 ? 1 : 0.8 * wave);
+}
+
+static void put_direction(int index, float *xyz)
+{
+    weft_vec3 direction = weft_direction_of_angles(weft_ubo81_angles(index));
+    xyz[0] = (float)direction.x;
+    xyz[1] = (float)direction.y;
+    xyz[2] = (float)direction.z;
+}
+
+static void fill_image(weft_layers *layers, int view, int light)
+{
+    int image = view * LAYER_DIRECTIONS + light;
+    put_direction(light, layers->light + 3 * image);
+    for (int i = 0; i < 3 * layers->layer_count; i++)
+        layers->value[(size_t)image * 3 * (size_t)layers->layer_count + (size_t)i] =
+            weft_half_of_float((float)factor_of(i / 3, i % 3, direction_at(layers->light + 3 * image),
+                                                direction_at(layers->view + 3 * view)));
+}
+
+/* The last squares of the largest level are dark enough for their ceilings to be reached. */
+static void fill_layers_level(weft_layers_level *level, int layer_count)
+{
+    int texels = level->width * level->height;
+    for (int i = 0; i < texels * layer_count; i++) {
+        int layer = i / (4 * texels) * 4 + i % 4;
+        level->coefficient[i] = (int8_t)(layer == 0 ? 90 + rand() % 30 : rand() % 61 - 30);
+    }
+    size_t ceilings = weft_ceiling_count(level->width, level->height);
+    for (size_t i = 0; i < ceilings; i++)
+        level->ceiling[i] = i + 2 < ceilings ? 255 : 176;
+}
+
+void stage_layers(weft_layers_kind kind, int layer_count, weft_material *material)
+{
+    weft_error error = {0};
+    weft_layers shape = {.kind = kind,
+                         .layer_count = layer_count,
+                         .view_count = LAYER_DIRECTIONS,
+                         .image_count = LAYER_DIRECTIONS * LAYER_DIRECTIONS,
+                         .light_side = 12,
+                         .view_side = 9,
+                         .light_smoothness = 1e-2f,
+                         .view_smoothness = 1e-2f,
+                         .least_cosine = 0.5f};
+    expect_ok(weft_layers_create(&shape, material->level[0].width, material->level[0].height, material->level_count,
+                                 &material->layers, &error),
+              &error);
+    material->has_layers = true;
+    for (int view = 0; view < LAYER_DIRECTIONS; view++) {
+        put_direction(view, material->layers->view + 3 * view);
+        material->layers->first[view + 1] = (uint32_t)(LAYER_DIRECTIONS * (view + 1));
+        for (int light = 0; light < LAYER_DIRECTIONS; light++)
+            fill_image(material->layers, view, light);
+    }
+    for (int k = 0; k < layer_count; k++)
+        material->layers->scale[k] = 0.35f / 127;
+    srand(5);
+    for (int k = 0; k < material->level_count; k++)
+        fill_layers_level(&material->layers->level[k], layer_count);
+}

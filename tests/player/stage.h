@@ -23,6 +23,9 @@ double stage_uniform(uint64_t *state);
  * (0: none), with opacity below 1 here and there, and a light table over the last `lights`. All levels. */
 void stage_material(int width, int height, int lobes, int views, int lights, weft_material *material);
 
+/* Adds layers that are smooth in light and view, with coefficients at random, some of them held by their ceilings. */
+void stage_layers(weft_layers_kind kind, int layer_count, weft_material *material);
+
 /* A checkerboard of a dark matt and a bright shining cloth with one texel a field, whose mip levels are exact means:
  * the lobes of all texels have the same shape. */
 void stage_checker(int size, weft_material *material);

@@ -127,6 +127,22 @@ static void stochastic_frames_have_the_exact_mean(void **state)
     expect_the_same_mean(state, WEFT_MODE_RAW);
 }
 
+static void stochastic_layers_have_the_exact_mean(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_material material;
+    stage_material(20, 13, 1, 37, 0, &material);
+    stage_layers(WEFT_LAYERS_OF_HALF_VECTOR, 8, &material);
+    /* What is held to a ceiling in each frame is not the same as a mean that is. */
+    for (int k = 0; k < material.level_count; k++)
+        memset(material.layers->level[k].ceiling, 255,
+               weft_ceiling_count(material.level[k].width, material.level[k].height));
+    expect_ok(weft_player_set_material(s->player, &material, &error), &error);
+    expect_the_same_mean(state, WEFT_MODE_COMPRESSED);
+    weft_material_free(&material);
+}
+
 static void nothing_gets_brighter_in_shadow_and_some_of_it_dark(void **state)
 {
     weft_scene scene = scene_of(WEFT_MODE_COMPRESSED);
@@ -393,6 +409,7 @@ int main(void)
         cmocka_unit_test(a_wipe_shows_one_mode_left_of_the_divider_and_another_right_of_it),
         cmocka_unit_test(a_difference_is_signed_and_vanishes_for_equal_modes),
         cmocka_unit_test(stochastic_frames_have_the_exact_mean),
+        cmocka_unit_test(stochastic_layers_have_the_exact_mean),
         cmocka_unit_test(nothing_gets_brighter_in_shadow_and_some_of_it_dark),
         cmocka_unit_test(lights_add_up),
         cmocka_unit_test(a_matt_surface_under_a_white_sky_shows_its_albedo),

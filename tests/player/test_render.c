@@ -179,7 +179,8 @@ static void a_folder_moved_as_a_whole_still_draws_its_pictures(void **state)
 static void a_picture_without_good_settings_is_refused(void **state)
 {
     (void)state;
-    assert_int_equal(run("$WEFT render cloth.weft --mesh plane --size 40x30 --samples 1 --quiet -o shot.png"), 0);
+    assert_int_equal(
+        run("$WEFT render cloth.weft --mesh plane --exposure 1 --size 40x30 --samples 1 --quiet -o shot.png"), 0);
     assert_int_equal(run("$WEFT render --settings cloth.weft -o c.png"), WEFT_BAD_INPUT);
     assert_int_equal(run("head -c 60 shot.png > cut.png; $WEFT render --settings cut.png -o c.png"), WEFT_BAD_INPUT);
     expect_said("cut.png");
@@ -209,14 +210,15 @@ static void a_path_gives_a_picture_for_every_frame(void **state)
 {
     (void)state;
     assert_int_equal(run("printf 'time_s,azimuth_deg,light_phi_deg\\n0,-70,-110\\n0.5,20,0\\n1,20,30\\n' > path.csv; "
-                         "$WEFT render cloth.weft --path path.csv --fps 4 --size 40x30 --samples 1 -q -o turn%02d.png"),
+                         "$WEFT render cloth.weft --path path.csv --fps 4 --size 40x30 --samples 1 --exposure 1 -q "
+                         "-o turn%02d.png"),
                      0);
     assert_int_equal(
         run("ls turn*.png | tr '\\n' ' ' | grep -qx 'turn00.png turn01.png turn02.png turn03.png turn04.png '"), 0);
-    assert_int_equal(
-        run("$WEFT render cloth.weft --size 40x30 --samples 1 --camera=20,28,3.6 --light 45,0 -q -o k.png; "
-            "$WEFT render --settings turn01.png -q -o g.png && cmp turn01.png g.png"),
-        0);
+    assert_int_equal(run("$WEFT render cloth.weft --size 40x30 --samples 1 --camera=20,28,3.6 --light 45,0 --exposure "
+                         "1 -q -o k.png; "
+                         "$WEFT render --settings turn01.png -q -o g.png && cmp turn01.png g.png"),
+                     0);
     weft_image frame = read_picture("turn02.png", 40, 30), key = read_picture("k.png", 40, 30);
     assert_memory_equal(frame.pixels, key.pixels, sizeof(float) * 3 * 40 * 30);
     weft_image_free(&frame);

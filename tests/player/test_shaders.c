@@ -4,6 +4,7 @@
 
 #include "player/draw/player_parts.h"
 #include "reflectance/lafortune/lafortune.h"
+#include "reflectance/layers/layers.h"
 #include "reflectance/microcylinder/file.h"
 #include "study/model/raw_btf.h"
 
@@ -129,6 +130,75 @@ static void compressed_equals_c_with_a_light_table(void **state)
     scene.light[0].direction = (weft_angles){weft_rad_of_deg(70), weft_rad_of_deg(200)};
     scene.repeat = 37;
     compare_material(state, "81 views, 60 lights, minified", 2, 81, 60, scene);
+}
+
+/* ---- Linear layers ---- */
+
+typedef struct layer_model {
+    material_model lobes; /* which have the opacity */
+    weft_layer_maps maps;
+    int count;
+} layer_model;
+
+static weft_rgba evaluate_layers(void *context, const weft_surface_sample *at)
+{
+    layer_model *model = context;
+    float factor[3 * WEFT_LAYERS_MAX];
+    weft_vec3 light = vector(at->light), view = vector(at->view);
+    weft_rgba opacity = evaluate_material(&model->lobes, at);
+    weft_layer_factors(&model->maps, light, view, factor);
+    weft_rgb value = weft_layers_sample(model->maps.layers, model->count, factor, (weft_real)at->level,
+                                        (weft_real)at->u, (weft_real)at->v, light.z);
+    return (weft_rgba){value.r, value.g, value.b, opacity.a};
+}
+
+static void compare_layers(void **state, const char *what, weft_layers_kind kind, int layer_count, int views,
+                           weft_scene scene)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    layer_model model = {.count = scene.layers < layer_count ? (scene.layers + 3) / 4 * 4 : layer_count};
+    weft_material *material = &model.lobes.material;
+    stage_material(20, 13, 1, views, 0, material);
+    stage_layers(kind, layer_count, material);
+    expect_ok(weft_table_directions_create(material, &model.lobes.directions, &error), &error);
+    expect_ok(weft_layer_maps_create(material->layers, &model.maps, &error), &error);
+    expect_ok(weft_player_set_material(s->player, material, &error), &error);
+    expect_small(what, stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_layers, &model));
+    weft_layer_maps_free(&model.maps);
+    weft_table_directions_free(&model.lobes.directions);
+    weft_material_free(material);
+}
+
+static void layers_equal_c(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    compare_layers(state, "8 layers over the light", WEFT_LAYERS_OF_LIGHT, 8, 0, scene);
+    compare_layers(state, "16 layers over the half vector", WEFT_LAYERS_OF_HALF_VECTOR, 16, 0, scene);
+    scene.light[0].direction = (weft_angles){weft_rad_of_deg(80), weft_rad_of_deg(100)};
+    compare_layers(state, "4 layers under grazing light", WEFT_LAYERS_OF_HALF_VECTOR, 4, 0, scene);
+}
+
+static void layers_equal_c_between_levels(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    scene.repeat = 37;
+    compare_layers(state, "layers, minified", WEFT_LAYERS_OF_LIGHT, 8, 0, scene);
+    scene.level_choice = WEFT_LEVEL_FIXED;
+    scene.level = 1.37;
+    compare_layers(state, "layers, level 1.37", WEFT_LAYERS_OF_HALF_VECTOR, 8, 0, scene);
+}
+
+static void layers_through_holes_equal_c(void **state)
+{
+    compare_layers(state, "layers with opacity", WEFT_LAYERS_OF_HALF_VECTOR, 8, 37, weft_scene_default());
+}
+
+static void the_first_layers_alone_equal_c(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    scene.layers = 8;
+    compare_layers(state, "8 of 16 layers", WEFT_LAYERS_OF_LIGHT, 16, 0, scene);
 }
 
 /* Half floats below 6.1e-5 are subnormal. */
@@ -425,6 +495,10 @@ int main(void)
         cmocka_unit_test(compressed_equals_c_without_lobes_or_table),
         cmocka_unit_test(compressed_equals_c_with_a_light_table),
         cmocka_unit_test(compressed_equals_c_in_the_dark),
+        cmocka_unit_test(layers_equal_c),
+        cmocka_unit_test(layers_equal_c_between_levels),
+        cmocka_unit_test(layers_through_holes_equal_c),
+        cmocka_unit_test(the_first_layers_alone_equal_c),
         cmocka_unit_test(raw_equals_c_interpolation_in_views_and_lights),
         cmocka_unit_test(raw_with_a_shared_exponent_equals_c_too),
         cmocka_unit_test(the_last_raw_level_is_the_mean_of_all_texels),

@@ -1,7 +1,9 @@
 #include "btf/direction/direction.h"
 #include "fixture.h"
 #include "reflectance/lafortune/lafortune.h"
+#include "reflectance/layers/layers.h"
 #include "study/model/model.h"
+#include "tests/btf/layers_example.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -67,6 +69,37 @@ static void without_a_place_a_material_is_the_mean_of_its_texels(void **state)
     assert_float_equal(brdf.b * WEFT_PI, 0.075, 1e-3);
     weft_model_close(model);
     unlink("model.weft");
+}
+
+/* A material that has both is its layers, or its lobes where those are asked for. */
+static void layers_come_before_lobes(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_material material;
+    weft_layer_maps maps;
+    float factor[3 * WEFT_LAYERS_MAX];
+    layers_write_example("layers.weft");
+    expect_ok(weft_material_read("layers.weft", &material, &error), &error);
+    expect_ok(weft_layer_maps_create(material.layers, &maps, &error), &error);
+    const weft_query place = {.light = light, .view = view, .has_place = true, .u = 0.31, .v = 0.77, .level = 0.4};
+    weft_model *model = open_model("layers.weft", NULL);
+    weft_model *lobes = open_model("layers.weft", &(weft_model_options){.lobes = true});
+    weft_layer_factors(&maps, light, view, factor);
+    weft_rgb r = weft_layers_sample(material.layers, 8, factor, 0.4, 0.31, 0.77, light.z);
+    assert_true(r.g > 0);
+    assert_float_equal(brdf_of(model, place).g, r.g / (WEFT_PI * light.z), 1e-9);
+    assert_true(fabs(brdf_of(lobes, place).g - brdf_of(model, place).g) > 1e-3);
+    /* The mean is that of the texels. */
+    double sum = 0;
+    for (int i = 0; i < 15; i++)
+        sum += weft_layers_texel(material.layers, 8, factor, 0, i % 5, i / 5, light.z).b;
+    assert_float_equal(brdf_of(model, (weft_query){.light = light, .view = view}).b, sum / (15 * WEFT_PI * light.z),
+                       1e-9);
+    weft_model_close(model);
+    weft_model_close(lobes);
+    weft_layer_maps_free(&maps);
+    weft_material_free(&material);
 }
 
 static void a_dataset_is_divided_by_pi_and_the_cosine(void **state)
@@ -198,6 +231,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_material_is_what_its_evaluator_says_over_pi),
         cmocka_unit_test(without_a_place_a_material_is_the_mean_of_its_texels),
+        cmocka_unit_test(layers_come_before_lobes),
         cmocka_unit_test(a_dataset_is_divided_by_pi_and_the_cosine),
         cmocka_unit_test(a_weave_is_evaluated_in_its_tile_and_as_its_mean),
         cmocka_unit_test(noise_only_counts_when_it_is_asked_for),

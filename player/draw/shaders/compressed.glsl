@@ -1,44 +1,9 @@
 // The compressed material: lobes with a view and a light table, evaluated per texel, then interpolated between texels
 // and levels. C twin: weft_material_sample. All levels lie side by side in each texture (player/texture/mip_layout.h).
-// Constants defined by player/draw/programs.c: LOBES, VIEW_TABLE, LIGHT_TABLE, FEWER_BITS (see table_steps).
-// Fetched by textureLod at the middle of texels: software rasterisers take longer over texelFetch, which may name a
-// level.
+// Constants defined by player/draw/programs.c: LOBES, VIEW_TABLE, LIGHT_TABLE.
 uniform usampler2DArray material_texel;      // packed, see player/texture/material_texture.h
-uniform sampler2DArray material_table;       // views in columns, then layers
-uniform sampler2DArray material_light_table; // lights alike
 uniform float lobe_share[3];                 // 1, or 0 to do without
 uniform float view_table_share, light_table_share;
-uniform float table_steps; // where FEWER_BITS: what 255 would be if T and S were coded in them
-uniform int level_count;
-uniform vec2 texel_step;                           // 1 / size of the texture of all levels
-uniform float table_columns, light_table_columns;
-uniform vec4 level_area[16];                       // x, y, width, height
-
-// Where three entries of a table are: the tile, in widths of the texture, and the layer.
-struct Entries {
-    vec3 column, layer, weight;
-    float tile;
-};
-
-Entries table_entries(Corners corners, float columns)
-{
-    vec3 label = vec3(corners.label);
-    vec3 layer = floor((label + 0.5) / columns);
-    return Entries(label / columns - layer, layer, corners.weight, 1.0 / columns);
-}
-
-vec4 table_value(sampler2DArray table, vec2 texel, Entries entries)
-{
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < 3; i++) {
-        vec2 place = vec2(texel.x * entries.tile + entries.column[i], texel.y);
-        vec4 code = textureLod(table, vec3(place, entries.layer[i]), 0.0);
-        if (FEWER_BITS)
-            code.rgb = floor(code.rgb * table_steps + 0.5) / table_steps;
-        sum += entries.weight[i] * vec4(code.rgb * code.rgb, code.a);
-    }
-    return sum;
-}
 
 vec3 lobes_value(vec4 lobe[3 * LOBES + 2], vec3 light)
 {

@@ -5,17 +5,35 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The error to judge the material by, before any other. */
+static void print_held_out(weft_page *page, const weft_hold_out *held_out)
+{
+    char line[WEFT_HOLD_OUT_LINE];
+    fputs("<p id=\"held-out\"><b>The material ", page->html);
+    weft_hold_out_headline(held_out, line);
+    weft_page_text(page, line);
+    fputs(".</b> As <code>weft compress</code> ", page->html);
+    weft_hold_out_explain(held_out, line);
+    weft_page_text(page, line);
+    fputs(". All other numbers of this page are of samples that were fitted.</p>\n", page->html);
+}
+
 void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison)
 {
     const weft_error_summary *all = &comparison->model[0].texture.all;
     fprintf(page->html, "<p>%d \u00d7 %d texels of %.4g mm, %d images from %d views; lights and cameras %s.</p>\n",
             layout->width, layout->height, layout->texel_pitch_mm, layout->image_count, layout->view_count,
             layout->distance == WEFT_NEAR ? "near, their directions differ from texel to texel" : "far away");
+    if (comparison->has_held_out)
+        print_held_out(page, &comparison->held_out);
     fputs("<div class=\"tiles\">\n", page->html);
+    if (comparison->has_held_out)
+        weft_page_tile(page, "relative RMSE where it was not fitted", "%.4f",
+                       comparison->held_out.material.all.relative_rmse);
+    weft_page_tile(page, "relative RMSE, fitted samples, level 0", "%.4f", all->relative_rmse);
+    weft_page_tile(page, "median relative error, fitted samples, level 0", "%.2f %%", 100 * all->median_relative);
     weft_page_tile(page, "half floats : material", "%.1f : 1",
                    comparison->half_float_bytes / comparison->material_bytes);
-    weft_page_tile(page, "relative RMSE, level 0", "%.4f", all->relative_rmse);
-    weft_page_tile(page, "median relative error, level 0", "%.2f %%", 100 * all->median_relative);
     if (comparison->left_out.count > 0) {
         weft_page_tile(page, "relative RMSE, photographs left out", "%.4f", comparison->left_out.mean_relative_rmse);
         weft_page_tile(page, "median relative error, photographs left out", "%.4f",
@@ -94,7 +112,8 @@ void weft_page_models(weft_page *page, const weft_comparison *comparison)
 
 static void print_levels(weft_page *page, const weft_material *material)
 {
-    fputs("<h2>Error of the material, level by level</h2>\n<p class=\"note\">Measured over all valid samples when the "
+    fputs("<h2>Error of the material on the samples it was fitted to, level by level</h2>\n<p class=\"note\">Measured "
+          "over all valid samples when the "
           "file was written, decoded as a player sees it; percentiles to 2 % of their "
           "value.</p>\n<table><tr><th>texels</th><th>median relative</th><th>80th "
           "percentile</th><th>RMSE</th>"

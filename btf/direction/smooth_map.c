@@ -1,0 +1,137 @@
+#include "btf/direction/smooth_map.h"
+
+#include <lapacke.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEAST_SIDE = 4, MOST_SIDE = 64, STENCIL = 4 };
+
+/* Keeps the matrix positive definite where the samples leave a plane undecided: it then lies as low as it can. */
+static const double ridge = 1e-9;
+
+/* N = sum of B_i' B_i over places and zeros, plus the curvature, as its lower band: element (row, column) of the lower
+ * triangle stands at column * (width + 1) + row - column. Rows of the square are `side` nodes apart and the curvature
+ * reaches over two. */
+struct weft_smooth_map {
+    int side, node_count, width, count;
+    double *band;           /* [node_count][width + 1] Cholesky's factor */
+    weft_square_cell *cell; /* [count] */
+};
+
+void weft_smooth_map_free(weft_smooth_map *map)
+{
+    if (!map)
+        return;
+    free(map->band);
+    free(map->cell);
+    free(map);
+}
+
+/* Adds weight (w' f)^2 to the quadratic form, for weights w of the nodes index [count]. */
+static void add_square(weft_smooth_map *map, const int *index, const double *w, int count, double weight)
+{
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++) {
+            if (index[i] >= index[j])
+                map->band[index[j] * (map->width + 1) + index[i] - index[j]] += weight * w[i] * w[j];
+        }
+}
+
+static void add_place(weft_smooth_map *map, const weft_square_cell *cell)
+{
+    double weight[STENCIL];
+    for (int i = 0; i < STENCIL; i++)
+        weight[i] = (double)cell->weight[i];
+    add_square(map, cell->index, weight, STENCIL, 1);
+}
+
+static void add_curvature(weft_smooth_map *map, double smoothness)
+{
+    static const double second[] = {1, -2, 1}, mixed[] = {1, -1, -1, 1};
+    int side = map->side;
+    for (int y = 0; y < side; y++)
+        for (int x = 0; x < side; x++) {
+            int at = y * side + x;
+            if (x > 0 && x + 1 < side)
+                add_square(map, (int[]){at - 1, at, at + 1}, second, 3, smoothness);
+            if (y > 0 && y + 1 < side)
+                add_square(map, (int[]){at - side, at, at + side}, second, 3, smoothness);
+            if (x + 1 < side && y + 1 < side)
+                add_square(map, (int[]){at, at + 1, at + side, at + side + 1}, mixed, 4, 2 * smoothness);
+        }
+}
+
+static void assemble(weft_smooth_map *map, const weft_smooth_map_places *places)
+{
+    for (int i = 0; i < places->count; i++) {
+        map->cell[i] = weft_square_cell_at(places->place[i], map->side);
+        add_place(map, &map->cell[i]);
+    }
+    for (int i = 0; i < places->zero_count; i++) {
+        weft_square_cell cell = weft_square_cell_at(places->zero[i], map->side);
+        add_place(map, &cell);
+    }
+    add_curvature(map, places->smoothness);
+    for (int i = 0; i < map->node_count; i++)
+        map->band[i * (map->width + 1)] += ridge;
+}
+
+static weft_code allocate(const weft_smooth_map_places *places, weft_smooth_map *map, weft_error *error)
+{
+    map->side = places->side;
+    map->node_count = places->side * places->side;
+    map->width = 2 * places->side;
+    map->count = places->count;
+    size_t band = (size_t)map->node_count * (size_t)(map->width + 1);
+    map->band = calloc(band, sizeof *map->band);
+    map->cell = calloc((size_t)places->count + 1, sizeof *map->cell);
+    return map->band && map->cell ? WEFT_OK : weft_fail_memory(error, "smooth map", band * sizeof *map->band);
+}
+
+weft_code weft_smooth_map_create(const weft_smooth_map_places *places, weft_smooth_map **result, weft_error *error)
+{
+    if (places->side < LEAST_SIDE || places->side > MOST_SIDE || !(places->smoothness > 0))
+        return weft_fail(error, WEFT_BAD_USAGE, "a smooth map of %d nodes a side and smoothness %g", places->side,
+                         places->smoothness);
+    weft_smooth_map *map = calloc(1, sizeof *map);
+    if (!map)
+        return weft_fail_memory(error, "smooth map", sizeof *map);
+    weft_code code = allocate(places, map, error);
+    if (code == WEFT_OK) {
+        assemble(map, places);
+        if (LAPACKE_dpbtrf_work(LAPACK_COL_MAJOR, 'L', map->node_count, map->width, map->band, map->width + 1) != 0)
+            code = weft_fail(error, WEFT_BAD_INPUT, "directions that are no numbers have no smooth map");
+    }
+    if (code != WEFT_OK)
+        weft_smooth_map_free(map);
+    else
+        *result = map;
+    return code;
+}
+
+/* right = B' y for one set of values. */
+static void spread(const weft_smooth_map *map, const float *value, int series_count, double *right)
+{
+    memset(right, 0, (size_t)map->node_count * sizeof *right);
+    for (int i = 0; i < map->count; i++)
+        for (int corner = 0; corner < STENCIL; corner++)
+            right[map->cell[i].index[corner]] +=
+                (double)map->cell[i].weight[corner] * (double)value[(size_t)i * (size_t)series_count];
+}
+
+weft_code weft_smooth_map_solve(const weft_smooth_map *map, const float *value, int series_count, float *node,
+                                weft_error *error)
+{
+    double *right = malloc((size_t)map->node_count * sizeof *right);
+    if (!right)
+        return weft_fail_memory(error, "smooth map", (size_t)map->node_count * sizeof *right);
+    for (int series = 0; series < series_count; series++) {
+        spread(map, value + series, series_count, right);
+        LAPACKE_dpbtrs_work(LAPACK_COL_MAJOR, 'L', map->node_count, map->width, 1, map->band, map->width + 1, right,
+                            map->node_count);
+        for (int i = 0; i < map->node_count; i++)
+            node[(size_t)i * (size_t)series_count + (size_t)series] = (float)right[i];
+    }
+    free(right);
+    return WEFT_OK;
+}

@@ -1,0 +1,263 @@
+#include "btf/material/layers.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CEILING_STEPS = 8, CEILING_OF_ONE = 192, LEAST_SIDE = 4, MOST_SIDE = 64, HEADER_WORDS = 16 };
+
+/* ---- Memory ---- */
+
+static weft_code allocate(void *array, size_t count, size_t size, weft_error *error)
+{
+    void *bytes = calloc(count > 0 ? count : 1, size);
+    memcpy(array, &bytes, sizeof bytes);
+    return bytes ? WEFT_OK : weft_fail_memory(error, "layers", count * size);
+}
+
+static weft_code allocate_shared(weft_layers *layers, weft_error *error)
+{
+    size_t views = (size_t)layers->view_count, images = (size_t)layers->image_count;
+    size_t count = (size_t)layers->layer_count;
+    WEFT_TRY(allocate(&layers->view, 3 * views, sizeof *layers->view, error));
+    WEFT_TRY(allocate(&layers->light, 3 * images, sizeof *layers->light, error));
+    WEFT_TRY(allocate(&layers->first, views + 1, sizeof *layers->first, error));
+    WEFT_TRY(allocate(&layers->scale, count, sizeof *layers->scale, error));
+    return allocate(&layers->value, 3 * images * count, sizeof *layers->value, error);
+}
+
+static weft_code allocate_levels(weft_layers *layers, int width, int height, weft_error *error)
+{
+    for (int k = 0; k < layers->level_count; k++) {
+        weft_layers_level *level = &layers->level[k];
+        level->width = width;
+        level->height = height;
+        size_t texels = (size_t)width * (size_t)height;
+        WEFT_TRY(allocate(&level->coefficient, texels * (size_t)layers->layer_count, 1, error));
+        WEFT_TRY(allocate(&level->ceiling, weft_ceiling_count(width, height), 1, error));
+        width = (width + 1) / 2;
+        height = (height + 1) / 2;
+    }
+    return WEFT_OK;
+}
+
+static const char *fault_of_shape(const weft_layers *shape)
+{
+    if (shape->kind != WEFT_LAYERS_OF_LIGHT && shape->kind != WEFT_LAYERS_OF_HALF_VECTOR)
+        return "holds layers of an unknown kind";
+    if (shape->layer_count < WEFT_LAYERS_GROUP || shape->layer_count > WEFT_LAYERS_MAX ||
+        shape->layer_count % WEFT_LAYERS_GROUP != 0)
+        return "has a number of layers that is no multiple of 4 from 4 to 64";
+    if (shape->view_count < 1 || shape->view_count > WEFT_LAYERS_MAX_VIEWS || shape->image_count < 1 ||
+        shape->image_count > WEFT_LAYERS_MAX_IMAGES)
+        return "has too few or too many views or images";
+    if (shape->light_side < LEAST_SIDE || shape->light_side > MOST_SIDE || shape->view_side < LEAST_SIDE ||
+        shape->view_side > MOST_SIDE)
+        return "has maps that are not 4 to 64 nodes wide";
+    if (!(shape->light_smoothness > 0 && shape->light_smoothness < 1e6f && shape->view_smoothness > 0 &&
+          shape->view_smoothness < 1e6f && shape->least_cosine > 0 && shape->least_cosine <= 1))
+        return "holds a smoothness or a cosine out of range";
+    return NULL;
+}
+
+weft_code weft_layers_create(const weft_layers *shape, int width, int height, int level_count, weft_layers **result,
+                             weft_error *error)
+{
+    const char *fault = fault_of_shape(shape);
+    if (fault || level_count < 1 || level_count > WEFT_LAYERS_MAX_LEVELS)
+        return weft_fail(error, WEFT_BAD_USAGE, "the material %s", fault ? fault : "has too many levels");
+    weft_layers *layers = calloc(1, sizeof *layers);
+    if (!layers)
+        return weft_fail_memory(error, "layers", sizeof *layers);
+    *layers = (weft_layers){.kind = shape->kind,
+                            .layer_count = shape->layer_count,
+                            .view_count = shape->view_count,
+                            .image_count = shape->image_count,
+                            .light_side = shape->light_side,
+                            .view_side = shape->view_side,
+                            .light_smoothness = shape->light_smoothness,
+                            .view_smoothness = shape->view_smoothness,
+                            .least_cosine = shape->least_cosine,
+                            .level_count = level_count};
+    weft_code code = allocate_shared(layers, error);
+    if (code == WEFT_OK)
+        code = allocate_levels(layers, width, height, error);
+    if (code != WEFT_OK)
+        weft_layers_free(layers);
+    else
+        *result = layers;
+    return code;
+}
+
+void weft_layers_free(weft_layers *layers)
+{
+    if (!layers)
+        return;
+    free(layers->view);
+    free(layers->light);
+    free(layers->first);
+    free(layers->scale);
+    free(layers->value);
+    for (int k = 0; k < layers->level_count; k++) {
+        free(layers->level[k].coefficient);
+        free(layers->level[k].ceiling);
+    }
+    free(layers);
+}
+
+/* ---- Ceilings ---- */
+
+float weft_ceiling_of_code(uint8_t code)
+{
+    return exp2f((float)(code - CEILING_OF_ONE) / CEILING_STEPS);
+}
+
+uint8_t weft_ceiling_code(float value)
+{
+    int code = value > 0 ? (int)floorf(CEILING_OF_ONE + CEILING_STEPS * log2f(value)) : 0;
+    code = code < 0 ? 0 : code > 255 ? 255 : code;
+    while (code < 255 && weft_ceiling_of_code((uint8_t)code) < value)
+        code++;
+    return (uint8_t)code;
+}
+
+size_t weft_ceiling_count(int width, int height)
+{
+    size_t columns = ((size_t)width + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
+    return columns * (((size_t)height + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE);
+}
+
+/* ---- The file ---- */
+
+/* The arrays in the order of the file, with their bytes. */
+typedef struct array_list {
+    void *array[5];
+    size_t size[5];
+} array_list;
+
+static array_list arrays_of(const weft_layers *layers)
+{
+    size_t views = (size_t)layers->view_count, images = (size_t)layers->image_count;
+    size_t count = (size_t)layers->layer_count;
+    return (array_list){{layers->view, layers->light, layers->first, layers->scale, layers->value},
+                        {12 * views, 12 * images, 4 * (views + 1), 4 * count, 6 * images * count}};
+}
+
+size_t weft_layers_header_size(const weft_layers *layers)
+{
+    array_list list = arrays_of(layers);
+    size_t size = 4 * HEADER_WORDS;
+    for (int i = 0; i < 5; i++)
+        size += list.size[i];
+    return size;
+}
+
+void weft_layers_header_write(const weft_layers *layers, uint8_t *bytes)
+{
+    const uint32_t whole[] = {(uint32_t)layers->kind,       (uint32_t)layers->layer_count,
+                              (uint32_t)layers->view_count, (uint32_t)layers->image_count,
+                              (uint32_t)layers->light_side, (uint32_t)layers->view_side};
+    const float real[] = {layers->light_smoothness, layers->view_smoothness, layers->least_cosine};
+    memset(bytes, 0, 4 * HEADER_WORDS);
+    memcpy(bytes, whole, sizeof whole);
+    memcpy(bytes + sizeof whole, real, sizeof real);
+    bytes += 4 * HEADER_WORDS;
+    array_list list = arrays_of(layers);
+    for (int i = 0; i < 5; i++) {
+        memcpy(bytes, list.array[i], list.size[i]);
+        bytes += list.size[i];
+    }
+}
+
+static int limited_int(uint32_t value)
+{
+    return value > INT32_MAX ? INT32_MAX : (int)value;
+}
+
+static weft_layers shape_of(const uint8_t *bytes)
+{
+    uint32_t whole[6];
+    float real[3];
+    memcpy(whole, bytes, sizeof whole);
+    memcpy(real, bytes + sizeof whole, sizeof real);
+    return (weft_layers){.kind = whole[0] < 2 ? (weft_layers_kind)whole[0] : (weft_layers_kind)2,
+                         .layer_count = limited_int(whole[1]),
+                         .view_count = limited_int(whole[2]),
+                         .image_count = limited_int(whole[3]),
+                         .light_side = limited_int(whole[4]),
+                         .view_side = limited_int(whole[5]),
+                         .light_smoothness = real[0],
+                         .view_smoothness = real[1],
+                         .least_cosine = real[2]};
+}
+
+static const char *fault_of_directions(const float *xyz, int count)
+{
+    for (int i = 0; i < count; i++) {
+        weft_vec3 direction = weft_vec3_of(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
+        if (!(fabs(weft_length(direction) - 1) < 1e-3 && direction.z > 0))
+            return "holds a direction that is no unit vector above the horizon";
+    }
+    return NULL;
+}
+
+static const char *fault_of_values(const weft_layers *layers)
+{
+    const weft_half infinite = 0x7c00;
+    size_t count = 3 * (size_t)layers->image_count * (size_t)layers->layer_count;
+    for (size_t i = 0; i < count; i++) {
+        if ((layers->value[i] & infinite) == infinite)
+            return "holds a number that is not finite";
+    }
+    for (int k = 0; k < layers->layer_count; k++) {
+        if (!(layers->scale[k] >= 0 && layers->scale[k] < 1e6f))
+            return "holds a scale out of range";
+    }
+    return NULL;
+}
+
+static const char *fault_of_arrays(const weft_layers *layers)
+{
+    const char *fault = fault_of_directions(layers->view, layers->view_count);
+    if (!fault)
+        fault = fault_of_directions(layers->light, layers->image_count);
+    if (!fault && (layers->first[0] != 0 || layers->first[layers->view_count] != (uint32_t)layers->image_count))
+        fault = "has views without all its images";
+    for (int i = 0; i < layers->view_count && !fault; i++) {
+        if (layers->first[i] >= layers->first[i + 1])
+            fault = "has views that are empty or out of order";
+    }
+    return fault ? fault : fault_of_values(layers);
+}
+
+weft_code weft_layers_header_read(const uint8_t *bytes, size_t size, int width, int height, int level_count,
+                                  weft_layers **result, const char **fault, weft_error *error)
+{
+    *fault = size < 4 * HEADER_WORDS ? "is too short" : NULL;
+    weft_layers shape = {0};
+    static const uint8_t unused[4 * (HEADER_WORDS - 9)] = {0};
+    if (!*fault && memcmp(bytes + 36, unused, sizeof unused) != 0)
+        *fault = "has reserved fields that are not zero";
+    if (!*fault) {
+        shape = shape_of(bytes);
+        *fault = fault_of_shape(&shape);
+    }
+    if (!*fault && size != weft_layers_header_size(&shape))
+        *fault = "its size does not fit its counts";
+    if (*fault)
+        return WEFT_BAD_INPUT;
+    weft_layers *layers = NULL;
+    WEFT_TRY(weft_layers_create(&shape, width, height, level_count, &layers, error));
+    array_list list = arrays_of(layers);
+    bytes += 4 * HEADER_WORDS;
+    for (int i = 0; i < 5; i++) {
+        memcpy(list.array[i], bytes, list.size[i]);
+        bytes += list.size[i];
+    }
+    *fault = fault_of_arrays(layers);
+    if (*fault) {
+        weft_layers_free(layers);
+        return WEFT_BAD_INPUT;
+    }
+    *result = layers;
+    return WEFT_OK;
+}

@@ -1,0 +1,98 @@
+/* Linear layers of a material: the reflectance of a texel as a sum of a few factors, shared by all texels, each under a
+ * coefficient of the texel's own (a factorised BTF).
+ *
+ * For each colour channel, r = reflectance times cosine, as in the dataset:
+ *
+ *     r(l, v) = sum_k c_k B_k(l, v),   held to 0 .. the ceiling of the texel times min(1, l_z / least_cosine)
+ *
+ * c_k are whole numbers of -127 .. 127, the most important first, so that the first few alone are a coarser material.
+ * B_k is stored as its values at the images of a dataset. Between them it is a smooth map (btf/direction/smooth_map.h):
+ * first over the lights of each view, then over the views.
+ *
+ *     WEFT_LAYERS_OF_LIGHT: at a node of the view map, a paraboloid map of l holds B_k
+ *     WEFT_LAYERS_OF_HALF_VECTOR: a concentric map of h = (l + v) / |l + v| holds B_k (l . h)
+ *
+ * A highlight of a mirror stays at one half vector whatever the view, so that the second kind interpolates it between
+ * lights and views that are far apart. All maps are 0 where the light is at the horizon.
+ *
+ * Interpolation is linear in the coefficients: texels and mip levels are filtered before anything is evaluated. */
+#ifndef WEFT_BTF_MATERIAL_LAYERS_H
+#define WEFT_BTF_MATERIAL_LAYERS_H
+
+#include "base/half.h"
+#include "base/status.h"
+#include "base/vector.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum weft_layers_kind { WEFT_LAYERS_OF_LIGHT, WEFT_LAYERS_OF_HALF_VECTOR } weft_layers_kind;
+
+enum {
+    WEFT_LAYERS_MAX = 64,
+    WEFT_LAYERS_GROUP = 4,       /* layers that are stored, and fetched, together */
+    WEFT_LAYERS_MAX_LEVELS = 16, /* as many as a material may have */
+    WEFT_LAYERS_LARGEST_CODE = 127,
+    WEFT_CEILING_SIDE = 8, /* texels along a side of a square that has one ceiling */
+    WEFT_LAYERS_MAX_IMAGES = 1 << 20,
+    WEFT_LAYERS_MAX_VIEWS = 4096
+};
+
+/* The coefficients of one mip level. */
+typedef struct weft_layers_level {
+    int width, height;
+    int8_t *coefficient; /* [layer_count / 4][height][width][4] */
+    uint8_t *ceiling;    /* [ceil(height / 8)][ceil(width / 8)] weft_ceiling_of_code */
+} weft_layers_level;
+
+typedef struct weft_layers {
+    weft_layers_kind kind;
+    int layer_count;        /* 4 .. 64, a multiple of 4 */
+    int view_count;         /* distinct views */
+    int image_count;        /* of all views */
+    int light_side;         /* nodes along a side of the maps over l or h */
+    int view_side;          /* of those over v */
+    float light_smoothness; /* of the same maps */
+    float view_smoothness;
+    float least_cosine; /* of the lights: nearer the horizon r falls in proportion to l_z, 0 < it <= 1 */
+    float *view;        /* [view_count][3] unit, z > 0 */
+    float *light;       /* [image_count][3] unit, z > 0; view by view */
+    uint32_t *first;    /* [view_count + 1] the images of view i are first[i] .. first[i + 1] - 1 */
+    float *scale;       /* [layer_count] what a coefficient of 1 and a value of 1 stand for */
+    weft_half *value;   /* [image_count][layer_count][3] B_k, divided by its scale */
+    int level_count;
+    weft_layers_level level[WEFT_LAYERS_MAX_LEVELS];
+} weft_layers;
+
+/* Allocates all arrays, zeroed, for the counts that are set in `shape`; sizes of levels are those of the mip chain of
+ * width x height. Errors: WEFT_BAD_USAGE for counts out of range, WEFT_SYSTEM. The caller frees with weft_layers_free.
+ */
+weft_code weft_layers_create(const weft_layers *shape, int width, int height, int level_count, weft_layers **result,
+                             weft_error *error);
+void weft_layers_free(weft_layers *layers);
+
+/* ---- Ceilings ---- */
+
+/* 2^((code - 192) / 8), about 6e-8 .. 235. Pure. */
+float weft_ceiling_of_code(uint8_t code);
+
+/* The least code whose ceiling is at least `value`; 255 beyond. Pure. */
+uint8_t weft_ceiling_code(float value);
+
+/* Number of ceilings of a level. Pure. */
+size_t weft_ceiling_count(int width, int height);
+
+/* ---- The file (docs/reference/weft-format.md, 7) ---- */
+
+/* Bytes of the section LAYR. Pure. */
+size_t weft_layers_header_size(const weft_layers *layers);
+
+/* Writes the section LAYR to bytes [weft_layers_header_size]. */
+void weft_layers_header_write(const weft_layers *layers, uint8_t *bytes);
+
+/* Reads a section LAYR of `size` bytes for a material of width x height texels and so many levels. `fault` receives
+ * what is wrong with it ("holds ...") or NULL. Errors: WEFT_BAD_INPUT where something is, WEFT_SYSTEM. */
+weft_code weft_layers_header_read(const uint8_t *bytes, size_t size, int width, int height, int level_count,
+                                  weft_layers **result, const char **fault, weft_error *error);
+
+#endif

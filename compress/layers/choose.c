@@ -1,0 +1,213 @@
+/* Which kind of maps a material has: decided by images that were held out. */
+#include "compress/layers/model.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGNMENT = 64, EVERY = 10, LEAST_VIEWS = 20, LEAST_LIGHTS = 20, MOST_REFERENCES = 64 };
+
+/* Between these there are measured directions on all sides: what is held out is interpolated, not extrapolated. Lights
+ * this near to one that is held out are held out, too, so that jitter between views gives nothing away. */
+static const double least_theta_deg = 10, most_theta_deg = 62, same_light_deg = 5;
+
+static bool is_inside(weft_vec3 direction)
+{
+    double cosine = (double)direction.z;
+    return cosine < cos(least_theta_deg * WEFT_PI / 180) && cosine > cos(most_theta_deg * WEFT_PI / 180);
+}
+
+/* Every tenth of the directions that lie inside. */
+static int pick(const weft_vec3 *direction, int count, weft_vec3 *picked)
+{
+    int inside = 0, found = 0;
+    for (int i = 0; i < count && found < MOST_REFERENCES; i++) {
+        if (is_inside(direction[i]) && inside++ % EVERY == EVERY / 2)
+            picked[found++] = direction[i];
+    }
+    return found;
+}
+
+static bool is_near(weft_vec3 direction, const weft_vec3 *picked, int count, double degrees)
+{
+    for (int i = 0; i < count; i++) {
+        if ((double)weft_dot(direction, picked[i]) > cos(degrees * WEFT_PI / 180))
+            return true;
+    }
+    return false;
+}
+
+/* ---- The split ---- */
+
+typedef struct split {
+    weft_layer_images fitted; /* its own arrays, but `image` is an index into the images of the whole */
+    int *held;                /* [held_count] index into the images of the whole */
+    weft_vec3 *held_view;     /* [held_count] */
+    int held_count;
+} split;
+
+static void split_free(split *s)
+{
+    weft_layer_images_free(&s->fitted);
+    free(s->held);
+    free(s->held_view);
+}
+
+static weft_code split_allocate(const weft_layer_images *images, split *s, weft_error *error)
+{
+    size_t count = (size_t)images->image_count, views = (size_t)images->view_count;
+    *s = (split){.held = malloc(count * sizeof *s->held), .held_view = malloc(count * sizeof *s->held_view)};
+    s->fitted.image = malloc(count * sizeof *s->fitted.image);
+    s->fitted.first = calloc(views + 1, sizeof *s->fitted.first);
+    s->fitted.light = malloc(count * sizeof *s->fitted.light);
+    s->fitted.view = malloc(views * sizeof *s->fitted.view);
+    s->fitted.cosine = malloc(count * sizeof *s->fitted.cosine);
+    s->fitted.weight = malloc(count * sizeof *s->fitted.weight);
+    if (s->held && s->held_view && s->fitted.image && s->fitted.first && s->fitted.light && s->fitted.view &&
+        s->fitted.cosine && s->fitted.weight)
+        return WEFT_OK;
+    split_free(s);
+    return weft_fail_memory(error, "images of layers", count * sizeof(weft_vec3));
+}
+
+static void add_view(const weft_layer_images *images, int view, bool held_view, const weft_vec3 *lights,
+                     int light_count, split *s)
+{
+    weft_layer_images *fitted = &s->fitted;
+    int before = fitted->image_count;
+    for (int i = (int)images->first[view]; i < (int)images->first[view + 1]; i++) {
+        if (held_view || is_near(images->light[i], lights, light_count, same_light_deg)) {
+            s->held_view[s->held_count] = images->view[view];
+            s->held[s->held_count++] = i;
+        } else {
+            weft_layer_images_add(fitted, images, i, i);
+        }
+    }
+    if (fitted->image_count == before)
+        return;
+    fitted->view[fitted->view_count] = images->view[view];
+    fitted->first[++fitted->view_count] = (uint32_t)fitted->image_count;
+}
+
+static weft_code split_create(const weft_layer_images *images, split *s, weft_error *error)
+{
+    weft_vec3 views[MOST_REFERENCES], lights[MOST_REFERENCES];
+    int view_count = 0, light_count = 0, first_lights = (int)images->first[1];
+    WEFT_TRY(split_allocate(images, s, error));
+    if (images->view_count >= LEAST_VIEWS)
+        view_count = pick(images->view, images->view_count, views);
+    if (first_lights >= LEAST_LIGHTS)
+        light_count = pick(images->light, first_lights, lights);
+    for (int view = 0; view < images->view_count; view++)
+        add_view(images, view, is_near(images->view[view], views, view_count, 1e-3), lights, light_count, s);
+    s->fitted.length = (3 * (size_t)s->fitted.image_count + 15) / 16 * 16;
+    return WEFT_OK;
+}
+
+/* ---- One kind ---- */
+
+typedef struct trial {
+    const weft_layer_images *images;
+    const weft_training *whole, *part;
+    const weft_components *components;
+    const split *split;
+    float *factor;      /* [layer][fitted length] */
+    float *coefficient; /* [texel][layer] */
+} trial;
+
+static weft_code find_coefficients(const trial *t, weft_error *error)
+{
+    weft_projector projector;
+    int texels = t->part->texel_count, count = t->components->count;
+    WEFT_TRY(weft_projector_create(t->components, t->factor, t->split->fitted.image_count, &projector, error));
+    weft_code code = WEFT_OK;
+    for (int i = 0; i < texels && code == WEFT_OK; i++) {
+        const float *vector = t->part->vector + (size_t)i * t->part->length;
+        const uint8_t *valid = t->part->valid + (size_t)i * t->part->image_count;
+        code = weft_projector_solve(&projector, &vector, &valid, 1, t->coefficient + (size_t)i * (size_t)count, error);
+    }
+    weft_projector_free(&projector);
+    return code;
+}
+
+/* Sums over the texels for one image that was held out. */
+static void add_errors(const trial *t, const weft_layer_maps *maps, int held, double *square, double *energy)
+{
+    int image = t->split->held[held], count = t->components->count;
+    float factor[3 * WEFT_LAYERS_MAX] = {0}, weight = t->images->weight[image];
+    weft_layer_factors(maps, t->images->light[image], t->split->held_view[held], factor);
+    for (int texel = 0; texel < t->whole->texel_count; texel++) {
+        const float *own = t->coefficient + (size_t)texel * (size_t)count;
+        const float *sample = t->whole->vector + (size_t)texel * t->whole->length + 3 * (size_t)image;
+        if (!t->whole->valid[(size_t)texel * t->whole->image_count + (size_t)image])
+            continue;
+        for (int c = 0; c < 3; c++) {
+            float value = 0;
+            for (int k = 0; k < count; k++)
+                value += own[k] * factor[3 * k + c];
+            double difference = (double)(weight * fmaxf(value, 0) - sample[c]);
+            *square += difference * difference;
+            *energy += (double)sample[c] * (double)sample[c];
+        }
+    }
+}
+
+static weft_code try_kind(const trial *t, weft_layers_kind kind, double *error_of, weft_error *error)
+{
+    weft_layers *layers = NULL;
+    weft_layer_maps maps = {0};
+    WEFT_TRY(weft_layer_model_create(&t->split->fitted, t->components, kind, 1, 1, 1, &layers, error));
+    weft_code code = weft_layer_maps_create(layers, &maps, error);
+    if (code == WEFT_OK) {
+        weft_layer_model_factors(&maps, &t->split->fitted, t->factor);
+        code = find_coefficients(t, error);
+    }
+    double square = 0, energy = 0;
+    for (int i = 0; i < t->split->held_count && code == WEFT_OK; i++)
+        add_errors(t, &maps, i, &square, &energy);
+    *error_of = energy > 0 ? sqrt(square / energy) : 0;
+    weft_layer_maps_free(&maps);
+    weft_layers_free(layers);
+    return code;
+}
+
+static weft_code try_both(trial *t, double error_of[2], weft_error *error)
+{
+    size_t factors = (size_t)t->components->count * t->part->length;
+    t->factor = aligned_alloc(ALIGNMENT, factors * sizeof *t->factor);
+    t->coefficient = malloc((size_t)t->part->texel_count * (size_t)t->components->count * sizeof *t->coefficient);
+    weft_code code = t->factor && t->coefficient
+                         ? try_kind(t, WEFT_LAYERS_OF_LIGHT, &error_of[0], error)
+                         : weft_fail_memory(error, "factors of layers", factors * sizeof *t->factor);
+    if (code == WEFT_OK)
+        code = try_kind(t, WEFT_LAYERS_OF_HALF_VECTOR, &error_of[1], error);
+    free(t->factor);
+    free(t->coefficient);
+    return code;
+}
+
+weft_code weft_layer_model_choose(const weft_layer_images *images, const weft_training *training, int layer_count,
+                                  weft_layers_kind *kind, double error_of[2], weft_error *error)
+{
+    split s;
+    weft_training part = {0};
+    weft_components components = {0};
+    *kind = WEFT_LAYERS_OF_LIGHT;
+    error_of[0] = error_of[1] = 0;
+    WEFT_TRY(split_create(images, &s, error));
+    weft_code code = WEFT_OK;
+    if (s.held_count > 0 && s.fitted.image_count > 0) {
+        code = weft_training_subset(training, &s.fitted, s.fitted.image, &part, error);
+        if (code == WEFT_OK)
+            code = weft_components_find(&part, layer_count, &components, error);
+        trial t = {.images = images, .whole = training, .part = &part, .components = &components, .split = &s};
+        if (code == WEFT_OK)
+            code = try_both(&t, error_of, error);
+        *kind = error_of[1] < error_of[0] ? WEFT_LAYERS_OF_HALF_VECTOR : WEFT_LAYERS_OF_LIGHT;
+    }
+    weft_components_free(&components);
+    weft_training_free(&part);
+    split_free(&s);
+    return code;
+}

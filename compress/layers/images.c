@@ -1,0 +1,102 @@
+#include "compress/layers/images.h"
+
+#include "compress/run/group_sums.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WHOLE_LANES = 16 };
+
+static weft_code allocate(const weft_dataset_layout *layout, weft_layer_images *images, weft_error *error)
+{
+    size_t count = (size_t)layout->image_count, views = (size_t)layout->view_count;
+    images->dataset_image_count = layout->image_count;
+    images->image = malloc(count * sizeof *images->image);
+    images->first = malloc((views + 1) * sizeof *images->first);
+    images->light = malloc(count * sizeof *images->light);
+    images->view = malloc(views * sizeof *images->view);
+    images->cosine = malloc(count * sizeof *images->cosine);
+    images->weight = malloc(count * sizeof *images->weight);
+    bool all = images->image && images->first && images->light && images->view && images->cosine && images->weight;
+    return all ? WEFT_OK : weft_fail_memory(error, "images of layers", count * sizeof *images->light);
+}
+
+void weft_layer_images_free(weft_layer_images *images)
+{
+    free(images->image);
+    free(images->first);
+    free(images->light);
+    free(images->view);
+    free(images->cosine);
+    free(images->weight);
+    *images = (weft_layer_images){0};
+}
+
+static void add_image(weft_layer_images *images, const weft_dataset_layout *layout, int image)
+{
+    weft_vec3 light = weft_unit(layout->light[image]);
+    images->image[images->image_count] = image;
+    images->light[images->image_count] = light;
+    images->weight[images->image_count] = 1;
+    images->cosine[images->image_count++] = layout->values == WEFT_REFLECTANCE ? (float)light.z : 1.0f;
+}
+
+static void add_view(weft_layer_images *images, const weft_dataset_layout *layout, const uint8_t *held_out, int view)
+{
+    int before = images->image_count;
+    for (int image = 0; image < layout->image_count; image++) {
+        if (layout->view_of_image[image] == view && layout->light[image].z > 0 && !(held_out && held_out[image]))
+            add_image(images, layout, image);
+    }
+    if (images->image_count == before)
+        return;
+    images->view[images->view_count] = weft_unit(layout->view[view]);
+    images->first[++images->view_count] = (uint32_t)images->image_count;
+}
+
+weft_code weft_layer_images_create(const weft_dataset_layout *layout, const uint8_t *held_out,
+                                   weft_layer_images *images, weft_error *error)
+{
+    *images = (weft_layer_images){0};
+    weft_code code = allocate(layout, images, error);
+    if (code == WEFT_OK) {
+        images->first[0] = 0;
+        for (int view = 0; view < layout->view_count; view++) {
+            if (layout->view[view].z > 0)
+                add_view(images, layout, held_out, view);
+        }
+        images->length = (3 * (size_t)images->image_count + WHOLE_LANES - 1) / WHOLE_LANES * WHOLE_LANES;
+        if (images->image_count == 0)
+            code = weft_fail(error, WEFT_BAD_USAGE, "no image is left to fit layers to");
+    }
+    if (code != WEFT_OK)
+        weft_layer_images_free(images);
+    return code;
+}
+
+void weft_layer_images_add(weft_layer_images *images, const weft_layer_images *from, int index, int image)
+{
+    images->image[images->image_count] = image;
+    images->light[images->image_count] = from->light[index];
+    images->weight[images->image_count] = from->weight[index];
+    images->cosine[images->image_count++] = from->cosine[index];
+}
+
+int weft_layer_images_gather(const weft_layer_images *images, const weft_half *samples, const uint8_t *mask,
+                             float *scratch, float *vector, uint8_t *valid)
+{
+    size_t count = (size_t)images->image_count;
+    const float *known = scratch + 3 * (size_t)images->dataset_image_count;
+    int valid_count = 0;
+    weft_group_of_texel(samples, mask, NULL, (size_t)images->dataset_image_count, scratch);
+    memset(vector + 3 * count, 0, (images->length - 3 * count) * sizeof *vector);
+    for (size_t i = 0; i < count; i++) {
+        const float *sample = scratch + 3 * (size_t)images->image[i];
+        valid[i] = known[images->image[i]] > 0;
+        valid_count += valid[i];
+        for (size_t c = 0; c < 3; c++)
+            vector[3 * i + c] = images->weight[i] * images->cosine[i] * sample[c];
+    }
+    return valid_count;
+}

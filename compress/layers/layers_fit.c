@@ -1,0 +1,174 @@
+#include "compress/layers/layers_fit.h"
+
+#include "compress/layers/levels.h"
+#include "compress/layers/model.h"
+
+#include <stdlib.h>
+
+enum { ALIGNMENT = 64, MOST_COMPARED = 2000000 };
+
+/* What one fit hands from step to step. */
+typedef struct fitting {
+    weft_dataset *dataset;
+    const weft_layers_options *options;
+    const weft_progress *progress;
+    weft_layer_images images;
+    weft_training training;
+    weft_components components;
+    weft_layers *layers;
+    float *factor; /* [layer][length] */
+    weft_projection projection;
+} fitting;
+
+static void free_all(fitting *work)
+{
+    free(work->factor);
+    weft_projection_free(&work->projection);
+    weft_components_free(&work->components);
+    weft_training_free(&work->training);
+    weft_layer_images_free(&work->images);
+    weft_layers_free(work->layers);
+}
+
+/* ---- Learning ---- */
+
+static weft_code learn(fitting *work, weft_material *material, weft_layers_report *report, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    int count = work->options->layer_count;
+    weft_progress_report(work->progress, "learning layers", 0, 2);
+    WEFT_TRY(weft_layer_images_create(layout, work->options->held_out, &work->images, error));
+    /* Samples of the texels that are learned from, those again that are not held out, and their products. */
+    WEFT_TRY(weft_memory_budget_require(&work->options->budget,
+                                        (uint64_t)WEFT_TRAINING_TEXELS *
+                                            (8 * work->images.length + 12 * (uint64_t)WEFT_TRAINING_TEXELS),
+                                        weft_dataset_path(work->dataset), "its layers", error));
+    WEFT_TRY(weft_training_read(work->dataset, &work->images, &work->training, error));
+    if (work->options->for_screen)
+        weft_training_weigh_for_screen(&work->training, &work->images);
+    WEFT_TRY(weft_layer_model_choose(&work->images, &work->training, count, &report->kind, report->trial_error, error));
+    weft_progress_report(work->progress, "learning layers", 1, 2);
+    WEFT_TRY(weft_components_find(&work->training, count, &work->components, error));
+    report->training_texels = work->training.texel_count;
+    WEFT_TRY(weft_layer_model_create(&work->images, &work->components, report->kind, layout->width, layout->height,
+                                     material->level_count, &work->layers, error));
+    weft_progress_report(work->progress, "learning layers", 2, 2);
+    return WEFT_OK;
+}
+
+/* ---- Projecting ---- */
+
+static weft_code find_factors(fitting *work, weft_error *error)
+{
+    weft_layer_maps maps;
+    size_t bytes = (size_t)work->options->layer_count * work->images.length * sizeof *work->factor;
+    work->factor = aligned_alloc(ALIGNMENT, bytes);
+    if (!work->factor)
+        return weft_fail_memory(error, "factors of layers", bytes);
+    WEFT_TRY(weft_layer_maps_create(work->layers, &maps, error));
+    weft_layer_model_factors(&maps, &work->images, work->factor);
+    weft_layer_maps_free(&maps);
+    return WEFT_OK;
+}
+
+static weft_code project(fitting *work, weft_layers_report *report, weft_error *error)
+{
+    weft_projector projector;
+    WEFT_TRY(find_factors(work, error));
+    WEFT_TRY(weft_projector_create(&work->components, work->factor, work->images.image_count, &projector, error));
+    weft_code code = weft_projection_make(work->dataset, &work->images, &projector, &work->options->budget,
+                                          work->progress, &work->projection, error);
+    weft_projector_free(&projector);
+    report->masked = work->projection.masked;
+    report->empty_texels = work->projection.empty;
+    if (code == WEFT_OK)
+        weft_layers_fill_levels(&work->projection, work->layers);
+    return code;
+}
+
+/* ---- Measuring ---- */
+
+/* What the finished layers say of one image, for every training texel. */
+static size_t compare_image(const fitting *work, const weft_layer_maps *maps, int view, int image, weft_compared *pair)
+{
+    const weft_training *training = &work->training;
+    float factor[3 * WEFT_LAYERS_MAX];
+    size_t count = 0;
+    weft_vec3 light = work->images.light[image];
+    float scale = 1 / work->images.weight[image];
+    weft_layer_factors(maps, light, work->images.view[view], factor);
+    for (size_t texel = 0; texel < (size_t)training->texel_count; texel++) {
+        const float *sample = training->vector + texel * training->length + 3 * (size_t)image;
+        if (!training->valid[texel * training->image_count + (size_t)image])
+            continue;
+        weft_rgb value = weft_layers_texel(work->layers, work->layers->layer_count, factor, 0, training->place[texel].x,
+                                           training->place[texel].y, light.z);
+        pair[count++] = (weft_compared){scale * sample[0], (float)value.r};
+        pair[count++] = (weft_compared){scale * sample[1], (float)value.g};
+        pair[count++] = (weft_compared){scale * sample[2], (float)value.b};
+    }
+    return count;
+}
+
+/* All images, or an even choice where that would be too many samples. */
+static weft_code measure(const fitting *work, weft_layers_report *report, weft_error *error)
+{
+    const weft_layer_images *images = &work->images;
+    size_t per_image = 3 * (size_t)work->training.texel_count, all = per_image * (size_t)images->image_count;
+    int step = (int)(all / MOST_COMPARED + 1);
+    size_t count = 0, room = per_image * ((size_t)images->image_count / (size_t)step + 1);
+    weft_layer_maps maps;
+    weft_compared *pair = malloc(room * sizeof *pair);
+    if (!pair)
+        return weft_fail_memory(error, "measured samples", room * sizeof *pair);
+    weft_code code = weft_layer_maps_create(work->layers, &maps, error);
+    for (int view = 0; view < images->view_count && code == WEFT_OK; view++)
+        for (int i = (int)images->first[view]; i < (int)images->first[view + 1]; i++) {
+            if (i % step == 0)
+                count += compare_image(work, &maps, view, i, pair + count);
+        }
+    if (code == WEFT_OK) {
+        code = weft_error_summary_of(pair, count, &report->fitted, error);
+        weft_layer_maps_free(&maps);
+    }
+    free(pair);
+    return code;
+}
+
+/* ---- The whole ---- */
+
+static weft_code fit(fitting *work, weft_material *material, weft_layers_report *report, weft_error *error)
+{
+    WEFT_TRY(learn(work, material, report, error));
+    WEFT_TRY(project(work, report, error));
+    return measure(work, report, error);
+}
+
+weft_code weft_layers_check(const weft_dataset *dataset, int layer_count, weft_error *error)
+{
+    if (weft_dataset_get_layout(dataset)->distance == WEFT_NEAR)
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "'%s' has near lights or cameras, whose directions differ from texel to texel: it cannot "
+                         "have layers",
+                         weft_dataset_path(dataset));
+    if (layer_count < WEFT_LAYERS_GROUP || layer_count > WEFT_LAYERS_MAX || layer_count % WEFT_LAYERS_GROUP != 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "%d layers: must be 4 to %d, a multiple of 4", layer_count,
+                         WEFT_LAYERS_MAX);
+    return WEFT_OK;
+}
+
+weft_code weft_layers_fit(weft_dataset *dataset, const weft_layers_options *options, const weft_progress *progress,
+                          weft_material *material, weft_layers_report *report, weft_error *error)
+{
+    fitting work = {.dataset = dataset, .options = options, .progress = progress};
+    *report = (weft_layers_report){0};
+    WEFT_TRY(weft_layers_check(dataset, options->layer_count, error));
+    weft_code code = fit(&work, material, report, error);
+    if (code == WEFT_OK) {
+        material->layers = work.layers;
+        material->has_layers = true;
+        work.layers = NULL;
+    }
+    free_all(&work);
+    return code;
+}

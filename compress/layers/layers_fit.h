@@ -1,0 +1,38 @@
+/* Linear layers of a dataset (btf/material/layers.h): learned from some texels, then projected for all. */
+#ifndef WEFT_COMPRESS_LAYERS_LAYERS_FIT_H
+#define WEFT_COMPRESS_LAYERS_LAYERS_FIT_H
+
+#include "base/numeric/error_summary.h"
+#include "base/progress.h"
+#include "btf/dataset/dataset.h"
+#include "btf/material/material.h"
+#include "compress/run/memory.h"
+
+#include <stdbool.h>
+
+typedef struct weft_layers_options {
+    int layer_count;         /* 4 .. 64, a multiple of 4 */
+    const uint8_t *held_out; /* [image_count] images that the fit must not see, or NULL */
+    bool for_screen;         /* dim images count for more (compress/options/options.h) */
+    weft_memory_budget budget;
+} weft_layers_options;
+
+typedef struct weft_layers_report {
+    weft_layers_kind kind;
+    double trial_error[2]; /* relative RMSE of each kind on images held out to choose between them; 0 where none was */
+    int training_texels;
+    long masked, empty_texels;
+    weft_error_summary fitted; /* level 0, of the training texels, over images that were fitted */
+} weft_layers_report;
+
+/* That the dataset can have so many layers, before any work is done. Errors: those of weft_layers_fit. */
+weft_code weft_layers_check(const weft_dataset *dataset, int layer_count, weft_error *error);
+
+/* Adds layers to `material`, which has the size of the dataset and may have lobes as well. The same dataset gives the
+ * same layers, for any number of threads and any memory. Errors: WEFT_BAD_USAGE for a near dataset, whose directions
+ * differ from texel to texel, for options out of range and where the memory does not suffice; those of reading;
+ * WEFT_SYSTEM. */
+weft_code weft_layers_fit(weft_dataset *dataset, const weft_layers_options *options, const weft_progress *progress,
+                          weft_material *material, weft_layers_report *report, weft_error *error);
+
+#endif

@@ -1,0 +1,108 @@
+#include "compress/layers/levels.h"
+
+#include "compress/options/options.h"
+
+#include <math.h>
+
+/* The level that is being written, in place over the one below. */
+typedef struct pyramid {
+    int width, height;
+    size_t layer_count;
+    float *coefficient, *brightest;
+} pyramid;
+
+/* The largest coefficient of level 0 gets the largest code; means are never larger. */
+static void find_steps(const pyramid *p, float step[WEFT_LAYERS_MAX])
+{
+    size_t texels = (size_t)p->width * (size_t)p->height;
+    for (size_t k = 0; k < p->layer_count; k++) {
+        float most = 0;
+        for (size_t texel = 0; texel < texels; texel++)
+            most = fmaxf(most, fabsf(p->coefficient[texel * p->layer_count + k]));
+        step[k] = most / WEFT_LAYERS_LARGEST_CODE;
+    }
+}
+
+static void write_codes(const pyramid *p, const float step[WEFT_LAYERS_MAX], int8_t *code)
+{
+    size_t texels = (size_t)p->width * (size_t)p->height;
+    for (size_t k = 0; k < p->layer_count; k++) {
+        int8_t *plane = code + k / WEFT_LAYERS_GROUP * WEFT_LAYERS_GROUP * texels + k % WEFT_LAYERS_GROUP;
+        for (size_t texel = 0; texel < texels; texel++) {
+            float value = step[k] > 0 ? p->coefficient[texel * p->layer_count + k] / step[k] : 0;
+            plane[WEFT_LAYERS_GROUP * texel] = (int8_t)lroundf(value);
+        }
+    }
+}
+
+static float brightest_in(const pyramid *p, int x0, int y0)
+{
+    float most = 0;
+    for (int y = y0; y < y0 + WEFT_CEILING_SIDE && y < p->height; y++)
+        for (int x = x0; x < x0 + WEFT_CEILING_SIDE && x < p->width; x++)
+            most = fmaxf(most, p->brightest[(size_t)y * (size_t)p->width + (size_t)x]);
+    return most;
+}
+
+static void write_ceilings(const pyramid *p, uint8_t *code)
+{
+    for (int y = 0; y < p->height; y += WEFT_CEILING_SIDE)
+        for (int x = 0; x < p->width; x += WEFT_CEILING_SIDE)
+            *code++ = weft_ceiling_code(WEFT_BRIGHTEST_MULTIPLE * brightest_in(p, x, y));
+}
+
+/* How many texels of level 0 along a side the texel at `index` of a level covers. */
+static int covered(int index, int level, int size)
+{
+    int first = index << level, last = (index + 1) << level;
+    return (last < size ? last : size) - first;
+}
+
+/* The mean of up to four texels, by what they cover, goes to texel (x, y) of the next level. */
+static void merge(pyramid *p, int level, int width0, int height0, int x, int y, int next_width)
+{
+    size_t to = (size_t)y * (size_t)next_width + (size_t)x;
+    float sum[WEFT_LAYERS_MAX] = {0}, most = 0, total = 0;
+    for (int j = 2 * y; j < 2 * y + 2 && j < p->height; j++)
+        for (int i = 2 * x; i < 2 * x + 2 && i < p->width; i++) {
+            size_t from = (size_t)j * (size_t)p->width + (size_t)i;
+            float weight = (float)covered(i, level, width0) * (float)covered(j, level, height0);
+            for (size_t k = 0; k < p->layer_count; k++)
+                sum[k] += weight * p->coefficient[from * p->layer_count + k];
+            most = fmaxf(most, p->brightest[from]);
+            total += weight;
+        }
+    for (size_t k = 0; k < p->layer_count; k++)
+        p->coefficient[to * p->layer_count + k] = sum[k] / total;
+    p->brightest[to] = most;
+}
+
+/* A texel of the next level lies before those that it is made of, so that nothing is overwritten too early. */
+static void next_level(pyramid *p, int level, int width0, int height0)
+{
+    int width = (p->width + 1) / 2, height = (p->height + 1) / 2;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            merge(p, level, width0, height0, x, y, width);
+    p->width = width;
+    p->height = height;
+}
+
+void weft_layers_fill_levels(weft_projection *projection, weft_layers *layers)
+{
+    float step[WEFT_LAYERS_MAX] = {0};
+    pyramid p = {.width = projection->width,
+                 .height = projection->height,
+                 .layer_count = (size_t)projection->layer_count,
+                 .coefficient = projection->coefficient,
+                 .brightest = projection->brightest};
+    find_steps(&p, step);
+    for (int k = 0; k < layers->level_count; k++) {
+        if (k > 0)
+            next_level(&p, k - 1, projection->width, projection->height);
+        write_codes(&p, step, layers->level[k].coefficient);
+        write_ceilings(&p, layers->level[k].ceiling);
+    }
+    for (int k = 0; k < layers->layer_count; k++)
+        layers->scale[k] *= step[k];
+}

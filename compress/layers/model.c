@@ -1,0 +1,99 @@
+#include "compress/layers/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Nodes and smoothness of the maps, chosen once on four cloths and left alone (docs/notes/layers.md). */
+static const struct {
+    int light_side, view_side;
+    float light_smoothness, view_smoothness;
+} usual[] = {
+    [WEFT_LAYERS_OF_LIGHT] = {16, 16, 1e-2f, 1e-2f},
+    [WEFT_LAYERS_OF_HALF_VECTOR] = {16, 10, 1e-3f, 1e-2f},
+};
+
+static void put_direction(weft_vec3 direction, float *xyz)
+{
+    xyz[0] = (float)direction.x;
+    xyz[1] = (float)direction.y;
+    xyz[2] = (float)direction.z;
+}
+
+/* Of the lights. */
+static float least_cosine(const weft_layer_images *images)
+{
+    weft_real least = 1;
+    for (int i = 0; i < images->image_count; i++)
+        least = fmin(least, images->light[i].z);
+    return (float)fmax(least, (weft_real)1e-3);
+}
+
+static void fill_directions(const weft_layer_images *images, weft_layers *layers)
+{
+    for (int i = 0; i < images->view_count; i++)
+        put_direction(images->view[i], layers->view + 3 * i);
+    for (int i = 0; i < images->image_count; i++)
+        put_direction(images->light[i], layers->light + 3 * i);
+    memcpy(layers->first, images->first, ((size_t)images->view_count + 1) * sizeof *layers->first);
+}
+
+/* Without the weights. */
+static float component_at(const weft_layer_images *images, const float *vector, size_t i)
+{
+    return vector[i] / images->weight[i / 3];
+}
+
+static void fill_values(const weft_layer_images *images, const weft_components *components, weft_layers *layers)
+{
+    size_t count = (size_t)layers->layer_count, series = 3 * count;
+    for (size_t k = 0; k < count; k++) {
+        const float *vector = components->vector + k * components->length;
+        float most = 0;
+        for (size_t i = 0; i < 3 * (size_t)layers->image_count; i++)
+            most = fmaxf(most, fabsf(component_at(images, vector, i)));
+        layers->scale[k] = most;
+        for (size_t i = 0; i < (size_t)layers->image_count; i++)
+            for (size_t c = 0; c < 3; c++)
+                layers->value[i * series + 3 * k + c] =
+                    weft_half_of_float(most > 0 ? component_at(images, vector, 3 * i + c) / most : 0);
+    }
+}
+
+weft_code weft_layer_model_create(const weft_layer_images *images, const weft_components *components,
+                                  weft_layers_kind kind, int width, int height, int level_count, weft_layers **result,
+                                  weft_error *error)
+{
+    weft_layers shape = {.kind = kind,
+                         .layer_count = components->count,
+                         .view_count = images->view_count,
+                         .image_count = images->image_count,
+                         .light_side = usual[kind].light_side,
+                         .view_side = usual[kind].view_side,
+                         .light_smoothness = usual[kind].light_smoothness,
+                         .view_smoothness = usual[kind].view_smoothness,
+                         .least_cosine = least_cosine(images)};
+    WEFT_TRY(weft_layers_create(&shape, width, height, level_count, result, error));
+    fill_directions(images, *result);
+    fill_values(images, components, *result);
+    return WEFT_OK;
+}
+
+static void factors_of_view(const weft_layer_maps *maps, const weft_layer_images *images, int view, float *factor)
+{
+    size_t count = (size_t)maps->layers->layer_count;
+    float at[3 * WEFT_LAYERS_MAX];
+    for (size_t i = images->first[view]; i < images->first[view + 1]; i++) {
+        weft_layer_factors(maps, images->light[i], images->view[view], at);
+        for (size_t k = 0; k < 3 * count; k++)
+            factor[k / 3 * images->length + 3 * i + k % 3] = images->weight[i] * at[k];
+    }
+}
+
+void weft_layer_model_factors(const weft_layer_maps *maps, const weft_layer_images *images, float *factor)
+{
+    memset(factor, 0, (size_t)maps->layers->layer_count * images->length * sizeof *factor);
+#pragma omp parallel for schedule(dynamic)
+    for (int view = 0; view < images->view_count; view++)
+        factors_of_view(maps, images, view, factor);
+}

@@ -1,0 +1,24 @@
+/* The shared half of layers: components at the images of a dataset, and what their maps make of them. */
+#ifndef WEFT_COMPRESS_LAYERS_MODEL_H
+#define WEFT_COMPRESS_LAYERS_MODEL_H
+
+#include "compress/layers/components.h"
+#include "reflectance/layers/layers.h"
+
+/* Layers without coefficients, for a material of width x height texels: a coefficient of 1 stands for a whole
+ * component. `texels` names the size and the number of levels. The caller frees. Errors: WEFT_SYSTEM. */
+weft_code weft_layer_model_create(const weft_layer_images *images, const weft_components *components,
+                                  weft_layers_kind kind, int width, int height, int level_count, weft_layers **result,
+                                  weft_error *error);
+
+/* What the maps give at the images themselves, times their weights: factor [layer][images->length], aligned to 64
+ * bytes. */
+void weft_layer_model_factors(const weft_layer_maps *maps, const weft_layer_images *images, float *factor);
+
+/* Which kind of maps predicts images better that it has not seen: a tenth of the views and of the lights are held out
+ * of `training`, both kinds are fitted to the rest, and error [2] receives the relative RMSE of each on what was held
+ * out. Both 0, and light, where there is too little to hold out. Errors: WEFT_SYSTEM. */
+weft_code weft_layer_model_choose(const weft_layer_images *images, const weft_training *training, int layer_count,
+                                  weft_layers_kind *kind, double error_of[2], weft_error *error);
+
+#endif

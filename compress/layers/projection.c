@@ -1,0 +1,211 @@
+#include "compress/layers/projection.h"
+
+#include "base/thread_pool.h"
+#include "compress/run/block_plan.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+
+/* Texels that are projected together, for the sake of the tiles of compress/layers/dot_kernel.c. */
+enum { BATCH = 4, ALIGNMENT = 64, MOST_SIDE_LEVEL = 6, BLOCK_BYTES = 16 << 20 };
+
+/* What a thread needs of its own. */
+typedef struct worker {
+    float *vector;  /* [BATCH][length] */
+    float *scratch; /* [4 dataset images] */
+    uint8_t *valid; /* [BATCH][images] */
+    weft_error error;
+    weft_code code;
+    long masked, empty;
+} worker;
+
+typedef struct run {
+    const weft_layer_images *images;
+    const weft_projector *projector;
+    weft_projection *projection;
+    const weft_texel_block *block;
+    int thread_count;
+    worker *worker;
+} run;
+
+void weft_projection_free(weft_projection *projection)
+{
+    free(projection->coefficient);
+    free(projection->brightest);
+    *projection = (weft_projection){0};
+}
+
+/* ---- A block ---- */
+
+static float brightest(const weft_layer_images *images, const float *vector)
+{
+    float most = 0;
+    for (size_t i = 0; i < (size_t)images->image_count; i++) {
+        float largest = fmaxf(vector[3 * i], fmaxf(vector[3 * i + 1], vector[3 * i + 2]));
+        most = fmaxf(most, largest / images->weight[i]);
+    }
+    return most;
+}
+
+static size_t gather(const run *r, worker *own, long first, int count)
+{
+    const weft_texel_block *block = r->block;
+    size_t images = (size_t)r->images->image_count, all = (size_t)r->images->dataset_image_count;
+    for (size_t i = 0; i < (size_t)count; i++) {
+        size_t at = (size_t)first + i, x = at % (size_t)block->place.width, y = at / (size_t)block->place.width;
+        float *vector = own->vector + i * r->images->length;
+        int valid = weft_layer_images_gather(r->images, block->samples + 3 * all * at, block->mask + all * at,
+                                             own->scratch, vector, own->valid + i * images);
+        own->masked += r->images->image_count - valid;
+        own->empty += valid == 0;
+        r->projection
+            ->brightest[((size_t)block->place.y + y) * (size_t)r->projection->width + (size_t)block->place.x + x] =
+            brightest(r->images, vector);
+    }
+    return images;
+}
+
+static void project_batch(void *context, long item, int thread)
+{
+    run *r = context;
+    worker *own = &r->worker[thread];
+    const weft_texel_block *block = r->block;
+    long texels = (long)block->place.width * block->place.height, first = item * BATCH;
+    int count = texels - first < BATCH ? (int)(texels - first) : BATCH, layers = r->projector->count;
+    const float *vector[BATCH] = {0};
+    const uint8_t *valid[BATCH] = {0};
+    float coefficient[BATCH * WEFT_LAYERS_MAX];
+    size_t images = gather(r, own, first, count);
+    for (size_t i = 0; i < (size_t)count; i++) {
+        vector[i] = own->vector + i * r->images->length;
+        valid[i] = own->valid + i * images;
+    }
+    weft_code code = weft_projector_solve(r->projector, vector, valid, count, coefficient, &own->error);
+    own->code = own->code == WEFT_OK ? code : own->code;
+    for (int i = 0; i < count; i++) {
+        size_t x = (size_t)(first + i) % (size_t)block->place.width + (size_t)block->place.x;
+        size_t y = (size_t)(first + i) / (size_t)block->place.width + (size_t)block->place.y;
+        float *to = r->projection->coefficient + (y * (size_t)r->projection->width + x) * (size_t)layers;
+        for (int k = 0; k < layers; k++)
+            to[k] = coefficient[i * layers + k];
+    }
+}
+
+/* ---- The run ---- */
+
+static void free_workers(run *r)
+{
+    for (int i = 0; i < r->thread_count && r->worker; i++) {
+        free(r->worker[i].vector);
+        free(r->worker[i].scratch);
+        free(r->worker[i].valid);
+    }
+    free(r->worker);
+}
+
+static weft_code create_workers(run *r, weft_error *error)
+{
+    size_t images = (size_t)r->images->image_count, all = (size_t)r->images->dataset_image_count;
+    r->worker = calloc((size_t)r->thread_count, sizeof *r->worker);
+    for (int i = 0; i < r->thread_count && r->worker; i++) {
+        worker *own = &r->worker[i];
+        own->vector = aligned_alloc(ALIGNMENT, BATCH * r->images->length * sizeof *own->vector);
+        own->scratch = malloc(4 * all * sizeof *own->scratch);
+        own->valid = malloc(BATCH * images);
+        if (!own->vector || !own->scratch || !own->valid)
+            return weft_fail_memory(error, "projection", BATCH * r->images->length * sizeof *own->vector);
+    }
+    return r->worker ? WEFT_OK : weft_fail_memory(error, "projection", (size_t)r->thread_count * sizeof *r->worker);
+}
+
+static weft_code collect(const run *r, weft_error *error)
+{
+    for (int i = 0; i < r->thread_count; i++) {
+        const worker *own = &r->worker[i];
+        r->projection->masked += own->masked;
+        r->projection->empty += own->empty;
+        if (own->code != WEFT_OK) {
+            *error = own->error;
+            return own->code;
+        }
+    }
+    return WEFT_OK;
+}
+
+static weft_code project_blocks(run *r, weft_block_reader *reader, weft_thread_pool *pool, const weft_block_plan *plan,
+                                const weft_progress *progress, weft_error *error)
+{
+    for (size_t i = 0; i < plan->count; i++) {
+        weft_progress_report(progress, "projecting on layers", (long)i, (long)plan->count);
+        WEFT_TRY(weft_block_reader_next(reader, &r->block, error));
+        long texels = (long)r->block->place.width * r->block->place.height;
+        weft_thread_pool_run(pool, project_batch, r, (texels + BATCH - 1) / BATCH);
+    }
+    weft_progress_report(progress, "projecting on layers", (long)plan->count, (long)plan->count);
+    return collect(r, error);
+}
+
+static int side_level_for(const weft_dataset_layout *layout)
+{
+    int level = 0;
+    while (level < MOST_SIDE_LEVEL && weft_block_reader_bytes(layout, (size_t)4 << (2 * level)) <= 2 * BLOCK_BYTES)
+        level++;
+    return level;
+}
+
+static weft_code allocate(const weft_dataset_layout *layout, int layer_count, weft_projection *projection,
+                          weft_error *error)
+{
+    size_t texels = (size_t)layout->width * (size_t)layout->height;
+    *projection = (weft_projection){.width = layout->width, .height = layout->height, .layer_count = layer_count};
+    projection->coefficient = malloc(texels * (size_t)layer_count * sizeof *projection->coefficient);
+    projection->brightest = calloc(texels, sizeof *projection->brightest);
+    if (projection->coefficient && projection->brightest)
+        return WEFT_OK;
+    weft_projection_free(projection);
+    return weft_fail_memory(error, "coefficients", texels * (size_t)layer_count * sizeof(float));
+}
+
+static weft_code project(run *r, weft_dataset *dataset, const weft_block_plan *plan, size_t block_texels,
+                         const weft_progress *progress, weft_error *error)
+{
+    weft_block_reader *reader = NULL;
+    weft_thread_pool *pool = NULL;
+    WEFT_TRY(weft_block_reader_create(dataset, plan->place, plan->count, block_texels, &reader, error));
+    weft_code code = weft_thread_pool_create(r->thread_count, &pool, error);
+    if (code == WEFT_OK)
+        code = create_workers(r, error);
+    if (code == WEFT_OK)
+        code = project_blocks(r, reader, pool, plan, progress, error);
+    free_workers(r);
+    weft_thread_pool_free(pool);
+    weft_block_reader_free(reader);
+    return code;
+}
+
+weft_code weft_projection_make(weft_dataset *dataset, const weft_layer_images *images, const weft_projector *projector,
+                               const weft_memory_budget *budget, const weft_progress *progress,
+                               weft_projection *projection, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    int side_level = side_level_for(layout);
+    size_t block_texels = (size_t)1 << (2 * side_level);
+    uint64_t texels = (uint64_t)layout->width * (uint64_t)layout->height;
+    run r = {.images = images, .projector = projector, .projection = projection, .thread_count = omp_get_max_threads()};
+    weft_block_plan plan;
+    WEFT_TRY(weft_memory_budget_require(budget,
+                                        weft_block_reader_bytes(layout, block_texels) +
+                                            texels * 4 * (uint64_t)(projector->count + 1) +
+                                            (uint64_t)r.thread_count * 32 * (uint64_t)layout->image_count * BATCH,
+                                        weft_dataset_path(dataset), "its layers", error));
+    WEFT_TRY(allocate(layout, projector->count, projection, error));
+    weft_code code = weft_block_plan_create(layout->width, layout->height, side_level, 0, &plan, error);
+    if (code == WEFT_OK) {
+        code = project(&r, dataset, &plan, block_texels, progress, error);
+        weft_block_plan_free(&plan);
+    }
+    if (code != WEFT_OK)
+        weft_projection_free(projection);
+    return code;
+}

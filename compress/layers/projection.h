@@ -1,0 +1,25 @@
+/* The coefficients of all texels of a dataset. */
+#ifndef WEFT_COMPRESS_LAYERS_PROJECTION_H
+#define WEFT_COMPRESS_LAYERS_PROJECTION_H
+
+#include "base/progress.h"
+#include "compress/layers/components.h"
+#include "compress/run/memory.h"
+
+/* Freed with weft_projection_free. */
+typedef struct weft_projection {
+    int width, height, layer_count;
+    float *coefficient; /* [height][width][layer_count] */
+    float *brightest;   /* [height][width] the largest valid sample of the texel, reflectance times cosine; 0 without */
+    long masked;        /* samples */
+    long empty;         /* texels without any */
+} weft_projection;
+
+/* Reads the dataset once, block by block, the next one while the present one is worked on, and nothing else may use it
+ * meanwhile. Errors: those of reading; WEFT_BAD_USAGE where `budget` does not suffice; WEFT_SYSTEM. */
+weft_code weft_projection_make(weft_dataset *dataset, const weft_layer_images *images, const weft_projector *projector,
+                               const weft_memory_budget *budget, const weft_progress *progress,
+                               weft_projection *projection, weft_error *error);
+void weft_projection_free(weft_projection *projection);
+
+#endif

@@ -1,0 +1,178 @@
+#include "player/texture/layer_texture.h"
+
+#include "reflectance/layers/layers.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { COLOURS = 3 };
+
+static const weft_texture_format coefficient_format = {GL_RGBA8_SNORM, GL_RGBA, GL_BYTE};
+static const weft_texture_format ceiling_format = {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+
+static void filter_linearly(GLenum target)
+{
+    glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
+/* ---- Coefficients ---- */
+
+/* A group of a level with its first column and row again behind the last. */
+static void wrap(const weft_layers_level *level, size_t group, int8_t *wrapped)
+{
+    size_t width = (size_t)level->width, height = (size_t)level->height;
+    const int8_t *plane = level->coefficient + WEFT_LAYERS_GROUP * width * height * group;
+    for (size_t y = 0; y <= height; y++)
+        for (size_t x = 0; x <= width; x++)
+            memcpy(wrapped + WEFT_LAYERS_GROUP * (y * (width + 1) + x),
+                   plane + WEFT_LAYERS_GROUP * (y % height * width + x % width), WEFT_LAYERS_GROUP);
+}
+
+static weft_code upload_coefficients(const weft_layers *layers, weft_layer_texture *t, weft_error *error)
+{
+    const weft_layers_level *finest = &layers->level[0];
+    size_t bytes = WEFT_LAYERS_GROUP * (size_t)(finest->width + 1) * (size_t)(finest->height + 1);
+    int8_t *wrapped = malloc(bytes);
+    if (!wrapped)
+        return weft_fail_memory(error, "coefficients of layers", bytes);
+    weft_code code = weft_gl_texture(coefficient_format, t->layout.width, t->layout.height, t->group_count, NULL,
+                                     &t->coefficient, error);
+    if (code == WEFT_OK)
+        filter_linearly(GL_TEXTURE_2D_ARRAY);
+    for (int i = 0; code == WEFT_OK && i < layers->level_count * t->group_count; i++) {
+        int k = i / t->group_count, group = i % t->group_count;
+        weft_mip_area a = t->layout.area[k];
+        wrap(&layers->level[k], (size_t)group, wrapped);
+        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, a.x, a.y, group, a.width + 1, a.height + 1, 1,
+                        coefficient_format.layout, coefficient_format.type, wrapped);
+    }
+    free(wrapped);
+    return code == WEFT_OK ? weft_gl_check("uploading coefficients", error) : code;
+}
+
+static weft_code upload_ceilings(const weft_layers *layers, weft_layer_texture *t, weft_error *error)
+{
+    WEFT_TRY(weft_gl_texture(ceiling_format, t->ceiling_layout.width, t->ceiling_layout.height, 0, NULL, &t->ceiling,
+                             error));
+    for (int k = 0; k < layers->level_count; k++) {
+        weft_mip_area a = t->ceiling_layout.area[k];
+        glTexSubImage2D(GL_TEXTURE_2D, 0, a.x, a.y, a.width, a.height, ceiling_format.layout, ceiling_format.type,
+                        layers->level[k].ceiling);
+    }
+    return weft_gl_check("uploading ceilings", error);
+}
+
+/* ---- Maps ---- */
+
+/* Nodes [view node][light node][layer][3] become the texture of layered.glsl, for coefficients of 1 that stand for the
+ * largest code. */
+static void arrange(const weft_layers *layers, const float *node, weft_half *texel)
+{
+    size_t side = (size_t)layers->light_side, views = (size_t)layers->view_side * (size_t)layers->view_side;
+    size_t count = (size_t)layers->layer_count, groups = count / WEFT_LAYERS_GROUP;
+    for (size_t view = 0; view < views; view++)
+        for (size_t at = 0; at < side * side; at++)
+            for (size_t i = 0; i < COLOURS * count; i++) {
+                size_t layer = i / COLOURS, colour = i % COLOURS, group = layer / WEFT_LAYERS_GROUP;
+                size_t x = colour * side + at % side, y = group * side + at / side;
+                size_t to = (view * groups * side + y) * COLOURS * side + x;
+                float value = node[(view * side * side + at) * COLOURS * count + i] * WEFT_LAYERS_LARGEST_CODE;
+                texel[WEFT_LAYERS_GROUP * to + layer % WEFT_LAYERS_GROUP] = weft_half_of_float(value);
+            }
+}
+
+static weft_code upload_texels_of_map(const weft_layer_texture *t, const weft_half *texel, weft_error *error)
+{
+    GLint largest = 0;
+    int width = COLOURS * t->light_side, height = t->group_count * t->light_side, depth = t->view_side * t->view_side;
+    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
+    if (width > largest || height > largest || depth > largest)
+        return weft_fail(
+            error, WEFT_SYSTEM,
+            "this graphics driver holds solid textures up to %d texels a side; the layers need %d x %d x %d", largest,
+            width, height, depth);
+    glBindTexture(GL_TEXTURE_3D, t->map);
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, width, height, depth, 0, GL_RGBA, GL_HALF_FLOAT, texel);
+    filter_linearly(GL_TEXTURE_3D);
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
+    return weft_gl_check("uploading the maps of layers", error);
+}
+
+static weft_code upload_maps(const weft_layers *layers, weft_layer_texture *t, weft_error *error)
+{
+    weft_layer_maps maps;
+    size_t lights = (size_t)layers->light_side * (size_t)layers->light_side;
+    size_t nodes = lights * (size_t)layers->view_side * (size_t)layers->view_side;
+    WEFT_TRY(weft_layer_maps_create(layers, &maps, error));
+    weft_half *texel = malloc(nodes * COLOURS * (size_t)layers->layer_count * sizeof *texel);
+    weft_code code = texel ? WEFT_OK : weft_fail_memory(error, "maps of layers", nodes * sizeof *texel);
+    if (code == WEFT_OK) {
+        arrange(layers, maps.node, texel);
+        glGenTextures(1, &t->map);
+        code = upload_texels_of_map(t, texel, error);
+    }
+    free(texel);
+    weft_layer_maps_free(&maps);
+    return code;
+}
+
+/* ---- The whole ---- */
+
+weft_code weft_layer_texture_upload(const weft_layers *layers, weft_layer_texture *t, weft_error *error)
+{
+    const weft_layers_level *finest = &layers->level[0];
+    int columns = (finest->width + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
+    int rows = (finest->height + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
+    *t = (weft_layer_texture){.layout = weft_mip_layout_of(finest->width, finest->height, layers->level_count, 1, 1),
+                              .ceiling_layout = weft_mip_layout_of(columns, rows, layers->level_count, 0, 1),
+                              .group_count = layers->layer_count / WEFT_LAYERS_GROUP,
+                              .light_side = layers->light_side,
+                              .view_side = layers->view_side,
+                              .half_vector = layers->kind == WEFT_LAYERS_OF_HALF_VECTOR,
+                              .least_cosine = layers->least_cosine};
+    WEFT_TRY(upload_coefficients(layers, t, error));
+    WEFT_TRY(upload_ceilings(layers, t, error));
+    return upload_maps(layers, t, error);
+}
+
+void weft_layer_texture_free(weft_layer_texture *t)
+{
+    glDeleteTextures(1, &t->coefficient);
+    glDeleteTextures(1, &t->ceiling);
+    glDeleteTextures(1, &t->map);
+    *t = (weft_layer_texture){0};
+}
+
+size_t weft_layer_texture_bytes(const weft_layer_texture *t, size_t *shared)
+{
+    size_t texels = (size_t)t->layout.width * (size_t)t->layout.height, groups = (size_t)t->group_count;
+    size_t lights = (size_t)t->light_side * (size_t)t->light_side;
+    size_t nodes = lights * (size_t)t->view_side * (size_t)t->view_side;
+    *shared = nodes * groups * COLOURS * WEFT_LAYERS_GROUP * sizeof(weft_half);
+    return *shared + texels * groups * WEFT_LAYERS_GROUP +
+           (size_t)t->ceiling_layout.width * (size_t)t->ceiling_layout.height;
+}
+
+static void set_areas(const weft_mip_layout *layout, GLuint program, const char *areas, const char *step)
+{
+    float area[WEFT_MIP_LEVELS][4];
+    weft_mip_layout_areas(layout, area);
+    glUniform4fv(glGetUniformLocation(program, areas), layout->level_count, area[0]);
+    weft_gl_set_vec2(program, step, 1.0 / layout->width, 1.0 / layout->height);
+}
+
+void weft_layer_texture_bind(const weft_layer_texture *t, GLuint program, int unit, int count)
+{
+    weft_gl_bind(program, "layer_coefficient", unit, GL_TEXTURE_2D_ARRAY, t->coefficient);
+    weft_gl_bind(program, "layer_ceiling", unit + 1, GL_TEXTURE_2D, t->ceiling);
+    weft_gl_bind(program, "layer_map", unit + 2, GL_TEXTURE_3D, t->map);
+    set_areas(&t->layout, program, "layer_area", "layer_step");
+    set_areas(&t->ceiling_layout, program, "ceiling_area", "ceiling_step");
+    weft_gl_set_int(program, "layer_groups", (count + WEFT_LAYERS_GROUP - 1) / WEFT_LAYERS_GROUP);
+    weft_gl_set_vec2(program, "layer_sides", t->light_side, t->view_side);
+    weft_gl_set_float(program, "least_cosine", (double)t->least_cosine);
+}

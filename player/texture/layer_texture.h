@@ -1,0 +1,33 @@
+/* Linear layers on the GPU (shader: player/draw/shaders/layered.glsl). */
+#ifndef WEFT_PLAYER_TEXTURE_LAYER_TEXTURE_H
+#define WEFT_PLAYER_TEXTURE_LAYER_TEXTURE_H
+
+#include "btf/material/layers.h"
+#include "player/gl/gl.h"
+#include "player/texture/mip_layout.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* All zero without layers. Coefficients are signed bytes and the maps half floats, both filtered by the hardware. */
+typedef struct weft_layer_texture {
+    GLuint coefficient, ceiling, map;
+    weft_mip_layout layout, ceiling_layout;
+    int group_count, light_side, view_side;
+    bool half_vector;
+    float least_cosine;
+} weft_layer_texture;
+
+/* Uploads what `layers` hold. Errors: WEFT_SYSTEM where the driver's textures are too small, and for memory. The caller
+ * frees with weft_layer_texture_free, also on failure. */
+weft_code weft_layer_texture_upload(const weft_layers *layers, weft_layer_texture *texture, weft_error *error);
+void weft_layer_texture_free(weft_layer_texture *texture);
+
+/* Of graphics memory; *shared receives what does not grow with the number of texels. */
+size_t weft_layer_texture_bytes(const weft_layer_texture *texture, size_t *shared);
+
+/* Sets the uniforms of layered.glsl to evaluate the first `count` layers, from texture unit `unit` on; `program` is in
+ * use. */
+void weft_layer_texture_bind(const weft_layer_texture *texture, GLuint program, int unit, int count);
+
+#endif

@@ -1,0 +1,132 @@
+#include "reflectance/layers/layers.h"
+
+#include "btf/direction/square_map.h"
+#include "reflectance/layers/half_vector.h"
+
+#include <string.h>
+
+/* ---- Factors ---- */
+
+static weft_square_cell light_cell(const weft_layers *layers, weft_vec3 light, weft_vec3 half_vector)
+{
+    weft_place place =
+        layers->kind == WEFT_LAYERS_OF_LIGHT ? weft_place_of_direction(light) : weft_place_of_half_vector(half_vector);
+    return weft_square_cell_at(place, layers->light_side);
+}
+
+void weft_layer_factors(const weft_layer_maps *maps, weft_vec3 light, weft_vec3 view, float *factor)
+{
+    const weft_layers *layers = maps->layers;
+    size_t series = 3 * (size_t)layers->layer_count;
+    memset(factor, 0, series * sizeof *factor);
+    if (!(light.z > 0 && view.z > 0))
+        return;
+    weft_vec3 half_vector = weft_half_vector(light, view);
+    weft_square_cell outer = weft_square_cell_at(weft_place_of_direction(view), layers->view_side),
+                     inner = light_cell(layers, light, half_vector);
+    weft_real divisor = 1;
+    if (layers->kind == WEFT_LAYERS_OF_HALF_VECTOR)
+        divisor = fmax(weft_dot(light, half_vector), (weft_real)WEFT_LEAST_INCIDENCE);
+    size_t light_nodes = (size_t)layers->light_side * (size_t)layers->light_side;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++) {
+            const float *node = maps->node + ((size_t)outer.index[i] * light_nodes + (size_t)inner.index[j]) * series;
+            float weight = (float)(outer.weight[i] * inner.weight[j] / divisor);
+            for (size_t k = 0; k < series; k++)
+                factor[k] += weight * node[k];
+        }
+}
+
+/* ---- Texels ---- */
+
+static weft_rgb combine(int count, const float *coefficient, const float *factor)
+{
+    float r = 0, g = 0, b = 0;
+    for (int k = 0; k < count; k++) {
+        r += coefficient[k] * factor[3 * k];
+        g += coefficient[k] * factor[3 * k + 1];
+        b += coefficient[k] * factor[3 * k + 2];
+    }
+    return (weft_rgb){r, g, b};
+}
+
+static weft_rgb held(const weft_layers *layers, weft_rgb value, float ceiling, weft_real light_z)
+{
+    weft_real most = (weft_real)ceiling * fmin((weft_real)1, light_z / (weft_real)layers->least_cosine);
+    return (weft_rgb){fmin(fmax(value.r, (weft_real)0), most), fmin(fmax(value.g, (weft_real)0), most),
+                      fmin(fmax(value.b, (weft_real)0), most)};
+}
+
+static float ceiling_at(const weft_layers_level *level, int x, int y)
+{
+    int columns = (level->width + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
+    return weft_ceiling_of_code(level->ceiling[(y / WEFT_CEILING_SIDE) * columns + x / WEFT_CEILING_SIDE]);
+}
+
+/* Adds `weight` times the coefficients of texel (x, y). */
+static void add_coefficients(const weft_layers_level *level, int count, int x, int y, float weight, float *sum)
+{
+    size_t texels = (size_t)level->width * (size_t)level->height;
+    size_t texel = (size_t)y * (size_t)level->width + (size_t)x;
+    for (int group = 0; group < count / WEFT_LAYERS_GROUP; group++) {
+        const int8_t *code = level->coefficient + WEFT_LAYERS_GROUP * ((size_t)group * texels + texel);
+        for (int i = 0; i < WEFT_LAYERS_GROUP; i++)
+            sum[WEFT_LAYERS_GROUP * group + i] += weight * (float)code[i];
+    }
+}
+
+weft_rgb weft_layers_texel(const weft_layers *layers, int count, const float *factor, int level, int x, int y,
+                           weft_real light_z)
+{
+    const weft_layers_level *at = &layers->level[level];
+    float coefficient[WEFT_LAYERS_MAX] = {0};
+    if (!(light_z > 0))
+        return (weft_rgb){0};
+    add_coefficients(at, count, x, y, 1, coefficient);
+    return held(layers, combine(count, coefficient, factor), ceiling_at(at, x, y), light_z);
+}
+
+/* ---- Texture coordinates ---- */
+
+/* Two neighbouring texels of a repeated row or column, how far the place between them lies toward the second, and the
+ * nearer one. */
+typedef struct neighbours {
+    int low, high, nearest;
+    float share;
+} neighbours;
+
+static neighbours neighbours_of(weft_real coordinate, int count)
+{
+    weft_real position = (coordinate - floor(coordinate)) * (weft_real)count - (weft_real)0.5;
+    weft_real cell = floor(position);
+    int low = ((int)cell + count) % count, high = (low + 1) % count;
+    float share = (float)(position - cell);
+    return (neighbours){low, high, share < 0.5f ? low : high, share};
+}
+
+/* Adds the coefficients of a level and returns its ceiling. */
+static float add_level(const weft_layers_level *level, int count, weft_real u, weft_real v, float weight, float *sum)
+{
+    neighbours column = neighbours_of(u, level->width), row = neighbours_of(-v, level->height);
+    float upper = weight * (1 - row.share), lower = weight * row.share;
+    add_coefficients(level, count, column.low, row.low, upper * (1 - column.share), sum);
+    add_coefficients(level, count, column.high, row.low, upper * column.share, sum);
+    add_coefficients(level, count, column.low, row.high, lower * (1 - column.share), sum);
+    add_coefficients(level, count, column.high, row.high, lower * column.share, sum);
+    return ceiling_at(level, column.nearest, row.nearest);
+}
+
+weft_rgb weft_layers_sample(const weft_layers *layers, int count, const float *factor, weft_real level, weft_real u,
+                            weft_real v, weft_real light_z)
+{
+    float coefficient[WEFT_LAYERS_MAX] = {0};
+    if (!(light_z > 0 && isfinite(u) && isfinite(v)))
+        return (weft_rgb){0};
+    weft_real clamped = level > 0 ? fmin(level, (weft_real)(layers->level_count - 1)) : 0;
+    int fine = (int)clamped;
+    float share = (float)(clamped - (weft_real)fine);
+    float ceiling = add_level(&layers->level[fine], count, u, v, 1 - share, coefficient);
+    if (share > 0)
+        add_level(&layers->level[fine + 1], count, u, v, share, coefficient);
+    return held(layers, combine(count, coefficient, factor), ceiling, light_z);
+}

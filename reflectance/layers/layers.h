@@ -1,0 +1,38 @@
+/* Linear layers evaluated (btf/material/layers.h has the equation): the values at images become square maps, and a pair
+ * of directions reads sixteen of their nodes. GLSL twin: reflectance/layers/layers.glsl. */
+#ifndef WEFT_REFLECTANCE_LAYERS_LAYERS_H
+#define WEFT_REFLECTANCE_LAYERS_LAYERS_H
+
+#include "btf/material/layers.h"
+
+/* The maps of all layers. `layers` stays the caller's and must outlive them. Immutable, so that any number of threads
+ * may evaluate. */
+typedef struct weft_layer_maps {
+    const weft_layers *layers;
+    float *node; /* [view node][light node][layer][3] B_k, or B_k (l . h), times the scale of the layer */
+} weft_layer_maps;
+
+/* l . h is taken as at least this where a map is divided by it: below, light and view both graze from opposite sides.
+ */
+#define WEFT_LEAST_INCIDENCE 0.0625
+
+/* Computes the maps. The caller frees them with weft_layer_maps_free. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_layer_maps_create(const weft_layers *layers, weft_layer_maps *maps, weft_error *error);
+void weft_layer_maps_free(weft_layer_maps *maps);
+
+/* B_k of all layers, factor [layer_count][3], for light and view in the frame of the surface; 0 where one of them is
+ * not above the horizon. Thread-safe. */
+void weft_layer_factors(const weft_layer_maps *maps, weft_vec3 light, weft_vec3 view, float *factor);
+
+/* Reflectance times cosine of texel (x, y) of a level as the first `count` layers give it (a multiple of 4; at most
+ * layer_count), from the factors of the light and the view: held to 0 .. the ceiling. Thread-safe. */
+weft_rgb weft_layers_texel(const weft_layers *layers, int count, const float *factor, int level, int x, int y,
+                           weft_real light_z);
+
+/* The same at texture coordinates (u, v), repeated (docs/reference/weft-format.md, 3.5): coefficients are interpolated
+ * between texels and levels, bilinear and trilinear, and then evaluated; level >= 0 may be fractional. The ceiling is
+ * that of the nearest texel of the finer level. */
+weft_rgb weft_layers_sample(const weft_layers *layers, int count, const float *factor, weft_real level, weft_real u,
+                            weft_real v, weft_real light_z);
+
+#endif

@@ -1,0 +1,37 @@
+/* Some texels of a dataset with all of their images, in memory; and some of their images as a dataset of its own. */
+#ifndef WEFT_STUDY_HOLD_OUT_EXCERPT_H
+#define WEFT_STUDY_HOLD_OUT_EXCERPT_H
+
+#include "btf/dataset/dataset.h"
+
+/* Which texels. */
+typedef enum weft_excerpt_kind {
+    WEFT_EXCERPT_SCATTERED, /* one of every cell of a grid, each at another place in it, so that no repeat of the cloth
+                               is hit again and again: for fits to which neighbours mean nothing, under far lights */
+    WEFT_EXCERPT_REGULAR,   /* the same without moving them: near lights need texels at even distances */
+    WEFT_EXCERPT_BLOCK      /* neighbours, from the centre: for fits that borrow from them */
+} weft_excerpt_kind;
+
+/* Freed with weft_excerpt_free. */
+typedef struct weft_excerpt {
+    weft_dataset_layout layout; /* of these texels, its origin moved to their centre; every image and view */
+    weft_half *samples;         /* [height][width][image_count][3] */
+    uint8_t *mask;              /* [height][width][image_count] */
+    float *opacity;             /* [height][width][view_count]; NULL where the dataset has none */
+    float *frames;              /* [height][width][2][3]; NULL where the dataset has none */
+} weft_excerpt;
+
+/* Reads at most `side` x `side` texels. The choice depends on the sizes alone. Errors: those of reading; WEFT_SYSTEM.
+ */
+weft_code weft_excerpt_read(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_excerpt *excerpt,
+                            weft_error *error);
+void weft_excerpt_free(weft_excerpt *excerpt);
+
+/* Writes the images with held_out[image] == 0, and the views that still have any, to a dataset in the folder of `path`
+ * and opens it. It has no name once it is complete, so that nothing is left of it when it is closed, however the
+ * program ends; weft_compress takes it without a checkpoint. What is held out is not in it. The caller closes *result.
+ * Errors: those of writing and reading. */
+weft_code weft_excerpt_write(const weft_excerpt *excerpt, const uint8_t *held_out, const char *path,
+                             weft_dataset **result, weft_error *error);
+
+#endif

@@ -1,0 +1,193 @@
+#include "study/hold_out/record.h"
+
+#include "base/text/json_text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- To JSON ---- */
+
+/* In the order of weft_split_kind. */
+static const char *const kind_names[] = {"directions", "photographs", "each photograph"};
+
+static json_t *json_of_error(const weft_error_summary *e)
+{
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:I}", "relative_rmse", e->relative_rmse, "median_relative_error",
+                     e->median_relative, "percentile80_relative_error", e->percentile80_relative, "rmse", e->rmse,
+                     "psnr_db", isfinite(e->psnr_db) ? e->psnr_db : 0, "values", (json_int_t)e->count);
+}
+
+static void put_error(json_t **object, const char *name, const weft_error_summary *e)
+{
+    if (e->count > 0)
+        weft_json_put(object, name, json_of_error(e));
+}
+
+static json_t *json_of_errors(const weft_hold_out_error *error)
+{
+    json_t *object = json_of_error(&error->all);
+    put_error(&object, "views", &error->view);
+    put_error(&object, "lights", &error->light);
+    put_error(&object, "both", &error->both);
+    return object;
+}
+
+json_t *weft_hold_out_to_json(const weft_hold_out *r)
+{
+    json_t *object = json_pack("{s:s, s:i, s:[ii], s:[II]}", "held_out", kind_names[r->kind], "splits", r->split_count,
+                               "images_of", r->image_held_count, r->image_count, "texels_of",
+                               (json_int_t)r->texel_count, (json_int_t)r->dataset_texel_count);
+    if (r->kind == WEFT_SPLIT_DIRECTIONS) {
+        weft_json_put(&object, "views_of", json_pack("[ii]", r->view_held_count, r->view_count));
+        weft_json_put(&object, "lights_of", json_pack("[ii]", r->light_held_count, r->light_count));
+    }
+    if (r->smaller_model)
+        weft_json_put(&object, "smaller_model", json_true());
+    weft_json_put(&object, "not_fitted", json_of_errors(&r->material));
+    weft_json_put(&object, "photographs_interpolated", json_of_errors(&r->photographs));
+    weft_json_put(&object, "fitted", json_of_error(&r->fitted));
+    return object;
+}
+
+weft_code weft_hold_out_store(const weft_hold_out *result, weft_material *material, weft_error *error)
+{
+    json_t *metadata = json_loads(material->metadata, 0, NULL);
+    weft_json_put(&metadata, "held_out", weft_hold_out_to_json(result));
+    char *text = metadata ? json_dumps(metadata, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
+    json_decref(metadata);
+    if (!text)
+        return weft_fail_memory(error, "metadata of the material", 0);
+    free(material->metadata);
+    material->metadata = text;
+    return WEFT_OK;
+}
+
+weft_code weft_hold_out_bytes(const weft_hold_out *result, uint64_t *bytes, weft_error *error)
+{
+    static const char name[] = ",\"held_out\":";
+    json_t *object = weft_hold_out_to_json(result);
+    size_t size = object ? json_dumpb(object, NULL, 0, JSON_COMPACT) : 0;
+    json_decref(object);
+    *bytes = size + sizeof name;
+    return size > 0 ? WEFT_OK : weft_fail_memory(error, "metadata of the material", 0);
+}
+
+/* ---- From JSON ---- */
+
+static bool read_error(const json_t *object, weft_error_summary *e)
+{
+    json_int_t count = 0;
+    *e = (weft_error_summary){0};
+    if (!object)
+        return true;
+    bool complete =
+        json_unpack((json_t *)object, "{s:F, s:F, s:F, s:F, s:F, s:I}", "relative_rmse", &e->relative_rmse,
+                    "median_relative_error", &e->median_relative, "percentile80_relative_error",
+                    &e->percentile80_relative, "rmse", &e->rmse, "psnr_db", &e->psnr_db, "values", &count) == 0;
+    e->count = (long)count;
+    return complete;
+}
+
+static bool read_errors(const json_t *object, weft_hold_out_error *error)
+{
+    return object && read_error(object, &error->all) && read_error(json_object_get(object, "views"), &error->view) &&
+           read_error(json_object_get(object, "lights"), &error->light) &&
+           read_error(json_object_get(object, "both"), &error->both);
+}
+
+static bool read_kind(const char *name, weft_split_kind *kind)
+{
+    for (size_t i = 0; name && i < sizeof kind_names / sizeof *kind_names; i++) {
+        *kind = (weft_split_kind)i;
+        if (strcmp(name, kind_names[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
+static bool read_object(const json_t *object, weft_hold_out *r)
+{
+    const char *kind = NULL;
+    json_int_t texels = 0, all_texels = 0;
+    int smaller = 0;
+    *r = (weft_hold_out){0};
+    bool complete = object && json_unpack((json_t *)object, "{s:s, s:i, s:[ii], s:[II], s?b, s?[ii], s?[ii]}",
+                                          "held_out", &kind, "splits", &r->split_count, "images_of",
+                                          &r->image_held_count, &r->image_count, "texels_of", &texels, &all_texels,
+                                          "smaller_model", &smaller, "views_of", &r->view_held_count, &r->view_count,
+                                          "lights_of", &r->light_held_count, &r->light_count) == 0;
+    r->texel_count = (long)texels;
+    r->dataset_texel_count = (long)all_texels;
+    r->smaller_model = smaller;
+    return complete && read_kind(kind, &r->kind) && read_errors(json_object_get(object, "not_fitted"), &r->material) &&
+           read_errors(json_object_get(object, "photographs_interpolated"), &r->photographs) &&
+           read_error(json_object_get(object, "fitted"), &r->fitted);
+}
+
+bool weft_hold_out_read(const char *metadata, weft_hold_out *result)
+{
+    json_t *object = json_loads(metadata, 0, NULL);
+    bool found = read_object(json_object_get(object, "held_out"), result);
+    json_decref(object);
+    return found;
+}
+
+/* ---- In words ---- */
+
+const char *weft_hold_out_about(const weft_hold_out *result)
+{
+    return result->kind == WEFT_SPLIT_DIRECTIONS ? "on directions that were not fitted"
+                                                 : "on photographs that were not fitted";
+}
+
+void weft_hold_out_headline(const weft_hold_out *r, char line[WEFT_HOLD_OUT_LINE])
+{
+    char photographs[96] = "";
+    if (r->photographs.all.count > 0)
+        snprintf(photographs, sizeof photographs, " (the photographs themselves, interpolated: %.3f)",
+                 r->photographs.all.relative_rmse);
+    snprintf(line, WEFT_HOLD_OUT_LINE, "%s: relative RMSE %.3f%s; on those that were: %.3f", weft_hold_out_about(r),
+             r->material.all.relative_rmse, photographs, r->fitted.relative_rmse);
+}
+
+/* Appends to a line; what does not fit is cut. */
+#define APPEND(line, ...) snprintf((line) + strlen(line), WEFT_HOLD_OUT_LINE - strlen(line), __VA_ARGS__)
+
+static void explain_directions(const weft_hold_out *r, char line[WEFT_HOLD_OUT_LINE])
+{
+    const char *joint = "";
+    if (r->view_held_count > 0) {
+        APPEND(line, "%d of %d views", r->view_held_count, r->view_count);
+        joint = " and ";
+    }
+    if (r->light_held_count > 0)
+        APPEND(line, "%s%d of %d lights", joint, r->light_held_count, r->light_count);
+    APPEND(line, " left out");
+    if (r->material.view.count > 0)
+        APPEND(line, ", relative RMSE of the views %.3f", r->material.view.relative_rmse);
+    if (r->material.light.count > 0)
+        APPEND(line, ", of the lights %.3f", r->material.light.relative_rmse);
+    if (r->material.both.count > 0)
+        APPEND(line, ", of both %.3f", r->material.both.relative_rmse);
+}
+
+void weft_hold_out_explain(const weft_hold_out *r, char line[WEFT_HOLD_OUT_LINE])
+{
+    line[0] = 0;
+    APPEND(line, "measured with ");
+    if (r->kind == WEFT_SPLIT_DIRECTIONS)
+        explain_directions(r, line);
+    else if (r->kind == WEFT_SPLIT_PHOTOGRAPHS)
+        APPEND(line, "%d of %d photographs left out", r->image_held_count, r->image_count);
+    else
+        APPEND(line, "each of %d photographs left out in turn", r->image_count);
+    APPEND(line, "; median relative error %.1f %%", 100 * r->material.all.median_relative);
+    if (r->kind != WEFT_SPLIT_EACH && r->split_count > 1)
+        APPEND(line, "; mean of %d such fits", r->split_count);
+    if (r->texel_count < r->dataset_texel_count)
+        APPEND(line, "; on %ld of %ld texels", r->texel_count, r->dataset_texel_count);
+    if (r->smaller_model)
+        APPEND(line, "; too few were left for the whole model");
+}

@@ -1,0 +1,183 @@
+/* The sections of linear layers: what is written is read back, and what is wrong is named. */
+#include "tests/support/cmocka_all.h"
+
+#include "btf/material/material.h"
+#include "tests/btf/layers_example.h"
+#include "tests/btf/weft_bytes.h"
+#include "tests/support/expect_ok.h"
+#include "tests/support/scratch_folder.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define NAME "layers.weft"
+
+static void layers_are_read_back(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_material material, again;
+    layers_write_example(NAME);
+    expect_ok(weft_material_read(NAME, &material, &error), &error);
+    const weft_layers *a = material.layers;
+    assert_non_null(a);
+    assert_int_equal(a->kind, WEFT_LAYERS_OF_HALF_VECTOR);
+    assert_int_equal(a->layer_count, 8);
+    assert_int_equal(a->first[2], 3);
+    assert_float_equal(a->light[3 * 6], 0.6f, 1e-7);
+    assert_float_equal(a->scale[7], 0.25f / 8, 0);
+    assert_int_equal(a->level[0].coefficient[1], 31 - 127);
+    assert_int_equal(a->level[2].ceiling[0], 202);
+    expect_ok(weft_material_write("again.weft", &material, &error), &error);
+    expect_ok(weft_material_read("again.weft", &again, &error), &error);
+    const weft_layers *b = again.layers;
+    assert_memory_equal(a->value, b->value, 7 * 8 * 3 * sizeof *a->value);
+    for (int k = 0; k < material.level_count; k++)
+        assert_memory_equal(a->level[k].coefficient, b->level[k].coefficient,
+                            (size_t)(a->level[k].width * a->level[k].height * 8));
+    weft_material_free(&material);
+    weft_material_free(&again);
+}
+
+/* A reader of version 1 from before there were layers skips what it does not know, and has the lobes. */
+static void sections_of_layers_can_be_skipped(void **state)
+{
+    (void)state;
+    static const char *const type[] = {"LAYR", "LCOE", "CEIL"};
+    weft_error error = {0};
+    weft_material material;
+    size_t size;
+    layers_write_example(NAME);
+    unsigned char *bytes = scratch_load(NAME, &size);
+    for (int i = 0; i < 3; i++)
+        for (uint32_t level = 0; level < 4; level++) {
+            int index = weft_bytes_find(bytes, type[i], level);
+            if (index >= 0)
+                memcpy(weft_bytes_entry(bytes, index) + ENTRY_TYPE, "XYZ ", 4);
+        }
+    weft_bytes_repair(bytes, size, false);
+    scratch_store(NAME, bytes, size);
+    free(bytes);
+    expect_ok(weft_material_read(NAME, &material, &error), &error);
+    assert_null(material.layers);
+    assert_int_equal(material.lobe_count, 2);
+    weft_material_free(&material);
+}
+
+/* ---- Damage ---- */
+
+/* LAYR of the example in memory, uncompressed. */
+typedef struct header {
+    uint8_t *bytes;
+    size_t size;
+} header;
+
+static header take_header(void)
+{
+    weft_material material;
+    layers_write_example(NAME);
+    assert_int_equal(weft_material_read(NAME, &material, NULL), WEFT_OK);
+    header h = {.size = weft_layers_header_size(material.layers)};
+    h.bytes = malloc(h.size);
+    weft_layers_header_write(material.layers, h.bytes);
+    weft_material_free(&material);
+    return h;
+}
+
+static void expect_fault(header h, const char *what)
+{
+    weft_layers *layers = NULL;
+    const char *fault = NULL;
+    assert_int_equal(weft_layers_header_read(h.bytes, h.size, 5, 3, 4, &layers, &fault, NULL), WEFT_BAD_INPUT);
+    assert_non_null(fault);
+    assert_non_null(strstr(fault, what));
+    free(h.bytes);
+}
+
+static header with_word(int word, uint32_t value)
+{
+    header h = take_header();
+    memcpy(h.bytes + 4 * word, &value, sizeof value);
+    return h;
+}
+
+static header with_real(size_t at, float value)
+{
+    header h = take_header();
+    memcpy(h.bytes + at, &value, sizeof value);
+    return h;
+}
+
+static void every_field_is_checked(void **state)
+{
+    (void)state;
+    const size_t views = 64, lights = views + 3 * 12, first = lights + 7 * 12, scale = first + 16, value = scale + 32;
+    expect_fault(with_word(0, 2), "unknown kind");
+    expect_fault(with_word(1, 6), "multiple of 4");
+    expect_fault(with_word(1, 68), "multiple of 4");
+    expect_fault(with_word(2, 0), "too few or too many");
+    expect_fault(with_word(3, 0xffffffff), "too few or too many");
+    expect_fault(with_word(4, 65), "4 to 64 nodes");
+    expect_fault(with_word(5, 3), "4 to 64 nodes");
+    expect_fault(with_word(3, 8), "size does not fit");
+    expect_fault(with_word(9, 1), "not zero");
+    expect_fault(with_real(24, 0), "out of range");
+    expect_fault(with_real(28, NAN), "out of range");
+    expect_fault(with_real(32, 1.5f), "out of range");
+    expect_fault(with_real(views, 0.5f), "no unit vector");
+    expect_fault(with_real(lights + 8, -1), "no unit vector");
+    expect_fault(with_real(lights, NAN), "no unit vector");
+    expect_fault(with_word((int)first / 4, 1), "without all its images");
+    expect_fault(with_word((int)first / 4 + 1, 3), "empty or out of order");
+    expect_fault(with_word((int)first / 4 + 2, 9), "empty or out of order");
+    expect_fault(with_real(scale, -1), "scale out of range");
+    expect_fault(with_word((int)value / 4, 0x7c000000), "not finite");
+    header h = take_header();
+    h.size = 60;
+    expect_fault(h, "too short");
+}
+
+/* Coefficients of another number of layers than LAYR says. */
+static void coefficients_must_be_those_of_the_layers(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_material material;
+    size_t size;
+    layers_write_example(NAME);
+    unsigned char *bytes = scratch_load(NAME, &size);
+    unsigned char *entry = weft_bytes_entry(bytes, weft_bytes_find(bytes, "LAYR", 0));
+    /* The example is small enough to be stored as it is. */
+    if (weft_bytes_u32(entry + ENTRY_CODEC) == 0) {
+        bytes[weft_bytes_u64(entry + ENTRY_OFFSET) + 4] = 12;
+        weft_bytes_repair(bytes, size, true);
+        scratch_store(NAME, bytes, size);
+        assert_int_equal(weft_material_read(NAME, &material, &error), WEFT_BAD_INPUT);
+        assert_non_null(strstr(error.message, "not those of the coefficients"));
+    }
+    free(bytes);
+}
+
+static void ceilings_never_round_down(void **state)
+{
+    (void)state;
+    for (int i = -180; i < 60; i++) {
+        float value = exp2f((float)i / 7.3f);
+        uint8_t code = weft_ceiling_code(value);
+        assert_true(code == 255 || weft_ceiling_of_code(code) >= value);
+        assert_true(code == 0 || weft_ceiling_of_code((uint8_t)(code - 1)) < value);
+    }
+    assert_int_equal(weft_ceiling_code(0), 0);
+    assert_int_equal(weft_ceiling_code(1), 192);
+    assert_int_equal(weft_ceiling_code(1e30f), 255);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layers_are_read_back),      cmocka_unit_test(sections_of_layers_can_be_skipped),
+        cmocka_unit_test(every_field_is_checked),    cmocka_unit_test(coefficients_must_be_those_of_the_layers),
+        cmocka_unit_test(ceilings_never_round_down),
+    };
+    return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
+}

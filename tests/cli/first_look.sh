@@ -1,0 +1,85 @@
+#!/bin/sh
+# The first picture of photographs from few directions: seen and lit from there, neither black nor clipped.
+# Usage: first_look.sh WEFT ASSETS PYTHON
+set -eu
+weft=$1
+assets=$2
+. "$(dirname "$0")/expect.sh"
+scratch=$(mktemp -d "$PWD/first-look-XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+# Grey photographs under the lights and views of a list, all of one value: NAME VALUE, angles on stdin.
+photograph() {
+    mkdir "$1"
+    echo "file,theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg" >"$1/directions.csv"
+    convert -size 16x16 "xc:gray($2)" -depth 16 -type TrueColor grey.png
+    while read -r angles; do
+        cp grey.png "$1/$(echo "$angles" | tr , _).png"
+        echo "$(echo "$angles" | tr , _).png,$angles" >>"$1/directions.csv"
+    done
+    expect_ok import "$1" -o "$1.btf.h5"
+    expect_ok compress "$1.btf.h5" -o "$1.weft"
+}
+
+# Largest value of the middle of a picture, 0 to 255; nothing of the background is there.
+bright() {
+    convert "$1" -gravity center -crop 20x20+0+0 +repage -colorspace Gray -format '%[fx:round(255*maxima)]' info:
+}
+
+# expect_setting PICTURE KEY VALUE: its settings say so.
+expect_setting() {
+    grep -a -A12 "\"$2\"" "$1" | tr -d '\n ' | grep -qaF -- "$3" || fail "$1 does not say $2 $3"
+}
+
+# From above, by flash, and dark: 15 degrees about the normal.
+photograph dark "10%" <<ANGLES
+3,0,3,0
+12,0,12,0
+12,72,12,72
+12,144,12,144
+12,216,12,216
+12,288,12,288
+15,30,15,30
+15,150,15,150
+15,270,15,270
+ANGLES
+for source in dark.weft dark.btf.h5; do
+    expect_ok render "$source" --size 120x80 --samples 1 -o dark.png
+    grep -q "^exposure" out.log || fail "nobody says how $source is exposed"
+    expect_setting dark.png mesh plane
+    value=$(bright dark.png)
+    [ "$value" -gt 180 ] && [ "$value" -lt 255 ] || fail "$source is $value bright"
+    # The camera stands inside of the cone, but sees the corners of the sheet from 18 degrees more to all sides.
+    grep -q "the view of [0-5]. % and the light of 0 %" out.log || fail "$source begins outside of its range: $(cat out.log)"
+done
+
+# What the user says is done.
+expect_ok render dark.weft --exposure 1 --size 120x80 --samples 1 -o plain.png
+grep -q "^exposure" out.log && fail "an exposure that was given was changed"
+[ "$(bright plain.png)" -lt 120 ] || fail "an exposure of 1 shows $(bright plain.png)"
+expect_ok render dark.weft --size 120x80 --samples 1 -o linear.exr
+grep -q "^exposure" out.log && fail "linear numbers were exposed"
+expect_says "not measured: the view of 100 %" render dark.weft --camera=-90,20,3 --size 120x80 --samples 1 -o slant.png
+expect_says "the light of 100 %" render dark.weft --light 70,0 --size 120x80 --samples 1 -o lit.png
+expect_ok render dark.weft --mesh drape --size 120x80 --samples 1 -o drape.png
+expect_setting drape.png mesh drape
+
+# The hemisphere, and bright: the picture of before.
+photograph wide "80%" <<ANGLES
+0,0,0,0
+60,0,70,0
+60,90,70,90
+60,180,70,180
+60,270,70,270
+70,45,70,225
+70,135,70,315
+70,225,70,45
+30,0,30,180
+ANGLES
+expect_ok render wide.weft --size 120x80 --samples 1 -o wide.png
+expect_setting wide.png mesh drape
+expect_setting wide.png azimuth_deg -70
+value=$(bright wide.png)
+[ "$value" -gt 100 ] && [ "$value" -lt 255 ] || fail "the bright one is $value bright"
+echo "first_look.sh: $passed checks"

@@ -1,0 +1,385 @@
+/* Linear layers fitted to datasets that are made of other formulas: mixtures of Phong highlights (Phong 1975) and
+ * Lambert, which no map of the layers knows. */
+#include "tests/support/cmocka_all.h"
+
+#include "btf/direction/direction.h"
+#include "compress/compress.h"
+#include "reflectance/layers/layers.h"
+#include "tests/support/expect_ok.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/synthetic_dataset.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 13, HEIGHT = 9, VIEWS = 61, LIGHTS = 61, LAYERS = 8 };
+
+#define NAME "cloth.btf.h5"
+
+static weft_vec3 direction(int index)
+{
+    return weft_direction_of_angles(weft_ubo81_angles(index));
+}
+
+/* Two highlights whose mixture changes from texel to texel: everything is a sum of three functions. */
+static void mixture(int x, int y, weft_vec3 light, weft_vec3 view, double rgb[3])
+{
+    weft_vec3 mirrored = weft_vec3_of(-light.x, -light.y, light.z), back = light;
+    double phong = pow(fmax(0, weft_dot(mirrored, view)), 12), retro = pow(fmax(0, weft_dot(back, view)), 6);
+    double a = 0.2 + 0.1 * (x % 3), b = 0.3 * (y % 4) / 3.0, c = 0.25 * ((x + y) % 2);
+    rgb[0] = light.z * (a + b * phong);
+    rgb[1] = light.z * (a + b * phong + c * retro);
+    rgb[2] = light.z * (0.5 * a + c * retro);
+}
+
+static void fill_mixture(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    (void)mask;
+    for (int i = 0; i < layout->image_count; i++) {
+        double rgb[3];
+        mixture(x, y, weft_unit(layout->light[i]), weft_unit(layout->view[layout->view_of_image[i]]), rgb);
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = (float)rgb[c];
+    }
+}
+
+/* A third of the samples of half of the texels say nonsense, and that they do. */
+static void fill_masked(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 0; i < layout->image_count; i++) {
+        if ((x + y) % 2 == 0 || (i * 7 + x * 5 + y * 3) % 3 != 0)
+            continue;
+        mask[i] = WEFT_MASK_SATURATED;
+        samples[3 * i] = samples[3 * i + 1] = samples[3 * i + 2] = 900;
+    }
+}
+
+/* A highlight of another width in every texel, over a dim ground: no few functions say it. */
+static void fill_widths(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    (void)mask;
+    for (int i = 0; i < layout->image_count; i++) {
+        weft_vec3 light = layout->light[i], view = layout->view[layout->view_of_image[i]];
+        weft_vec3 axis = weft_unit(weft_vec3_of(0.05 * (x % 7) - 0.15, 0.05 * (y % 5) - 0.1, 1));
+        weft_vec3 half_vector = weft_unit(weft_add(light, view));
+        double shine = pow(fmax(0, weft_dot(half_vector, axis)), 10 + 17 * ((x * 3 + y * 5) % 11));
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = (float)(light.z * (0.02 + 2 * shine));
+    }
+}
+
+/* What is held out says nonsense and does not say so. */
+static int is_held(int image)
+{
+    return image % LIGHTS % 9 == 4 || image / LIGHTS % 11 == 5;
+}
+
+static void fill_poisoned(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 0; i < layout->image_count; i++) {
+        if (is_held(i))
+            samples[3 * i] = samples[3 * i + 1] = samples[3 * i + 2] = 50;
+    }
+}
+
+static void write_dataset(synthetic_fill *fill, weft_distance distance)
+{
+    weft_error error = {0};
+    weft_dataset_layout layout = {.width = WIDTH,
+                                  .height = HEIGHT,
+                                  .image_count = VIEWS * LIGHTS,
+                                  .view_count = VIEWS,
+                                  .values = WEFT_REFLECTANCE_COSINE,
+                                  .distance = distance,
+                                  .texel_pitch_mm = 0.5};
+    expect_ok(weft_dataset_layout_allocate(&layout, &error), &error);
+    double far = distance == WEFT_NEAR ? 500 : 1;
+    for (int i = 0; i < VIEWS * LIGHTS; i++) {
+        layout.light[i] = weft_scale(direction(i % LIGHTS), far);
+        layout.view[i / LIGHTS] = weft_scale(direction(i / LIGHTS), far);
+        layout.view_of_image[i] = i / LIGHTS;
+    }
+    synthetic_dataset_write(NAME, &layout, fill);
+    weft_dataset_layout_free(&layout);
+}
+
+static weft_compress_options options_for_layers(void)
+{
+    weft_compress_options options = weft_compress_default_options();
+    options.lobe_count = 0;
+    options.table = false;
+    options.layer_count = LAYERS;
+    return options;
+}
+
+static void fit(const weft_compress_options *options, weft_material *material, weft_compress_report *report)
+{
+    weft_error error = {0};
+    weft_dataset *dataset = synthetic_dataset_open(NAME);
+    expect_ok(weft_compress(dataset, options, NULL, material, report, &error), &error);
+    weft_dataset_close(dataset);
+}
+
+/* Relative RMSE against the mixture, over `count` directions that `choose` gives. */
+static double error_over(const weft_material *material, weft_vec3 (*choose)(int), int count)
+{
+    const weft_layers *layers = material->layers;
+    weft_layer_maps maps;
+    weft_error error = {0};
+    float factor[3 * LAYERS];
+    double square = 0, energy = 0;
+    expect_ok(weft_layer_maps_create(layers, &maps, &error), &error);
+    for (int i = 0; i < count; i++) {
+        weft_vec3 light = choose(2 * i), view = choose(2 * i + 1);
+        weft_layer_factors(&maps, light, view, factor);
+        for (int texel = 0; texel < WIDTH * HEIGHT; texel++) {
+            int x = texel % WIDTH, y = texel / WIDTH;
+            weft_rgb value = weft_layers_texel(layers, layers->layer_count, factor, 0, x, y, light.z);
+            double rgb[3], found[3] = {value.r, value.g, value.b};
+            mixture(x, y, light, view, rgb);
+            for (int c = 0; c < 3; c++) {
+                square += (found[c] - rgb[c]) * (found[c] - rgb[c]);
+                energy += rgb[c] * rgb[c];
+            }
+        }
+    }
+    weft_layer_maps_free(&maps);
+    return sqrt(square / energy);
+}
+
+static weft_vec3 measured(int i)
+{
+    return direction(i * 17 % VIEWS);
+}
+
+/* Between the samples: in steps of the golden angle and of another irrational number, up to 60 degrees. */
+static weft_vec3 between(int i)
+{
+    double cosine = 0.5 + 0.5 * fmod(i * 0.7548776662466927, 1), azimuth = 2.399963229728653 * i;
+    return weft_direction_of_angles((weft_angles){acos(cosine), azimuth});
+}
+
+static void layers_follow_samples_and_what_lies_between_them(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report report;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, &report);
+    double at = error_over(&material, measured, 60), off = error_over(&material, between, 200);
+    print_message("at samples %.4f, between them %.4f, reported %.4f, trial %.4f and %.4f\n", at, off,
+                  report.layers.fitted.relative_rmse, report.layers.trial_error[0], report.layers.trial_error[1]);
+    assert_true(at < 0.009);
+    assert_true(off < 0.023);
+    assert_float_equal(report.layers.fitted.relative_rmse, at, 0.006);
+    weft_material_free(&material);
+}
+
+/* Masked samples neither pull the fit nor count as black. */
+static void masked_samples_leave_no_trace(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report report;
+    weft_compress_options options = options_for_layers();
+    options.layer_count = 4; /* hardly more than the mixture needs: none is left to make up for wrong ones */
+    write_dataset(fill_masked, WEFT_FAR);
+    fit(&options, &material, &report);
+    print_message("with masks %.4f\n", error_over(&material, between, 200));
+    assert_true(error_over(&material, between, 200) < 0.025);
+    assert_true(report.layers.masked > 0);
+    weft_material_free(&material);
+}
+
+static void what_is_held_out_is_not_seen(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report report;
+    uint8_t held[VIEWS * LIGHTS];
+    weft_compress_options options = options_for_layers();
+    for (int i = 0; i < VIEWS * LIGHTS; i++)
+        held[i] = (uint8_t)is_held(i);
+    options.held_out = held;
+    write_dataset(fill_poisoned, WEFT_FAR);
+    fit(&options, &material, &report);
+    print_message("held out %.4f\n", error_over(&material, between, 200));
+    assert_true(error_over(&material, between, 200) < 0.023);
+    weft_material_free(&material);
+}
+
+static void dim_samples_count_for_more_on_a_screen(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report even, screen;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_widths, WEFT_FAR);
+    fit(&options, &material, &even);
+    weft_material_free(&material);
+    options.weights = WEFT_WEIGHTS_SCREEN;
+    fit(&options, &material, &screen);
+    weft_material_free(&material);
+    const weft_error_summary *a = &even.layers.fitted, *b = &screen.layers.fitted;
+    print_message("even %.4f median, %.4f RMSE; for a screen %.4f, %.4f\n", a->median_relative, a->relative_rmse,
+                  b->median_relative, b->relative_rmse);
+    assert_true(b->median_relative < 0.97 * a->median_relative);
+    assert_true(b->relative_rmse < 1.2 * a->relative_rmse);
+}
+
+/* A texel of a level has the mean coefficients of what it covers, the narrow ones at the border included. */
+static void levels_are_means(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, NULL);
+    const weft_layers *layers = material.layers;
+    assert_int_equal(layers->level_count, 5);
+    for (int level = 1; level < layers->level_count; level++) {
+        const weft_layers_level *at = &layers->level[level];
+        for (int i = 0; i < at->width * at->height * LAYERS; i++) {
+            int texel = i / LAYERS, k = i % LAYERS, count = 0;
+            double sum = 0;
+            for (int below = 0; below < WIDTH * HEIGHT; below++) {
+                if (below % WIDTH >> level != texel % at->width || below / WIDTH >> level != texel / at->width)
+                    continue;
+                sum += layers->level[0].coefficient[4 * (k / 4 * WIDTH * HEIGHT + below) + k % 4];
+                count++;
+            }
+            int8_t code = at->coefficient[4 * (k / 4 * at->width * at->height + texel) + k % 4];
+            assert_float_equal(code, sum / count, 1.01);
+        }
+    }
+    weft_material_free(&material);
+}
+
+/* The brightest sample of the square of 8 x 8 texels that begins at (x0, y0). */
+static double brightest_of_square(int x0, int y0)
+{
+    double brightest = 0;
+    for (int y = y0; y < y0 + 8 && y < HEIGHT; y++)
+        for (int x = x0; x < x0 + 8 && x < WIDTH; x++)
+            for (int i = 0; i < VIEWS * LIGHTS; i++) {
+                double rgb[3];
+                mixture(x, y, direction(i % LIGHTS), direction(i / LIGHTS), rgb);
+                brightest = fmax(brightest, fmax(rgb[0], fmax(rgb[1], rgb[2])));
+            }
+    return brightest;
+}
+
+/* A step of the codes is 9 %. */
+static void ceilings_are_four_times_the_brightest_sample(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, NULL);
+    for (int i = 0; i < 4; i++) {
+        double ratio = (double)weft_ceiling_of_code(material.layers->level[0].ceiling[i]) /
+                       brightest_of_square(i % 2 * 8, i / 2 * 8);
+        assert_true(ratio > 3.99 && ratio < 4.4);
+    }
+    weft_material_free(&material);
+}
+
+/* Nothing exceeds four times the brightest sample of the square of texels, from anywhere. */
+static void ceilings_hold_everywhere(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_layer_maps maps;
+    weft_error error = {0};
+    weft_compress_options options = options_for_layers();
+    float factor[3 * LAYERS];
+    write_dataset(fill_mixture, WEFT_FAR);
+    fit(&options, &material, NULL);
+    expect_ok(weft_layer_maps_create(material.layers, &maps, &error), &error);
+    double brightest = 0, largest = 0;
+    for (int texel = 0; texel < WIDTH * HEIGHT; texel++)
+        for (int i = 0; i < VIEWS * LIGHTS; i++) {
+            double rgb[3];
+            mixture(texel % WIDTH, texel / WIDTH, direction(i % LIGHTS), direction(i / LIGHTS), rgb);
+            brightest = fmax(brightest, fmax(rgb[0], fmax(rgb[1], rgb[2])));
+        }
+    for (int i = 0; i < 4000; i++) {
+        weft_vec3 light = weft_unit(weft_add(between(i), weft_vec3_of(0.9 * between(3 * i).x, 0, -0.49)));
+        weft_vec3 view = weft_unit(weft_add(between(5 * i), weft_vec3_of(0, 0.9 * between(7 * i).x, -0.49)));
+        weft_layer_factors(&maps, light, view, factor);
+        for (int texel = 0; texel < WIDTH * HEIGHT; texel++) {
+            weft_rgb value =
+                weft_layers_texel(material.layers, LAYERS, factor, 0, texel % WIDTH, texel / WIDTH, light.z);
+            largest = fmax(largest, fmax(value.r, fmax(value.g, value.b)));
+            assert_true(value.r >= 0 && value.g >= 0 && value.b >= 0);
+            assert_true(light.z > 0.02 || value.r <= 4.4 * brightest * light.z / 0.5);
+        }
+    }
+    print_message("brightest sample %.3f, largest value %.3f\n", brightest, largest);
+    assert_true(largest <= 4.4 * brightest); /* a step of the ceiling is 9 % */
+    weft_layer_maps_free(&maps);
+    weft_material_free(&material);
+}
+
+static void the_same_bytes_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    weft_material one, three;
+    weft_compress_options options = options_for_layers();
+    int threads = omp_get_max_threads();
+    write_dataset(fill_masked, WEFT_FAR);
+    omp_set_num_threads(1);
+    fit(&options, &one, NULL);
+    omp_set_num_threads(3);
+    fit(&options, &three, NULL);
+    omp_set_num_threads(threads);
+    for (int k = 0; k < one.layers->level_count; k++)
+        assert_memory_equal(one.layers->level[k].coefficient, three.layers->level[k].coefficient,
+                            (size_t)(one.level[k].width * one.level[k].height * LAYERS));
+    assert_memory_equal(one.layers->value, three.layers->value, VIEWS * LIGHTS * LAYERS * 3 * sizeof(weft_half));
+    weft_material_free(&one);
+    weft_material_free(&three);
+}
+
+static void near_datasets_and_odd_numbers_are_refused(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_material material;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_mixture, WEFT_NEAR);
+    weft_dataset *dataset = synthetic_dataset_open(NAME);
+    assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_USAGE);
+    assert_non_null(strstr(error.message, "cannot have layers"));
+    weft_dataset_close(dataset);
+    write_dataset(fill_mixture, WEFT_FAR);
+    dataset = synthetic_dataset_open(NAME);
+    options.layer_count = 6;
+    assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_USAGE);
+    assert_non_null(strstr(error.message, "multiple of 4"));
+    options.layer_count = 68;
+    assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_USAGE);
+    weft_dataset_close(dataset);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layers_follow_samples_and_what_lies_between_them),
+        cmocka_unit_test(masked_samples_leave_no_trace),
+        cmocka_unit_test(what_is_held_out_is_not_seen),
+        cmocka_unit_test(dim_samples_count_for_more_on_a_screen),
+        cmocka_unit_test(levels_are_means),
+        cmocka_unit_test(ceilings_are_four_times_the_brightest_sample),
+        cmocka_unit_test(ceilings_hold_everywhere),
+        cmocka_unit_test(the_same_bytes_for_any_number_of_threads),
+        cmocka_unit_test(near_datasets_and_odd_numbers_are_refused),
+    };
+    return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
+}
