@@ -182,9 +182,11 @@ static void complete(arguments *a, struct argp_state *state)
     for (int row = 0; row < a->row_count; row++)
         if (a->row[row].option->is_required && !text_of(a, row))
             argp_error(state, "needs %s", a->command->needs);
-    if (a->command->shows_scene)
-        insist(weft_scene_request_complete(scene_of(a), &error), &error, state);
     refuse_overwriting(a, state);
+    if (a->command->shows_scene) {
+        insist(weft_scene_request_complete(scene_of(a), &error), &error, state);
+        refuse_overwriting(a, state); /* what the settings of another picture name, too */
+    }
     check_outputs(a, state);
     if (a->command->check)
         insist(a->command->check(a->values, &error), &error, state);

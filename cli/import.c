@@ -27,6 +27,10 @@ static const weft_option option_table[] = {
      .divisor = 255},
     {"values", .argument = "WHAT", .help = "What a sample holds: reflectance_cosine (default) or reflectance",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(import_command, options.values), .words = value_words},
+    {"lights", .argument = "FILE.lp", .help = "Direction of the lamp of every photograph; all have one view",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(import_command, options.lights)},
+    {"linear", .help = "8- and 16-bit photographs hold linear values, not sRGB", .kind = WEFT_OPTION_FLAG,
+     .offset = offsetof(import_command, options.linear)},
     {"skip-bad", .help = "Mask photographs that cannot be used instead of stopping", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(import_command, options.skip_bad)},
     {0},
@@ -66,6 +70,7 @@ const weft_command weft_command_import = {
                      "Turns a folder of photographs that others made into a dataset. The folder holds "
                      "camera_pos.txt, light_pos.txt, image_size.txt and "
                      "light_power.txt beside NN.png (near light and camera), or a directions.csv, or "
+                     "an .lp file (one view, many lamps), or "
                      "files named by their angles, such as "
                      "tv045_pv090/tl030_pl120_tv045_pv090.png (light and camera far away).",
     .options = option_table,

@@ -1,3 +1,4 @@
+#include "base/atomic_file.h"
 #include "btf/session/lens.h"
 #include "cli/arguments.h"
 #include "registration/hand/hand.h"
@@ -5,10 +6,11 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <unistd.h>
 
 typedef struct photographs_command {
     weft_common_options common;
-    const char *input, *output, *report_folder, *lens;
+    const char *input, *output, *report_folder, *lens, *lights;
     double opening_mm, paper_reflectance;
     weft_hand_settings settings;
 } photographs_command;
@@ -33,6 +35,11 @@ static const weft_option option_table[] = {
     {"balls", .argument = "MM", .help = "Diameter of the mirror balls on the sheet; 0: there are none (default: 20)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, settings.ball_diameter_mm), .low = 0,
      .high = 1000},
+    {"pin", .argument = "MM", .help = "Height of the pin on the sheet; 0: there is none (default: 30)",
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, settings.pin_height_mm), .low = 0,
+     .high = 200},
+    {"lights", .argument = "FILE", .help = "What is known of the lamps: an .lp file, or a table (.csv)",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(photographs_command, lights)},
     {"paper", .argument = "SHARE", .help = "Reflectance of the bare paper, 0 to 1 (default: 0.85)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(photographs_command, paper_reflectance), .low = 0.01, .high = 1},
     {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_TEXT,
@@ -55,11 +62,20 @@ static void say_outcome(const photographs_command *command, const weft_hand *han
 {
     const weft_camera *camera = &hand->lens.camera;
     say_left_out(command, hand);
+    for (int i = 0; i < hand->notes.count; i++)
+        weft_command_say(&command->common, "%s", hand->notes.line[i]);
     weft_command_say(&command->common,
                      "lens: focal length %.1f pixels, k1 %.4f, k2 %.4f; markers lie %.2f pixels off, RMS", camera->fx,
                      camera->k1, camera->k2, hand->lens.rms_px);
     weft_command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %.0f s", command->output,
                      command->settings.width, command->settings.height, hand->used_count, hand->count, hand->seconds);
+}
+
+/* Hours of work must not end at a folder that cannot be written. */
+static weft_code check_report_folder(const char *folder, weft_error *error)
+{
+    WEFT_TRY(weft_make_folder(folder, error));
+    return access(folder, W_OK | X_OK) == 0 ? WEFT_OK : weft_fail_errno(error, "write into", folder);
 }
 
 static int run(int argc, char **argv)
@@ -72,9 +88,16 @@ static int run(int argc, char **argv)
     weft_hand hand;
     weft_error error = {0};
     weft_lens lens;
+    weft_light_list lights = {0};
     weft_code code = command.lens ? weft_lens_read(command.lens, &lens, &error) : WEFT_OK;
     if (command.lens)
         command.settings.lens = &lens.camera;
+    if (code == WEFT_OK && command.lights)
+        code = weft_light_list_read(command.lights, &lights, &error);
+    if (command.lights)
+        command.settings.lights = &lights;
+    if (code == WEFT_OK && command.report_folder)
+        code = check_report_folder(command.report_folder, &error);
     if (code == WEFT_OK)
         code = weft_hand_register(command.input, command.output, &command.settings, &progress, &hand, &error);
     if (code == WEFT_OK) {
@@ -83,6 +106,7 @@ static int run(int argc, char **argv)
             code = weft_hand_report(command.report_folder, command.output, &command.settings, &hand, &error);
         weft_hand_free(&hand);
     }
+    weft_light_list_free(&lights);
     return weft_command_exit("photographs", &command.common, code, &error);
 }
 

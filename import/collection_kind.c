@@ -1,5 +1,6 @@
 #include "import/readers.h"
 
+#include <stdlib.h>
 #include <sys/stat.h>
 
 static weft_code check_folder(const char *folder, weft_error *error)
@@ -15,13 +16,21 @@ static weft_code check_folder(const char *folder, weft_error *error)
     return WEFT_OK;
 }
 
-static weft_code list_photographs(const char *folder, weft_collection *collection, weft_error *error)
+static weft_code list_photographs(const char *folder, const char *lights, weft_collection *collection,
+                                  weft_error *error)
 {
+    if (lights)
+        return weft_collection_of_lights(folder, lights, collection, error);
     if (weft_folder_holds(folder, "camera_pos.txt"))
         return weft_collection_of_positions(folder, collection, error);
     if (weft_folder_holds(folder, "directions.csv"))
         return weft_collection_of_table(folder, collection, error);
-    return weft_collection_of_names(folder, collection, error);
+    char *list;
+    int count;
+    WEFT_TRY(weft_light_list_in(folder, &list, &count, error));
+    free(list);
+    return count > 0 ? weft_collection_of_lights(folder, NULL, collection, error)
+                     : weft_collection_of_names(folder, collection, error);
 }
 
 static int count_present(const weft_collection *collection)
@@ -32,16 +41,17 @@ static int count_present(const weft_collection *collection)
     return count;
 }
 
-weft_code weft_collection_open(const char *folder, weft_collection *collection, weft_error *error)
+weft_code weft_collection_open(const char *folder, const char *lights, weft_collection *collection, weft_error *error)
 {
     *collection = (weft_collection){0};
     weft_code code = check_folder(folder, error);
     if (code == WEFT_OK)
-        code = list_photographs(folder, collection, error);
+        code = list_photographs(folder, lights, collection, error);
     if (code == WEFT_OK && count_present(collection) == 0)
-        code = weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' holds no photograph: neither positions, nor directions.csv, nor names like %s", folder,
-                         "tv045_pv090/tl030_pl120_tv045_pv090.png");
+        code = weft_fail(
+            error, WEFT_BAD_INPUT,
+            "'%s' holds no photograph: neither positions, nor directions.csv, nor an .lp file, nor names like %s",
+            folder, "tv045_pv090/tl030_pl120_tv045_pv090.png");
     if (code != WEFT_OK)
         weft_collection_free(collection);
     return code;

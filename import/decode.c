@@ -12,13 +12,14 @@ static const double largest_half = 65504;
 /* ---- Colour and light of a pixel ---- */
 
 /* Linear light in place; marks clipped pixels. Float images have no known clipping level. */
-static void linearise(weft_image *image, double saturated_at, uint8_t *clipped)
+static void linearise(weft_image *image, const weft_decoding *decoding, uint8_t *clipped)
 {
     size_t count = (size_t)image->width * (size_t)image->height;
     for (size_t i = 0; i < count; i++) {
         float *pixel = image->pixels + 3 * i;
-        clipped[i] = pixel[0] >= saturated_at || pixel[1] >= saturated_at || pixel[2] >= saturated_at;
-        for (int c = 0; c < 3; c++)
+        double brightest = fmax(fmax((double)pixel[0], (double)pixel[1]), (double)pixel[2]);
+        clipped[i] = brightest >= decoding->saturated_at;
+        for (int c = 0; c < 3 && !decoding->linear; c++)
             pixel[c] = weft_linear_of_srgb(pixel[c]);
     }
 }
@@ -150,7 +151,7 @@ static weft_code convert(const weft_decoding *decoding, const char *path, const 
     if (!clipped)
         return weft_fail_memory(error, "mask", count);
     if (kind == WEFT_IMAGE_INTEGER)
-        linearise(image, decoding->saturated_at, clipped);
+        linearise(image, decoding, clipped);
     if (decoding->distance == WEFT_NEAR)
         divide_by_near_light(decoding, photograph, image);
     weft_code code = check_finite(image, path, error);

@@ -11,6 +11,7 @@ typedef struct weft_decoding {
     int source_width, source_height; /* pixels */
     int width, height;               /* texels */
     double saturated_at;             /* encoded, integer images only */
+    bool linear;                     /* integer images hold linear values */
     weft_distance distance;
     double pixel_pitch_mm; /* of the photograph; near light only */
 } weft_decoding;

@@ -183,6 +183,7 @@ static weft_code import_collection(import_run *run, const char *output, weft_err
 {
     weft_decoding *decoding = &run->decoding;
     decoding->saturated_at = run->options->saturated_at;
+    decoding->linear = run->options->linear;
     decoding->distance = run->collection->distance;
     WEFT_TRY(probe_size(run->collection, run->source, run->options->skip_bad, decoding, error));
     WEFT_TRY(choose_size(run->options, decoding, error));
@@ -195,7 +196,7 @@ weft_code weft_import(const char *source, const char *output, const weft_import_
 {
     *report = (weft_import_report){0};
     weft_collection collection;
-    WEFT_TRY(weft_collection_open(source, &collection, error));
+    WEFT_TRY(weft_collection_open(source, options->lights, &collection, error));
     import_run run = {
         .source = source, .options = options, .progress = progress, .report = report, .collection = &collection};
     report->notes = collection.notes;

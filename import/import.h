@@ -3,7 +3,8 @@
  *   - a folder with positions: NN.png, camera_pos.txt, light_pos.txt, image_size.txt, light_power.txt
  *     (a near light and a near camera);
  *   - a folder of photographs named by their angles, in the layouts of UTIA (tv045_pv090/tl030_pl120_tv045_pv090.png)
- * and UBO2003 ("00008 tl000 pl000 tv030 pv030.jpg"), or listed in a directions.csv (far light and camera). */
+ * and UBO2003 ("00008 tl000 pl000 tv030 pv030.jpg"), or listed in a directions.csv (far light and camera);
+ *   - a folder with an .lp file: one view, many lamps (far light and camera). */
 #ifndef WEFT_IMPORT_IMPORT_H
 #define WEFT_IMPORT_IMPORT_H
 
@@ -20,6 +21,9 @@ typedef struct weft_import_options {
     double saturated_at;
     /* What photographs of a far light hold; those of a near light always give reflectance times cosine. */
     weft_values values;
+    bool linear; /* integer images hold linear values, not sRGB */
+    const char
+        *lights;   /* a list of lamps (base/text/light_list.h) for photographs of one view; NULL: as the folder says */
     bool skip_bad; /* mask photographs that cannot be used, instead of failing */
 } weft_import_options;
 
@@ -39,9 +43,10 @@ weft_import_options weft_import_defaults(void);
 /* Reads the collection in folder `source` and writes the dataset `output` atomically. Photographs are decoded in
  * parallel (OpenMP); memory holds one photograph a thread.
  *
- * Integer images are decoded from sRGB, float images are linear. A smaller width averages exact areas in linear light;
- * a texel with any clipped pixel under it is masked WEFT_MASK_SATURATED. A near light of radiant intensity I at
- * distance d gives reflectance times cosine = pi p d^2 / I for a linear pixel value p = BRDF cos(theta) I / d^2.
+ * Integer images are decoded from sRGB unless they are linear, float images are linear. A smaller width averages exact
+ * areas in linear light; a texel with any clipped pixel under it is masked WEFT_MASK_SATURATED. A near light of radiant
+ * intensity I at distance d gives reflectance times cosine = pi p d^2 / I for a linear pixel value p = BRDF cos(theta)
+ * I / d^2.
  *
  * Errors: WEFT_BAD_INPUT naming the photograph or the table that cannot be used; WEFT_SYSTEM from writing. */
 weft_code weft_import(const char *source, const char *output, const weft_import_options *options,

@@ -4,10 +4,11 @@
 
 #include "import/collection.h"
 
-/* Recognises the kind of collection that a folder holds and lists its photographs. The caller frees with
+/* Recognises the kind of collection that a folder holds and lists its photographs; with a list of
+ * lamps `lights` (else NULL) it is one of photographs from one place. The caller frees with
  * weft_collection_free. Errors: WEFT_BAD_INPUT for a folder that holds none, or whose tables or names contradict
  * themselves. */
-weft_code weft_collection_open(const char *folder, weft_collection *collection, weft_error *error);
+weft_code weft_collection_open(const char *folder, const char *lights, weft_collection *collection, weft_error *error);
 
 /* ---- One function for every kind of collection; `collection` starts empty ---- */
 
@@ -15,7 +16,14 @@ weft_code weft_collection_open(const char *folder, weft_collection *collection, 
 weft_code weft_collection_of_positions(const char *folder, weft_collection *collection, weft_error *error);
 /* directions.csv with the columns file, theta_light_deg, phi_light_deg, theta_view_deg, phi_view_deg. */
 weft_code weft_collection_of_table(const char *folder, weft_collection *collection, weft_error *error);
+/* One view, and a list of the direction of the lamp of every photograph: `lights`, or the .lp file in the folder. */
+weft_code weft_collection_of_lights(const char *folder, const char *lights, weft_collection *collection,
+                                    weft_error *error);
 /* Photographs named by their angles, in the folder or one below. */
 weft_code weft_collection_of_names(const char *folder, weft_collection *collection, weft_error *error);
+
+/* The path of an .lp file in the folder, in new memory, NULL where there is none, and how many there are. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_light_list_in(const char *folder, char **path, int *count, weft_error *error);
 
 #endif

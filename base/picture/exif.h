@@ -15,6 +15,7 @@ typedef struct weft_exif {
     int width, height; /* pixels as stored, whatever the orientation */
     bool is_float;     /* half or float samples; else integers */
     int bits;          /* of a sample */
+    int orientation;   /* how the picture is shown: 1 as stored, 3, 6 or 8 turned; 1 where nothing is said */
     double exposure_s, f_number, iso;
     double focal_length_mm;
     double focal_length_35mm; /* of the same view on film of 36 mm x 24 mm */

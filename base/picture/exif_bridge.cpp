@@ -34,6 +34,7 @@ weft_code read_head(const char *path, weft_exif *exif, weft_error *error)
     exif->height = spec.height;
     exif->is_float = spec.format.is_floating_point();
     exif->bits = spec.get_int_attribute("oiio:BitsPerSample", (int)(8 * spec.format.size()));
+    exif->orientation = spec.get_int_attribute("Orientation", 1);
     exif->exposure_s = number_of(spec, {"ExposureTime"});
     exif->f_number = number_of(spec, {"FNumber"});
     exif->iso = number_of(

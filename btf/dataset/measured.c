@@ -1,5 +1,6 @@
 #include "btf/dataset/measured.h"
 
+#include <errno.h>
 #include <math.h>
 
 static const double tolerance_rad = WEFT_PI / 360;
@@ -81,19 +82,27 @@ static bool is_direction(weft_vec3 direction)
     return fabs(weft_length(direction) - 1) < 1e-3 && direction.z >= 0;
 }
 
-bool weft_measured_parse(const char *metadata, weft_measured *measured)
+weft_code weft_measured_parse(const char *metadata, bool *known, weft_measured *measured, weft_error *error)
 {
     weft_measured m = {0};
+    *known = false;
+    errno = 0;
     json_t *object = metadata ? json_loads(metadata, 0, NULL) : NULL, *own = json_object_get(object, "measured");
-    bool known =
+    bool is_short = metadata && !object && errno == ENOMEM;
+    errno = 0; /* jansson allocates to unpack, too */
+    bool says =
         own && json_unpack(own, "{s:[FFFF], s:[FFFF], s:[FFF], s:[FFF]}", "view", &m.view.axis.x, &m.view.axis.y,
                            &m.view.axis.z, &m.view.angle_rad, "light", &m.light.axis.x, &m.light.axis.y,
                            &m.light.axis.z, &m.light.angle_rad, "first_view", &m.first_view.x, &m.first_view.y,
                            &m.first_view.z, "first_light", &m.first_light.x, &m.first_light.y, &m.first_light.z) == 0;
+    is_short = is_short || (own && !says && errno == ENOMEM);
     json_decref(object);
+    if (is_short)
+        return weft_fail_memory(error, "metadata", strlen(metadata));
     m.view.angle_rad *= WEFT_PI / 180;
     m.light.angle_rad *= WEFT_PI / 180;
     *measured = m;
-    return known && is_direction(m.view.axis) && is_direction(m.light.axis) && is_direction(m.first_view) &&
-           is_direction(m.first_light);
+    *known = says && is_direction(m.view.axis) && is_direction(m.light.axis) && is_direction(m.first_view) &&
+             is_direction(m.first_light);
+    return WEFT_OK;
 }

@@ -27,7 +27,8 @@ bool weft_cone_holds(const weft_cone *cone, weft_vec3 direction);
  * a material keep it under "measured" (docs/reference/weft-format.md). NULL where memory is short. */
 json_t *weft_measured_pack(const weft_measured *measured);
 
-/* From the metadata of a material, JSON text or NULL; false where they do not say it. */
-bool weft_measured_parse(const char *metadata, weft_measured *measured);
+/* From the metadata of a material, JSON text or NULL; *known is false where they do not say it. Errors: WEFT_SYSTEM for
+ * memory. */
+weft_code weft_measured_parse(const char *metadata, bool *known, weft_measured *measured, weft_error *error);
 
 #endif

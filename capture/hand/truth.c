@@ -142,14 +142,27 @@ weft_code weft_snap_truth_write(const weft_snap_request *request, const weft_sna
 
 /* ---- Notes ---- */
 
+/* In the picture as it is shown: x right, y up, z to the camera. */
+static weft_vec3 in_picture(const weft_snap_shot *shot, weft_vec3 v)
+{
+    const double(*r)[3] = shot->pose.rotation;
+    double right = r[0][0] * v.x + r[0][1] * v.y + r[0][2] * v.z, down = r[1][0] * v.x + r[1][1] * v.y + r[1][2] * v.z;
+    double back = -(r[2][0] * v.x + r[2][1] * v.y + r[2][2] * v.z);
+    if (shot->orientation == 6)
+        return weft_vec3_of(-down, -right, back);
+    if (shot->orientation == 8)
+        return weft_vec3_of(down, right, back);
+    return weft_vec3_of(right, -down, back);
+}
+
 static void print_notes(const weft_snap_request *request, const weft_snap_shot *shot, FILE *stream)
 {
     if (request->set == WEFT_SNAP_TRIPOD)
         fprintf(stream, "%d\n", request->photograph_count);
     else
-        fputs("photograph,theta_deg,phi_deg\n", stream);
+        fputs("file,theta_view_deg,phi_view_deg\n", stream);
     for (int i = 0; i < request->photograph_count; i++) {
-        weft_vec3 light = weft_unit(shot[i].lamp.at);
+        weft_vec3 light = in_picture(&shot[i], weft_unit(shot[i].lamp.at));
         if (request->set == WEFT_SNAP_TRIPOD)
             fprintf(stream, "%s %.6f %.6f %.6f\n", shot[i].name, light.x, light.y, light.z);
         else

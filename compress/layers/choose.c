@@ -176,7 +176,7 @@ static weft_code try_both(trial *t, double error_of[2], weft_error *error)
 {
     size_t factors = (size_t)t->components->count * t->part->length;
     t->factor = aligned_alloc(ALIGNMENT, factors * sizeof *t->factor);
-    t->coefficient = malloc((size_t)t->part->texel_count * (size_t)t->components->count * sizeof *t->coefficient);
+    t->coefficient = calloc((size_t)t->part->texel_count * (size_t)t->components->count, sizeof *t->coefficient);
     weft_code code = t->factor && t->coefficient
                          ? try_kind(t, WEFT_LAYERS_OF_LIGHT, &error_of[0], error)
                          : weft_fail_memory(error, "factors of layers", factors * sizeof *t->factor);

@@ -2,6 +2,7 @@
 
 #include "compress/run/group_sums.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,7 @@ static weft_code allocate(const weft_dataset_layout *layout, weft_layer_images *
     images->light = malloc(count * sizeof *images->light);
     images->view = malloc(views * sizeof *images->view);
     images->cosine = malloc(count * sizeof *images->cosine);
-    images->weight = malloc(count * sizeof *images->weight);
+    images->weight = calloc(count, sizeof *images->weight);
     bool all = images->image && images->first && images->light && images->view && images->cosine && images->weight;
     return all ? WEFT_OK : weft_fail_memory(error, "images of layers", count * sizeof *images->light);
 }
@@ -33,12 +34,27 @@ void weft_layer_images_free(weft_layer_images *images)
     *images = (weft_layer_images){0};
 }
 
+/* Of the largest weight: an image that counts for less is left out, because the maps of the layers go through all
+ * others alike. */
+static const double least_weight = 0.01;
+
+/* What the dataset says that the samples of an image count for, as a share of the largest; 0: nothing. */
+static double weight_of(const weft_dataset_layout *layout, int image)
+{
+    const double *weight = layout->figure[WEFT_IMAGE_WEIGHT];
+    double largest = 0;
+    for (int i = 0; weight && i < layout->image_count; i++)
+        largest = fmax(largest, weight[i]);
+    double share = weight && largest > 0 ? weight[image] / largest : 1;
+    return share < least_weight ? 0 : share;
+}
+
 static void add_image(weft_layer_images *images, const weft_dataset_layout *layout, int image)
 {
     weft_vec3 light = weft_unit(layout->light[image]);
     images->image[images->image_count] = image;
     images->light[images->image_count] = light;
-    images->weight[images->image_count] = 1;
+    images->weight[images->image_count] = (float)sqrt(weight_of(layout, image));
     images->cosine[images->image_count++] = layout->values == WEFT_REFLECTANCE ? (float)light.z : 1.0f;
 }
 
@@ -46,13 +62,25 @@ static void add_view(weft_layer_images *images, const weft_dataset_layout *layou
 {
     int before = images->image_count;
     for (int image = 0; image < layout->image_count; image++) {
-        if (layout->view_of_image[image] == view && layout->light[image].z > 0 && !(held_out && held_out[image]))
+        if (layout->view_of_image[image] == view && layout->light[image].z > 0 && !(held_out && held_out[image]) &&
+            weight_of(layout, image) > 0)
             add_image(images, layout, image);
     }
     if (images->image_count == before)
         return;
     images->view[images->view_count] = weft_unit(layout->view[view]);
     images->first[++images->view_count] = (uint32_t)images->image_count;
+}
+
+/* Their mean square is 1, so that only ratios matter. */
+static void normalise_weights(weft_layer_images *images)
+{
+    double sum = 0;
+    for (int i = 0; i < images->image_count; i++)
+        sum += (double)images->weight[i] * (double)images->weight[i];
+    float scale = (float)sqrt(images->image_count / sum);
+    for (int i = 0; i < images->image_count; i++)
+        images->weight[i] *= scale;
 }
 
 weft_code weft_layer_images_create(const weft_dataset_layout *layout, const uint8_t *held_out,
@@ -67,7 +95,9 @@ weft_code weft_layer_images_create(const weft_dataset_layout *layout, const uint
                 add_view(images, layout, held_out, view);
         }
         images->length = (3 * (size_t)images->image_count + WHOLE_LANES - 1) / WHOLE_LANES * WHOLE_LANES;
-        if (images->image_count == 0)
+        if (images->image_count > 0)
+            normalise_weights(images);
+        else
             code = weft_fail(error, WEFT_BAD_USAGE, "no image is left to fit layers to");
     }
     if (code != WEFT_OK)

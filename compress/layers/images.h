@@ -4,7 +4,8 @@
 
 #include "btf/dataset/dataset.h"
 
-/* Those that are not held out, with light and view above the horizon. Views without such an image are left out. */
+/* Those that are not held out and have a weight, with light and view above the horizon. Views without such an image are
+ * left out. */
 typedef struct weft_layer_images {
     int image_count, view_count;
     size_t length; /* of a vector of samples: 3 image_count, rounded up to whole lanes */
@@ -14,7 +15,7 @@ typedef struct weft_layer_images {
     weft_vec3 *light; /* [image_count] unit */
     weft_vec3 *view;  /* [view_count] unit */
     float *cosine;    /* [image_count] what makes a sample reflectance times cosine */
-    float *weight;    /* [image_count] root of what the square of an error counts for; 1 at first */
+    float *weight;    /* [image_count] root of what the square of an error counts for; its mean square is 1 at first */
 } weft_layer_images;
 
 /* `held_out` [image_count] may be NULL. The caller frees. Errors: WEFT_BAD_USAGE where no image is left; WEFT_SYSTEM.

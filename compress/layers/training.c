@@ -144,7 +144,8 @@ weft_code weft_training_read(weft_dataset *dataset, const weft_layer_images *ima
 /* ---- Weights ---- */
 
 /* The mean of an image over the texels that have it. */
-static double grey_of(const weft_training *t, size_t image, double *square, double *count)
+static double grey_of(const weft_training *t, const weft_layer_images *images, size_t image, double *square,
+                      double *count)
 {
     double sum = 0, own = 0;
     for (size_t texel = 0; texel < (size_t)t->texel_count; texel++) {
@@ -152,8 +153,9 @@ static double grey_of(const weft_training *t, size_t image, double *square, doub
         if (!t->valid[texel * t->image_count + image])
             continue;
         for (int c = 0; c < 3; c++) {
-            sum += (double)sample[c];
-            *square += (double)sample[c] * (double)sample[c];
+            double value = (double)(sample[c] / images->weight[image]);
+            sum += value;
+            *square += value * value;
         }
         own += 3;
     }
@@ -165,13 +167,14 @@ void weft_training_weigh_for_screen(weft_training *t, weft_layer_images *images)
 {
     double square = 0, count = 1e-30;
     for (size_t i = 0; i < t->image_count; i++)
-        images->weight[i] = (float)grey_of(t, i, &square, &count);
+        grey_of(t, images, i, &square, &count);
     double toe = WEFT_SCREEN_TOE * sqrt(square / count) + 1e-30;
     for (size_t i = 0; i < t->image_count; i++) {
-        images->weight[i] = (float)sqrt(1 / (1 + (double)images->weight[i] / toe));
+        float factor = (float)sqrt(1 / (1 + grey_of(t, images, i, &square, &count) / toe));
+        images->weight[i] *= factor;
         for (size_t texel = 0; texel < (size_t)t->texel_count; texel++)
             for (size_t c = 0; c < 3; c++)
-                t->vector[texel * t->length + 3 * i + c] *= images->weight[i];
+                t->vector[texel * t->length + 3 * i + c] *= factor;
     }
 }
 

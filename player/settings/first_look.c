@@ -5,22 +5,42 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the request's material, or else its dataset, was measured from; false where it does not say. */
-static bool find_measured(const weft_settings *settings, weft_measured *measured)
+/* Memory that is short is an error; what is wrong with a file, its reader will say. */
+static weft_code of_reading(weft_code code)
+{
+    return code == WEFT_SYSTEM ? code : WEFT_OK;
+}
+
+static weft_code find_in_material(const char *path, bool *known, weft_measured *measured, weft_error *error)
 {
     char *metadata = NULL;
+    weft_code code = weft_material_read_metadata(path, &metadata, error);
+    if (code != WEFT_OK)
+        return of_reading(code);
+    code = weft_measured_parse(metadata, known, measured, error);
+    free(metadata);
+    return code;
+}
+
+static weft_code find_in_dataset(const char *path, bool *known, weft_measured *measured, weft_error *error)
+{
     weft_dataset *dataset = NULL;
-    bool known = false;
-    if (settings->material && weft_material_read_metadata(settings->material, &metadata, NULL) == WEFT_OK) {
-        known = weft_measured_parse(metadata, measured);
-        free(metadata);
-    } else if (!settings->material && settings->dataset &&
-               weft_dataset_open(settings->dataset, &dataset, NULL) == WEFT_OK) {
-        *measured = weft_measured_of(weft_dataset_get_layout(dataset));
-        known = true;
-        weft_dataset_close(dataset);
-    }
-    return known;
+    weft_code code = weft_dataset_open(path, &dataset, error);
+    if (code != WEFT_OK)
+        return of_reading(code);
+    *measured = weft_measured_of(weft_dataset_get_layout(dataset));
+    *known = true;
+    weft_dataset_close(dataset);
+    return WEFT_OK;
+}
+
+/* What the request's material, or else its dataset, was measured from; *known is false where it does not say. */
+static weft_code find_measured(const weft_settings *settings, bool *known, weft_measured *measured, weft_error *error)
+{
+    *known = false;
+    if (settings->material)
+        return find_in_material(settings->material, known, measured, error);
+    return settings->dataset ? find_in_dataset(settings->dataset, known, measured, error) : WEFT_OK;
 }
 
 static bool is_plane(const weft_scene_request *request)
@@ -73,7 +93,9 @@ weft_code weft_first_look(weft_scene_request *request, weft_error *error)
     if (is_plane(request) && !request->has_camera)
         settings->scene.orbit =
             (weft_orbit){.azimuth_rad = weft_rad_of_deg(-90), .elevation_rad = weft_rad_of_deg(75), .distance = 3};
-    if (!find_measured(settings, &measured) || holds_default(&measured))
+    bool known;
+    WEFT_TRY(find_measured(settings, &known, &measured, error));
+    if (!known || holds_default(&measured))
         return WEFT_OK;
     if (!weft_scene_request_has(request, "mesh"))
         WEFT_TRY(lay_flat(settings, error));

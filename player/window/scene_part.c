@@ -48,7 +48,7 @@ static weft_code read_material(part *p, weft_error *error)
 {
     WEFT_TRY(weft_material_read(p->path, &p->material, error));
     p->width_mm = p->material.level[0].width * p->material.texel_pitch_mm;
-    p->knows_measured = weft_measured_parse(p->material.metadata, &p->measured);
+    WEFT_TRY(weft_measured_parse(p->material.metadata, &p->knows_measured, &p->measured, error));
     free(p->stage->metadata);
     p->stage->metadata = p->material.metadata;
     p->material.metadata = NULL;

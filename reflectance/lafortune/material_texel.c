@@ -1,6 +1,8 @@
 /* Evaluation of a material: the reference of the player's shader. */
 #include "reflectance/lafortune/lafortune.h"
 
+#include "btf/material/neighbours.h"
+
 #include <stdbool.h>
 
 static weft_real rho_of(const weft_material_level *level, size_t texel, int channel)
@@ -128,31 +130,17 @@ static weft_rgba mix(weft_rgba a, weft_rgba b, weft_real share)
                        a.a + share * (b.a - a.a)};
 }
 
-/* Two neighbouring texels of a repeated row or column, and how far the place between them lies toward the second. */
-typedef struct neighbours {
-    size_t low, high;
-    weft_real share;
-} neighbours;
-
-/* `coordinate` in units of the material; texel centres lie at half texels. */
-static neighbours neighbours_of(weft_real coordinate, int count)
-{
-    weft_real position = (coordinate - floor(coordinate)) * (weft_real)count - (weft_real)0.5;
-    weft_real cell = floor(position);
-    int low = ((int)cell + count) % count;
-    return (neighbours){(size_t)low, (size_t)((low + 1) % count), position - cell};
-}
-
 static weft_rgba level_value(const weft_material *material, const table_corners *corners, int level, weft_real u,
                              weft_real v, weft_vec3 light, weft_vec3 view)
 {
     const weft_material_level *at = &material->level[level];
-    neighbours column = neighbours_of(u, at->width), row = neighbours_of(-v, at->height);
-    size_t top = row.low * (size_t)at->width, bottom = row.high * (size_t)at->width;
-    weft_rgba upper = mix(texel_value(material, at, corners, top + column.low, light, view),
-                          texel_value(material, at, corners, top + column.high, light, view), column.share);
-    weft_rgba lower = mix(texel_value(material, at, corners, bottom + column.low, light, view),
-                          texel_value(material, at, corners, bottom + column.high, light, view), column.share);
+    weft_neighbours column = weft_neighbours_of(u, at->width), row = weft_neighbours_of(-v, at->height);
+    size_t top = (size_t)row.low * (size_t)at->width, bottom = (size_t)row.high * (size_t)at->width;
+    size_t left = (size_t)column.low, right = (size_t)column.high;
+    weft_rgba upper = mix(texel_value(material, at, corners, top + left, light, view),
+                          texel_value(material, at, corners, top + right, light, view), column.share);
+    weft_rgba lower = mix(texel_value(material, at, corners, bottom + left, light, view),
+                          texel_value(material, at, corners, bottom + right, light, view), column.share);
     return mix(upper, lower, row.share);
 }
 

@@ -1,6 +1,7 @@
 #include "reflectance/layers/layers.h"
 
 #include "btf/direction/square_map.h"
+#include "btf/material/neighbours.h"
 #include "reflectance/layers/half_vector.h"
 
 #include <string.h>
@@ -88,32 +89,17 @@ weft_rgb weft_layers_texel(const weft_layers *layers, int count, const float *fa
 
 /* ---- Texture coordinates ---- */
 
-/* Two neighbouring texels of a repeated row or column, how far the place between them lies toward the second, and the
- * nearer one. */
-typedef struct neighbours {
-    int low, high, nearest;
-    float share;
-} neighbours;
-
-static neighbours neighbours_of(weft_real coordinate, int count)
-{
-    weft_real position = (coordinate - floor(coordinate)) * (weft_real)count - (weft_real)0.5;
-    weft_real cell = floor(position);
-    int low = ((int)cell + count) % count, high = (low + 1) % count;
-    float share = (float)(position - cell);
-    return (neighbours){low, high, share < 0.5f ? low : high, share};
-}
-
 /* Adds the coefficients of a level and returns its ceiling. */
 static float add_level(const weft_layers_level *level, int count, weft_real u, weft_real v, float weight, float *sum)
 {
-    neighbours column = neighbours_of(u, level->width), row = neighbours_of(-v, level->height);
-    float upper = weight * (1 - row.share), lower = weight * row.share;
-    add_coefficients(level, count, column.low, row.low, upper * (1 - column.share), sum);
-    add_coefficients(level, count, column.high, row.low, upper * column.share, sum);
-    add_coefficients(level, count, column.low, row.high, lower * (1 - column.share), sum);
-    add_coefficients(level, count, column.high, row.high, lower * column.share, sum);
-    return ceiling_at(level, column.nearest, row.nearest);
+    weft_neighbours column = weft_neighbours_of(u, level->width), row = weft_neighbours_of(-v, level->height);
+    float right = (float)column.share, below = (float)row.share;
+    float upper = weight * (1 - below), lower = weight * below;
+    add_coefficients(level, count, column.low, row.low, upper * (1 - right), sum);
+    add_coefficients(level, count, column.high, row.low, upper * right, sum);
+    add_coefficients(level, count, column.low, row.high, lower * (1 - right), sum);
+    add_coefficients(level, count, column.high, row.high, lower * right, sum);
+    return ceiling_at(level, right < 0.5f ? column.low : column.high, below < 0.5f ? row.low : row.high);
 }
 
 weft_rgb weft_layers_sample(const weft_layers *layers, int count, const float *factor, weft_real level, weft_real u,

@@ -13,10 +13,23 @@ static const double spot_error_px = 0.2, least_deviation_rad = 0.002;
 /* Of the outline: beyond it lies the paper. */
 static const double inner_share = 0.97;
 
+/* What a ball shows of the sheet beside it can be as bright as the lamp where the file is clipped. So only what it
+ * mirrors from above counts: where the mirrored ray rises more than this. */
+static const double least_rise = 0.07;
+
 /* The pixels of the outline, as a disc in the photograph. */
 typedef struct disc {
     double x, y, radius;
 } disc;
+
+/* A ball before the camera. */
+typedef struct sight {
+    const weft_camera *camera;
+    const weft_pose *pose;
+    weft_vec3 eye, centre;
+    double radius_mm;
+    disc outline;
+} sight;
 
 static weft_vec3 in_camera(const weft_pose *pose, weft_vec3 p)
 {
@@ -52,6 +65,27 @@ static weft_vec3 ray_of(const weft_camera *camera, const weft_pose *pose, double
                                   r[0][2] * a + r[1][2] * b + r[2][2]));
 }
 
+/* How the ray of a pixel meets the ball: the cosine of its incidence, and how much the mirrored ray rises. False where
+ * it passes. */
+static bool meet_ball(const sight *s, double x, double y, double *cosine, double *rise)
+{
+    weft_vec3 ray = ray_of(s->camera, s->pose, x, y), offset = weft_subtract(s->eye, s->centre);
+    double half = weft_dot(offset, ray);
+    double root = half * half - weft_dot(offset, offset) + s->radius_mm * s->radius_mm;
+    if (!(root > 0))
+        return false;
+    weft_vec3 normal = weft_scale(weft_add(offset, weft_scale(ray, -half - sqrt(root))), 1 / s->radius_mm);
+    *cosine = -weft_dot(ray, normal);
+    *rise = ray.z + 2 * *cosine * normal.z;
+    return true;
+}
+
+static bool shows_above(const sight *s, int x, int y)
+{
+    double cosine, rise;
+    return meet_ball(s, x, y, &cosine, &rise) && rise > least_rise;
+}
+
 typedef struct spot {
     double x, y, weight, sum; /* sum over all pixels of the disc */
     long pixels, disc_pixels;
@@ -64,11 +98,11 @@ static bool in_disc(const disc *d, int x, int y)
     return (x - d->x) * (x - d->x) + (y - d->y) * (y - d->y) <= d->radius * d->radius;
 }
 
-static void find_brightest(const weft_light_values *values, const disc *d, const int box[4], spot *s)
+static void find_brightest(const weft_light_values *values, const sight *ball, const int box[4], spot *s)
 {
     for (int y = box[1]; y <= box[3]; y++) {
         for (int x = box[0]; x <= box[2]; x++) {
-            if (!in_disc(d, x, y))
+            if (!in_disc(&ball->outline, x, y) || !shows_above(ball, x, y))
                 continue;
             double value = brightness(values, x, y);
             s->sum += value;
@@ -80,13 +114,14 @@ static void find_brightest(const weft_light_values *values, const disc *d, const
 }
 
 /* The centre of what is bright around the brightest pixel. */
-static void weigh(const weft_light_values *values, const disc *d, const int box[4], spot *s)
+static void weigh(const weft_light_values *values, const sight *ball, const int box[4], spot *s)
 {
+    const disc *d = &ball->outline;
     double reach = fmax(2, d->radius * sqrt(largest_share));
     for (int y = box[1]; y <= box[3]; y++) {
         for (int x = box[0]; x <= box[2]; x++) {
             double value = brightness(values, x, y);
-            if (!in_disc(d, x, y) || value < spot_share * s->brightest)
+            if (!in_disc(d, x, y) || value < spot_share * s->brightest || !shows_above(ball, x, y))
                 continue;
             s->pixels++;
             if (hypot(x - s->at_x, y - s->at_y) > reach)
@@ -106,15 +141,21 @@ weft_highlight weft_ball_highlight(const weft_camera *camera, const weft_pose *p
         !(d.x + d.radius <= values->width - 2) || !(d.y + d.radius <= values->height - 2))
         return none;
     d.radius *= inner_share;
+    const sight ball = {
+        camera,          pose, weft_pose_camera_position(pose), weft_vec3_of(place[0], place[1], diameter_mm / 2),
+        diameter_mm / 2, d};
     const int box[4] = {(int)(d.x - d.radius), (int)(d.y - d.radius), (int)(d.x + d.radius + 1),
                         (int)(d.y + d.radius + 1)};
     spot s = {0};
-    find_brightest(values, &d, box, &s);
-    weigh(values, &d, box, &s);
+    find_brightest(values, &ball, box, &s);
+    weigh(values, &ball, box, &s);
     if (!(s.brightest > least_contrast * s.sum / (double)s.disc_pixels) ||
         (double)s.pixels > largest_share * (double)s.disc_pixels)
         return none;
-    /* The ball's normal turns by 1 / radius a pixel, and what it mirrors by twice that. */
-    double deviation_rad = hypot(least_deviation_rad, 2 * spot_error_px / d.radius);
+    /* The ball's normal turns by 1 / radius a pixel, more toward the rim, and what it mirrors by twice that. */
+    double cosine, rise;
+    if (!meet_ball(&ball, s.x / s.weight, s.y / s.weight, &cosine, &rise))
+        return none;
+    double deviation_rad = hypot(least_deviation_rad, 2 * spot_error_px / (d.radius * cosine));
     return (weft_highlight){true, ray_of(camera, pose, s.x / s.weight, s.y / s.weight), deviation_rad};
 }

@@ -25,11 +25,13 @@ typedef struct work {
     weft_paper_places places;
     weft_lamp_evidence *evidence; /* [count] */
     weft_reduced_sight sight;     /* while poses are refined */
+    weft_pin_area pin_area;
+    float **pin_patch; /* [count] around the pin; NULL: none */
 } work;
 
 weft_hand_settings weft_hand_defaults(void)
 {
-    return (weft_hand_settings){weft_target_printed(50), 256, 256, 20, false, false, 250.0 / 255, NULL};
+    return (weft_hand_settings){weft_target_printed(50), 256, 256, 20, 30, false, false, 250.0 / 255, NULL, NULL};
 }
 
 void weft_hand_free(weft_hand *hand)
@@ -40,6 +42,7 @@ void weft_hand_free(weft_hand *hand)
         weft_image_free(&hand->photograph[i].rectified);
     }
     free(hand->photograph);
+    weft_lines_free(&hand->notes);
     *hand = (weft_hand){0};
 }
 
@@ -211,6 +214,10 @@ static weft_code look_for_light(work *w, int index, const weft_light_values *val
         weft_target_ball(&w->settings->target, ball, place);
         evidence->highlight[ball] = weft_ball_highlight(camera, &p->pose, values, place, w->settings->ball_diameter_mm);
     }
+    if (w->settings->lights)
+        evidence->listed = weft_listed_lamp_of(w->settings->lights, p);
+    if (w->pin_patch)
+        return weft_pin_patch(&w->pin_area, camera, &p->homography, values, &w->pin_patch[index], error);
     return WEFT_OK;
 }
 
@@ -296,6 +303,43 @@ static weft_code judge_photographs(work *w, weft_error *error)
     return WEFT_OK;
 }
 
+/* A pin is looked for unless the lamp shines from the camera: then it hides its own shadow. */
+static weft_code prepare_pin(work *w, weft_error *error)
+{
+    if (!(w->settings->pin_height_mm > 2 * weft_pin_head_radius_mm) || w->settings->flash)
+        return WEFT_OK;
+    w->pin_area = weft_pin_area_of(&w->settings->target, w->settings->pin_height_mm);
+    w->pin_patch = calloc((size_t)w->hand->count, sizeof *w->pin_patch);
+    return w->pin_patch ? WEFT_OK : weft_fail_memory(error, "shadows", (size_t)w->hand->count * sizeof *w->pin_patch);
+}
+
+static void free_pin(work *w)
+{
+    for (int i = 0; w->pin_patch && i < w->hand->count; i++)
+        free(w->pin_patch[i]);
+    free(w->pin_patch);
+    w->pin_patch = NULL;
+}
+
+static weft_code find_pin(work *w, weft_error *error)
+{
+    size_t count = (size_t)w->hand->count;
+    weft_vec3 *eye = malloc(count * sizeof *eye);
+    weft_pin_shadow *shadow = malloc(count * sizeof *shadow);
+    weft_code code = WEFT_OK;
+    if (!eye || !shadow)
+        code = weft_fail_memory(error, "shadows", count * sizeof *shadow);
+    for (size_t i = 0; code == WEFT_OK && i < count; i++)
+        eye[i] = weft_pose_camera_position(&w->hand->photograph[i].pose);
+    if (code == WEFT_OK)
+        code = weft_pin_find(&w->pin_area, &w->settings->target, eye, w->pin_patch, w->hand->count, shadow, error);
+    for (size_t i = 0; code == WEFT_OK && i < count; i++)
+        w->evidence[i].pin = shadow[i];
+    free(eye);
+    free(shadow);
+    return code;
+}
+
 static weft_code find_lamps(work *w, weft_error *error)
 {
     weft_hand *hand = w->hand;
@@ -314,6 +358,7 @@ static weft_code find_lamps(work *w, weft_error *error)
                                  .count = used,
                                  .evidence = evidence,
                                  .ball_diameter_mm = w->settings->ball_diameter_mm,
+                                 .pin_height_mm = w->settings->pin_height_mm,
                                  .corner_radius_squared = corner_radius_squared(&hand->lens.camera),
                                  .flash = w->settings->flash,
                                  .tone_unknown = hand->tone_found};
@@ -360,11 +405,30 @@ static weft_code refine_and_sample(work *w, weft_error *error)
     return code;
 }
 
+/* Balls and pin have true sizes, the sheet has what --opening says: where they contradict the paper, one is wrong. */
+static weft_code note_misfits(weft_hand *hand, weft_error *error)
+{
+    const double most = 3;
+    if (hand->lamps.ball_misfit > most)
+        WEFT_TRY(weft_lines_add(&hand->notes, error,
+                                "the highlights on the balls lie %.0f standard errors off, median: is the opening, or "
+                                "the diameter of the balls, what was said?",
+                                hand->lamps.ball_misfit));
+    if (hand->lamps.pin_misfit > most)
+        return weft_lines_add(&hand->notes, error,
+                              "the shadows of the pin lie %.0f standard errors off, median: is the opening, or the "
+                              "height of the pin, what was said?",
+                              hand->lamps.pin_misfit);
+    return WEFT_OK;
+}
+
 static weft_code run(work *w, const char *output, weft_error *error)
 {
     weft_hand *hand = w->hand;
     WEFT_TRY(list_photographs(w, error));
     WEFT_TRY(check_enough(w, "can be read", error));
+    if (w->settings->lights)
+        WEFT_TRY(weft_listed_check(w->settings->lights, hand->photograph, hand->count, error));
     const weft_exif *common = common_size(hand);
     hand->tone_found = !w->settings->linear && !common->is_float;
     hand->tone = hand->tone_found ? weft_tone_srgb() : weft_tone_linear();
@@ -373,11 +437,18 @@ static weft_code run(work *w, const char *output, weft_error *error)
     WEFT_TRY(weft_lens_estimate_from(hand->photograph, hand->count, common->width, common->height, w->settings->lens,
                                      &hand->lens, error));
     WEFT_TRY(weft_paper_places_create(&w->settings->target, &w->places, error));
+    WEFT_TRY(prepare_pin(w, error));
     WEFT_TRY(refine_and_sample(w, error));
+    if (w->pin_patch)
+        WEFT_TRY(find_pin(w, error));
+    free_pin(w);
     leave_out_paperless(w);
     WEFT_TRY(check_enough(w, "can be used", error));
     WEFT_TRY(find_lamps(w, error));
     leave_out_underexposed(hand);
+    WEFT_TRY(note_misfits(hand, error));
+    if (w->settings->lights)
+        WEFT_TRY(weft_listed_compare(w->settings->lights, hand->photograph, hand->count, &hand->notes, error));
     WEFT_TRY(check_enough(w, "can be used", error));
     return weft_hand_write_dataset(w->folder, output, w->settings, w->progress, hand, error);
 }
@@ -392,6 +463,7 @@ weft_code weft_hand_register(const char *folder, const char *output, const weft_
     for (int i = 0; w.evidence && i < hand->count; i++)
         free(w.evidence[i].paper.sample);
     free(w.evidence);
+    free_pin(&w);
     weft_paper_places_free(&w.places);
     hand->used_count = count_used(hand);
     hand->seconds = weft_now_s() - began_s;

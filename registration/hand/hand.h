@@ -10,12 +10,14 @@
 
 typedef struct weft_hand_settings {
     weft_target target;
-    int width, height;       /* texels */
-    double ball_diameter_mm; /* 0: no balls stand on the sheet */
-    bool flash;              /* the lamp is fixed to the camera */
-    bool linear;             /* integer files hold linear values; else a tone curve is found */
-    double clipped_at;       /* encoded value of an integer file, 0..1, from which a sample counts as clipped */
-    const weft_camera *lens; /* NULL: found in the photographs */
+    int width, height;             /* texels */
+    double ball_diameter_mm;       /* 0: no balls stand on the sheet */
+    double pin_height_mm;          /* to the top of its head; 0: no pin stands on the sheet */
+    bool flash;                    /* the lamp is fixed to the camera */
+    bool linear;                   /* integer files hold linear values; else a tone curve is found */
+    double clipped_at;             /* encoded value of an integer file, 0..1, from which a sample counts as clipped */
+    const weft_camera *lens;       /* NULL: found in the photographs */
+    const weft_light_list *lights; /* what is known of lamps and views beforehand; NULL: nothing */
 } weft_hand_settings;
 
 /* What came of it. Freed with weft_hand_free. */
@@ -27,10 +29,12 @@ typedef struct weft_hand {
     weft_tone_curve tone;
     bool tone_found;          /* else the files are linear */
     weft_lamp_solution lamps; /* without places: those are in the photographs */
+    weft_lines notes;         /* what the user should know, a line each */
     double seconds;
 } weft_hand;
 
-/* An opening of 50 mm, 256 x 256 texels, balls of 20 mm, a lamp that moves freely, clipped from 250/255. */
+/* An opening of 50 mm, 256 x 256 texels, balls of 20 mm, a pin of 30 mm, a lamp that moves freely, clipped from
+ * 250/255. */
 weft_hand_settings weft_hand_defaults(void);
 
 /* Registers the image files in `folder` into the dataset `output` (near lights and cameras, reflectance times cosine).

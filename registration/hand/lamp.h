@@ -5,7 +5,9 @@
 #define WEFT_REGISTRATION_HAND_LAMP_H
 
 #include "registration/hand/ball.h"
+#include "registration/hand/listed.h"
 #include "registration/hand/paper.h"
+#include "registration/hand/pin.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -19,6 +21,8 @@ typedef struct weft_lamp_evidence {
     weft_pose pose;
     weft_paper_samples paper;
     weft_highlight highlight[WEFT_TARGET_BALL_COUNT];
+    weft_pin_shadow pin;
+    weft_listed_lamp listed;
     double exposure; /* time x sensitivity / f-number^2 as the camera wrote it; 0: it wrote none */
 } weft_lamp_evidence;
 
@@ -28,6 +32,7 @@ typedef struct weft_lamp_problem {
     int count;
     const weft_lamp_evidence *evidence; /* [count] */
     double ball_diameter_mm;            /* 0: no balls */
+    double pin_height_mm;               /* 0: no pin */
     double corner_radius_squared;       /* of the photograph, in the units of the samples' radius_squared */
     bool flash;                         /* the lamp is fixed to the camera */
     bool tone_unknown;                  /* find the corrections of the tone curve, too */
@@ -39,17 +44,21 @@ typedef struct weft_lamp_solution {
     double vignetting[3];         /* as weft_camera has it */
     double ink;                   /* reflectance of ink over that of paper */
     double ball_shift_mm[WEFT_TARGET_BALL_COUNT][2]; /* from its place on the sheet */
-    double flash_mm[3];                              /* in the frame of the camera */
+    double pin_shift_mm[3];                          /* of its head */
+    double ball_misfit, pin_misfit; /* medians of how far highlights and shadows lie off, in standard errors */
+    double flash_mm[3];             /* in the frame of the camera */
 } weft_lamp_solution;
 
-/* Fills solution->place with a first guess: where the rays from the balls meet, else by a search over directions and
- * distances for what the paper shows; the flash at the camera. Pure. */
+/* Fills solution->place with a first guess: where the rays from the balls meet, else by the shadow of the pin, else as
+ * listed, else by a search over directions and distances for what the paper shows; a listed lamp must explain the paper
+ * nearly as well as that search does. The flash begins at the camera. Pure. */
 void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solution);
 
 /* Least squares over all photographs together (Ceres), from the guess. A sample of paper at place x under a lamp at L
  * obeys
  *     log light = log level + log(L_z |L|^2 / |L - x|^3) + log V(r^2) + [ink] log ink
- * after Lambert's and the inverse square law; a highlight obeys the law of reflection on a sphere. Shadows and stains
+ * after Lambert's and the inverse square law; a highlight obeys the law of reflection on a sphere; lamp, head of the
+ * pin and its shadow lie on a line; a list is believed within its standard errors. Shadows, stains and wrong rows
  * hardly count (Cauchy's weight). One lamp has one power: level |L|^2 / exposure is the same in all photographs, within
  * a tenth, where the camera wrote its exposure. Deviations from this model are smooth over the sheet, so the samples of
  * one photograph count as `independent_samples` in all. Errors: WEFT_SYSTEM. */

@@ -23,9 +23,12 @@ constexpr double paper_deviation = 0.01, ink_deviation = 0.05;
 constexpr double independent_samples = 30;
 
 /* What is known beforehand: lamps stand at some 700 mm, within a factor of e; a ball stands within a millimetre of its
- * place; tone curves differ from sRGB by some tens of percent; ink within a fifth. */
-constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, tone_deviation = 1;
+ * place, the head of the pin within half of one; tone curves differ from sRGB by some tens of percent; ink within a
+ * fifth. */
+constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, pin_deviation_mm = 0.5;
 constexpr double power_deviation = 0.1, ink_prior_deviation = 0.2, vignetting_deviation = 0.2, flash_deviation_mm = 60;
+
+constexpr double tone_deviation[WEFT_TONE_TERMS] = {0.5, 0.5, 0.25, 0.25, 0.125};
 
 using vec3 = std::array<double, 3>;
 
@@ -36,7 +39,7 @@ struct photograph_unknowns {
 
 /* Unknowns that all photographs share. */
 struct shared_unknowns {
-    double tone[WEFT_TONE_TERMS], vignetting[2], ink, power, shift[WEFT_TARGET_BALL_COUNT][2], flash[3];
+    double tone[WEFT_TONE_TERMS], vignetting[2], ink, power, shift[WEFT_TARGET_BALL_COUNT][2], pin_shift[3], flash[3];
 };
 
 /* From the lamp's unknowns to its place on the plate: itself, or moved with the camera. */
@@ -129,6 +132,54 @@ struct highlight_residual {
     }
 };
 
+/* The shadow of the pin's head: where the ray from the lamp through the head meets the sheet. Along the shadow and
+ * across it, which errs less. */
+struct pin_residual {
+    mounting mount;
+    vec3 head; /* by the drawing */
+    double shadow[2], along[2], along_deviation, across_deviation;
+
+    template <typename T> bool operator()(const T *unknown, const T *shift, T *residual) const
+    {
+        T lamp[3], off[2];
+        mount.place(unknown, lamp);
+        const T height = head[2] + shift[2], above = lamp[2] - height;
+        if (above <= T(0.05))
+            return false;
+        for (int axis = 0; axis < 2; axis++) {
+            const T at = head[(size_t)axis] + shift[axis];
+            off[axis] = at + (at - lamp[axis]) * height / above - shadow[axis];
+        }
+        residual[0] = (off[0] * along[0] + off[1] * along[1]) / along_deviation;
+        residual[1] = (off[1] * along[0] - off[0] * along[1]) / across_deviation;
+        return true;
+    }
+};
+
+/* What a list says: a direction across itself, or a place, whose distance errs as its direction does. */
+struct listed_residual {
+    mounting mount;
+    vec3 light;
+    bool is_position;
+    double deviation_rad;
+
+    template <typename T> bool operator()(const T *unknown, T *residual) const
+    {
+        T lamp[3], length = T(0);
+        mount.place(unknown, lamp);
+        for (int i = 0; i < 3; i++)
+            length += lamp[i] * lamp[i];
+        length = sqrt(length);
+        const double listed = std::sqrt(light[0] * light[0] + light[1] * light[1] + light[2] * light[2]);
+        for (size_t i = 0; i < 3; i++) {
+            const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+            residual[i] = (lamp[j] * light[k] - lamp[k] * light[j]) / (length * listed * deviation_rad);
+        }
+        residual[3] = is_position ? log(length / listed) / deviation_rad : T(0);
+        return true;
+    }
+};
+
 /* The power of the lamp: the level times the squared distance, for the exposure. */
 struct power_residual {
     mounting mount;
@@ -140,6 +191,16 @@ struct power_residual {
         mount.place(unknown, lamp);
         const T squared = lamp[0] * lamp[0] + lamp[1] * lamp[1] + lamp[2] * lamp[2];
         residual[0] = (level[1] + log(squared) - log_exposure - power[0]) / power_deviation;
+        return true;
+    }
+};
+
+/* Tone curves are smooth: the higher a power, the less of it. */
+struct tone_residual {
+    template <typename T> bool operator()(const T *tone, T *residual) const
+    {
+        for (int k = 0; k < WEFT_TONE_TERMS; k++)
+            residual[k] = tone[k] / tone_deviation[k];
         return true;
     }
 };
@@ -189,6 +250,8 @@ class lamp_search
         for (int i = 0; i < input->count; i++) {
             add_paper(i);
             add_highlights(i);
+            add_pin(i);
+            add_listed(i);
         }
         add_power();
         add_priors();
@@ -210,6 +273,7 @@ class lamp_search
             write_place(i);
         find_uncertainties();
         write_shared();
+        find_misfits();
         return WEFT_OK;
     }
 
@@ -219,6 +283,13 @@ class lamp_search
     std::vector<photograph_unknowns> own;
     shared_unknowns shared;
     ceres::Problem problem;
+
+    struct highlight_seen {
+        const highlight_residual *residual; /* of the problem */
+        int photograph, ball;
+    };
+    std::vector<highlight_seen> highlights;
+    std::vector<std::pair<const pin_residual *, int>> pins;
 
     double *lamp_of(int i)
     {
@@ -306,7 +377,41 @@ class lamp_search
             }
             problem.AddResidualBlock(new ceres::AutoDiffCostFunction<highlight_residual, 3, 3, 2>(residual),
                                      new ceres::CauchyLoss(3), lamp_of(i), shared.shift[ball]);
+            highlights.push_back({residual, i, ball});
         }
+    }
+
+    void add_pin(int i)
+    {
+        const weft_pin_shadow &seen = input->evidence[i].pin;
+        if (!seen.found || !(input->pin_height_mm > 0))
+            return;
+        double foot[2];
+        weft_target_pin(input->target, foot);
+        const double ux = seen.place[0] - foot[0], uy = seen.place[1] - foot[1], length = std::hypot(ux, uy);
+        auto residual = new pin_residual{
+            mount_of(i),
+            {foot[0] / unit_mm, foot[1] / unit_mm, (input->pin_height_mm - weft_pin_head_radius_mm) / unit_mm},
+            {seen.place[0] / unit_mm, seen.place[1] / unit_mm},
+            {ux / length, uy / length},
+            seen.along_mm / unit_mm,
+            seen.across_mm / unit_mm};
+        problem.AddResidualBlock(new ceres::AutoDiffCostFunction<pin_residual, 2, 3, 3>(residual),
+                                 new ceres::CauchyLoss(3), lamp_of(i), shared.pin_shift);
+        pins.emplace_back(residual, i);
+    }
+
+    void add_listed(int i)
+    {
+        const weft_listed_lamp &listed = input->evidence[i].listed;
+        const double scale = listed.is_position ? 1 / unit_mm : 1;
+        if (listed.found)
+            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<listed_residual, 4, 3>(new listed_residual{
+                                         mount_of(i),
+                                         {listed.light.x * scale, listed.light.y * scale, listed.light.z * scale},
+                                         listed.is_position,
+                                         listed.deviation_rad}),
+                                     new ceres::CauchyLoss(3), lamp_of(i));
     }
 
     double log_power(int i) const
@@ -344,13 +449,16 @@ class lamp_search
 
     void add_priors()
     {
-        add_prior<WEFT_TONE_TERMS>(problem, shared.tone, tone_deviation);
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<tone_residual, WEFT_TONE_TERMS, WEFT_TONE_TERMS>(new tone_residual),
+            nullptr, shared.tone);
         /* Natural vignetting is cos^4 = 1 - 2 r^2 + ...; the rims of a lens take more, its design less. */
         shared.vignetting[0] = -2 * input->corner_radius_squared;
         add_prior<2>(problem, shared.vignetting, vignetting_deviation);
         add_prior<1>(problem, &shared.ink, ink_prior_deviation);
         for (auto &shift : shared.shift)
             add_prior<2>(problem, shift, shift_deviation_mm / unit_mm);
+        add_prior<3>(problem, shared.pin_shift, pin_deviation_mm / unit_mm);
         if (input->flash)
             add_prior<3>(problem, shared.flash, flash_deviation_mm / unit_mm);
         for (int i = 0; !input->flash && i < input->count; i++)
@@ -401,6 +509,29 @@ class lamp_search
             place->level[c] = std::exp(own[(size_t)i].level[c]) / input->target->paper_reflectance;
     }
 
+    static double median(std::vector<double> &value)
+    {
+        if (value.empty())
+            return 0;
+        std::nth_element(value.begin(), value.begin() + (long)value.size() / 2, value.end());
+        return value[value.size() / 2];
+    }
+
+    /* How many standard errors balls and pin lie off, in the median. */
+    void find_misfits()
+    {
+        std::vector<double> balls, shadows;
+        double r[3];
+        for (const highlight_seen &seen : highlights)
+            balls.push_back((*seen.residual)(lamp_of(seen.photograph), shared.shift[seen.ball], r)
+                                ? std::hypot(r[0], r[1], r[2])
+                                : HUGE_VAL);
+        for (const auto &[residual, i] : pins)
+            shadows.push_back((*residual)(lamp_of(i), shared.pin_shift, r) ? std::hypot(r[0], r[1]) : HUGE_VAL);
+        output->ball_misfit = median(balls);
+        output->pin_misfit = median(shadows);
+    }
+
     void write_shared()
     {
         std::copy_n(shared.tone, WEFT_TONE_TERMS, output->tone);
@@ -412,6 +543,8 @@ class lamp_search
         for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT; ball++)
             for (int axis = 0; axis < 2; axis++)
                 output->ball_shift_mm[ball][axis] = shared.shift[ball][axis] * unit_mm;
+        for (int axis = 0; axis < 3; axis++)
+            output->pin_shift_mm[axis] = shared.pin_shift[axis] * unit_mm;
         for (int axis = 0; axis < 3; axis++)
             output->flash_mm[axis] = shared.flash[axis] * unit_mm;
     }

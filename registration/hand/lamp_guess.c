@@ -10,6 +10,12 @@ enum { ring_count = 8, azimuth_count = 24 };
 static const double distances_mm[] = {300, 500, 900, 1600};
 static const double first_ring_deg = 4, ring_step_deg = 10;
 
+static const double typical_mm = 700;
+
+/* A listed lamp may leave this much more of the paper unexplained than the best of the search: its distance is a guess.
+ */
+static const double listed_misfit = 0.05;
+
 /* The ray that a highlight reflects, from its place on the ball. False where the camera's ray misses the ball. */
 static bool reflected_ray(const weft_lamp_problem *problem, const weft_lamp_evidence *evidence, int ball,
                           weft_vec3 *from, weft_vec3 *along)
@@ -52,13 +58,26 @@ static bool guess_from_balls(const weft_lamp_problem *problem, const weft_lamp_e
     if (seen[0] && seen[1] && meet(from, along, place))
         return true;
     for (int ball = 0; ball < 2; ball++) {
-        const double typical_mm = 700;
         if (!seen[ball] || !(along[ball].z > 0.05))
             continue;
         *place = weft_add(from[ball], weft_scale(along[ball], typical_mm));
         return true;
     }
     return false;
+}
+
+/* On the line from the shadow of the pin's head through the head. */
+static bool guess_from_pin(const weft_lamp_problem *problem, const weft_lamp_evidence *evidence, weft_vec3 *place)
+{
+    const weft_pin_shadow *shadow = &evidence->pin;
+    double foot[2];
+    weft_target_pin(problem->target, foot);
+    if (!shadow->found || !isfinite(shadow->along_mm) || !(problem->pin_height_mm > weft_pin_head_radius_mm))
+        return false;
+    weft_vec3 head = weft_vec3_of(foot[0], foot[1], problem->pin_height_mm - weft_pin_head_radius_mm);
+    weft_vec3 up = weft_subtract(head, weft_vec3_of(shadow->place[0], shadow->place[1], 0));
+    *place = weft_add(head, weft_scale(weft_unit(up), typical_mm));
+    return true;
 }
 
 static double log_irradiance(weft_vec3 lamp, const double place[2])
@@ -85,7 +104,13 @@ static double misfit(const weft_lamp_problem *problem, const weft_lamp_evidence 
     return count > 0 ? weft_quantile(scratch, count, 0.5) : 0;
 }
 
-static weft_vec3 guess_from_paper(const weft_lamp_problem *problem, const weft_lamp_evidence *evidence)
+static weft_vec3 listed_place(const weft_listed_lamp *listed)
+{
+    return listed->is_position ? listed->light : weft_scale(listed->light, typical_mm);
+}
+
+/* By search; *is_listed where the listed lamp does nearly as well. */
+static weft_vec3 guess_from_paper(const weft_lamp_problem *problem, const weft_lamp_evidence *evidence, bool *is_listed)
 {
     weft_vec3 best = weft_vec3_of(0, 0, distances_mm[1]);
     double *scratch = malloc(((size_t)evidence->paper.count + 1) * sizeof *scratch), least = INFINITY;
@@ -97,8 +122,11 @@ static weft_vec3 guess_from_paper(const weft_lamp_problem *problem, const weft_l
         if (left < least)
             least = left, best = lamp;
     }
+    weft_vec3 listed = listed_place(&evidence->listed);
+    *is_listed = scratch && evidence->listed.found && listed.z > 0 &&
+                 misfit(problem, evidence, listed, scratch) < least + listed_misfit;
     free(scratch);
-    return best;
+    return *is_listed ? listed : best;
 }
 
 void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solution)
@@ -108,6 +136,7 @@ void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solut
 #pragma omp parallel for schedule(dynamic, 1)
     for (int i = 0; i < problem->count; i++) {
         const weft_lamp_evidence *evidence = &problem->evidence[i];
+        bool is_listed = false;
         weft_lamp_place *place = &solution->place[i];
         place->source = WEFT_LAMP_PAPER;
         if (problem->flash) {
@@ -115,7 +144,11 @@ void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solut
             place->position_mm = weft_pose_camera_position(&evidence->pose);
         } else if (guess_from_balls(problem, evidence, &place->position_mm))
             place->source = WEFT_LAMP_BALLS;
-        else
-            place->position_mm = guess_from_paper(problem, evidence);
+        else if (guess_from_pin(problem, evidence, &place->position_mm))
+            place->source = WEFT_LAMP_PIN;
+        else {
+            place->position_mm = guess_from_paper(problem, evidence, &is_listed);
+            place->source = is_listed ? WEFT_LAMP_LIST : WEFT_LAMP_PAPER;
+        }
     }
 }

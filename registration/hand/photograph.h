@@ -17,6 +17,8 @@ typedef enum weft_lamp_source {
     WEFT_LAMP_UNKNOWN,
     WEFT_LAMP_PAPER, /* the fall of light over the paper alone */
     WEFT_LAMP_BALLS, /* highlights on mirror balls, and the paper */
+    WEFT_LAMP_PIN,   /* the shadow of the pin, and the paper */
+    WEFT_LAMP_LIST,  /* a list of lamps, and the paper */
     WEFT_LAMP_FLASH  /* fixed to the camera, the same in all photographs */
 } weft_lamp_source;
 

@@ -111,7 +111,7 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(files->dataset);
     weigh(options, layout, comparison);
-    comparison->has_held_out = weft_hold_out_read(files->material.metadata, &comparison->held_out);
+    WEFT_TRY(weft_hold_out_read(files->material.metadata, &comparison->has_held_out, &comparison->held_out, error));
     WEFT_TRY(weft_dataset_fingerprint_compare(files->dataset, files->material.metadata, comparison->warning, error));
     WEFT_TRY(measure_material(files, progress, comparison, error));
     if (options->weave)

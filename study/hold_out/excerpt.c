@@ -81,6 +81,11 @@ static weft_code make_layout(const weft_dataset_layout *source, const texel_choi
     }
     for (int view = 0; view < source->view_count; view++)
         layout->view[view] = weft_subtract(source->view[view], offset);
+    if (source->figure[WEFT_IMAGE_WEIGHT]) {
+        WEFT_TRY(weft_dataset_layout_allocate_figure(layout, WEFT_IMAGE_WEIGHT, error));
+        memcpy(layout->figure[WEFT_IMAGE_WEIGHT], source->figure[WEFT_IMAGE_WEIGHT],
+               (size_t)source->image_count * sizeof *source->figure[WEFT_IMAGE_WEIGHT]);
+    }
     return WEFT_OK;
 }
 
@@ -214,6 +219,12 @@ static weft_code make_kept_layout(const weft_dataset_layout *source, const kept_
     }
     for (int view = 0; view < kept->view_count; view++)
         layout->view[view] = source->view[kept->view[view]];
+    const double *weight = source->figure[WEFT_IMAGE_WEIGHT];
+    if (!weight)
+        return WEFT_OK;
+    WEFT_TRY(weft_dataset_layout_allocate_figure(layout, WEFT_IMAGE_WEIGHT, error));
+    for (int i = 0; i < kept->image_count; i++)
+        layout->figure[WEFT_IMAGE_WEIGHT][i] = weight[kept->image[i]];
     return WEFT_OK;
 }
 

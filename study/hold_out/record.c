@@ -126,12 +126,16 @@ static bool read_object(const json_t *object, weft_hold_out *r)
            read_error(json_object_get(object, "fitted"), &r->fitted);
 }
 
-bool weft_hold_out_read(const char *metadata, weft_hold_out *result)
+weft_code weft_hold_out_read(const char *metadata, bool *found, weft_hold_out *result, weft_error *error)
 {
-    json_t *object = json_loads(metadata, 0, NULL);
-    bool found = read_object(json_object_get(object, "held_out"), result);
+    errno = 0;
+    json_t *object = json_loads(metadata, 0, NULL), *own = json_object_get(object, "held_out");
+    bool is_short = !object && errno == ENOMEM;
+    errno = 0; /* jansson allocates to unpack, too */
+    *found = own && read_object(own, result);
+    is_short = is_short || (own && !*found && errno == ENOMEM);
     json_decref(object);
-    return found;
+    return is_short ? weft_fail_memory(error, "metadata of the material", strlen(metadata)) : WEFT_OK;
 }
 
 /* ---- In words ---- */

@@ -18,8 +18,9 @@ weft_code weft_hold_out_store(const weft_hold_out *result, weft_material *materi
 /* Bytes that weft_hold_out_store adds to the file of a material, at most. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_hold_out_bytes(const weft_hold_out *result, uint64_t *bytes, weft_error *error);
 
-/* Reads it from the metadata of a material. False where there is none, or none that this version understands. */
-bool weft_hold_out_read(const char *metadata, weft_hold_out *result);
+/* Reads it from the metadata of a material; *found is false where there is none, or none that this version understands.
+ * Errors: WEFT_SYSTEM for memory. */
+weft_code weft_hold_out_read(const char *metadata, bool *found, weft_hold_out *result, weft_error *error);
 
 /* "on directions that were not fitted": what the headline is about. Pure. */
 const char *weft_hold_out_about(const weft_hold_out *result);

@@ -93,21 +93,21 @@ static json_t *describe_level(const weft_material *material, int k)
 
 /* The error to judge a material by, then that on what it was fitted to. What says how it was measured is in the
  * metadata. */
-static json_t *describe_error(const weft_material *material)
+static json_t *describe_error(const weft_material *material, const weft_hold_out *held_out)
 {
-    weft_hold_out held_out;
     json_t *described = json_object();
-    if (weft_hold_out_read(material->metadata, &held_out)) {
+    if (held_out) {
         char how[WEFT_HOLD_OUT_LINE];
-        weft_hold_out_explain(&held_out, how);
-        weft_json_put(&described, "not_fitted", json_real(held_out.material.all.relative_rmse));
-        weft_json_put(&described, "photographs_interpolated", json_real(held_out.photographs.all.relative_rmse));
-        weft_json_put(&described, "fitted", json_real(held_out.fitted.relative_rmse));
+        weft_hold_out_explain(held_out, how);
+        weft_json_put(&described, "not_fitted", json_real(held_out->material.all.relative_rmse));
+        weft_json_put(&described, "photographs_interpolated", json_real(held_out->photographs.all.relative_rmse));
+        weft_json_put(&described, "fitted", json_real(held_out->fitted.relative_rmse));
         weft_json_put(&described, "how", json_string(how));
     } else {
         weft_json_put(&described, "not_fitted", json_string("not measured"));
     }
-    weft_json_put(&described, "fitted_level_0", json_real(material->level[0].error.relative_rmse));
+    weft_json_put(&described, material->layers ? "fitted_level_0_lobes" : "fitted_level_0",
+                  json_real(material->level[0].error.relative_rmse));
     return described;
 }
 
@@ -118,7 +118,7 @@ static json_t *describe_layers(const weft_layers *layers)
                      "images", layers->image_count);
 }
 
-static json_t *describe_material(const char *path, const weft_material *material)
+static json_t *describe_material(const char *path, const weft_material *material, const weft_hold_out *held_out)
 {
     /* First: reading numbers, jansson sets errno to 0. */
     json_t *metadata = parsed(material->metadata), *levels = json_array();
@@ -126,9 +126,9 @@ static json_t *describe_material(const char *path, const weft_material *material
         weft_json_append(&levels, describe_level(material, i));
     json_t *described =
         json_pack("{s:s, s:s, s:o, s:I, s:[ii], s:i, s:i, s:i, s:f, s:o, s:o}", "file", path, "kind", "material",
-                  "relative_rmse", describe_error(material), "bytes", (json_int_t)weft_file_bytes(path), "texels",
-                  material->level[0].width, material->level[0].height, "lobes", material->lobe_count, "views_in_table",
-                  material->view_count, "lights_in_table", material->light_count, "texel_pitch_mm",
+                  "relative_rmse", describe_error(material, held_out), "bytes", (json_int_t)weft_file_bytes(path),
+                  "texels", material->level[0].width, material->level[0].height, "lobes", material->lobe_count,
+                  "views_in_table", material->view_count, "lights_in_table", material->light_count, "texel_pitch_mm",
                   material->texel_pitch_mm, "levels", levels, "metadata", metadata);
     if (material->layers)
         weft_json_put(&described, "layers", describe_layers(material->layers));
@@ -139,9 +139,13 @@ static weft_code inspect_material(const char *path, json_t **result, weft_error 
 {
     weft_material material;
     WEFT_TRY(weft_material_read(path, &material, error));
+    weft_hold_out held_out;
+    bool is_measured = false;
     weft_code code = weft_verify_material(path, &material, error);
     if (code == WEFT_OK)
-        *result = describe_material(path, &material);
+        code = weft_hold_out_read(material.metadata, &is_measured, &held_out, error);
+    if (code == WEFT_OK)
+        *result = describe_material(path, &material, is_measured ? &held_out : NULL);
     weft_material_free(&material);
     return code;
 }
@@ -159,9 +163,13 @@ static void put_figures(json_t **described, const weft_dataset_layout *layout)
     };
     int count = layout->image_count;
     double *sorted = malloc((size_t)count * sizeof *sorted);
-    for (int i = 0; sorted && i < WEFT_IMAGE_FIGURES; i++) {
+    for (int i = 0; i < WEFT_IMAGE_FIGURES; i++) {
         if (!layout->figure[i])
             continue;
+        if (!sorted) {
+            weft_json_put(described, name[i], NULL);
+            continue;
+        }
         memcpy(sorted, layout->figure[i], (size_t)count * sizeof *sorted);
         weft_json_put(described, name[i],
                       json_pack("{s:f, s:f, s:f}", "smallest", weft_quantile(sorted, count, 0), "median",

@@ -373,7 +373,17 @@ static void a_tripod_stands(void **state)
         assert_float_equal(shot[i].lens.focus_mm, shot[0].lens.focus_mm, 0);
         assert_int_equal(fscanf(notes, "%31s %lf %lf %lf", name, &light.x, &light.y, &light.z), 4);
         assert_string_equal(name, shot[i].name);
-        assert_float_equal(weft_dot(light, weft_unit(shot[i].lamp.at)), 1, 1e-6);
+        /* Right and up of the picture as it is shown: the camera stands upright, the left of the file is its top. */
+        weft_vec3 lamp = weft_unit(shot[i].lamp.at), eye = weft_unit(weft_pose_camera_position(&shot[i].pose));
+        double middle[2], aside[2];
+        weft_vec3 shift = weft_scale(weft_subtract(lamp, weft_scale(eye, weft_dot(lamp, eye))), 5);
+        assert_true(project(&shot[i], 0, 0, middle) && project(&shot[i], shift.x, shift.y, aside));
+        double right = middle[1] - aside[1], up = middle[0] - aside[0], length = hypot(right, up);
+        double level = hypot(light.x, light.y);
+        assert_int_equal(shot[i].orientation, 6);
+        assert_float_equal(light.z, weft_dot(lamp, eye), 0.02);
+        assert_float_equal(light.x, level * right / length, 0.02);
+        assert_float_equal(light.y, level * up / length, 0.02);
     }
     fclose(notes);
 }

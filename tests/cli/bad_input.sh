@@ -24,7 +24,7 @@ spoil() {
 expect_survives() {
     expect_ok register spoilt --size 16x16 -o spoilt.btf.h5 --report report
     cat out.log err.log report/index.html | grep -q "$1" || fail "'$1' is not named"
-    expect_ok compress spoilt.btf.h5 --lobes 1 -o spoilt.weft
+    expect_ok compress spoilt.btf.h5 --lobes 1 --hold-out off -o spoilt.weft
 }
 
 spoil && rm "spoilt/$photograph" && expect_survives tl030_pl060_tv030_pv090
@@ -77,7 +77,7 @@ expect_error 1 plan.csv compress plan.csv -o cut.weft
 expect_error 1 absent.btf.h5 compress absent.btf.h5 -o cut.weft
 
 # Materials: cut at every section boundary.
-expect_ok compress good.btf.h5 --lobes 2 -o good.weft
+expect_ok compress good.btf.h5 --lobes 2 --hold-out off -o good.weft
 "$python" - <<'PYTHON' >boundaries
 import struct
 data = open("good.weft", "rb").read()
@@ -110,7 +110,7 @@ limited() {
 limited 100 capture --sample "$weave" --plan plan.csv -o full
 limited 100 register good --size 32x32 -o full.btf.h5
 expect_no_file full.btf.h5
-limited 8 compress good.btf.h5 --lobes 2 -o full.weft
+limited 8 compress good.btf.h5 --lobes 2 --hold-out off -o full.weft
 expect_no_file full.weft
 limited 8 render good.weft --size 400x400 -o full.png
 expect_no_file full.png

@@ -37,7 +37,7 @@ expect_error 2 "would overwrite" tile cloth.btf.h5 --weave same.wv -o ./same.wv
 expect_error 2 "would overwrite" eval cloth.wv --at same.csv -o ./same.csv
 expect_error 2 "would overwrite" simulate cloth.stitch --directions same.csv -o ./same.csv
 expect_error 2 "would overwrite" simulate cloth.stitch --directions same.csv --obj ./same.csv
-expect_error 2 "would overwrite" render cloth.weft --environment same.exr -o ./same.exr
+expect_error 2 "would overwrite" render "$(dirname "$0")/../golden/good/material/example.weft" --environment same.exr -o ./same.exr
 expect_error 2 "needs -o NAME.pdf or NAME.svg" target
 expect_error 2 "the largest that fits is 51.6" target -o no.pdf --opening 52
 expect_error 2 "--paper needs A4, letter or WxH" target -o no.pdf --paper A5

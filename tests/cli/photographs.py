@@ -35,7 +35,7 @@ for k, p in enumerate(used):
         ratio = found["samples"][:, :, k][seen].astype(float) / true["samples"][:, :, index][seen].astype(float)
         error.append(np.median(np.abs(ratio - 1)))
 print(name, "lens", told["lens"], "lamps", np.round(lamp, 2))
-limits = {"free": (0.03, 0.8, 0.07), "tripod": (0.08, 0.6, 0.07), "linear": (0.03, 0.8, 0.015)}[name]
+limits = {"free": (0.03, 0.8, 0.07), "tripod": (0.08, 0.6, 0.07), "pin": (0.15, 1.0, 0.1), "linear": (0.03, 0.8, 0.015)}[name]
 good &= check("direction of the view, degrees, median", np.median(view), limits[0])
 good &= check("direction of the lamp, degrees, median", np.median(lamp), limits[1])
 good &= check("reflectance to 45 degrees, relative, median", np.median(error), limits[2])

@@ -137,7 +137,7 @@ static void write_dataset(int views, int lights)
 static void compress_and_read(const char *options)
 {
     char arguments[256];
-    snprintf(arguments, sizeof arguments, "compress %s -o %s --quiet %s", dataset_path, path, options);
+    snprintf(arguments, sizeof arguments, "compress %s -o %s --quiet --hold-out off %s", dataset_path, path, options);
     expect_weft(arguments, 0, "");
     expect_the_readers_error(options);
 }

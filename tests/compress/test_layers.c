@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <omp.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -86,7 +87,7 @@ static void fill_poisoned(const weft_dataset_layout *layout, int x, int y, float
     }
 }
 
-static void write_dataset(synthetic_fill *fill, weft_distance distance)
+static void write_weighed(synthetic_fill *fill, weft_distance distance, bool weighed)
 {
     weft_error error = {0};
     weft_dataset_layout layout = {.width = WIDTH,
@@ -103,8 +104,17 @@ static void write_dataset(synthetic_fill *fill, weft_distance distance)
         layout.view[i / LIGHTS] = weft_scale(direction(i / LIGHTS), far);
         layout.view_of_image[i] = i / LIGHTS;
     }
+    if (weighed)
+        expect_ok(weft_dataset_layout_allocate_figure(&layout, WEFT_IMAGE_WEIGHT, &error), &error);
+    for (int i = 0; weighed && i < VIEWS * LIGHTS; i++)
+        layout.figure[WEFT_IMAGE_WEIGHT][i] = is_held(i) ? 1e-3 : 3 + i % 2;
     synthetic_dataset_write(NAME, &layout, fill);
     weft_dataset_layout_free(&layout);
+}
+
+static void write_dataset(synthetic_fill *fill, weft_distance distance)
+{
+    write_weighed(fill, distance, false);
 }
 
 static weft_compress_options options_for_layers(void)
@@ -230,6 +240,17 @@ static void dim_samples_count_for_more_on_a_screen(void **state)
                   b->median_relative, b->relative_rmse);
     assert_true(b->median_relative < 0.97 * a->median_relative);
     assert_true(b->relative_rmse < 1.2 * a->relative_rmse);
+}
+
+static void images_of_small_weight_do_no_harm(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_layers();
+    write_weighed(fill_poisoned, WEFT_FAR, true);
+    fit(&options, &material, NULL);
+    assert_true(error_over(&material, between, 200) < 0.023);
+    weft_material_free(&material);
 }
 
 /* A texel of a level has the mean coefficients of what it covers, the narrow ones at the border included. */
@@ -374,6 +395,7 @@ int main(void)
         cmocka_unit_test(layers_follow_samples_and_what_lies_between_them),
         cmocka_unit_test(masked_samples_leave_no_trace),
         cmocka_unit_test(what_is_held_out_is_not_seen),
+        cmocka_unit_test(images_of_small_weight_do_no_harm),
         cmocka_unit_test(dim_samples_count_for_more_on_a_screen),
         cmocka_unit_test(levels_are_means),
         cmocka_unit_test(ceilings_are_four_times_the_brightest_sample),

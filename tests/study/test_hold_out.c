@@ -488,12 +488,15 @@ static void the_record_of_a_material_comes_back(void **state)
     weft_material material;
     weft_hold_out back;
     assert_int_equal(weft_material_create(1, 1, 0, 0, 0, 0, &material, NULL), WEFT_OK);
-    assert_false(weft_hold_out_read(material.metadata, &back));
+    bool found = true;
+    assert_int_equal(weft_hold_out_read(material.metadata, &found, &back, NULL), WEFT_OK);
+    assert_false(found);
     assert_int_equal(weft_hold_out_store(&result, &material, NULL), WEFT_OK);
     uint64_t bytes;
     assert_int_equal(weft_hold_out_bytes(&result, &bytes, NULL), WEFT_OK);
     assert_true(strlen(material.metadata) <= bytes + 2);
-    assert_true(weft_hold_out_read(material.metadata, &back));
+    assert_int_equal(weft_hold_out_read(material.metadata, &found, &back, NULL), WEFT_OK);
+    assert_true(found);
     assert_memory_equal(&back, &result, sizeof back);
     char line[WEFT_HOLD_OUT_LINE];
     weft_hold_out_headline(&back, line);

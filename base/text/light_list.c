@@ -1,0 +1,293 @@
+#include "base/text/light_list.h"
+
+#include "base/text/csv.h"
+#include "base/text/text_file.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double unit_tolerance = 0.05;
+
+/* ---- Names ---- */
+
+/* After the last separator of any system. */
+static const char *without_folders(const char *path)
+{
+    const char *name = path;
+    for (const char *at = path; *at; at++) {
+        if (*at == '/' || *at == '\\')
+            name = at + 1;
+    }
+    return name;
+}
+
+static size_t stem_length(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot ? (size_t)(dot - name) : strlen(name);
+}
+
+static bool same_stem(const char *a, const char *b)
+{
+    return stem_length(a) == stem_length(b) && strncasecmp(a, b, stem_length(a)) == 0;
+}
+
+int weft_light_list_find(const weft_light_list *list, const char *photograph)
+{
+    const char *name = without_folders(photograph);
+    int found = -1, count = 0;
+    for (int i = 0; i < list->count; i++) {
+        if (strcasecmp(list->row[i].file, name) == 0)
+            return i;
+        if (same_stem(list->row[i].file, name))
+            found = i, count++;
+    }
+    return count == 1 ? found : -1;
+}
+
+/* ---- Rows ---- */
+
+static weft_code fail_at(const weft_light_list *list, int line, const char *what, const char *name, weft_error *error)
+{
+    return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: %s '%s'", list->path, line, what, name);
+}
+
+/* Takes `row` with a copy of the name. There is room. */
+static weft_code add_row(weft_light_list *list, const char *name, weft_listed_light row, weft_error *error)
+{
+    name = without_folders(name);
+    if (!*name)
+        return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: no name of a photograph", list->path, row.line);
+    for (int i = 0; i < list->count; i++) {
+        const char *other = list->row[i].file;
+        if (other && strcasecmp(other, name) == 0)
+            return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: '%s' is listed already in line %d", list->path, row.line,
+                             name, list->row[i].line);
+    }
+    if (row.has_light && !(weft_length(row.light) > 0))
+        return fail_at(list, row.line, "no direction to the lamp of", name, error);
+    row.file = strdup(name);
+    if (!row.file)
+        return weft_fail_memory(error, name, strlen(name));
+    list->row[list->count++] = row;
+    return WEFT_OK;
+}
+
+static weft_code allocate(weft_light_list *list, size_t rows, weft_error *error)
+{
+    list->row = calloc(rows + 1, sizeof *list->row);
+    return list->row ? WEFT_OK : weft_fail_memory(error, list->path, rows * sizeof *list->row);
+}
+
+/* ---- .lp files ---- */
+
+/* Cuts the last word off a line; NULL where there is none. */
+static char *cut_last_word(char *line)
+{
+    char *end = line + strlen(line);
+    while (end > line && isspace((unsigned char)end[-1]))
+        *--end = 0;
+    while (end > line && !isspace((unsigned char)end[-1]))
+        end--;
+    if (!*end)
+        return NULL;
+    if (end > line)
+        end[-1] = 0;
+    return end;
+}
+
+static bool read_number(const char *text, double *value)
+{
+    if (!text)
+        return false;
+    char *end;
+    *value = strtod(text, &end);
+    return end != text && !*end && isfinite(*value);
+}
+
+static char *trimmed(char *text)
+{
+    while (isspace((unsigned char)*text) || *text == '"')
+        text++;
+    char *end = text + strlen(text);
+    while (end > text && (isspace((unsigned char)end[-1]) || end[-1] == '"'))
+        *--end = 0;
+    return text;
+}
+
+/* Name and three numbers; a name may hold blanks, so the line is read from its end. */
+static weft_code read_lp_row(weft_light_list *list, char *line, int number, weft_error *error)
+{
+    double value[3];
+    for (int i = 2; i >= 0; i--) {
+        char *word = cut_last_word(line);
+        if (!word || !read_number(word, &value[i]))
+            return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: not a name and three numbers", list->path, number);
+        if (word == line) /* nothing stands before it */
+            *line = 0;
+    }
+    weft_listed_light row = {.line = number, .has_light = true, .light = {value[0], value[1], value[2]}};
+    return add_row(list, trimmed(line), row, error);
+}
+
+static size_t count_lines(const char *text)
+{
+    size_t count = 1;
+    for (; *text; text++)
+        count += *text == '\n';
+    return count;
+}
+
+static weft_code read_lp_lines(weft_light_list *list, char *text, weft_error *error)
+{
+    double promised = -1;
+    int number = 0, first = 0;
+    for (char *rest = text; rest;) {
+        char *line = trimmed(strsep(&rest, "\n"));
+        number++;
+        if (!*line || *line == '#')
+            continue;
+        if (promised < 0 && !read_number(line, &promised))
+            return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: an .lp file begins with the number of its photographs",
+                             list->path, number);
+        if (!first)
+            first = number;
+        else
+            WEFT_TRY(read_lp_row(list, line, number, error));
+    }
+    if (promised != list->count)
+        return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: %g photographs are announced, but %d are listed", list->path,
+                         first, promised, list->count);
+    return WEFT_OK;
+}
+
+static weft_code read_lp(weft_light_list *list, weft_error *error)
+{
+    static const char byte_order_mark[] = "\xef\xbb\xbf";
+    char *text;
+    WEFT_TRY(weft_text_file_read(list->path, &text, error));
+    list->of_pictures = true;
+    weft_code code = allocate(list, count_lines(text), error);
+    bool marked = strncmp(text, byte_order_mark, 3) == 0;
+    if (code == WEFT_OK)
+        code = read_lp_lines(list, text + (marked ? 3 : 0), error);
+    free(text);
+    return code;
+}
+
+/* ---- Tables ---- */
+
+typedef struct columns {
+    int file, x, y, z, theta_light, phi_light, theta_view, phi_view, uncertainty;
+} columns;
+
+static columns columns_of(const weft_csv *table)
+{
+    columns c = {.file = weft_csv_column(table, "file"),
+                 .x = weft_csv_column(table, "x"),
+                 .y = weft_csv_column(table, "y"),
+                 .z = weft_csv_column(table, "z"),
+                 .theta_light = weft_csv_column(table, "theta_light_deg"),
+                 .phi_light = weft_csv_column(table, "phi_light_deg"),
+                 .theta_view = weft_csv_column(table, "theta_view_deg"),
+                 .phi_view = weft_csv_column(table, "phi_view_deg"),
+                 .uncertainty = weft_csv_column(table, "uncertainty_deg")};
+    return c;
+}
+
+static weft_code read_direction(const weft_csv *table, int row, int theta_column, int phi_column, weft_vec3 *direction,
+                                weft_error *error)
+{
+    double theta, phi;
+    WEFT_TRY(weft_csv_number(table, row, theta_column, &theta, error));
+    WEFT_TRY(weft_csv_number(table, row, phi_column, &phi, error));
+    theta *= WEFT_PI / 180, phi *= WEFT_PI / 180;
+    *direction = weft_vec3_of(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta));
+    return WEFT_OK;
+}
+
+static weft_code read_table_row(weft_light_list *list, const weft_csv *table, int at, const columns *c,
+                                weft_error *error)
+{
+    weft_listed_light row = {.line = table->line[at]};
+    row.has_light = c->z >= 0 || c->theta_light >= 0;
+    row.has_view = c->theta_view >= 0;
+    if (c->z >= 0) {
+        double value[3];
+        const int column[3] = {c->x, c->y, c->z};
+        for (int i = 0; i < 3; i++)
+            WEFT_TRY(weft_csv_number(table, at, column[i], &value[i], error));
+        row.light = weft_vec3_of(value[0], value[1], value[2]);
+    } else if (row.has_light)
+        WEFT_TRY(read_direction(table, at, c->theta_light, c->phi_light, &row.light, error));
+    if (row.has_view)
+        WEFT_TRY(read_direction(table, at, c->theta_view, c->phi_view, &row.view, error));
+    if (c->uncertainty >= 0)
+        WEFT_TRY(weft_csv_number(table, at, c->uncertainty, &row.uncertainty_deg, error));
+    return add_row(list, weft_csv_text(table, at, c->file), row, error);
+}
+
+static weft_code read_table(weft_light_list *list, weft_error *error)
+{
+    weft_csv table;
+    WEFT_TRY(weft_csv_read(list->path, true, &table, error));
+    columns c = columns_of(&table);
+    weft_code code = WEFT_OK;
+    bool light = (c.x >= 0 && c.y >= 0 && c.z >= 0) || (c.theta_light >= 0 && c.phi_light >= 0);
+    if (c.file < 0 || !(light || (c.theta_view >= 0 && c.phi_view >= 0)))
+        code = weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' lacks columns: file, and x, y, z or theta_light_deg, phi_light_deg or theta_view_deg, "
+                         "phi_view_deg",
+                         list->path);
+    if (!light)
+        c.z = c.theta_light = -1;
+    else if (c.x < 0 || c.y < 0)
+        c.z = -1;
+    if (c.phi_view < 0)
+        c.theta_view = -1;
+    if (code == WEFT_OK)
+        code = allocate(list, (size_t)table.row_count, error);
+    for (int row = 0; code == WEFT_OK && row < table.row_count; row++)
+        code = read_table_row(list, &table, row, &c, error);
+    weft_csv_free(&table);
+    return code;
+}
+
+/* ---- The list ---- */
+
+/* A list of unit vectors holds nothing else: one that is far from a unit makes all of them positions. */
+static void tell_positions(weft_light_list *list)
+{
+    for (int i = 0; i < list->count; i++) {
+        if (list->row[i].has_light && fabs(weft_length(list->row[i].light) - 1) > unit_tolerance)
+            list->positions = true;
+    }
+    for (int i = 0; !list->positions && i < list->count; i++)
+        list->row[i].light = weft_unit(list->row[i].light);
+}
+
+weft_code weft_light_list_read(const char *path, weft_light_list *list, weft_error *error)
+{
+    const char *ending = strrchr(path, '.');
+    *list = (weft_light_list){.path = strdup(path)};
+    weft_code code = list->path ? WEFT_OK : weft_fail_memory(error, path, strlen(path));
+    if (code == WEFT_OK)
+        code = ending && strcasecmp(ending, ".csv") == 0 ? read_table(list, error) : read_lp(list, error);
+    if (code == WEFT_OK && list->count == 0)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' lists no photograph", path);
+    if (code == WEFT_OK)
+        tell_positions(list);
+    else
+        weft_light_list_free(list);
+    return code;
+}
+
+void weft_light_list_free(weft_light_list *list)
+{
+    for (int i = 0; i < list->count; i++)
+        free(list->row[i].file);
+    free(list->row);
+    free(list->path);
+    *list = (weft_light_list){0};
+}
