@@ -275,7 +275,7 @@ int weft_fit_refine_starts(const weft_bundle *bundle, const weft_samples *sample
     if (weft_smaller(starts->count[options->lobe_count], most) > 1) {
         weft_trial_swap(now, best);
         begin(&own, &start[1]);
-        count += options->lobe_count == 1 || catches_up(&own, left);
+        count += catches_up(&own, left);
         bool is_better = count > 1 && finish(&own, &finalist[1]) < CLEARLY_BETTER * left;
         passes += count > 1 ? finalist[1].upright.passes : now->fit.passes;
         if (is_better)

@@ -122,6 +122,23 @@ bool weft_texel_exceeds(weft_texel_fitter *fitter, int channel)
            exceeds(weft_peak_of_fit(&fitter->net[1], fit, &tables), fitter->most[channel]);
 }
 
+void weft_texel_limit_terms(weft_texel_fitter *fitter, int channel, double share, double *most)
+{
+    weft_peak_tables tables = decode_tables(fitter, channel);
+    weft_peak limit = fitter->most[channel];
+    const weft_fit *fit = &fitter->now.as_read[channel];
+    for (int j = 0; j <= fit->lobe_count; j++) {
+        weft_fit alone = {.diffuse = j == 0, .frame = fit->frame, .lobe_count = j > 0};
+        if (j > 0) {
+            alone.lobe[0] = fit->lobe[j - 1];
+            alone.lobe[0].amplitude = 1;
+        }
+        weft_peak peak = weft_peak_of_fit(&fitter->net[1], &alone, &tables);
+        double largest = fmin(limit.r / peak.r, limit.f / peak.f);
+        most[j] = fmin(most[j], share * largest);
+    }
+}
+
 void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_options *options)
 {
     weft_peak most = fitter->most[channel];

@@ -249,7 +249,8 @@ static bool may_serve(weft_texel_fitter *fitter, const weft_fit_options *options
                       const contest *state)
 {
     double clear = fitter->light_count > 0 ? CLEARLY_LESS_LIT : CLEARLY_LESS;
-    double left = find_start(fitter, options, WEFT_FINALISTS, given)->fit.residual;
+    int most = state->is_sure ? 1 : WEFT_FINALISTS;
+    double left = find_start(fitter, options, most, given)->fit.residual;
     return !state->is_sure || state->grey >= clear * left;
 }
 
