@@ -28,6 +28,7 @@ typedef struct arguments {
 
 /* A fit from nothing, and room for it. */
 typedef struct contest {
+    double noise; /* relative */
     const weft_bundle *bundle;
     const weft_samples *samples;
     weft_fit_workspace *workspace;
@@ -37,6 +38,7 @@ typedef struct contest {
 /* What the texels of a set said. */
 typedef struct tally {
     int count, above;
+    int missed; /* above, and above what noise leaves: more lobes than the truth has follow the noise */
     double microseconds, worst;
     double passes;
 } tally;
@@ -68,6 +70,7 @@ static void judge(const arguments *given, const contest *with, int channel, int 
     double ratio = left > 0 ? sqrt(left / least) : 1;
     own->count++;
     own->above += ratio > ABOVE;
+    own->missed += left > ABOVE * ABOVE * fmax(least, with->noise * with->noise * with->samples->energy[channel]);
     own->worst = fmax(own->worst, ratio);
     if (given->per_texel && ratio > ABOVE) {
         print_fit(name, (int)seed, "the fit", &fit, left / with->samples->energy[channel]);
@@ -82,6 +85,7 @@ static void add_row(const arguments *given, const char *name, int lobes, const t
     report_row(given->report, "%s, %d lobe%s", name, lobes, lobes > 1 ? "s" : "");
     report_number(given->report, "fits", 0, own->count);
     report_number(given->report, "above by 2 %, %", 2, 100.0 * own->above / (own->count ? own->count : 1));
+    report_number(given->report, "and above the noise, %", 2, 100.0 * own->missed / (own->count ? own->count : 1));
     report_number(given->report, "worst ratio", 3, own->worst);
     report_number(given->report, "us a fit", 0, own->microseconds / (own->count ? own->count : 1));
     report_number(given->report, "passes", 1, own->passes / (own->count ? own->count : 1));
@@ -104,7 +108,7 @@ static weft_code run_source(const arguments *given, texel_source *source, int co
                             weft_error *error)
 {
     tally own[MOST_LOBES] = {0};
-    contest with = {.bundle = &source->bundle, .samples = &source->samples};
+    contest with = {.noise = source->noise, .bundle = &source->bundle, .samples = &source->samples};
     WEFT_TRY(weft_fit_workspace_create(&source->bundle, &with.workspace, error));
     with.table = calloc((size_t)source->layout.view_count, sizeof *with.table);
     weft_code code =
@@ -120,6 +124,7 @@ static weft_code run_source(const arguments *given, texel_source *source, int co
             add_row(given, name, i + 1, &own[i]);
         sum[i].count += own[i].count;
         sum[i].above += own[i].above;
+        sum[i].missed += own[i].missed;
         sum[i].worst = fmax(sum[i].worst, own[i].worst);
         sum[i].microseconds += own[i].microseconds;
         sum[i].passes += own[i].passes;

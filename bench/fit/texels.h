@@ -12,6 +12,7 @@ typedef struct texel_source {
     synthetic_kind kind;
     bool is_random;             /* random truths instead of a family */
     int first_seed;             /* of these */
+    double noise;               /* relative, of invented texels */
     weft_dataset_layout layout; /* that of the dataset, or the source's own */
     weft_bundle bundle;
     weft_samples samples; /* of the texel loaded last */

@@ -12,7 +12,8 @@ static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent =
 enum {
     RACE_PASSES = 3,
     START_PASSES = 6,
-    SCREENED = 3, /* lobes that are followed of those that the screen ranks */
+    SCREENED = 4,      /* lobes that are followed of those that the screen ranks, */
+    SCREENED_MORE = 2, /* and beside other lobes */
     INCUMBENT = 2,
     CHALLENGER /* places among the trials of a workspace */
 };
@@ -20,8 +21,7 @@ enum {
 #define CLEARLY_BETTER 0.98 /* times the residual: few passes over few lights tell no finer differences */
 #define START_TOLERANCE 1e-2
 #define BEATEN 1.2 /* a start that has so many times the residual of the best after RACE_PASSES is not followed */
-#define CLOSE 1.3  /* a challenger that leaves so many times what the incumbent leaves is not refined */
-#define NEAR 1.1   /* nor is one that leaves so many times what the refined incumbent leaves after RACE_PASSES */
+#define NEAR 1.1   /* nor is a challenger refined that leaves so many times what the incumbent leaves */
 #define SPLIT_LOG_RATIO 1.3863 /* ln 4 */
 
 /* A search that grows lobe by lobe. The incumbent comes from the usual starts, which cloth mostly wants; the challenger
@@ -123,8 +123,9 @@ static void grow(search *own)
     weft_fit_workspace *workspace = own->workspace;
     const weft_fit base = workspace->trial[INCUMBENT].fit;
     weft_fit_lobe lobe[SCREENED];
+    int most = base.lobe_count > 0 ? SCREENED_MORE : SCREENED;
     int found = weft_screen_run(own->bundle, own->samples, own->channel, &own->options, workspace,
-                                &workspace->trial[INCUMBENT], SCREENED, lobe);
+                                &workspace->trial[INCUMBENT], most, lobe);
     own->has_incumbent = own->has_challenger = false;
     own->options.lobe_count = base.lobe_count + 1;
     if (own->options.lobe_count <= 2) {
@@ -149,7 +150,7 @@ static void note_stage(const search *own, weft_starts *to)
 {
     const weft_trial *trial = own->workspace->trial;
     int lobes = own->options.lobe_count;
-    bool is_close = own->has_challenger && (lobes == 1 || own->left[CHALLENGER] < CLOSE * own->left[INCUMBENT]);
+    bool is_close = own->has_challenger && (lobes == 1 || own->left[CHALLENGER] < NEAR * own->left[INCUMBENT]);
     to->count[lobes] = is_close ? 2 : 1;
     to->start[lobes][0] = trial[INCUMBENT].fit;
     if (is_close)
