@@ -21,7 +21,7 @@ typedef struct weft_strip {
 } weft_strip;
 
 /* Which slots of the strips a pass looks at. */
-typedef enum weft_part { WEFT_PART_COARSE, WEFT_PART_REST, WEFT_PART_ALL } weft_part;
+typedef enum weft_part { WEFT_PART_COARSE, WEFT_PART_ALL } weft_part;
 
 /* Owned by the caller. The order depends on the directions alone, not on the order of the images. Inside a view the
  * lights are shuffled evenly, so that its first slots alone are a fair coarse sample. */

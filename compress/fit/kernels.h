@@ -30,8 +30,8 @@ typedef struct weft_screen_sums {
 
 struct weft_fit_kernels {
     /* sums [WEFT_GRAM_PRODUCTS][view_stride]: products of columns (see compress/fit/gram.h) summed over the samples of
-     * each view in a part of its slots; WEFT_PART_REST adds to what `sums` holds. table [view_stride] is T(v) in e.
-     * Views without samples keep what their sums were. */
+     * each view in a part of its slots. table [view_stride] is T(v) in e. Views without samples keep what their sums
+     * were. */
     void (*accumulate)(const weft_bundle *bundle, const float *cosine, const float *value, const weft_gram_point *point,
                        const float *table, weft_part part, float *sums);
     /* The samples of a texel: see weft_samples_gather. */

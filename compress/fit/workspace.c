@@ -174,15 +174,6 @@ void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *sa
     weft_trial_solve_linear(bundle, options->table, least, trial);
 }
 
-void weft_workspace_complete(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                             const weft_fit_options *options, weft_trial *trial)
-{
-    double least[WEFT_GRAM_LOBES] = {0};
-    least_amplitudes(&trial->fit, least);
-    look(bundle, samples, channel, WEFT_PART_REST, trial);
-    weft_trial_solve_linear(bundle, options->table, least, trial);
-}
-
 void weft_workspace_finish(const weft_bundle *bundle, const weft_fit_options *options, weft_trial *trial, weft_fit *fit,
                            double *table)
 {

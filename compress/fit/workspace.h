@@ -34,10 +34,6 @@ void weft_workspace_begin_cold(const weft_bundle *bundle, const weft_samples *sa
 void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *samples, int channel,
                                const weft_fit_options *options, const float *table, weft_trial *trial);
 
-/* After coarse passes: looks at the other samples, too, where the last of them was made. */
-void weft_workspace_complete(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                             const weft_fit_options *options, weft_trial *trial);
-
 /* Damped Gauss-Newton steps from workspace->trial[0], which holds the result. */
 void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                            const weft_fit_options *options, weft_fit_workspace *workspace, double damping);
