@@ -238,7 +238,7 @@ static double finish(const refinement *own, weft_finalist *to)
 static bool catches_up(const refinement *own, double left)
 {
     weft_fit_options race = own->options;
-    race.max_passes = RACE_PASSES;
+    race.max_passes = START_PASSES;
     weft_workspace_refine(own->bundle, own->samples, own->channel, &race, own->workspace, 0.01);
     return left_at_moderate_contrast(own) < NEAR * left;
 }

@@ -7,7 +7,10 @@
 #include "tests/support/alternation.h"
 #include "tests/support/random_starts.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+#define NOISE 0.01 /* relative */
 
 enum { VIEWS = 40, LIGHTS = 60, TEXELS = 60, STARTS = 25, LOBES = 3 };
 
@@ -31,7 +34,8 @@ static int setup(void **state)
     return 0;
 }
 
-/* How many of the texels end more than 2 % above the best of random starts. */
+/* How many of the texels end more than 2 % above the best of random starts, and above what noise leaves: a model with
+ * more lobes than the truth has follows the noise wherever it happens to look. */
 static int count_above(texel_fixture *fixture, int lobes)
 {
     weft_fit_options options = weft_fit_default_options();
@@ -39,14 +43,15 @@ static int count_above(texel_fixture *fixture, int lobes)
     options.lobe_count = lobes;
     for (uint64_t texel = 0; texel < TEXELS; texel++) {
         weft_fit fit, best;
-        random_truth_samples(&fixture->layout, texel, 0.01, fixture->sum);
+        random_truth_samples(&fixture->layout, texel, NOISE, fixture->sum);
         texel_fixture_gather(fixture);
         weft_fit_cold(&fixture->bundle, &fixture->samples, 0, &options, fixture->workspace, &fixture->frame, &fit,
                       fixture->table);
         double left = weft_fit_residual(&fixture->bundle, &fixture->samples, 0, &fit, fixture->table);
         double least = random_starts_best(&fixture->bundle, &fixture->samples, 0, &options, fixture->workspace,
                                           &fixture->frame, texel, STARTS, &best, fixture->table);
-        above += sqrt(left) > 1.02 * sqrt(least);
+        double noise = NOISE * NOISE * fixture->samples.energy[0];
+        above += left > 1.02 * 1.02 * fmax(least, noise);
     }
     print_message("%d lobes: %d of %d above\n", lobes, above, TEXELS);
     return above;
@@ -54,7 +59,7 @@ static int count_above(texel_fixture *fixture, int lobes)
 
 static void few_texels_end_above_random_starts(void **state)
 {
-    static const int most[LOBES] = {2, 6, 6}; /* without the screen: 17 with one lobe */
+    static const int most[LOBES] = {1, 1, 1}; /* from a mirror and a broad lobe alone: 6, 7, 6 */
     for (int lobes = 1; lobes <= LOBES; lobes++)
         assert_true(count_above(*state, lobes) <= most[lobes - 1]);
 }
