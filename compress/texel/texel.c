@@ -244,14 +244,17 @@ static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options
     return spoilt;
 }
 
-/* Whether the grey fit of a smaller model leaves so little that the model needs a look. */
+/* Whether the grey fit of a smaller model leaves so little that the model needs a look; then all its starts are
+ * refined.
+ */
 static bool may_serve(weft_texel_fitter *fitter, const weft_fit_options *options, const weft_frame *given,
                       const contest *state)
 {
     double clear = fitter->light_count > 0 ? CLEARLY_LESS_LIT : CLEARLY_LESS;
-    int most = state->is_sure ? 1 : WEFT_FINALISTS;
-    double left = find_start(fitter, options, most, given)->fit.residual;
-    return !state->is_sure || state->grey >= clear * left;
+    if (state->is_sure && state->grey < clear * find_start(fitter, options, 1, given)->fit.residual)
+        return false;
+    find_start(fitter, options, WEFT_FINALISTS, given);
+    return true;
 }
 
 /* Without S, without T and with fewer lobes. */
