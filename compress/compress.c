@@ -25,12 +25,14 @@
 
 enum { SAMPLES_PER_PARAMETER = 4 };
 
-/* What so many samples a texel can carry. T belongs to fixed directions, so that near cameras have none. */
+/* What so many samples a texel can carry. T belongs to fixed directions, so that near cameras have none. That of a
+ * single view would only be a factor of all terms. */
 static void plan(const weft_dataset_layout *layout, const weft_compress_options *options, weft_compress_report *report)
 {
     int images = weft_compress_options_count_images(options, layout);
     int lobes = 1 + 4 * options->lobe_count;
-    bool table = options->table && layout->distance == WEFT_FAR && layout->view_count <= WEFT_MATERIAL_MAX_VIEWS;
+    bool table = options->table && layout->distance == WEFT_FAR && layout->view_count > 1 &&
+                 layout->view_count <= WEFT_MATERIAL_MAX_VIEWS;
     report->lobe_count = options->lobe_count;
     report->model = WEFT_COMPRESS_SPARSE;
     if (table && images >= SAMPLES_PER_PARAMETER * (lobes + layout->view_count)) {

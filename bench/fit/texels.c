@@ -1,8 +1,12 @@
 #include "bench/fit/texels.h"
 
+#include "tests/support/random_starts.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define NOISE 0.01
 
 static weft_code allocate(texel_source *source, weft_error *error)
 {
@@ -20,8 +24,15 @@ static weft_code allocate(texel_source *source, weft_error *error)
 weft_code texel_source_invent(synthetic_kind kind, texel_source *source, weft_error *error)
 {
     static const char *const name[SYNTHETIC_KINDS] = {"Lafortune x T", "two Ward lobes", "crossed yarns"};
-    *source = (texel_source){.name = name[kind], .kind = kind};
+    *source = (texel_source){.name = name[kind], .kind = kind, .noise = NOISE};
     WEFT_TRY(synthetic_layout(1, 1, &source->layout, error));
+    return allocate(source, error);
+}
+
+weft_code texel_source_truths(int view_count, int light_count, int first_seed, texel_source *source, weft_error *error)
+{
+    *source = (texel_source){.name = "random truths", .is_random = true, .first_seed = first_seed, .noise = NOISE};
+    WEFT_TRY(random_truth_layout(view_count, light_count, &source->layout, error));
     return allocate(source, error);
 }
 
@@ -82,7 +93,11 @@ weft_code texel_source_load(texel_source *source, int index, int total, bool nei
         WEFT_TRY(read_texel(source, x, y, error));
     } else {
         /* A material of its own for every texel; seeds that differ in the last bit are neighbours. */
-        synthetic_texel(layout, source->kind, (uint64_t)(64 * index + index % 64) ^ neighbour, 0.01, source->sum);
+        uint64_t seed = (uint64_t)source->first_seed + ((uint64_t)(64 * index + index % 64) ^ neighbour);
+        if (source->is_random)
+            random_truth_samples(layout, seed, source->noise, source->sum);
+        else
+            synthetic_texel(layout, source->kind, seed, source->noise, source->sum);
         for (int i = 0; i < layout->image_count; i++)
             source->count[i] = 1;
     }

@@ -10,6 +10,9 @@ typedef struct texel_source {
     const char *name;
     weft_dataset *dataset; /* NULL where texels are invented */
     synthetic_kind kind;
+    bool is_random;             /* random truths instead of a family */
+    int first_seed;             /* of these */
+    double noise;               /* relative, of invented texels */
     weft_dataset_layout layout; /* that of the dataset, or the source's own */
     weft_bundle bundle;
     weft_samples samples; /* of the texel loaded last */
@@ -21,6 +24,7 @@ typedef struct texel_source {
 
 /* The caller frees each with texel_source_free, also after an error. Errors: WEFT_BAD_INPUT, WEFT_SYSTEM. */
 weft_code texel_source_invent(synthetic_kind kind, texel_source *source, weft_error *error);
+weft_code texel_source_truths(int view_count, int light_count, int first_seed, texel_source *source, weft_error *error);
 weft_code texel_source_open(const char *path, texel_source *source, weft_error *error);
 void texel_source_free(texel_source *source);
 

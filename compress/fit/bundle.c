@@ -1,5 +1,7 @@
 #include "compress/fit/bundle.h"
 
+#include "base/integers.h"
+
 #include "compress/fit/kernels.h"
 
 #include <math.h>
@@ -74,9 +76,17 @@ static int *count_by_view(const entry *entries, int count, int view_count)
     return images;
 }
 
+/* A quarter of the slots of a view, but more where these would be too few samples to choose a start by. */
+static int coarse_part(int slots, int image_count)
+{
+    int enough = (int)ceil((double)slots * WEFT_COARSE_SAMPLES / image_count);
+    return weft_smaller(slots, weft_larger((slots + 3) / 4, enough));
+}
+
 static void add_strip(weft_bundle *bundle, int view, int slots, bool split)
 {
-    int coarse = (slots + 3) / 4;
+    int coarse = coarse_part(slots, bundle->image_count);
+    bundle->is_coarse |= coarse < slots;
     bundle->strip[bundle->strip_count++] = (weft_strip){
         .first = bundle->sample_count, .slots = slots, .coarse_slots = coarse, .view = view, .split = split};
     bundle->sample_count += slots * WEFT_STRIP_LANES;

@@ -9,19 +9,19 @@
 
 #include <stdbool.h>
 
-enum { WEFT_STRIP_LANES = 16 };
+enum { WEFT_STRIP_LANES = 16, WEFT_COARSE_SAMPLES = 1640 /* a quarter of 81 x 81 */ };
 
 /* Samples that are looked at together, sixteen at a time. Slot s of lane i is sample first + 16 s + i. */
 typedef struct weft_strip {
     int first;
     int slots;
-    int coarse_slots; /* the first slots, with about a quarter of the lights */
+    int coarse_slots; /* the first slots: a quarter of the lights, more where samples are few */
     int view;         /* lane i holds the samples of view + i; where `split`, all lanes hold those of `view` */
     bool split;
 } weft_strip;
 
 /* Which slots of the strips a pass looks at. */
-typedef enum weft_part { WEFT_PART_COARSE, WEFT_PART_REST, WEFT_PART_ALL } weft_part;
+typedef enum weft_part { WEFT_PART_COARSE, WEFT_PART_ALL } weft_part;
 
 /* Owned by the caller. The order depends on the directions alone, not on the order of the images. Inside a view the
  * lights are shuffled evenly, so that its first slots alone are a fair coarse sample. */
@@ -30,6 +30,7 @@ typedef struct weft_bundle {
     int view_stride; /* view_count rounded up to whole strips: the length of what is kept for every view */
     int sample_count;
     int strip_count;
+    bool is_coarse;      /* some strip has fewer coarse slots than slots */
     weft_strip *strip;   /* [strip_count] */
     int32_t *image;      /* [sample_count] the image whose sample stands here, -1 in the padding */
     int32_t *view_of;    /* [sample_count] */

@@ -143,8 +143,7 @@ WEFT_INLINE void add_products(lanes columns[LAST][PIECE], int slots, int count, 
     }
 }
 
-WEFT_INLINE void store_sums(const weft_strip *strip, int lane, const lanes *own, int count, int stride, bool add,
-                            float *sums)
+WEFT_INLINE void store_sums(const weft_strip *strip, int lane, const lanes *own, int count, int stride, float *sums)
 {
 #pragma GCC unroll 16
     for (int a = 0; a < count; a++) {
@@ -156,9 +155,9 @@ WEFT_INLINE void store_sums(const weft_strip *strip, int lane, const lanes *own,
             const lanes *from = own + weft_gram_product(p, q, count);
             float *to = sums + (size_t)weft_gram_product(a, b, count) * (size_t)stride + strip->view;
             if (strip->split)
-                *to = (add || lane ? *to : 0) + lanes_sum(*from);
+                *to = (lane ? *to : 0) + lanes_sum(*from);
             else
-                lanes_store(to + lane, add ? *from + lanes_load(to + lane) : *from);
+                lanes_store(to + lane, *from);
         }
     }
 }
@@ -173,19 +172,18 @@ WEFT_INLINE void accumulate(const weft_bundle *bundle, const float *cosine, cons
     memset(columns[count], 0, TILE * sizeof columns[0]);
     for (int s = 0; s < bundle->strip_count; s++) {
         const weft_strip *strip = &bundle->strip[s];
-        int begin = part == WEFT_PART_REST ? strip->coarse_slots : 0;
         int end = part == WEFT_PART_COARSE ? strip->coarse_slots : strip->slots;
         for (int lane = 0; lane < WEFT_STRIP_LANES; lane += LANES) {
             strip_lanes own = lanes_of_strip(bundle, strip, point, lobe_count, table, lane);
             memset(own_sums, 0, (size_t)products * sizeof *own_sums);
-            for (int first = begin; first < end; first += PIECE) {
+            for (int first = 0; first < end; first += PIECE) {
                 int piece = end - first < PIECE ? end - first : PIECE;
                 for (int slot = 0; slot < piece; slot++)
                     write_columns(bundle, cosine, value, point, lobe_count, &own,
                                   strip->first + (first + slot) * WEFT_STRIP_LANES + lane, slot, columns);
                 add_products(columns, piece, count, own_sums);
             }
-            store_sums(strip, lane, own_sums, count, bundle->view_stride, part == WEFT_PART_REST, sums);
+            store_sums(strip, lane, own_sums, count, bundle->view_stride, sums);
         }
     }
 }
@@ -210,13 +208,14 @@ void WEFT_KERNEL(weft_gram_accumulate)(const weft_bundle *bundle, const float *c
 }
 
 void WEFT_KERNEL(weft_gram_evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,
-                                     float *result)
+                                     weft_part part, float *result)
 {
     for (int s = 0; s < bundle->strip_count; s++) {
         const weft_strip *strip = &bundle->strip[s];
         for (int lane = 0; lane < WEFT_STRIP_LANES; lane += LANES) {
             strip_lanes own = lanes_of_strip(bundle, strip, point, point->lobe_count, NULL, lane);
-            for (int slot = 0; slot < strip->slots; slot++) {
+            int end = part == WEFT_PART_COARSE ? strip->coarse_slots : strip->slots;
+            for (int slot = 0; slot < end; slot++) {
                 int sample = strip->first + slot * WEFT_STRIP_LANES + lane;
                 const lanes l[3] = {lanes_load(bundle->light[0] + sample), lanes_load(bundle->light[1] + sample),
                                     lanes_load(bundle->light[2] + sample)};

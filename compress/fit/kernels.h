@@ -14,10 +14,24 @@ typedef struct weft_separable {
     float prior; /* S = 1 counts as much as this part of the mean <T f|T f> of a light */
 } weft_separable;
 
+/* What compress/fit/screen.h tries lobes with: arrays [sample_count], of which the samples of a part are filled, and
+ * <f|f> by view. */
+enum { WEFT_SCREEN_EXPONENTS = 7 /* 1, 4, 16, ... 4096 */ };
+typedef struct weft_screen {
+    float *error, *model, *square; /* T k (r - T f), T^2 k f, T^2 k^2 */
+    float *energy;                 /* [view_stride] T^2 <f|f> */
+    float negligible;              /* energy below this counts as none */
+} weft_screen;
+
+/* Of one shape, by exponent: the sums over the views of T <a|r - T f>, T^2 <a|a> and T^2 <a|f>^2 / <f|f>. */
+typedef struct weft_screen_sums {
+    float slope[WEFT_SCREEN_EXPONENTS], square[WEFT_SCREEN_EXPONENTS], projected[WEFT_SCREEN_EXPONENTS];
+} weft_screen_sums;
+
 struct weft_fit_kernels {
     /* sums [WEFT_GRAM_PRODUCTS][view_stride]: products of columns (see compress/fit/gram.h) summed over the samples of
-     * each view in a part of its slots; WEFT_PART_REST adds to what `sums` holds. table [view_stride] is T(v) in e.
-     * Views without samples keep what their sums were. */
+     * each view in a part of its slots. table [view_stride] is T(v) in e. Views without samples keep what their sums
+     * were. */
     void (*accumulate)(const weft_bundle *bundle, const float *cosine, const float *value, const weft_gram_point *point,
                        const float *table, weft_part part, float *sums);
     /* The samples of a texel: see weft_samples_gather. */
@@ -32,8 +46,15 @@ struct weft_fit_kernels {
     /* The largest sample r of a channel, r / cos(theta_light), and the largest such cosine, of samples that count. */
     void (*brightest)(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r, float *f,
                       float *cosine);
-    /* k (rho + sum_i A_i b_i^N_i) of every sample, without T: result [sample_count]. */
-    void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, float *result);
+    /* k (rho + sum_i A_i b_i^N_i) of the samples of a part, without T: result [sample_count]. */
+    void (*evaluate)(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point, weft_part part,
+                     float *result);
+    /* From screen->model = k f, without T, to all of `screen` but `negligible`. Returns the sum of T^2 <f|f>. */
+    double (*screen_load)(const weft_bundle *bundle, const float *cosine, const float *value, const float *table,
+                          weft_part part, weft_screen *screen);
+    /* Lobes of one shape M (compress/fit/gram.h) and all exponents. */
+    void (*screen_try)(const weft_bundle *bundle, const weft_screen *screen, const float shape[3][3], weft_part part,
+                       weft_screen_sums *result);
     /* The linear rows of a trial from its sums at `point`, and their totals. Returns the sum of <f|f> without T. */
     double (*digest)(const weft_bundle *bundle, weft_trial *trial);
     /* Residual at other linear parameters than those of the pass; their T into table [view_stride]. */
@@ -62,7 +83,11 @@ struct weft_fit_kernels {
     void weft_gather_brightest_##set(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r,    \
                                      float *f, float *cosine);                                                         \
     void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \
-                                  float *result);                                                                      \
+                                  weft_part part, float *result);                                                      \
+    double weft_screen_load_##set(const weft_bundle *bundle, const float *cosine, const float *value,                  \
+                                  const float *table, weft_part part, weft_screen *screen);                            \
+    void weft_screen_try_##set(const weft_bundle *bundle, const weft_screen *screen, const float shape[3][3],          \
+                               weft_part part, weft_screen_sums *result);                                              \
     double weft_linear_digest_##set(const weft_bundle *bundle, weft_trial *trial);                                     \
     double weft_linear_residual_##set(const weft_bundle *bundle, const weft_trial *trial, bool with_table,             \
                                       const weft_linear *linear, float *table);                                        \

@@ -10,7 +10,6 @@ enum { PASSES_A_ROUND = 3, TURNS_A_ROUND = 4 };
 
 #define MOST_EXTRAPOLATION 8 /* steps ahead */
 #define PRIOR 0.003f         /* of S = 1, as a part of the mean energy of a light */
-#define MOST_CONTRAST 8      /* of T against its mean */
 
 static float *allocate_floats(size_t count)
 {
@@ -132,29 +131,6 @@ static void advance(weft_light_workspace *own, int count, bool remembers, double
     }
 }
 
-/* What a fit leaves if T keeps within a moderate contrast to its mean, both weighted by what they explain. A model may
- * leave least where it almost vanishes in some views and T makes up for it a millionfold; between such a view and the
- * next one, where T is interpolated, it would glare. */
-static double residual_at_contrast(const weft_bundle *bundle, const weft_fit_options *options,
-                                   weft_fit_workspace *workspace, const weft_fit *fit, const double *table)
-{
-    double *energy = workspace->scratch[0], sum = 0, weight = 0, residual = fit->residual;
-    if (!options->table || !(residual > 0))
-        return residual;
-    weft_trial_model_energy(bundle, &workspace->trial[0], fit, energy);
-    for (int view = 0; view < bundle->view_count; view++) {
-        double explained = energy[view] * table[view] * table[view];
-        sum += explained > 0 ? explained * log(table[view]) : 0;
-        weight += explained;
-    }
-    double mean = weight > 0 ? exp(sum / weight) : 1;
-    for (int view = 0; view < bundle->view_count; view++) {
-        double moderate = fmin(fmax(table[view], mean / MOST_CONTRAST), mean * MOST_CONTRAST);
-        residual += energy[view] * (moderate - table[view]) * (moderate - table[view]);
-    }
-    return residual;
-}
-
 /* A round that went too far leaves more than the one before: what leaves least is kept. */
 static void keep(const weft_bundle *bundle, const weft_fit *fit, double residual, const double *table,
                  const double *light, weft_light_workspace *own)
@@ -178,7 +154,7 @@ weft_samples weft_light_refine(const weft_bundle *bundle, const weft_samples *sa
         weft_samples lit = weft_light_apply(bundle, samples, light, own->cosine);
         weft_fit_refine(bundle, &lit, channel, &few, workspace, fit, table);
         passes += fit->passes;
-        double residual = residual_at_contrast(bundle, options, workspace, fit, table);
+        double residual = options->table ? weft_trial_moderate_residual(bundle, &workspace->trial[0]) : fit->residual;
         if (round == 0 || residual < own->least)
             keep(bundle, fit, residual, table, light, own);
         double gain = before - fit->residual;

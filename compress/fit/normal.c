@@ -6,6 +6,8 @@
 #include <string.h>
 
 #define LINEAR_TOLERANCE 1e-4 /* part of the residual that a further step of rho and the amplitudes must promise */
+#define MOST_CONTRAST 8       /* of T against its mean */
+
 enum { LINEAR_ROUNDS = 4 };
 
 void weft_frame_rows(const weft_frame *frame, double rows[3][3])
@@ -130,6 +132,25 @@ void weft_trial_model_energy(const weft_bundle *bundle, const weft_trial *trial,
                                 (double)trial->linear[weft_linear_gram(j, k) * bundle->view_stride + view];
         }
     }
+}
+
+double weft_trial_moderate_residual(const weft_bundle *bundle, const weft_trial *trial)
+{
+    double energy[WEFT_MATERIAL_MAX_VIEWS], sum = 0, weight = 0, residual = trial->residual;
+    if (!(residual > 0))
+        return residual;
+    weft_trial_model_energy(bundle, trial, &trial->fit, energy);
+    for (int view = 0; view < bundle->view_count; view++) {
+        double t = (double)trial->table[view], explained = energy[view] * t * t;
+        sum += explained > 0 ? explained * log(t) : 0;
+        weight += explained;
+    }
+    double mean = weight > 0 ? exp(sum / weight) : 1;
+    for (int view = 0; view < bundle->view_count; view++) {
+        double t = (double)trial->table[view], moderate = fmin(fmax(t, mean / MOST_CONTRAST), mean * MOST_CONTRAST);
+        residual += energy[view] * (moderate - t) * (moderate - t);
+    }
+    return residual;
 }
 
 void weft_trial_table(const weft_bundle *bundle, const weft_trial *trial, const weft_fit *fit, double *table)

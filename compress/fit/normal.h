@@ -90,6 +90,11 @@ void weft_trial_table(const weft_bundle *bundle, const weft_trial *trial, const 
 void weft_trial_solve_given_table(const weft_bundle *bundle, const weft_trial *trial, const double *table,
                                   const double *low, const double *high, weft_fit *fit);
 
+/* What trial->fit leaves if T keeps within a moderate contrast to its mean, both weighted by what they explain. A model
+ * may leave least where it almost vanishes in some views and T makes up for it a millionfold; between such a view and
+ * the next one, where T is interpolated, it would glare. */
+double weft_trial_moderate_residual(const weft_bundle *bundle, const weft_trial *trial);
+
 /* trial->table as doubles [view_count], with the mean of the others in views where nothing was learnt. */
 void weft_trial_take_table(const weft_bundle *bundle, const weft_trial *trial, double *table);
 

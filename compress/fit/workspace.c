@@ -41,9 +41,16 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
         return weft_fail_memory(error, "workspace of a fit", sizeof *workspace);
     size_t views = (size_t)bundle->view_stride;
     workspace->table = allocate_rows(1, views, sizeof *workspace->table);
-    workspace->scratch[0] = allocate_rows(2, views, sizeof *workspace->scratch[0]);
+    workspace->scratch[0] = allocate_rows(4, views, sizeof *workspace->scratch[0]);
     workspace->model = allocate_rows((size_t)bundle->sample_count + WEFT_STRIP_LANES, 1, sizeof *workspace->model);
-    bool complete = workspace->table && workspace->scratch[0] && workspace->model;
+    weft_screen *screen = &workspace->screen;
+    float **by_sample[] = {&screen->error, &screen->model, &screen->square};
+    screen->energy = allocate_rows(1, views, sizeof *screen->energy);
+    bool complete = workspace->table && workspace->scratch[0] && workspace->model && screen->energy;
+    for (int i = 0; i < 3; i++) {
+        *by_sample[i] = allocate_rows((size_t)bundle->sample_count + WEFT_STRIP_LANES, 1, sizeof **by_sample[i]);
+        complete = complete && *by_sample[i];
+    }
     for (int i = 0; i < WEFT_TRIALS; i++)
         complete = create_trial(bundle->view_stride, &workspace->trial[i]) && complete;
     if (!complete) {
@@ -51,6 +58,8 @@ weft_code weft_fit_workspace_create(const weft_bundle *bundle, weft_fit_workspac
         return weft_fail_memory(error, "workspace of a fit", views * 2048);
     }
     workspace->scratch[1] = workspace->scratch[0] + views;
+    workspace->finalist_table[0] = workspace->scratch[1] + views;
+    workspace->finalist_table[1] = workspace->finalist_table[0] + views;
     *result = workspace;
     return WEFT_OK;
 }
@@ -64,6 +73,10 @@ void weft_fit_workspace_free(weft_fit_workspace *workspace)
     free(workspace->table);
     free(workspace->scratch[0]);
     free(workspace->model);
+    free(workspace->screen.error);
+    free(workspace->screen.model);
+    free(workspace->screen.square);
+    free(workspace->screen.energy);
     free(workspace);
 }
 
@@ -158,15 +171,6 @@ void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *sa
     double least[WEFT_GRAM_LOBES] = {0};
     least_amplitudes(&trial->fit, least);
     weft_workspace_pass(bundle, samples, channel, options, table, trial);
-    weft_trial_solve_linear(bundle, options->table, least, trial);
-}
-
-void weft_workspace_complete(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                             const weft_fit_options *options, weft_trial *trial)
-{
-    double least[WEFT_GRAM_LOBES] = {0};
-    least_amplitudes(&trial->fit, least);
-    look(bundle, samples, channel, WEFT_PART_REST, trial);
     weft_trial_solve_linear(bundle, options->table, least, trial);
 }
 

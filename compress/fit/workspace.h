@@ -4,13 +4,15 @@
 
 #include "compress/fit/kernels.h"
 
-enum { WEFT_TRIALS = 3 };
+enum { WEFT_TRIALS = 4 };
 
 struct weft_fit_workspace {
-    weft_trial trial[WEFT_TRIALS]; /* the point reached, the one being tried, the best of several starts */
+    weft_trial trial[WEFT_TRIALS]; /* the point reached, the one being tried, the two best starts */
     float *table;                  /* [view_stride] T to begin with */
     double *scratch[2];            /* [view_stride] */
+    double *finalist_table[2];     /* [view_stride] of weft_fit_cold */
     float *model;                  /* [sample_count] */
+    weft_screen screen;
 };
 
 /* Exchanges two trials, what they own included. */
@@ -31,10 +33,6 @@ void weft_workspace_begin_cold(const weft_bundle *bundle, const weft_samples *sa
 /* Starts from a fit that is nearly right: its T keeps the sums free of cancellation. */
 void weft_workspace_begin_warm(const weft_bundle *bundle, const weft_samples *samples, int channel,
                                const weft_fit_options *options, const float *table, weft_trial *trial);
-
-/* After coarse passes: looks at the other samples, too, where the last of them was made. */
-void weft_workspace_complete(const weft_bundle *bundle, const weft_samples *samples, int channel,
-                             const weft_fit_options *options, weft_trial *trial);
 
 /* Damped Gauss-Newton steps from workspace->trial[0], which holds the result. */
 void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,

@@ -9,66 +9,104 @@
 /* The fit of the grey samples is a start, not worth its last steps. */
 #define GREY_TOLERANCE 3e-3
 
+enum { TABLES = 4 * WEFT_FINALISTS };
+
 weft_code weft_frame_search_create(int view_count, weft_frame_search *search, weft_error *error)
 {
     size_t views = (size_t)view_count;
-    double *tables = calloc(3 * views, sizeof *tables);
-    *search = (weft_frame_search){.upright.table = tables};
+    double *tables = calloc(TABLES * views, sizeof *tables);
+    *search = (weft_frame_search){.tables = tables};
     if (!tables)
-        return weft_fail_memory(error, "view tables of grey fits", 3 * views * sizeof *tables);
-    search->given.table = tables + views;
-    search->turned.table = tables + 2 * views;
+        return weft_fail_memory(error, "view tables of grey fits", TABLES * views * sizeof *tables);
+    for (size_t i = 0; i < WEFT_FINALISTS; i++) {
+        double *own = tables + 4 * i * views;
+        search->surface[i] = (weft_finalist){.upright_table = own, .turned_table = own + views};
+        search->given[i] = (weft_finalist){.upright_table = own + 2 * views, .turned_table = own + 3 * views};
+    }
     return WEFT_OK;
 }
 
 void weft_frame_search_free(weft_frame_search *search)
 {
-    free(search->upright.table);
+    free(search->tables);
     *search = (weft_frame_search){0};
 }
 
-/* What all fits of a texel share. */
-typedef struct grey_samples {
-    const weft_bundle *bundle;
-    const weft_samples *samples;
-    weft_fit_workspace *workspace;
-    weft_fit_options options;
-} grey_samples;
-
-static void fit_from_nothing(const grey_samples *grey, const weft_frame *frame, weft_grey_fit *to)
+static weft_grey_fit choose_frame(const weft_finalist *from, bool turn)
 {
-    weft_fit_cold(grey->bundle, grey->samples, WEFT_GREY, &grey->options, grey->workspace, frame, &to->fit, to->table);
+    if (turn && from->turned.residual < WORTHWHILE * from->upright.residual)
+        return (weft_grey_fit){from->turned, from->turned_table, true};
+    return (weft_grey_fit){from->upright, from->upright_table, false};
+}
+
+void weft_frame_search_forget(weft_frame_search *search)
+{
+    search->starts[0].found = search->starts[1].found = false;
 }
 
 /* A diffuse term has no use for a frame. */
-static weft_grey_fit *fit_as_it_is(weft_frame_search *search, const grey_samples *grey,
-                                   const weft_frame_request *request)
+static bool may_turn(const weft_frame_request *request)
 {
-    const weft_frame surface = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
-    weft_grey_fit *upright = &search->upright, *given = &search->given;
-    bool one = request->choice != WEFT_FRAMES_FITTED || grey->options.lobe_count == 0 || !request->given;
-    if (one) {
-        bool use_given = request->choice == WEFT_FRAMES_GIVEN && request->given;
-        fit_from_nothing(grey, use_given ? request->given : &surface, upright);
-        return upright;
-    }
-    fit_from_nothing(grey, &surface, upright);
-    fit_from_nothing(grey, request->given, given);
-    return given->fit.residual < upright->fit.residual ? given : upright;
+    return request->choice == WEFT_FRAMES_FITTED && request->options.lobe_count > 0;
 }
 
-const weft_grey_fit *weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle,
-                                           const weft_samples *samples, weft_fit_workspace *workspace,
-                                           const weft_frame_request *request)
+static const weft_starts *find_starts(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,
+                                      weft_fit_workspace *workspace, const weft_frame_request *request)
 {
-    grey_samples grey = {bundle, samples, workspace, request->options};
-    grey.options.tolerance = GREY_TOLERANCE;
-    weft_grey_fit *start = fit_as_it_is(search, &grey, request), *turned = &search->turned;
-    if (grey.options.lobe_count == 0 || request->choice != WEFT_FRAMES_FITTED)
-        return start;
-    grey.options.fit_frame = true;
-    turned->fit = start->fit;
-    memcpy(turned->table, start->table, (size_t)bundle->view_count * sizeof *turned->table);
-    weft_fit_refine(bundle, samples, WEFT_GREY, &grey.options, workspace, &turned->fit, turned->table);
-    return turned->fit.residual < WORTHWHILE * start->fit.residual ? turned : start;
+    const weft_frame surface = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
+    weft_frame_starts *starts = &search->starts[request->options.table];
+    weft_fit_options options = request->options;
+    bool use_given = request->choice == WEFT_FRAMES_GIVEN && request->given;
+    if (starts->found)
+        return &starts->surface;
+    options.lobe_count = request->most_lobes;
+    weft_fit_find_starts(bundle, samples, WEFT_GREY, &options, workspace, use_given ? request->given : &surface,
+                         &starts->surface);
+    if (request->choice == WEFT_FRAMES_FITTED && request->given)
+        weft_fit_find_starts(bundle, samples, WEFT_GREY, &options, workspace, request->given, &starts->given);
+    starts->found = true;
+    return &starts->surface;
+}
+
+void weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,
+                           weft_fit_workspace *workspace, const weft_frame_request *request)
+{
+    weft_fit_options options = request->options;
+    const weft_starts *starts = find_starts(search, bundle, samples, workspace, request);
+    bool turn = may_turn(request);
+    options.tolerance = GREY_TOLERANCE;
+    int most = request->most_finalists;
+    int count =
+        weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, starts, most, search->surface);
+    search->best = choose_frame(&search->surface[0], turn);
+    search->has_other = count > 1;
+    if (count > 1)
+        search->other = choose_frame(&search->surface[1], turn);
+    if (!turn || !request->given)
+        return;
+    starts = &search->starts[request->options.table].given;
+    weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, starts, most, search->given);
+    weft_grey_fit given = choose_frame(&search->given[0], turn);
+    if (given.fit.residual < search->best.fit.residual) {
+        search->other = search->best;
+        search->best = given;
+        search->has_other = true;
+    }
+}
+
+bool weft_frame_search_other(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,
+                             weft_fit_workspace *workspace, const weft_frame_request *request)
+{
+    weft_starts second = search->starts[request->options.table].surface;
+    int lobes = request->options.lobe_count;
+    bool turn = may_turn(request);
+    if (search->has_other || second.count[lobes] < 2)
+        return search->has_other;
+    second.start[lobes][0] = second.start[lobes][1];
+    weft_fit_options options = request->options;
+    options.tolerance = GREY_TOLERANCE;
+    weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, &second, 1, &search->surface[1]);
+    search->other = choose_frame(&search->surface[1], turn);
+    search->has_other = true;
+    return true;
 }

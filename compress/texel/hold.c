@@ -92,15 +92,23 @@ static void lower_terms(weft_texel_fitter *fitter, int channel, double share)
     *fit = weft_unpack(&fitter->now.packed[channel], fit->lobe_count, &frame, fitter->samples.scale);
 }
 
-/* Fits again; no term may be brighter than `most`. */
-static void fit_dimmer(weft_texel_fitter *fitter, int channel, const weft_fit_options *options, double most)
+/* Fits again, from the starts of the grey samples and then from what was fitted; no term may be brighter than
+ * `most`. */
+static void fit_dimmer(weft_texel_fitter *fitter, int channel, const weft_fit_options *options, int round, double most)
 {
-    weft_fit *fit = &fitter->now.as_read[channel], dimmer;
+    weft_fit *fit = &fitter->now.as_read[channel], dimmer = *fit;
     weft_fit_options own = *options;
     weft_samples lit = weft_texel_samples_as_lit(fitter, channel);
     uint8_t *code = fitter->now.code + (size_t)channel * (size_t)fitter->bundle.view_count;
     own.max_amplitude = most;
-    weft_fit_cold(&fitter->bundle, &lit, channel, &own, fitter->workspace, &fit->frame, &dimmer, fitter->table);
+    if (round == 0) {
+        weft_starts starts = fitter->frames.starts[false].surface;
+        for (int i = 0; i < WEFT_FINALISTS; i++)
+            starts.start[own.lobe_count][i].frame = fit->frame;
+        weft_fit_from_starts(&fitter->bundle, &lit, channel, &own, fitter->workspace, &starts, &dimmer, fitter->table);
+    } else {
+        weft_fit_refine(&fitter->bundle, &lit, channel, &own, fitter->workspace, &dimmer, fitter->table);
+    }
     weft_pack_channel(&fitter->bundle, &lit, channel, &own, fitter->workspace, &dimmer, fitter->table,
                       &fitter->now.packed[channel], code);
     *fit = weft_unpack(&fitter->now.packed[channel], own.lobe_count, &dimmer.frame, fitter->samples.scale);
@@ -112,6 +120,23 @@ bool weft_texel_exceeds(weft_texel_fitter *fitter, int channel)
     const weft_fit *fit = &fitter->now.as_read[channel];
     return exceeds(weft_peak_of_fit(&fitter->net[0], fit, &tables), fitter->most[channel]) &&
            exceeds(weft_peak_of_fit(&fitter->net[1], fit, &tables), fitter->most[channel]);
+}
+
+void weft_texel_limit_terms(weft_texel_fitter *fitter, int channel, double share, double *most)
+{
+    weft_peak_tables tables = decode_tables(fitter, channel);
+    weft_peak limit = fitter->most[channel];
+    const weft_fit *fit = &fitter->now.as_read[channel];
+    for (int j = 0; j <= fit->lobe_count; j++) {
+        weft_fit alone = {.diffuse = j == 0, .frame = fit->frame, .lobe_count = j > 0};
+        if (j > 0) {
+            alone.lobe[0] = fit->lobe[j - 1];
+            alone.lobe[0].amplitude = 1;
+        }
+        weft_peak peak = weft_peak_of_fit(&fitter->net[1], &alone, &tables);
+        double largest = fmin(limit.r / peak.r, limit.f / peak.f);
+        most[j] = fmin(most[j], share * largest);
+    }
 }
 
 void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_options *options)
@@ -130,7 +155,7 @@ void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_opti
     /* Terms may add up. */
     double term = FOR_ROUNDING * fmin(most.r, most.f);
     for (int round = 0; round < 4 && options && options->lobe_count > 0 && exceeds(peak, most); round++) {
-        fit_dimmer(fitter, channel, options, term);
+        fit_dimmer(fitter, channel, options, round, term);
         peak = weft_peak_of_fit(&fitter->net[1], fit, &tables);
         term *= 0.75;
     }

@@ -149,16 +149,15 @@ static void code_table(const weft_bundle *bundle, const weft_trial *trial, const
     }
 }
 
-/* rho and the lobes that are not frozen, solved for again with the table as it will be read, each at most `most`: the
- * bound of the fit times what they took over from T, for where one view alone needs a large T they far exceed it. */
+/* rho and the lobes that are not frozen, solved for again with the table as it will be read, each at most `most`. */
 static void solve_rest(const weft_bundle *bundle, const weft_trial *trial, const double *decoded, unsigned frozen,
-                       double most, weft_fit *rounded)
+                       const double *most, weft_fit *rounded)
 {
     double low[WEFT_LINEAR_MAX] = {0}, high[WEFT_LINEAR_MAX];
     for (int j = 0; j <= rounded->lobe_count; j++) {
         bool fixed = j > 0 && (frozen >> (j - 1) & 1);
         low[j] = fixed ? rounded->lobe[j - 1].amplitude : 0;
-        high[j] = fixed ? low[j] : most;
+        high[j] = fixed ? low[j] : most[j];
     }
     weft_trial_solve_given_table(bundle, trial, decoded, low, high, rounded);
 }
@@ -169,7 +168,7 @@ void weft_pack_channel(const weft_bundle *bundle, const weft_samples *samples, i
 {
     weft_trial *trial = &workspace->trial[0];
     weft_fit rounded = *fit;
-    double *decoded = workspace->scratch[0], *energy = workspace->scratch[1], scale = 1;
+    double *decoded = workspace->scratch[0], *energy = workspace->scratch[1], scale = 1, most[WEFT_LINEAR_MAX];
     memcpy(decoded, table, (size_t)bundle->view_count * sizeof *decoded);
     if (options->table)
         memset(code, 255, (size_t)bundle->view_count);
@@ -191,32 +190,36 @@ void weft_pack_channel(const weft_bundle *bundle, const weft_samples *samples, i
     }
     if (options->table)
         code_table(bundle, trial, &rounded, code, decoded);
-    solve_rest(bundle, trial, decoded, frozen, options->max_amplitude * fmax(scale, 1), &rounded);
+    /* Where one view alone needs a large T, what the terms take over from it far exceeds the bound of the fit. */
+    for (int j = 0; j < WEFT_LINEAR_MAX; j++)
+        most[j] = options->max_amplitude * fmax(scale, 1);
+    solve_rest(bundle, trial, decoded, frozen, most, &rounded);
     weft_pack_rounded(&rounded, samples->scale, packed);
 }
 
-/* Terms that took something over from T once may lie beyond the bound of the fit; twice what they are is allowed. */
-static double scale_of_terms(const weft_fit *fit)
+double weft_pack_largest_term(const weft_fit *fit)
 {
     double largest = fit->diffuse;
     for (int i = 0; i < fit->lobe_count; i++)
         largest = fmax(largest, fit->lobe[i].amplitude);
-    return 2 * largest / WEFT_LARGEST_AMPLITUDE;
+    return fmax(2 * largest, WEFT_LARGEST_AMPLITUDE);
 }
 
 void weft_pack_given_table(const weft_bundle *bundle, const weft_samples *samples, int channel,
                            const weft_fit_options *options, weft_fit_workspace *workspace, const weft_fit *fit,
-                           const uint8_t *code, weft_packed *packed)
+                           const uint8_t *code, const double *most, weft_packed *packed)
 {
     weft_trial *trial = &workspace->trial[0];
     weft_fit rounded = *fit;
     double *decoded = workspace->scratch[0];
+    for (int i = 0; i < fit->lobe_count; i++)
+        rounded.lobe[i].amplitude = fmin(rounded.lobe[i].amplitude, most[1 + i]);
     unsigned frozen = freeze_sharp(&rounded, samples->scale);
     for (int view = 0; view < bundle->view_count; view++)
         decoded[view] = options->table ? weft_table_of_code(code[view]) : 1;
     trial->fit = rounded;
     weft_workspace_pass(bundle, samples, channel, options, weft_workspace_keep_table(bundle, workspace, decoded),
                         trial);
-    solve_rest(bundle, trial, decoded, frozen, WEFT_LARGEST_AMPLITUDE * fmax(scale_of_terms(fit), 1), &rounded);
+    solve_rest(bundle, trial, decoded, frozen, most, &rounded);
     weft_pack_rounded(&rounded, samples->scale, packed);
 }

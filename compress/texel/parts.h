@@ -24,6 +24,7 @@ struct weft_texel_fitter {
     weft_samples samples;
     weft_fit_workspace *workspace;
     weft_frame_search frames;
+    int most_lobes;                /* that the samples of the texel can carry */
     double *table;                 /* [2][view_count] of one channel; then room */
     int *seen;                     /* [view_count] valid samples */
     weft_texel_result now;         /* the last model that was fitted */
@@ -81,6 +82,10 @@ void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_opti
 
 /* Whether a channel of the last model, T and S as their codes are now, exceeds that limit. */
 bool weft_texel_exceeds(weft_texel_fitter *fitter, int channel);
+
+/* Lowers most [1 + lobe_count], rho first, to the amplitudes with which each term of a channel alone has `share` of
+ * that limit at its brightest. */
+void weft_texel_limit_terms(weft_texel_fitter *fitter, int channel, double share, double *most);
 
 /* Squared error of the last model as it will be read, by the weights that it was fitted with. */
 double weft_texel_weighted_error(weft_texel_fitter *fitter);

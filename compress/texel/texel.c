@@ -2,6 +2,7 @@
 #include "compress/texel/model_ladder.h"
 #include "compress/texel/parts.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -133,24 +134,40 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
         weft_unpack(&fitter->now.packed[channel], options->lobe_count, frame, fitter->samples.scale);
     if (options->table)
         weft_texel_limit_unseen(fitter, channel);
-    weft_texel_hold(fitter, channel, options);
 }
 
-/* The grey fit, without S, that a model begins from. */
-static const weft_grey_fit *find_start(weft_texel_fitter *fitter, const weft_fit_options *options,
+static weft_frame_request request_of(const weft_texel_fitter *fitter, const weft_fit_options *options, int most,
+                                     const weft_frame *given)
+{
+    return (weft_frame_request){fitter->source->frames, given, *options, fitter->most_lobes, most};
+}
+
+/* The grey fit, without S, that a model begins from: the best of `most` refined starts. */
+static const weft_grey_fit *find_start(weft_texel_fitter *fitter, const weft_fit_options *options, int most,
                                        const weft_frame *given)
 {
-    weft_frame_request request = {fitter->source->frames, given, *options};
-    return weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+    weft_frame_request request = request_of(fitter, options, most, given);
+    weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+    return &fitter->frames.best;
 }
 
-/* Fits and packs one model, with S or without, from its start; `fitter` holds the result. */
+/* Another; NULL where there is none. */
+static const weft_grey_fit *find_other(weft_texel_fitter *fitter, const weft_fit_options *options,
+                                       const weft_frame *given)
+{
+    weft_frame_request request = request_of(fitter, options, WEFT_FINALISTS, given);
+    bool found =
+        weft_frame_search_other(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
+    return found ? &fitter->frames.other : NULL;
+}
+
+/* Fits and packs one model, with S or without, from its start; `fitter` holds the result, which may yet glare. */
 static void fit_from(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_grey_fit *start)
 {
     if (light)
         start = weft_texel_light_start(fitter, options, start);
-    fitter->now.turns = start == &fitter->frames.turned ||
-                        (light && options->lobe_count > 0 && fitter->source->frames == WEFT_FRAMES_FITTED);
+    fitter->now.turns =
+        start->turns || (light && options->lobe_count > 0 && fitter->source->frames == WEFT_FRAMES_FITTED);
     fitter->now.second_start = start->fit.start > 0;
     fitter->now.held = false;
     fitter->now.residual = 0;
@@ -159,9 +176,16 @@ static void fit_from(weft_texel_fitter *fitter, const weft_fit_options *options,
         fit_channel(fitter, options, light, channel, start, &frame);
 }
 
+static void hold(weft_texel_fitter *fitter, const weft_fit_options *options)
+{
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+        weft_texel_hold(fitter, channel, options);
+}
+
 static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given)
 {
-    fit_from(fitter, options, light, find_start(fitter, options, given));
+    fit_from(fitter, options, light, find_start(fitter, options, WEFT_FINALISTS, given));
+    hold(fitter, options);
 }
 
 /* ---- The best model ---- */
@@ -171,6 +195,7 @@ static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options
  * smaller model, and rounding cost next to nothing. */
 enum { MANY_SAMPLES = 2000 };
 #define CLEARLY_LESS 0.97
+#define CLEARLY_LESS_LIT 0.7 /* where S is to be fitted, of which the grey fit knows nothing */
 #define BARELY_MORE 1.01
 
 static void swap_results(weft_texel_fitter *fitter)
@@ -188,40 +213,67 @@ typedef struct contest {
     bool stepped_down; /* the best is not the whole model */
 } contest;
 
-/* Fits a smaller model if it may serve better, and keeps the better one. */
-static void try_smaller(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given,
-                        contest *state)
+/* Fits a model from one start, and keeps the better one; returns whether it was spoilt: held, or by rounding. A model
+ * that leaves too much before it is rounded and held leaves more afterwards. */
+static bool try_start(weft_texel_fitter *fitter, const weft_fit_options *options, bool light,
+                      const weft_grey_fit *start, contest *state)
 {
-    const weft_grey_fit *start = find_start(fitter, options, given);
-    if (state->is_sure && state->grey < CLEARLY_LESS * start->fit.residual)
-        return;
     swap_results(fitter);
     fit_from(fitter, options, light, start);
-    double own = weft_texel_weighted_error(fitter);
-    if (own < state->least) {
+    bool is_beaten = fitter->now.residual >= state->least;
+    if (!is_beaten)
+        hold(fitter, options);
+    double own = is_beaten ? INFINITY : weft_texel_weighted_error(fitter);
+    bool spoilt = !is_beaten && (fitter->now.held || own >= BARELY_MORE * fitter->now.residual);
+    if (own < state->least)
         state->least = own;
-        state->stepped_down = true;
-    } else {
+    else
         swap_results(fitter);
-    }
+    return spoilt;
 }
 
-/* Without S, without T and with fewer lobes. A grey fit says nothing of S. */
+/* The same from the start that leaves least and, where the result is spoilt, from another; returns whether the result
+ * of the first was spoilt. */
+static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given,
+                      contest *state)
+{
+    bool spoilt = try_start(fitter, options, light, &fitter->frames.best, state);
+    const weft_grey_fit *other = spoilt ? find_other(fitter, options, given) : NULL;
+    if (other)
+        try_start(fitter, options, light, other, state);
+    return spoilt;
+}
+
+/* Whether the grey fit of a smaller model leaves so little that the model needs a look; then all its starts are
+ * refined.
+ */
+static bool may_serve(weft_texel_fitter *fitter, const weft_fit_options *options, const weft_frame *given,
+                      const contest *state)
+{
+    double clear = fitter->light_count > 0 ? CLEARLY_LESS_LIT : CLEARLY_LESS;
+    if (state->is_sure && state->grey < clear * find_start(fitter, options, 1, given)->fit.residual)
+        return false;
+    find_start(fitter, options, WEFT_FINALISTS, given);
+    return true;
+}
+
+/* Without S, without T and with fewer lobes. */
 static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given,
                             contest *state)
 {
-    bool light = fitter->light_count > 0;
+    bool light = fitter->light_count > 0, is_few = fitter->samples.valid_count <= MANY_SAMPLES;
     weft_fit_options options = *whole;
     for (options.lobe_count = whole->lobe_count; options.lobe_count >= 0; options.lobe_count--) {
         for (int with_table = whole->table; with_table >= 0; with_table--) {
             for (int with_light = light; with_light >= 0; with_light--) {
-                bool is_whole =
-                    options.lobe_count == whole->lobe_count && with_table == whole->table && with_light == light;
-                bool is_few = fitter->samples.valid_count <= MANY_SAMPLES;
-                if (is_whole || (!is_few && (with_table != whole->table || with_light != light)))
-                    continue;
+                bool is_part = with_table != whole->table || with_light != light;
                 options.table = with_table;
-                try_smaller(fitter, &options, with_light, given, state);
+                if (is_part ? !is_few : options.lobe_count == whole->lobe_count)
+                    continue;
+                double before = state->least;
+                if (may_serve(fitter, &options, given, state))
+                    try_model(fitter, &options, with_light, given, state);
+                state->stepped_down |= state->least < before;
             }
         }
     }
@@ -231,12 +283,9 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
  * whole one. */
 static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
 {
-    const weft_grey_fit *start = find_start(fitter, whole, given);
-    contest state = {.grey = start->fit.residual};
-    fit_from(fitter, whole, fitter->light_count > 0, start);
-    state.least = weft_texel_weighted_error(fitter);
-    state.is_sure = !fitter->now.held && fitter->samples.valid_count > MANY_SAMPLES &&
-                    state.least < BARELY_MORE * fitter->now.residual;
+    contest state = {.least = INFINITY, .grey = find_start(fitter, whole, WEFT_FINALISTS, given)->fit.residual};
+    bool spoilt = try_model(fitter, whole, fitter->light_count > 0, given, &state);
+    state.is_sure = !spoilt && fitter->samples.valid_count > MANY_SAMPLES;
     try_all_smaller(fitter, whole, given, &state);
     return state.stepped_down;
 }
@@ -352,7 +401,9 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         return;
     }
     weft_texel_limit(fitter);
+    weft_frame_search_forget(&fitter->frames);
     weft_fit_options whole = whole_model(fitter);
+    fitter->most_lobes = whole.lobe_count;
     weft_frame frame;
     const weft_frame *given = find_given(fitter->source->given, level, x, y, &frame);
     if (fitter->source->tables)
