@@ -36,6 +36,12 @@ typedef struct weft_compress_report {
     double starved_seconds;   /* that the fit waited for it */
 } weft_compress_report;
 
+/* The options with WEFT_LAYERS_AUTOMATIC decided: where images are scattered (compress/layers/layers_fit.h) and nothing
+ * is asked for that only lobes and tables can give, there are 8 layers for fewer than 20 images, 16 for fewer than 100,
+ * else 32, and a diffuse term beside them; none for fewer than 20 near images, which are fitted by the sparse model.
+ * weft_compress decides so by itself. Pure. */
+weft_compress_options weft_compress_settle(const weft_compress_options *options, const weft_dataset *dataset);
+
 /* The model that weft_compress fits to a dataset with this layout, and how many lobes. Pure. */
 weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const weft_compress_options *options,
                                        int *lobe_count);
