@@ -147,16 +147,16 @@ static weft_code check(void *values, weft_error *error)
     return WEFT_OK;
 }
 
-/* What a model for few images makes nothing of. */
-static void say_idle(const weft_common_options *common, const weft_compress_options *given)
+/* What a model for few images, or layers, make nothing of. */
+static void say_idle(const weft_common_options *common, const weft_compress_options *given, const char *why)
 {
     const weft_compress_options usual = weft_compress_default_options();
-    if (given->weights != usual.weights)
-        weft_command_say(common, "with so few images --weights changes nothing");
+    if (given->weights != usual.weights && given->layer_count == 0)
+        weft_command_say(common, "with %s --weights changes nothing", why);
     if (given->frames != usual.frames)
-        weft_command_say(common, "with so few images --frames changes nothing");
+        weft_command_say(common, "with %s --frames changes nothing", why);
     if (given->max_exponent < usual.max_exponent || given->max_exponent > usual.max_exponent)
-        weft_command_say(common, "with so few images --max-exponent changes nothing");
+        weft_command_say(common, "with %s --max-exponent changes nothing", why);
 }
 
 static void say_model(const compress_command *command, const weft_compress_options *options,
@@ -172,11 +172,13 @@ static void say_model(const compress_command *command, const weft_compress_optio
         weft_command_say(common, "these images carry no tables: --tables changes nothing");
     if (options->light_table && report->light_count == 0)
         weft_command_say(common, "these images carry no light table: --light-table changes nothing");
-    if (report->model == WEFT_COMPRESS_SPARSE)
-        say_idle(common, options);
+    if (options->layer_count > 0 && options->lobe_count == 0)
+        say_idle(common, options, "layers instead of lobes");
+    else if (report->model == WEFT_COMPRESS_SPARSE)
+        say_idle(common, options, "so few images");
     else if (options->frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(dataset))
         weft_command_say(common, "the dataset gives no frames: --frames given is that of the surface");
-    if (report->model == WEFT_COMPRESS_SPARSE)
+    if (report->model == WEFT_COMPRESS_SPARSE && options->layer_count == 0)
         weft_command_say(common,
                          "%d images cannot carry lobes in every texel: exponents and normals are shared with the "
                          "neighbours, only amplitudes are the texel's own",

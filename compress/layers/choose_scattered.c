@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 /* The components that say most decide: maps of all would take as long as the rest of the fit. */
-enum { MOST_COMPONENTS = 8 };
+enum { MOST_COMPONENTS = 4 };
 
 typedef struct comparison {
     const weft_dataset_layout *layout;
