@@ -53,9 +53,9 @@ weft_code weft_compress_share_budget(const weft_dataset_layout *whole, const wef
                                      const weft_compress_options *options, uint64_t *bytes, weft_error *error);
 
 /* Fits `material`, which the caller frees with weft_material_free; errors by level are in it. `report` may be NULL. The
- * result depends neither on the number of threads (OpenMP) nor on the order of the images, the memory allowed or
- * whether a checkpoint was used. The sparse model holds all samples and keeps no checkpoint. Nothing else may use the
- * dataset meanwhile. With a target or a budget the material says which model each texel has.
+ * result depends neither on the number of threads (OpenMP) nor, but for layers, on the order of the images, the memory
+ * allowed or whether a checkpoint was used. The sparse model holds all samples and keeps no checkpoint. Nothing else
+ * may use the dataset meanwhile. With a target or a budget the material says which model each texel has.
  * Errors: WEFT_BAD_USAGE for options out of range, a target and a budget together, a budget that nothing fits into,
  * where every image is held out, or where the memory allowed does not suffice; WEFT_BAD_INPUT for a dataset without any
  * valid sample; those of reading; WEFT_SYSTEM for memory and for a checkpoint that cannot be opened or written, which

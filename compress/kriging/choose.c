@@ -65,6 +65,7 @@ static weft_code reduce(const weft_kriging_samples *set, reduced *result, weft_e
     result->sample = malloc(count * count * sizeof *result->sample);
     if (!matrix || !result->sample) {
         free(matrix);
+        free(result->sample);
         return weft_fail_memory(error, "products of samples", 2 * count * count * sizeof *matrix);
     }
     products(set, matrix);
