@@ -16,8 +16,8 @@ typedef struct compress_command {
     weft_common_options common;
     const char *input, *output, *report;
     weft_compress_options options;
-    int hold_out;     /* splits; 0: off */
-    int lobes, table; /* NOT_GIVEN, or as in the options */
+    int hold_out;             /* splits; 0: off */
+    int lobes, table, layers; /* NOT_GIVEN, or as in the options */
 } compress_command;
 
 enum { NOT_GIVEN = -1 };
@@ -80,9 +80,9 @@ static const weft_option option_table[] = {
      .help =
          "Add K linear layers, 4 to 64, a multiple of 4: K bytes a texel and tables that all texels share. They come "
          "nearer to the photographs than lobes do, most of all between them. Without --lobes and --table the lobes "
-         "beside them are a diffuse term (default: 0)",
-     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, options.layer_count), .low = 0,
-     .high = WEFT_LAYERS_MAX},
+         "beside them are a diffuse term (default: 0; where photographs are no grid of views and lights, without "
+         "--lobes and --table, as many as they carry)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, layers), .low = 0, .high = WEFT_LAYERS_MAX},
     {"light-table", .argument = "on|off",
      .help = "Light table S beside T, as large and several times the time; where lights repeat (default: off)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.light_table)},
@@ -129,11 +129,11 @@ static weft_code check(void *values, weft_error *error)
 {
     const compress_command *command = values;
     const weft_compress_options *o = &command->options;
-    if (o->layer_count % WEFT_LAYERS_GROUP != 0)
+    if (command->layers > 0 && command->layers % WEFT_LAYERS_GROUP != 0)
         return weft_fail(error, WEFT_BAD_USAGE, "--layers is a multiple of %d, not %d", WEFT_LAYERS_GROUP,
-                         o->layer_count);
+                         command->layers);
     bool chooses = o->target_error > 0 || o->budget_bytes > 0;
-    if (o->layer_count > 0 && chooses)
+    if (command->layers > 0 && chooses)
         return weft_fail(error, WEFT_BAD_USAGE,
                          "--error and --budget choose lobes and tables for each texel: leave out --layers");
     if (o->target_error > 0 && o->budget_bytes > 0)
@@ -147,16 +147,16 @@ static weft_code check(void *values, weft_error *error)
     return WEFT_OK;
 }
 
-/* What a model for few images makes nothing of. */
-static void say_idle(const weft_common_options *common, const weft_compress_options *given)
+/* What a model for few images, or layers, make nothing of. */
+static void say_idle(const weft_common_options *common, const weft_compress_options *given, const char *why)
 {
     const weft_compress_options usual = weft_compress_default_options();
-    if (given->weights != usual.weights)
-        weft_command_say(common, "with so few images --weights changes nothing");
+    if (given->weights != usual.weights && given->layer_count == 0)
+        weft_command_say(common, "with %s --weights changes nothing", why);
     if (given->frames != usual.frames)
-        weft_command_say(common, "with so few images --frames changes nothing");
+        weft_command_say(common, "with %s --frames changes nothing", why);
     if (given->max_exponent < usual.max_exponent || given->max_exponent > usual.max_exponent)
-        weft_command_say(common, "with so few images --max-exponent changes nothing");
+        weft_command_say(common, "with %s --max-exponent changes nothing", why);
 }
 
 static void say_model(const compress_command *command, const weft_compress_options *options,
@@ -172,11 +172,13 @@ static void say_model(const compress_command *command, const weft_compress_optio
         weft_command_say(common, "these images carry no tables: --tables changes nothing");
     if (options->light_table && report->light_count == 0)
         weft_command_say(common, "these images carry no light table: --light-table changes nothing");
-    if (report->model == WEFT_COMPRESS_SPARSE)
-        say_idle(common, options);
+    if (options->layer_count > 0 && options->lobe_count == 0)
+        say_idle(common, options, "layers instead of lobes");
+    else if (report->model == WEFT_COMPRESS_SPARSE)
+        say_idle(common, options, "so few images");
     else if (options->frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(dataset))
         weft_command_say(common, "the dataset gives no frames: --frames given is that of the surface");
-    if (report->model == WEFT_COMPRESS_SPARSE)
+    if (report->model == WEFT_COMPRESS_SPARSE && options->layer_count == 0)
         weft_command_say(common,
                          "%d images cannot carry lobes in every texel: exponents and normals are shared with the "
                          "neighbours, only amplitudes are the texel's own",
@@ -250,11 +252,16 @@ static void say_layers(const weft_common_options *common, const weft_compress_op
     const weft_layers_report *layers = &report->layers;
     if (options->layer_count == 0)
         return;
+    if (layers->scattered)
+        weft_command_say(common,
+                         "photographs that are no grid: completed by kriging; relative RMSE %.4f of photographs left "
+                         "out, one after another",
+                         layers->left_out_error);
     weft_command_say(common,
-                     "%d layers over %s, learned from %d texels; on images held out to choose: %.4f over the light, "
+                     "%d layers over %s, learned from %d texels; on images %s to choose: %.4f over the light, "
                      "%.4f over the half vector (relative RMSE)",
-                     options->layer_count, kind[layers->kind], layers->training_texels, layers->trial_error[0],
-                     layers->trial_error[1]);
+                     options->layer_count, kind[layers->kind], layers->training_texels,
+                     layers->scattered ? "fitted" : "held out", layers->trial_error[0], layers->trial_error[1]);
     weft_command_say(common,
                      "layers at those texels, fitted samples: median rel. %.4f, 80 %% rel. %.4f, rel. RMSE %.4f, "
                      "PSNR %.2f dB",
@@ -292,10 +299,12 @@ static weft_code check_output(const char *path, weft_error *error)
 static weft_compress_options resolve(const compress_command *command, const weft_dataset *dataset)
 {
     weft_compress_options options = command->options;
-    bool alone = options.layer_count == 0;
+    bool lobes_given = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN;
+    bool alone = command->layers == NOT_GIVEN || command->layers == 0;
+    options.layer_count = command->layers != NOT_GIVEN ? command->layers : lobes_given ? 0 : WEFT_LAYERS_AUTOMATIC;
     options.lobe_count = command->lobes != NOT_GIVEN ? command->lobes : alone ? options.lobe_count : 0;
     options.table = command->table != NOT_GIVEN ? command->table : alone || weft_dataset_has_opacity(dataset);
-    return options;
+    return weft_compress_settle(&options, dataset);
 }
 
 /* Where it cannot be measured, for want of memory say, or because the texels that were chosen are holes, the user is
@@ -365,8 +374,11 @@ static weft_code compress_dataset(const compress_command *command, const char *p
 
 static int run(int argc, char **argv)
 {
-    compress_command command = {
-        .options = weft_compress_default_options(), .hold_out = 1, .lobes = NOT_GIVEN, .table = NOT_GIVEN};
+    compress_command command = {.options = weft_compress_default_options(),
+                                .hold_out = 1,
+                                .lobes = NOT_GIVEN,
+                                .table = NOT_GIVEN,
+                                .layers = NOT_GIVEN};
     weft_arguments_parse(&weft_command_compress, argc, argv, &command);
     weft_error error = {0};
     char partial_path[PATH_MAX];

@@ -23,7 +23,33 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-enum { SAMPLES_PER_PARAMETER = 4 };
+/* Of fewer near images the sparse model, whose texels see highlights for each other, predicts more than layers do. */
+enum { SAMPLES_PER_PARAMETER = 4, LEAST_NEAR_IMAGES = 20 };
+
+/* What predicts as well as more do (docs/notes/layers.md). */
+static int layers_for(int images)
+{
+    return images < 20 ? 8 : images < 100 ? 16 : 32;
+}
+
+weft_compress_options weft_compress_settle(const weft_compress_options *options, const weft_dataset *dataset)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    weft_compress_options settled = *options;
+    bool chosen = options->target_error > 0 || options->budget_bytes > 0;
+    bool tables = options->light_table || options->table_components > 0;
+    if (options->layer_count != WEFT_LAYERS_AUTOMATIC)
+        return settled;
+    settled.layer_count = 0;
+    int images = weft_compress_options_count_images(options, layout);
+    bool shared = layout->distance == WEFT_NEAR && images < LEAST_NEAR_IMAGES;
+    if (chosen || tables || shared || !weft_images_are_scattered(layout, options->held_out))
+        return settled;
+    settled.layer_count = layers_for(images);
+    settled.lobe_count = 0;
+    settled.table = weft_dataset_has_opacity(dataset);
+    return settled;
+}
 
 /* What so many samples a texel can carry. T belongs to fixed directions, so that near cameras have none. That of a
  * single view would only be a factor of all terms. */
@@ -289,10 +315,12 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
                         weft_material *material, weft_compress_report *report, weft_error *error)
 {
     weft_compress_report own = {0};
+    weft_compress_options settled = weft_compress_settle(options, dataset);
+    options = &settled;
     double began = weft_now_s();
     WEFT_TRY(weft_compress_options_check(options, dataset, error));
     if (options->layer_count > 0)
-        WEFT_TRY(weft_layers_check(dataset, options->layer_count, error));
+        WEFT_TRY(weft_layers_check(options->layer_count, error));
     plan(weft_dataset_get_layout(dataset), options, &own);
     fitting work = {.dataset = dataset,
                     .options = options,

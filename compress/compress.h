@@ -36,6 +36,12 @@ typedef struct weft_compress_report {
     double starved_seconds;   /* that the fit waited for it */
 } weft_compress_report;
 
+/* The options with WEFT_LAYERS_AUTOMATIC decided: where images are scattered (compress/layers/layers_fit.h) and nothing
+ * is asked for that only lobes and tables can give, there are 8 layers for fewer than 20 images, 16 for fewer than 100,
+ * else 32, and a diffuse term beside them; none for fewer than 20 near images, which are fitted by the sparse model.
+ * weft_compress decides so by itself. Pure. */
+weft_compress_options weft_compress_settle(const weft_compress_options *options, const weft_dataset *dataset);
+
 /* The model that weft_compress fits to a dataset with this layout, and how many lobes. Pure. */
 weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const weft_compress_options *options,
                                        int *lobe_count);
@@ -47,9 +53,9 @@ weft_code weft_compress_share_budget(const weft_dataset_layout *whole, const wef
                                      const weft_compress_options *options, uint64_t *bytes, weft_error *error);
 
 /* Fits `material`, which the caller frees with weft_material_free; errors by level are in it. `report` may be NULL. The
- * result depends neither on the number of threads (OpenMP) nor on the order of the images, the memory allowed or
- * whether a checkpoint was used. The sparse model holds all samples and keeps no checkpoint. Nothing else may use the
- * dataset meanwhile. With a target or a budget the material says which model each texel has.
+ * result depends neither on the number of threads (OpenMP) nor, but for layers, on the order of the images, the memory
+ * allowed or whether a checkpoint was used. The sparse model holds all samples and keeps no checkpoint. Nothing else
+ * may use the dataset meanwhile. With a target or a budget the material says which model each texel has.
  * Errors: WEFT_BAD_USAGE for options out of range, a target and a budget together, a budget that nothing fits into,
  * where every image is held out, or where the memory allowed does not suffice; WEFT_BAD_INPUT for a dataset without any
  * valid sample; those of reading; WEFT_SYSTEM for memory and for a checkpoint that cannot be opened or written, which

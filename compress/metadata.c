@@ -26,16 +26,37 @@ weft_code weft_compress_metadata_bytes(const weft_dataset_layout *layout, uint64
     return WEFT_OK;
 }
 
+/* Base 2 logarithms, as in compress/kriging/covariance.h. */
+static json_t *describe_kriging(const weft_layers_report *report)
+{
+    static const char *const name[WEFT_COVARIANCE_NUMBERS] = {[WEFT_NOISE] = "noise",
+                                                              [WEFT_DIFFUSE_VARIANCE] = "diffuse_variance",
+                                                              [WEFT_SMOOTH_LIGHT_LENGTH] = "light_length",
+                                                              [WEFT_SMOOTH_VIEW_LENGTH] = "view_length",
+                                                              [WEFT_HIGHLIGHT_VARIANCE] = "highlight_variance",
+                                                              [WEFT_HIGHLIGHT_LENGTH] = "highlight_length",
+                                                              [WEFT_HIGHLIGHT_VIEW_LENGTH] = "highlight_view_length",
+                                                              [WEFT_FIXED_HIGHLIGHT_VARIANCE] = "fixed_variance",
+                                                              [WEFT_FIXED_HIGHLIGHT_LENGTH] = "fixed_length"};
+    json_t *numbers = json_object();
+    for (int k = 0; k < WEFT_COVARIANCE_NUMBERS; k++)
+        weft_json_put(&numbers, name[k], json_real(report->covariance.log2_of[k]));
+    return json_pack("{s:f, s:o}", "left_out_relative_rmse", report->left_out_error, "log2_covariance", numbers);
+}
+
 static json_t *describe_layers(const weft_compress_options *options, const weft_layers_report *report)
 {
     static const char *const kind[] = {"light", "half vector"};
     const weft_error_summary *fitted = &report->fitted;
-    return json_pack("{s:i, s:s, s:[f,f], s:i, s:{s:f, s:f, s:f, s:f, s:f}}", "count", options->layer_count,
-                     "maps_over", kind[report->kind], "trial_relative_rmse", report->trial_error[0],
-                     report->trial_error[1], "learned_from_texels", report->training_texels, "fitted",
-                     "median_relative", fitted->median_relative, "percentile80_relative", fitted->percentile80_relative,
-                     "rmse", fitted->rmse, "relative_rmse", fitted->relative_rmse, "psnr_db",
-                     isfinite(fitted->psnr_db) ? fitted->psnr_db : 0);
+    json_t *layers =
+        json_pack("{s:i, s:s, s:[f,f], s:i, s:{s:f, s:f, s:f, s:f, s:f}}", "count", options->layer_count, "maps_over",
+                  kind[report->kind], "trial_relative_rmse", report->trial_error[0], report->trial_error[1],
+                  "learned_from_texels", report->training_texels, "fitted", "median_relative", fitted->median_relative,
+                  "percentile80_relative", fitted->percentile80_relative, "rmse", fitted->rmse, "relative_rmse",
+                  fitted->relative_rmse, "psnr_db", isfinite(fitted->psnr_db) ? fitted->psnr_db : 0);
+    if (report->scattered)
+        weft_json_put(&layers, "kriging", describe_kriging(report));
+    return layers;
 }
 
 static json_t *describe_fit(const weft_compress_options *options, const weft_compress_report *report,

@@ -128,44 +128,6 @@ static void read_components(const eigen *e, const weft_training *training, weft_
 
 /* ---- What is masked ---- */
 
-static int has_masked(const weft_training *training)
-{
-    size_t entries = (size_t)training->texel_count * training->image_count;
-    return memchr(training->valid, 0, entries) != NULL;
-}
-
-/* The mean texel over what is valid, brought to the brightness of each. */
-static weft_code fill_by_mean(weft_training *training, weft_error *error)
-{
-    size_t images = training->image_count, length = training->length;
-    double *mean = calloc(3 * images, sizeof *mean);
-    if (!mean)
-        return weft_fail_memory(error, "mean texel", 3 * images * sizeof *mean);
-    for (size_t i = 0; i < images; i++) {
-        double count = 0;
-        for (size_t texel = 0; texel < (size_t)training->texel_count; texel++)
-            count += training->valid[texel * images + i];
-        for (size_t texel = 0; texel < (size_t)training->texel_count && count > 0; texel++)
-            for (size_t c = 0; c < 3; c++)
-                mean[3 * i + c] += (double)training->vector[texel * length + 3 * i + c] / count;
-    }
-    for (size_t texel = 0; texel < (size_t)training->texel_count; texel++) {
-        float *vector = training->vector + texel * length;
-        const uint8_t *valid = training->valid + texel * images;
-        double own = 0, others = 1e-30;
-        for (size_t i = 0; i < 3 * images; i++) {
-            own += valid[i / 3] ? (double)vector[i] : 0;
-            others += valid[i / 3] ? mean[i] : 0;
-        }
-        for (size_t i = 0; i < 3 * images; i++) {
-            if (!valid[i / 3])
-                vector[i] = (float)(mean[i] * own / others);
-        }
-    }
-    free(mean);
-    return WEFT_OK;
-}
-
 static void fill_texel(const weft_components *components, const float *coefficient, size_t images, const uint8_t *valid,
                        float *vector)
 {
@@ -177,16 +139,6 @@ static void fill_texel(const weft_components *components, const float *coefficie
             value += coefficient[k] * components->vector[k * components->length + i];
         vector[i] = value;
     }
-}
-
-/* The filled samples are set aside, so that the coefficients follow from the valid ones alone. */
-static void clear_masked(weft_training *training)
-{
-    for (size_t texel = 0; texel < (size_t)training->texel_count; texel++)
-        for (size_t i = 0; i < 3 * training->image_count; i++) {
-            if (!training->valid[texel * training->image_count + i / 3])
-                training->vector[texel * training->length + i] = 0;
-        }
 }
 
 static weft_code fill_texels(weft_training *training, const weft_components *components,
@@ -216,7 +168,8 @@ static weft_code fill_by_components(weft_training *training, const weft_componen
 {
     weft_projector projector;
     WEFT_TRY(weft_projector_create(components, components->vector, (int)training->image_count, &projector, error));
-    clear_masked(training);
+    /* The filled samples are set aside, so that the coefficients follow from the valid ones alone. */
+    weft_training_clear_masked(training);
     weft_code code = fill_texels(training, components, &projector, error);
     weft_projector_free(&projector);
     return code;
@@ -224,9 +177,9 @@ static weft_code fill_by_components(weft_training *training, const weft_componen
 
 static weft_code find(weft_training *training, eigen *e, weft_components *components, weft_error *error)
 {
-    bool masked = has_masked(training);
+    bool masked = weft_training_has_masked(training);
     if (masked)
-        WEFT_TRY(fill_by_mean(training, error));
+        WEFT_TRY(weft_training_fill_by_mean(training, error));
     for (int round = 0; round < (masked ? ROUNDS : 1); round++) {
         if (round > 0)
             WEFT_TRY(fill_by_components(training, components, error));
@@ -234,7 +187,7 @@ static weft_code find(weft_training *training, eigen *e, weft_components *compon
         read_components(e, training, components);
     }
     if (masked)
-        clear_masked(training);
+        weft_training_clear_masked(training);
     return WEFT_OK;
 }
 

@@ -4,6 +4,7 @@
 
 #include "btf/material/layers.h"
 #include "compress/layers/training.h"
+#include "reflectance/layers/layers.h"
 
 /* Freed with weft_components_free. */
 typedef struct weft_components {
@@ -39,6 +40,28 @@ typedef struct weft_projector {
 weft_code weft_projector_create(const weft_components *components, const float *factor, int image_count,
                                 weft_projector *projector, weft_error *error);
 void weft_projector_free(weft_projector *projector);
+
+/* Coefficients of texels whose directions are their own. */
+typedef struct weft_near_projector {
+    const weft_dataset_layout *layout;
+    const weft_layer_maps *maps;
+    weft_layer_images images; /* as the present texel sees them */
+    weft_components prior;    /* borrowed, but of the length of the images */
+    float *factor;            /* [layer][images.length] */
+} weft_near_projector;
+
+/* All but the images are not owned. For one thread. The caller frees. Errors: WEFT_SYSTEM. */
+weft_code weft_near_projector_create(const weft_dataset_layout *layout, const weft_components *components,
+                                     const weft_layer_maps *maps, const weft_layer_images *images,
+                                     weft_near_projector *projector, weft_error *error);
+void weft_near_projector_free(weft_near_projector *projector);
+
+/* Looks at the images from texel (x, y), before its samples are gathered. */
+void weft_near_projector_move(weft_near_projector *projector, int x, int y);
+
+/* Coefficients of that texel, as weft_projector_solve. Errors: WEFT_SYSTEM. */
+weft_code weft_near_projector_solve(weft_near_projector *projector, const float *vector, const uint8_t *valid,
+                                    float *coefficient, weft_error *error);
 
 /* Coefficients [texel_count][count] of vector [texel_count], masked samples 0, valid [texel_count][image_count]. No
  * texel leaves a trace in another. Thread-safe. Errors: WEFT_SYSTEM. */

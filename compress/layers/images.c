@@ -9,18 +9,51 @@
 
 enum { WHOLE_LANES = 16 };
 
-static weft_code allocate(const weft_dataset_layout *layout, weft_layer_images *images, weft_error *error)
+weft_code weft_layer_images_allocate(int image_count, int view_count, weft_layer_images *images, weft_error *error)
 {
-    size_t count = (size_t)layout->image_count, views = (size_t)layout->view_count;
-    images->dataset_image_count = layout->image_count;
+    size_t count = (size_t)image_count, views = (size_t)view_count;
+    *images = (weft_layer_images){0};
     images->image = malloc(count * sizeof *images->image);
     images->first = malloc((views + 1) * sizeof *images->first);
     images->light = malloc(count * sizeof *images->light);
     images->view = malloc(views * sizeof *images->view);
     images->cosine = malloc(count * sizeof *images->cosine);
     images->weight = calloc(count, sizeof *images->weight);
-    bool all = images->image && images->first && images->light && images->view && images->cosine && images->weight;
-    return all ? WEFT_OK : weft_fail_memory(error, "images of layers", count * sizeof *images->light);
+    if (images->image && images->first && images->light && images->view && images->cosine && images->weight) {
+        images->first[0] = 0;
+        return WEFT_OK;
+    }
+    weft_layer_images_free(images);
+    return weft_fail_memory(error, "images of layers", count * sizeof *images->light);
+}
+
+weft_code weft_layer_images_copy(const weft_layer_images *images, weft_layer_images *copy, weft_error *error)
+{
+    size_t count = (size_t)images->image_count, views = (size_t)images->view_count;
+    WEFT_TRY(weft_layer_images_allocate(images->image_count, images->view_count, copy, error));
+    copy->image_count = images->image_count;
+    copy->view_count = images->view_count;
+    copy->length = images->length;
+    copy->dataset_image_count = images->dataset_image_count;
+    memcpy(copy->image, images->image, count * sizeof *copy->image);
+    memcpy(copy->first, images->first, (views + 1) * sizeof *copy->first);
+    memcpy(copy->light, images->light, count * sizeof *copy->light);
+    memcpy(copy->view, images->view, views * sizeof *copy->view);
+    memcpy(copy->cosine, images->cosine, count * sizeof *copy->cosine);
+    memcpy(copy->weight, images->weight, count * sizeof *copy->weight);
+    return WEFT_OK;
+}
+
+void weft_layer_images_look_from(const weft_dataset_layout *layout, int x, int y, weft_layer_images *images)
+{
+    for (int view = 0; view < images->view_count; view++) {
+        int first = images->image[images->first[view]];
+        images->view[view] = weft_dataset_view_direction(layout, layout->view_of_image[first], x, y);
+    }
+    for (int i = 0; i < images->image_count; i++) {
+        images->light[i] = weft_dataset_light_direction(layout, images->image[i], x, y);
+        images->cosine[i] = layout->values == WEFT_REFLECTANCE ? (float)images->light[i].z : 1.0f;
+    }
 }
 
 void weft_layer_images_free(weft_layer_images *images)
@@ -86,10 +119,9 @@ static void normalise_weights(weft_layer_images *images)
 weft_code weft_layer_images_create(const weft_dataset_layout *layout, const uint8_t *held_out,
                                    weft_layer_images *images, weft_error *error)
 {
-    *images = (weft_layer_images){0};
-    weft_code code = allocate(layout, images, error);
+    weft_code code = weft_layer_images_allocate(layout->image_count, layout->view_count, images, error);
     if (code == WEFT_OK) {
-        images->first[0] = 0;
+        images->dataset_image_count = layout->image_count;
         for (int view = 0; view < layout->view_count; view++) {
             if (layout->view[view].z > 0)
                 add_view(images, layout, held_out, view);
@@ -120,13 +152,17 @@ int weft_layer_images_gather(const weft_layer_images *images, const weft_half *s
     const float *known = scratch + 3 * (size_t)images->dataset_image_count;
     int valid_count = 0;
     weft_group_of_texel(samples, mask, NULL, (size_t)images->dataset_image_count, scratch);
-    memset(vector + 3 * count, 0, (images->length - 3 * count) * sizeof *vector);
-    for (size_t i = 0; i < count; i++) {
-        const float *sample = scratch + 3 * (size_t)images->image[i];
-        valid[i] = known[images->image[i]] > 0;
-        valid_count += valid[i];
-        for (size_t c = 0; c < 3; c++)
-            vector[3 * i + c] = images->weight[i] * images->cosine[i] * sample[c];
-    }
+    memset(vector, 0, images->length * sizeof *vector);
+    memset(valid, 0, count);
+    for (int view = 0; view < images->view_count; view++)
+        for (size_t i = images->first[view]; i < images->first[view + 1]; i++) {
+            const float *sample = scratch + 3 * (size_t)images->image[i];
+            if (!(known[images->image[i]] > 0 && images->light[i].z > 0 && images->view[view].z > 0))
+                continue;
+            valid[i] = 1;
+            valid_count++;
+            for (size_t c = 0; c < 3; c++)
+                vector[3 * i + c] = images->weight[i] * images->cosine[i] * sample[c];
+        }
     return valid_count;
 }

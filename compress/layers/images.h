@@ -24,12 +24,22 @@ weft_code weft_layer_images_create(const weft_dataset_layout *layout, const uint
                                    weft_layer_images *images, weft_error *error);
 void weft_layer_images_free(weft_layer_images *images);
 
+/* Room for so many images of so many views, none of which is there yet. The caller frees. Errors: WEFT_SYSTEM. */
+weft_code weft_layer_images_allocate(int image_count, int view_count, weft_layer_images *images, weft_error *error);
+
+/* The caller frees the copy. Errors: WEFT_SYSTEM. */
+weft_code weft_layer_images_copy(const weft_layer_images *images, weft_layer_images *copy, weft_error *error);
+
+/* Directions and cosines become those of texel (x, y), which near lights and cameras make its own; they may lie below
+ * the horizon. At first they are those of the centre of the material. */
+void weft_layer_images_look_from(const weft_dataset_layout *layout, int x, int y, weft_layer_images *images);
+
 /* Takes over image `index` of `from`, except for its number in the dataset, which becomes `image`. */
 void weft_layer_images_add(weft_layer_images *images, const weft_layer_images *from, int index, int image);
 
 /* The samples of one texel: samples [dataset image][3] and mask [dataset image] become vector [length], times
- * the weights, and valid [image_count] (1 or 0); what is masked or not finite is 0. `scratch` has 4 dataset images.
- * Returns the number of valid images. */
+ * the weights, and valid [image_count] (1 or 0); what is masked, not finite or below the horizon is 0. `scratch` has 4
+ * dataset images. Returns the number of valid images. */
 int weft_layer_images_gather(const weft_layer_images *images, const weft_half *samples, const uint8_t *mask,
                              float *scratch, float *vector, uint8_t *valid);
 

@@ -1,11 +1,12 @@
 #include "compress/layers/layers_fit.h"
 
+#include "compress/layers/completion.h"
 #include "compress/layers/levels.h"
 #include "compress/layers/model.h"
 
 #include <stdlib.h>
 
-enum { ALIGNMENT = 64, MOST_COMPARED = 2000000 };
+enum { ALIGNMENT = 64, MOST_COMPARED = 2000000, LEAST_LIGHTS = 12, LEAST_VIEWS = 4 };
 
 /* What one fit hands from step to step. */
 typedef struct fitting {
@@ -14,8 +15,10 @@ typedef struct fitting {
     const weft_progress *progress;
     weft_layer_images images;
     weft_training training;
+    weft_completion completion; /* where images are scattered */
     weft_components components;
     weft_layers *layers;
+    weft_layer_maps maps;
     float *factor; /* [layer][length] */
     weft_projection projection;
 } fitting;
@@ -25,6 +28,8 @@ static void free_all(fitting *work)
     free(work->factor);
     weft_projection_free(&work->projection);
     weft_components_free(&work->components);
+    weft_completion_free(&work->completion);
+    weft_layer_maps_free(&work->maps);
     weft_training_free(&work->training);
     weft_layer_images_free(&work->images);
     weft_layers_free(work->layers);
@@ -32,10 +37,34 @@ static void free_all(fitting *work)
 
 /* ---- Learning ---- */
 
+static weft_code learn_from_grid(fitting *work, weft_layers_report *report, weft_error *error)
+{
+    int count = work->options->layer_count;
+    WEFT_TRY(weft_layer_model_choose(&work->images, &work->training, count, &report->kind, report->trial_error, error));
+    weft_progress_report(work->progress, "learning layers", 1, 2);
+    return weft_components_find(&work->training, count, &work->components, error);
+}
+
+static weft_code learn_from_scattered(fitting *work, weft_layers_report *report, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    weft_completion *completion = &work->completion;
+    WEFT_TRY(weft_completion_make(layout, &work->images, &work->training, &work->options->budget,
+                                  weft_dataset_path(work->dataset), work->progress, completion, error));
+    report->scattered = true;
+    report->left_out_error = completion->left_out_error;
+    report->covariance = completion->covariance;
+    weft_progress_report(work->progress, "learning layers", 1, 2);
+    WEFT_TRY(weft_components_find(&completion->training, work->options->layer_count, &work->components, error));
+    work->components.noise += completion->noise;
+    return weft_layer_model_choose_scattered(layout, &work->images, &work->training, &completion->images,
+                                             &work->components, &report->kind, report->trial_error, error);
+}
+
 static weft_code learn(fitting *work, weft_material *material, weft_layers_report *report, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
-    int count = work->options->layer_count;
+    bool scattered = weft_images_are_scattered(layout, work->options->held_out);
     weft_progress_report(work->progress, "learning layers", 0, 2);
     WEFT_TRY(weft_layer_images_create(layout, work->options->held_out, &work->images, error));
     /* Samples of the texels that are learned from, those again that are not held out, and their products. */
@@ -46,39 +75,48 @@ static weft_code learn(fitting *work, weft_material *material, weft_layers_repor
     WEFT_TRY(weft_training_read(work->dataset, &work->images, &work->training, error));
     if (work->options->for_screen)
         weft_training_weigh_for_screen(&work->training, &work->images);
-    WEFT_TRY(weft_layer_model_choose(&work->images, &work->training, count, &report->kind, report->trial_error, error));
-    weft_progress_report(work->progress, "learning layers", 1, 2);
-    WEFT_TRY(weft_components_find(&work->training, count, &work->components, error));
+    WEFT_TRY(scattered ? learn_from_scattered(work, report, error) : learn_from_grid(work, report, error));
     report->training_texels = work->training.texel_count;
-    WEFT_TRY(weft_layer_model_create(&work->images, &work->components, report->kind, layout->width, layout->height,
-                                     material->level_count, &work->layers, error));
+    WEFT_TRY(weft_layer_model_create(scattered ? &work->completion.images : &work->images, &work->components,
+                                     report->kind, layout->width, layout->height, material->level_count, &work->layers,
+                                     error));
     weft_progress_report(work->progress, "learning layers", 2, 2);
     return WEFT_OK;
 }
 
 /* ---- Projecting ---- */
 
+/* Far images have the same factors for all texels. */
 static weft_code find_factors(fitting *work, weft_error *error)
 {
-    weft_layer_maps maps;
     size_t bytes = (size_t)work->options->layer_count * work->images.length * sizeof *work->factor;
     work->factor = aligned_alloc(ALIGNMENT, bytes);
     if (!work->factor)
         return weft_fail_memory(error, "factors of layers", bytes);
-    WEFT_TRY(weft_layer_maps_create(work->layers, &maps, error));
-    weft_layer_model_factors(&maps, &work->images, work->factor);
-    weft_layer_maps_free(&maps);
+    weft_layer_model_factors(&work->maps, &work->images, work->factor);
     return WEFT_OK;
+}
+
+/* The prior of components that were learned at other directions serves samples, too. */
+static weft_code make_projector(fitting *work, weft_projector *projector, weft_error *error)
+{
+    weft_components prior = work->components;
+    prior.length = work->images.length;
+    WEFT_TRY(find_factors(work, error));
+    return weft_projector_create(&prior, work->factor, work->images.image_count, projector, error);
 }
 
 static weft_code project(fitting *work, weft_layers_report *report, weft_error *error)
 {
-    weft_projector projector;
-    WEFT_TRY(find_factors(work, error));
-    WEFT_TRY(weft_projector_create(&work->components, work->factor, work->images.image_count, &projector, error));
-    weft_code code = weft_projection_make(work->dataset, &work->images, &projector, &work->options->budget,
-                                          work->progress, &work->projection, error);
+    weft_projector projector = {0};
+    bool is_near = weft_dataset_get_layout(work->dataset)->distance == WEFT_NEAR;
+    WEFT_TRY(weft_layer_maps_create(work->layers, &work->maps, error));
+    weft_code code = is_near ? WEFT_OK : make_projector(work, &projector, error);
+    if (code == WEFT_OK)
+        code = weft_projection_make(work->dataset, &work->images, is_near ? NULL : &projector, &work->components,
+                                    &work->maps, &work->options->budget, work->progress, &work->projection, error);
     weft_projector_free(&projector);
+    weft_layer_maps_free(&work->maps);
     report->masked = work->projection.masked;
     report->empty_texels = work->projection.empty;
     if (code == WEFT_OK)
@@ -88,24 +126,41 @@ static weft_code project(fitting *work, weft_layers_report *report, weft_error *
 
 /* ---- Measuring ---- */
 
-/* What the finished layers say of one image, for every training texel. */
-static size_t compare_image(const fitting *work, const weft_layer_maps *maps, int view, int image, weft_compared *pair)
+/* What the finished layers say of one image of a training texel that has it. */
+static size_t compare(const fitting *work, const float *factor, weft_vec3 light, size_t texel, int image,
+                      weft_compared *pair)
 {
     const weft_training *training = &work->training;
+    const float *sample = training->vector + texel * training->length + 3 * (size_t)image;
+    float scale = 1 / work->images.weight[image];
+    if (!training->valid[texel * training->image_count + (size_t)image])
+        return 0;
+    weft_rgb value = weft_layers_texel(work->layers, work->layers->layer_count, factor, 0, training->place[texel].x,
+                                       training->place[texel].y, light.z);
+    pair[0] = (weft_compared){scale * sample[0], (float)value.r};
+    pair[1] = (weft_compared){scale * sample[1], (float)value.g};
+    pair[2] = (weft_compared){scale * sample[2], (float)value.b};
+    return 3;
+}
+
+static size_t compare_image(const fitting *work, const weft_layer_maps *maps, int view, int image, weft_compared *pair)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    const weft_training *training = &work->training;
+    bool is_near = layout->distance == WEFT_NEAR;
+    weft_vec3 light = work->images.light[image], to_view = work->images.view[view];
+    int number = work->images.image[image];
     float factor[3 * WEFT_LAYERS_MAX];
     size_t count = 0;
-    weft_vec3 light = work->images.light[image];
-    float scale = 1 / work->images.weight[image];
-    weft_layer_factors(maps, light, work->images.view[view], factor);
+    weft_layer_factors(maps, light, to_view, factor);
     for (size_t texel = 0; texel < (size_t)training->texel_count; texel++) {
-        const float *sample = training->vector + texel * training->length + 3 * (size_t)image;
-        if (!training->valid[texel * training->image_count + (size_t)image])
-            continue;
-        weft_rgb value = weft_layers_texel(work->layers, work->layers->layer_count, factor, 0, training->place[texel].x,
-                                           training->place[texel].y, light.z);
-        pair[count++] = (weft_compared){scale * sample[0], (float)value.r};
-        pair[count++] = (weft_compared){scale * sample[1], (float)value.g};
-        pair[count++] = (weft_compared){scale * sample[2], (float)value.b};
+        if (is_near) {
+            const weft_training_place *place = &training->place[texel];
+            light = weft_dataset_light_direction(layout, number, place->x, place->y);
+            to_view = weft_dataset_view_direction(layout, layout->view_of_image[number], place->x, place->y);
+            weft_layer_factors(maps, light, to_view, factor);
+        }
+        count += compare(work, factor, light, texel, image, pair + count);
     }
     return count;
 }
@@ -144,13 +199,20 @@ static weft_code fit(fitting *work, weft_material *material, weft_layers_report 
     return measure(work, report, error);
 }
 
-weft_code weft_layers_check(const weft_dataset *dataset, int layer_count, weft_error *error)
+bool weft_images_are_scattered(const weft_dataset_layout *layout, const uint8_t *held_out)
 {
-    if (weft_dataset_get_layout(dataset)->distance == WEFT_NEAR)
-        return weft_fail(error, WEFT_BAD_USAGE,
-                         "'%s' has near lights or cameras, whose directions differ from texel to texel: it cannot "
-                         "have layers",
-                         weft_dataset_path(dataset));
+    int images = 0, views = 0;
+    for (int view = 0; view < layout->view_count; view++) {
+        int before = images;
+        for (int image = 0; image < layout->image_count; image++)
+            images += layout->view_of_image[image] == view && !(held_out && held_out[image]);
+        views += images > before;
+    }
+    return layout->distance == WEFT_NEAR || views < LEAST_VIEWS || images < LEAST_LIGHTS * views;
+}
+
+weft_code weft_layers_check(int layer_count, weft_error *error)
+{
     if (layer_count < WEFT_LAYERS_GROUP || layer_count > WEFT_LAYERS_MAX || layer_count % WEFT_LAYERS_GROUP != 0)
         return weft_fail(error, WEFT_BAD_USAGE, "%d layers: must be 4 to %d, a multiple of 4", layer_count,
                          WEFT_LAYERS_MAX);
@@ -162,7 +224,7 @@ weft_code weft_layers_fit(weft_dataset *dataset, const weft_layers_options *opti
 {
     fitting work = {.dataset = dataset, .options = options, .progress = progress};
     *report = (weft_layers_report){0};
-    WEFT_TRY(weft_layers_check(dataset, options->layer_count, error));
+    WEFT_TRY(weft_layers_check(options->layer_count, error));
     weft_code code = fit(&work, material, report, error);
     if (code == WEFT_OK) {
         material->layers = work.layers;

@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
+#include "compress/kriging/covariance.h"
 #include "compress/run/memory.h"
 
 #include <stdbool.h>
@@ -19,19 +20,26 @@ typedef struct weft_layers_options {
 
 typedef struct weft_layers_report {
     weft_layers_kind kind;
-    double trial_error[2]; /* relative RMSE of each kind on images held out to choose between them; 0 where none was */
+    double trial_error[2]; /* relative RMSE of each kind, by which it was chosen: on images held out, 0 where none was;
+                              of scattered images on the images themselves */
+    bool scattered;
+    weft_covariance covariance; /* of scattered images, chosen by leaving images out ... */
+    double left_out_error;      /* ... and the relative RMSE of these */
     int training_texels;
     long masked, empty_texels;
     weft_error_summary fitted; /* level 0, of the training texels, over images that were fitted */
 } weft_layers_report;
 
-/* That the dataset can have so many layers, before any work is done. Errors: those of weft_layers_fit. */
-weft_code weft_layers_check(const weft_dataset *dataset, int layer_count, weft_error *error);
+/* That there can be so many layers, before any work is done. Errors: WEFT_BAD_USAGE. */
+weft_code weft_layers_check(int layer_count, weft_error *error);
+
+/* Whether the images of a dataset that are not held out are scattered: fewer than 12 for a view, fewer than 4 views, or
+ * near. Their layers are learned from what kriging says of some texels (compress/kriging/kriging.h). Pure. */
+bool weft_images_are_scattered(const weft_dataset_layout *layout, const uint8_t *held_out);
 
 /* Adds layers to `material`, which has the size of the dataset and may have lobes as well. The same dataset gives the
- * same layers, for any number of threads and any memory. Errors: WEFT_BAD_USAGE for a near dataset, whose directions
- * differ from texel to texel, for options out of range and where the memory does not suffice; those of reading;
- * WEFT_SYSTEM. */
+ * same layers, for any number of threads and any memory. Errors: WEFT_BAD_USAGE for options out of range and where the
+ * memory does not suffice; those of reading; WEFT_SYSTEM. */
 weft_code weft_layers_fit(weft_dataset *dataset, const weft_layers_options *options, const weft_progress *progress,
                           weft_material *material, weft_layers_report *report, weft_error *error);
 

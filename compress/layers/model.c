@@ -97,3 +97,10 @@ void weft_layer_model_factors(const weft_layer_maps *maps, const weft_layer_imag
     for (int view = 0; view < images->view_count; view++)
         factors_of_view(maps, images, view, factor);
 }
+
+void weft_layer_model_factors_alone(const weft_layer_maps *maps, const weft_layer_images *images, float *factor)
+{
+    memset(factor, 0, (size_t)maps->layers->layer_count * images->length * sizeof *factor);
+    for (int view = 0; view < images->view_count; view++)
+        factors_of_view(maps, images, view, factor);
+}

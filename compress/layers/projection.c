@@ -12,9 +12,10 @@ enum { BATCH = 4, ALIGNMENT = 64, MOST_SIDE_LEVEL = 6, BLOCK_BYTES = 16 << 20 };
 
 /* What a thread needs of its own. */
 typedef struct worker {
-    float *vector;  /* [BATCH][length] */
-    float *scratch; /* [4 dataset images] */
-    uint8_t *valid; /* [BATCH][images] */
+    weft_near_projector near_projector; /* of near images */
+    float *vector;                      /* [BATCH][length] */
+    float *scratch;                     /* [4 dataset images] */
+    uint8_t *valid;                     /* [BATCH][images] */
     weft_error error;
     weft_code code;
     long masked, empty;
@@ -22,7 +23,9 @@ typedef struct worker {
 
 typedef struct run {
     const weft_layer_images *images;
-    const weft_projector *projector;
+    const weft_projector *projector; /* NULL: every texel has factors of its own */
+    const weft_components *components;
+    const weft_layer_maps *maps;
     weft_projection *projection;
     const weft_texel_block *block;
     int thread_count;
@@ -48,22 +51,47 @@ static float brightest(const weft_layer_images *images, const float *vector)
     return most;
 }
 
-static size_t gather(const run *r, worker *own, long first, int count)
+static void gather(const run *r, const weft_layer_images *seen, worker *own, long first, int count)
 {
     const weft_texel_block *block = r->block;
     size_t images = (size_t)r->images->image_count, all = (size_t)r->images->dataset_image_count;
     for (size_t i = 0; i < (size_t)count; i++) {
         size_t at = (size_t)first + i, x = at % (size_t)block->place.width, y = at / (size_t)block->place.width;
         float *vector = own->vector + i * r->images->length;
-        int valid = weft_layer_images_gather(r->images, block->samples + 3 * all * at, block->mask + all * at,
-                                             own->scratch, vector, own->valid + i * images);
+        int valid = weft_layer_images_gather(seen, block->samples + 3 * all * at, block->mask + all * at, own->scratch,
+                                             vector, own->valid + i * images);
         own->masked += r->images->image_count - valid;
         own->empty += valid == 0;
         r->projection
             ->brightest[((size_t)block->place.y + y) * (size_t)r->projection->width + (size_t)block->place.x + x] =
             brightest(r->images, vector);
     }
-    return images;
+}
+
+/* Coefficients of texels of the block. */
+static weft_code solve_alike(const run *r, worker *own, long first, int count, float *coefficient)
+{
+    const float *vector[BATCH] = {0};
+    const uint8_t *valid[BATCH] = {0};
+    gather(r, r->images, own, first, count);
+    for (size_t i = 0; i < (size_t)count; i++) {
+        vector[i] = own->vector + i * r->images->length;
+        valid[i] = own->valid + i * (size_t)r->images->image_count;
+    }
+    return weft_projector_solve(r->projector, vector, valid, count, coefficient, &own->error);
+}
+
+static weft_code solve_each(const run *r, worker *own, long first, int count, float *coefficient)
+{
+    const weft_block_place *place = &r->block->place;
+    for (int i = 0; i < count; i++) {
+        int x = (int)((first + i) % place->width), y = (int)((first + i) / place->width);
+        weft_near_projector_move(&own->near_projector, place->x + x, place->y + y);
+        gather(r, &own->near_projector.images, own, first + i, 1);
+        WEFT_TRY(weft_near_projector_solve(&own->near_projector, own->vector, own->valid,
+                                           coefficient + i * r->components->count, &own->error));
+    }
+    return WEFT_OK;
 }
 
 static void project_batch(void *context, long item, int thread)
@@ -72,16 +100,10 @@ static void project_batch(void *context, long item, int thread)
     worker *own = &r->worker[thread];
     const weft_texel_block *block = r->block;
     long texels = (long)block->place.width * block->place.height, first = item * BATCH;
-    int count = texels - first < BATCH ? (int)(texels - first) : BATCH, layers = r->projector->count;
-    const float *vector[BATCH] = {0};
-    const uint8_t *valid[BATCH] = {0};
-    float coefficient[BATCH * WEFT_LAYERS_MAX];
-    size_t images = gather(r, own, first, count);
-    for (size_t i = 0; i < (size_t)count; i++) {
-        vector[i] = own->vector + i * r->images->length;
-        valid[i] = own->valid + i * images;
-    }
-    weft_code code = weft_projector_solve(r->projector, vector, valid, count, coefficient, &own->error);
+    int count = texels - first < BATCH ? (int)(texels - first) : BATCH, layers = r->components->count;
+    float coefficient[BATCH * WEFT_LAYERS_MAX] = {0};
+    weft_code code =
+        r->projector ? solve_alike(r, own, first, count, coefficient) : solve_each(r, own, first, count, coefficient);
     own->code = own->code == WEFT_OK ? code : own->code;
     for (int i = 0; i < count; i++) {
         size_t x = (size_t)(first + i) % (size_t)block->place.width + (size_t)block->place.x;
@@ -100,11 +122,12 @@ static void free_workers(run *r)
         free(r->worker[i].vector);
         free(r->worker[i].scratch);
         free(r->worker[i].valid);
+        weft_near_projector_free(&r->worker[i].near_projector);
     }
     free(r->worker);
 }
 
-static weft_code create_workers(run *r, weft_error *error)
+static weft_code create_workers(run *r, const weft_dataset_layout *layout, weft_error *error)
 {
     size_t images = (size_t)r->images->image_count, all = (size_t)r->images->dataset_image_count;
     r->worker = calloc((size_t)r->thread_count, sizeof *r->worker);
@@ -115,6 +138,9 @@ static weft_code create_workers(run *r, weft_error *error)
         own->valid = malloc(BATCH * images);
         if (!own->vector || !own->scratch || !own->valid)
             return weft_fail_memory(error, "projection", BATCH * r->images->length * sizeof *own->vector);
+        if (!r->projector)
+            WEFT_TRY(
+                weft_near_projector_create(layout, r->components, r->maps, r->images, &own->near_projector, error));
     }
     return r->worker ? WEFT_OK : weft_fail_memory(error, "projection", (size_t)r->thread_count * sizeof *r->worker);
 }
@@ -175,7 +201,7 @@ static weft_code project(run *r, weft_dataset *dataset, const weft_block_plan *p
     WEFT_TRY(weft_block_reader_create(dataset, plan->place, plan->count, block_texels, &reader, error));
     weft_code code = weft_thread_pool_create(r->thread_count, &pool, error);
     if (code == WEFT_OK)
-        code = create_workers(r, error);
+        code = create_workers(r, weft_dataset_get_layout(dataset), error);
     if (code == WEFT_OK)
         code = project_blocks(r, reader, pool, plan, progress, error);
     free_workers(r);
@@ -185,6 +211,7 @@ static weft_code project(run *r, weft_dataset *dataset, const weft_block_plan *p
 }
 
 weft_code weft_projection_make(weft_dataset *dataset, const weft_layer_images *images, const weft_projector *projector,
+                               const weft_components *components, const weft_layer_maps *maps,
                                const weft_memory_budget *budget, const weft_progress *progress,
                                weft_projection *projection, weft_error *error)
 {
@@ -192,14 +219,20 @@ weft_code weft_projection_make(weft_dataset *dataset, const weft_layer_images *i
     int side_level = side_level_for(layout);
     size_t block_texels = (size_t)1 << (2 * side_level);
     uint64_t texels = (uint64_t)layout->width * (uint64_t)layout->height;
-    run r = {.images = images, .projector = projector, .projection = projection, .thread_count = omp_get_max_threads()};
+    run r = {.images = images,
+             .projector = projector,
+             .components = components,
+             .maps = maps,
+             .projection = projection,
+             .thread_count = omp_get_max_threads()};
     weft_block_plan plan;
     WEFT_TRY(weft_memory_budget_require(budget,
                                         weft_block_reader_bytes(layout, block_texels) +
-                                            texels * 4 * (uint64_t)(projector->count + 1) +
-                                            (uint64_t)r.thread_count * 32 * (uint64_t)layout->image_count * BATCH,
+                                            texels * 4 * (uint64_t)(components->count + 1) +
+                                            (uint64_t)r.thread_count * (uint64_t)layout->image_count *
+                                                (32 * BATCH + (projector ? 0 : 12 * (uint64_t)components->count + 128)),
                                         weft_dataset_path(dataset), "its layers", error));
-    WEFT_TRY(allocate(layout, projector->count, projection, error));
+    WEFT_TRY(allocate(layout, components->count, projection, error));
     weft_code code = weft_block_plan_create(layout->width, layout->height, side_level, 0, &plan, error);
     if (code == WEFT_OK) {
         code = project(&r, dataset, &plan, block_texels, progress, error);

@@ -16,8 +16,11 @@ typedef struct weft_projection {
 } weft_projection;
 
 /* Reads the dataset once, block by block, the next one while the present one is worked on, and nothing else may use it
- * meanwhile. Errors: those of reading; WEFT_BAD_USAGE where `budget` does not suffice; WEFT_SYSTEM. */
+ * meanwhile. Texels of near images are projected by what the maps make of the components for each of them: `projector`
+ * is NULL then, and elsewhere the maps may be. Errors: those of reading; WEFT_BAD_USAGE where `budget` does not
+ * suffice; WEFT_SYSTEM. */
 weft_code weft_projection_make(weft_dataset *dataset, const weft_layer_images *images, const weft_projector *projector,
+                               const weft_components *components, const weft_layer_maps *maps,
                                const weft_memory_budget *budget, const weft_progress *progress,
                                weft_projection *projection, weft_error *error);
 void weft_projection_free(weft_projection *projection);

@@ -16,16 +16,21 @@ void weft_training_free(weft_training *training)
     *training = (weft_training){0};
 }
 
-static weft_code allocate(int texels, size_t length, size_t image_count, weft_training *training, weft_error *error)
+weft_code weft_training_allocate(int texels, size_t length, size_t image_count, weft_training *training,
+                                 weft_error *error)
 {
-    *training = (weft_training){.length = length, .image_count = image_count};
-    training->place = malloc((size_t)texels * sizeof *training->place);
-    training->vector = aligned_alloc(ALIGNMENT, (size_t)texels * length * sizeof *training->vector);
-    training->valid = malloc((size_t)texels * image_count);
-    if (training->place && training->vector && training->valid)
-        return WEFT_OK;
-    weft_training_free(training);
-    return weft_fail_memory(error, "samples to learn layers from", (size_t)texels * length * sizeof(float));
+    size_t count = (size_t)texels;
+    *training = (weft_training){.texel_count = texels, .length = length, .image_count = image_count};
+    training->place = calloc(count, sizeof *training->place);
+    training->vector = aligned_alloc(ALIGNMENT, count * length * sizeof *training->vector);
+    training->valid = malloc(count * image_count);
+    if (!training->place || !training->vector || !training->valid) {
+        weft_training_free(training);
+        return weft_fail_memory(error, "samples to learn layers from", count * length * sizeof(float));
+    }
+    memset(training->vector, 0, count * length * sizeof *training->vector);
+    memset(training->valid, 1, count * image_count);
+    return WEFT_OK;
 }
 
 /* ---- Which texels ---- */
@@ -130,7 +135,8 @@ weft_code weft_training_read(weft_dataset *dataset, const weft_layer_images *ima
     weft_code code = r.samples && r.mask && r.scratch ? WEFT_OK : weft_fail_memory(error, "samples", square * all * 7);
     *training = (weft_training){0};
     if (code == WEFT_OK)
-        code = allocate(WEFT_TRAINING_TEXELS, images->length, (size_t)images->image_count, training, error);
+        code =
+            weft_training_allocate(WEFT_TRAINING_TEXELS, images->length, (size_t)images->image_count, training, error);
     if (code == WEFT_OK)
         code = read_any(&r, error);
     if (code != WEFT_OK)
@@ -184,10 +190,8 @@ weft_code weft_training_subset(const weft_training *whole, const weft_layer_imag
                                weft_training *subset, weft_error *error)
 {
     size_t count = (size_t)images->image_count;
-    WEFT_TRY(allocate(whole->texel_count, images->length, count, subset, error));
-    subset->texel_count = whole->texel_count;
+    WEFT_TRY(weft_training_allocate(whole->texel_count, images->length, count, subset, error));
     memcpy(subset->place, whole->place, (size_t)whole->texel_count * sizeof *whole->place);
-    memset(subset->vector, 0, (size_t)whole->texel_count * images->length * sizeof *subset->vector);
     for (size_t texel = 0; texel < (size_t)whole->texel_count; texel++)
         for (size_t i = 0; i < count; i++) {
             size_t from = (size_t)choice[i];
@@ -196,4 +200,52 @@ weft_code weft_training_subset(const weft_training *whole, const weft_layer_imag
                    3 * sizeof *subset->vector);
         }
     return WEFT_OK;
+}
+
+/* ---- What is masked ---- */
+
+bool weft_training_has_masked(const weft_training *training)
+{
+    size_t entries = (size_t)training->texel_count * training->image_count;
+    return memchr(training->valid, 0, entries) != NULL;
+}
+
+weft_code weft_training_fill_by_mean(weft_training *training, weft_error *error)
+{
+    size_t images = training->image_count, length = training->length;
+    double *mean = calloc(3 * images, sizeof *mean);
+    if (!mean)
+        return weft_fail_memory(error, "mean texel", 3 * images * sizeof *mean);
+    for (size_t i = 0; i < images; i++) {
+        double count = 0;
+        for (size_t texel = 0; texel < (size_t)training->texel_count; texel++)
+            count += training->valid[texel * images + i];
+        for (size_t texel = 0; texel < (size_t)training->texel_count && count > 0; texel++)
+            for (size_t c = 0; c < 3; c++)
+                mean[3 * i + c] += (double)training->vector[texel * length + 3 * i + c] / count;
+    }
+    for (size_t texel = 0; texel < (size_t)training->texel_count; texel++) {
+        float *vector = training->vector + texel * length;
+        const uint8_t *valid = training->valid + texel * images;
+        double own = 0, others = 1e-30;
+        for (size_t i = 0; i < 3 * images; i++) {
+            own += valid[i / 3] ? (double)vector[i] : 0;
+            others += valid[i / 3] ? mean[i] : 0;
+        }
+        for (size_t i = 0; i < 3 * images; i++) {
+            if (!valid[i / 3])
+                vector[i] = (float)(mean[i] * own / others);
+        }
+    }
+    free(mean);
+    return WEFT_OK;
+}
+
+void weft_training_clear_masked(weft_training *training)
+{
+    for (size_t texel = 0; texel < (size_t)training->texel_count; texel++)
+        for (size_t i = 0; i < 3 * training->image_count; i++) {
+            if (!training->valid[texel * training->image_count + i / 3])
+                training->vector[texel * training->length + i] = 0;
+        }
 }

@@ -5,6 +5,8 @@
 #include "base/progress.h"
 #include "compress/layers/images.h"
 
+#include <stdbool.h>
+
 enum { WEFT_TRAINING_TEXELS = 512 };
 
 typedef struct weft_training_place {
@@ -26,6 +28,18 @@ typedef struct weft_training {
 weft_code weft_training_read(weft_dataset *dataset, const weft_layer_images *images, weft_training *training,
                              weft_error *error);
 void weft_training_free(weft_training *training);
+
+/* So many texels whose samples and places are 0, all valid. Errors: WEFT_SYSTEM. */
+weft_code weft_training_allocate(int texels, size_t length, size_t image_count, weft_training *training,
+                                 weft_error *error);
+
+bool weft_training_has_masked(const weft_training *training);
+
+/* What is masked becomes the mean texel over what is valid, brought to the brightness of each. Errors: WEFT_SYSTEM. */
+weft_code weft_training_fill_by_mean(weft_training *training, weft_error *error);
+
+/* What is masked becomes 0 again. */
+void weft_training_clear_masked(weft_training *training);
 
 /* Weighs every image, in `images` and in the samples, by 1 / (1 + grey / (WEFT_SCREEN_TOE rms)): grey is the mean of
  * its samples and rms that of all. Where factors cannot follow a highlight, what is dim keeps its colour then, as with

@@ -4,8 +4,12 @@
 
 weft_compress_options weft_compress_default_options(void)
 {
-    return (weft_compress_options){
-        .lobe_count = 2, .table = true, .levels = true, .frames = WEFT_FRAMES_FITTED, .max_exponent = 8192};
+    return (weft_compress_options){.lobe_count = 2,
+                                   .layer_count = WEFT_LAYERS_AUTOMATIC,
+                                   .table = true,
+                                   .levels = true,
+                                   .frames = WEFT_FRAMES_FITTED,
+                                   .max_exponent = 8192};
 }
 
 int weft_compress_options_count_images(const weft_compress_options *options, const weft_dataset_layout *layout)

@@ -25,6 +25,9 @@ typedef enum weft_frame_choice {
     WEFT_FRAMES_FITTED   /* the better of the two, or turned from there, where that helps */
 } weft_frame_choice;
 
+/* Layers instead of lobes where images are scattered, none where they are a grid (compress/compress.h). */
+enum { WEFT_LAYERS_AUTOMATIC = -1 };
+
 typedef struct weft_compress_options {
     int lobe_count;              /* at most; 0..3 */
     bool table;                  /* T(v), where the samples can carry it */
@@ -36,7 +39,7 @@ typedef struct weft_compress_options {
     double target_error;   /* each texel gets the smallest model whose relative RMSE is at most this; 0: all alike */
     uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
     uint64_t added_bytes;  /* of a file in the budget: metadata that the caller adds to the material afterwards */
-    int layer_count;       /* linear layers beside the lobes: 4..64, a multiple of 4; 0: none */
+    int layer_count;       /* linear layers beside the lobes: 4..64, a multiple of 4; 0: none; WEFT_LAYERS_AUTOMATIC */
     int table_components;  /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
@@ -46,7 +49,8 @@ typedef struct weft_compress_options {
     weft_log log;                /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 
-/* 2 lobes, table, levels, fitted frames, N <= 8192, nothing held out, a quarter of the memory, no checkpoint. */
+/* 2 lobes and table or automatic layers, levels, fitted frames, N <= 8192, nothing held out, a quarter of the memory,
+ * no checkpoint. */
 weft_compress_options weft_compress_default_options(void);
 
 /* Images that are not held out. Pure. */

@@ -14,7 +14,8 @@ struct weft_predictor {
     const weft_dataset_layout *layout;
     const weft_material *material;
     weft_table_directions directions; /* of the material */
-    float *factor;                    /* of its layers: [image][layer][3]; NULL without */
+    weft_layer_maps maps;             /* of its layers, where directions differ from texel to texel */
+    float *factor;                    /* of its layers: [image][layer][3]; NULL without, and beside maps */
     const weft_weave *weave;
     weft_woven_table *table; /* of the weave */
     weft_weave_layout tiles;
@@ -41,6 +42,7 @@ void weft_predictor_free(weft_predictor *predictor)
     if (!predictor)
         return;
     weft_table_directions_free(&predictor->directions);
+    weft_layer_maps_free(&predictor->maps);
     free(predictor->factor);
     weft_woven_table_free(predictor->table);
     weft_dataset_close(predictor->other);
@@ -88,32 +90,40 @@ static void predict_by_layers(const weft_predictor *predictor, int x, int y, con
     const weft_dataset_layout *layout = predictor->layout;
     const weft_layers *layers = predictor->material->layers;
     size_t series = 3 * (size_t)layers->layer_count;
+    float own[3 * WEFT_LAYERS_MAX];
     for (int i = 0; i < image_count; i++) {
         weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
-        weft_rgb value = weft_layers_texel(layers, layers->layer_count, predictor->factor + (size_t)image[i] * series,
-                                           0, x, y, light.z);
+        weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image[i]], x, y);
+        const float *factor = predictor->factor ? predictor->factor + (size_t)image[i] * series : own;
+        if (!predictor->factor)
+            weft_layer_factors(&predictor->maps, light, view, own);
+        weft_rgb value = weft_layers_texel(layers, layers->layer_count, factor, 0, x, y, light.z);
         prediction[i] = light.z > 0 ? scaled(quantity(layout, light) / light.z, value) : (weft_rgb){0};
     }
 }
 
-/* In a far dataset, as layers come from, all texels see an image under the same light and view. */
-static weft_code prepare_layers(weft_predictor *predictor, weft_error *error)
+/* In a far dataset all texels see an image under the same light and view. */
+static weft_code prepare_far_layers(weft_predictor *predictor, weft_error *error)
 {
     const weft_dataset_layout *layout = predictor->layout;
-    const weft_layers *layers = predictor->material->layers;
-    size_t series = 3 * (size_t)layers->layer_count, bytes = (size_t)layout->image_count * series * sizeof(float);
-    weft_layer_maps maps;
+    size_t series = 3 * (size_t)predictor->material->layers->layer_count;
+    size_t bytes = (size_t)layout->image_count * series * sizeof(float);
     predictor->factor = malloc(bytes);
     if (!predictor->factor)
         return weft_fail_memory(error, "factors of layers", bytes);
-    WEFT_TRY(weft_layer_maps_create(layers, &maps, error));
     for (int i = 0; i < layout->image_count; i++)
-        weft_layer_factors(&maps, weft_dataset_light_direction(layout, i, 0, 0),
+        weft_layer_factors(&predictor->maps, weft_dataset_light_direction(layout, i, 0, 0),
                            weft_dataset_view_direction(layout, layout->view_of_image[i], 0, 0),
                            predictor->factor + (size_t)i * series);
-    weft_layer_maps_free(&maps);
-    predictor->predict = predict_by_layers;
+    weft_layer_maps_free(&predictor->maps);
     return WEFT_OK;
+}
+
+static weft_code prepare_layers(weft_predictor *predictor, weft_error *error)
+{
+    WEFT_TRY(weft_layer_maps_create(predictor->material->layers, &predictor->maps, error));
+    predictor->predict = predict_by_layers;
+    return predictor->layout->distance == WEFT_FAR ? prepare_far_layers(predictor, error) : WEFT_OK;
 }
 
 weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const weft_material *material,
@@ -126,7 +136,7 @@ weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const we
     WEFT_TRY(create(layout, predict_by_material, result, error));
     (*result)->material = material;
     weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
-    if (code == WEFT_OK && material->layers && layout->distance == WEFT_FAR)
+    if (code == WEFT_OK && material->layers)
         code = prepare_layers(*result, error);
     if (code != WEFT_OK)
         weft_predictor_free(*result);

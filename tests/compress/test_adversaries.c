@@ -237,6 +237,7 @@ static double error_of(weft_dataset *dataset, const weft_compress_options *optio
 static void check_choices(weft_dataset *dataset, const char *name)
 {
     weft_compress_options options = weft_compress_default_options();
+    options.layer_count = 0;
     double by_target, by_budget;
     options.levels = false;
     options.lobe_count = 3;
@@ -263,6 +264,7 @@ static void check(const char *name, arrangement *arrange, brightness *brightness
     weft_dataset_layout_free(&layout);
     weft_dataset *dataset = synthetic_dataset_open("adversary.btf.h5");
     weft_compress_options options = weft_compress_default_options();
+    options.layer_count = 0;
     options.levels = false;
     for (int way = 0; way < 4; way++) {
         double before = INFINITY, share;

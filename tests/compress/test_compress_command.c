@@ -161,16 +161,23 @@ static void options_that_change_nothing_are_named(void **state)
     (void)state;
     char said[RUN_WEFT_SAID];
     write_few_images(1, 81);
-    expect_weft("compress few.btf.h5 -o few.weft --light-table on", 0, "--light-table changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --frames given", 0, "--frames given is that of the surface");
-    assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --weights screen --max-exponent 9", said), 0);
+    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --light-table on", 0, "--light-table changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --frames given", 0, "--frames given is that of the surface");
+    assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --lobes 2 --weights screen --max-exponent 9", said),
+                     0);
     assert_null(strstr(said, "changes nothing"));
     write_few_images(1, 12);
-    expect_weft("compress few.btf.h5 -o few.weft --tables pca:2", 0, "--tables changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --light-table on", 0, "--light-table changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --weights screen", 0, "--weights changes nothing");
-    expect_weft("compress few.btf.h5 -o few.weft --frames off", 0, "--frames changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --tables pca:2", 0, "--tables changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --light-table on", 0, "--light-table changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --weights screen", 0, "--weights changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --frames off", 0, "--frames changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --lobes 2 --max-exponent 9", 0, "--max-exponent changes nothing");
+    expect_weft("compress few.btf.h5 -o few.weft --frames off", 0, "layers instead of lobes --frames changes nothing");
     expect_weft("compress few.btf.h5 -o few.weft --max-exponent 9", 0, "--max-exponent changes nothing");
+    assert_int_equal(run_weft("", "compress few.btf.h5 -o few.weft --weights screen --hold-out off", said), 0);
+    assert_null(strstr(said, "changes nothing"));
+    assert_non_null(strstr(said, "no grid"));
+    expect_weft("info few.weft", 0, "kriging");
     assert_int_equal(run_weft("", "compress command.btf.h5 -o few.weft --light-table on", said), 0);
     assert_null(strstr(said, "changes nothing"));
 }

@@ -1,0 +1,30 @@
+/* The covariance of a dataset, chosen by leaving each of its images out. */
+#ifndef WEFT_COMPRESS_KRIGING_CHOOSE_H
+#define WEFT_COMPRESS_KRIGING_CHOOSE_H
+
+#include "base/progress.h"
+#include "compress/kriging/kriging.h"
+
+/* Samples of texels that have the same directions. Not owned. */
+typedef struct weft_kriging_samples {
+    weft_kriging_places places;
+    int series_count;     /* texels times channels */
+    const double *sample; /* [series_count][places.count] */
+} weft_kriging_samples;
+
+/* Fewer images than this decide nothing: the covariance is that of a diffuse term. */
+enum { WEFT_KRIGING_LEAST_IMAGES = 4 };
+
+/* Chooses the numbers of the covariance one after another, the steps of their logarithms growing smaller, so that the
+ * squared error of all samples, each predicted by the others of its texel, is least:
+ *
+ *     e_i = [A y]_i / A_ii,   A = (C + N)^-1
+ *
+ * which needs no fit without sample i (Dubrule 1983). What a number gains must be worth its distance from what is
+ * usual, the fewer images there are the more. The texels of a set share the work; many sets are much work. *error_of
+ * receives the relative root mean square of e, 0 where every sample is 0. Uses OpenMP; the number of threads leaves no
+ * trace. Errors: WEFT_SYSTEM, WEFT_BAD_INPUT for samples that are no numbers. */
+weft_code weft_kriging_choose(const weft_kriging_samples *set, int set_count, const weft_progress *progress,
+                              weft_covariance *covariance, double *error_of, weft_error *error);
+
+#endif
