@@ -24,8 +24,9 @@ static void around(weft_real coordinate, int count, int index[2], weft_real *sha
     weft_real place = (coordinate - floor(coordinate)) * count - (weft_real)0.5;
     weft_real whole = floor(place);
     *share = place - whole;
-    index[0] = ((int)whole + count) % count;
-    index[1] = (index[0] + 1) % count;
+    int left = (int)whole; /* -1 at least */
+    index[0] = left < 0 ? count - 1 : left;
+    index[1] = index[0] + 1 < count ? index[0] + 1 : 0;
 }
 
 weft_real weft_height_at(const weft_height_field *field, weft_real u, weft_real v)

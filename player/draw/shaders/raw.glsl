@@ -103,9 +103,9 @@ void find_taps(SurfacePoint point, float level, inout Corners views, out ReliefT
 {
     for (int i = 0; i < 3; i++)
         tap[i] = ReliefTap(point.coordinate, views.weight[i]);
-    if (!RELIEF)
+    float share = RELIEF ? clamp(relief_levels - level, 0.0, 1.0) : 0.0;
+    if (share == 0.0)
         return;
-    float share = clamp(relief_levels - level, 0.0, 1.0);
     relief_taps(share, point.coordinate, point.view, views.label - 1, views.weight, tap);
     views.weight = vec3(tap[0].weight, tap[1].weight, tap[2].weight);
 }
