@@ -7,8 +7,9 @@
 
 enum { LEAST_VIEWS = 8 };
 
-/* Of half a degree: further apart, the shading differs more than the parallax explains. */
-#define SAME_LIGHT_COSINE 0.99996192306
+/* Of five degrees: a rig moves the lights that the camera would hide or that would blind it. Further apart, the shading
+ * differs more than the parallax explains. */
+#define SAME_LIGHT_COSINE 0.99619469809
 
 /* Numbers of the images of a view; returns how many. */
 static int images_of_view(const weft_dataset_layout *layout, int view, int *image)

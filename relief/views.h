@@ -16,7 +16,7 @@ typedef struct weft_relief_views {
 } weft_relief_views;
 
 /* Takes the lights of the view that has most images (128 of them at most, evenly), and the views that have an image
- * within half a degree of each. `path` names the dataset. Errors: WEFT_BAD_INPUT for near lights and views, and where
+ * within five degrees of each. `path` names the dataset. Errors: WEFT_BAD_INPUT for near lights and views, and where
  * fewer than eight views share their lights; WEFT_SYSTEM. The caller frees with weft_relief_views_free. */
 weft_code weft_relief_views_find(const weft_dataset_layout *layout, const char *path, weft_relief_views *views,
                                  weft_error *error);
