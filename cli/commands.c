@@ -12,6 +12,7 @@ const weft_command_entry weft_commands[] = {
     {NULL, &weft_command_photographs},
     {NULL, &weft_command_import},
     {NULL, &weft_command_tile},
+    {NULL, &weft_command_relief},
     {NULL, &weft_command_bard},
     {"A dataset to a model:", &weft_command_compress},
     {NULL, &weft_command_fit_weave},

@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-rooms='base btf reflectance geometry capture registration import compress player study cli'
+rooms='base btf reflectance geometry capture registration import relief compress player study cli'
 faults=$(mktemp)
 trap 'rm -f "$faults"' EXIT
 
@@ -20,6 +20,8 @@ git ls-files $rooms | grep -E '\.(c|h|cpp)$' | xargs grep -nE '^[[:space:]]*#[[:
         stranger["capture compress"] = stranger["registration compress"] = stranger["import compress"] = 1
         stranger["capture player"] = stranger["registration player"] = stranger["import player"] = stranger["compress player"] = 1
         stranger["geometry registration"] = stranger["geometry import"] = stranger["geometry compress"] = stranger["geometry player"] = 1
+        stranger["capture relief"] = stranger["registration relief"] = stranger["import relief"] = stranger["geometry relief"] = 1
+        stranger["relief compress"] = stranger["relief player"] = 1
         stranger["reflectance registration"] = stranger["reflectance import"] = 1
     }
     {

@@ -1,3 +1,4 @@
+#include "base/integers.h"
 #include "base/text/json_text.h"
 #include "btf/dataset/hdf5.h"
 
@@ -21,6 +22,21 @@ static weft_code check_count(const char *path, const char *what, int count, int 
     return WEFT_OK;
 }
 
+/* Optional numbers: 0 stands for "not known". */
+static weft_code check_numbers(const weft_dataset_layout *layout, const char *path, weft_code code, weft_error *error)
+{
+    const double most_aspect = 1000;
+    double aspect = weft_dataset_texel_aspect(layout);
+    if (!(layout->texel_aspect >= 0) || aspect > most_aspect || aspect < 1 / most_aspect)
+        return weft_fail(error, code, "'%s': texel_aspect is %g, must be %g to %g", path, layout->texel_aspect,
+                         1 / most_aspect, most_aspect);
+    double side = layout->texel_pitch_mm * weft_larger(layout->width, layout->height);
+    if (!(fabs(layout->plane_mm) <= side * sqrt(most_aspect)))
+        return weft_fail(error, code, "'%s': plane_mm is %g, further from the texels than the material is wide", path,
+                         layout->plane_mm);
+    return WEFT_OK;
+}
+
 weft_code weft_dataset_layout_check_counts(const weft_dataset_layout *layout, const char *path, weft_code code,
                                            weft_error *error)
 {
@@ -30,7 +46,7 @@ weft_code weft_dataset_layout_check_counts(const weft_dataset_layout *layout, co
     WEFT_TRY(check_count(path, "number of views", layout->view_count, MAX_IMAGES, code, error));
     if (!(layout->texel_pitch_mm > 0) || !isfinite(layout->texel_pitch_mm))
         return weft_fail(error, code, "'%s': texel_pitch_mm is %g, must be positive", path, layout->texel_pitch_mm);
-    return WEFT_OK;
+    return check_numbers(layout, path, code, error);
 }
 
 static bool is_place(weft_distance distance, weft_vec3 place)
@@ -72,6 +88,27 @@ weft_code weft_dataset_frames_check(const float *frames, size_t count, int row, 
                              path, (int)(i % (size_t)width), row + (int)(i / (size_t)width), f[0], f[1], f[2], f[3],
                              f[4], f[5]);
     }
+    return WEFT_OK;
+}
+
+static bool is_multiple(int places, int texels)
+{
+    return places >= texels && places % texels == 0 && places / texels <= WEFT_MOST_HEIGHTS;
+}
+
+weft_code weft_dataset_heights_check(const weft_dataset_layout *layout, const weft_dataset_heights *heights,
+                                     const char *path, weft_code code, weft_error *error)
+{
+    double most = 2 * layout->texel_pitch_mm * weft_larger(layout->width, layout->height);
+    if (!is_multiple(heights->width, layout->width) || !is_multiple(heights->height, layout->height))
+        return weft_fail(error, code, "'%s': %d x %d heights, must be 1 to %d times the %d x %d texels", path,
+                         heights->width, heights->height, WEFT_MOST_HEIGHTS, layout->width, layout->height);
+    if (heights->level_count < 1)
+        return weft_fail(error, code, "'%s': height_levels is not 1 or more", path);
+    for (long i = 0; heights->value && i < (long)heights->width * heights->height; i++)
+        if (!(fabsf(heights->value[i]) <= (float)most))
+            return weft_fail(error, code, "'%s': height (%ld, %ld) is %g mm, must be within %g", path,
+                             i % heights->width, i / heights->width, heights->value[i], most);
     return WEFT_OK;
 }
 

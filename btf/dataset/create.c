@@ -62,6 +62,12 @@ static bool put_text(hid_t file, const char *name, const char *text)
     return done;
 }
 
+/* 0 is what a reader takes for an attribute that is not there. */
+static bool put_known_number(hid_t file, const char *name, double value)
+{
+    return value == 0 || put_attribute(file, name, H5T_NATIVE_DOUBLE, &value);
+}
+
 static bool put_attributes(hid_t file, const weft_dataset_layout *layout)
 {
     const int version = WEFT_DATASET_VERSION;
@@ -69,7 +75,9 @@ static bool put_attributes(hid_t file, const weft_dataset_layout *layout)
            put_text(file, "values", weft_values_name[layout->values]) &&
            put_text(file, "distance", weft_distance_name[layout->distance]) &&
            put_text(file, "colour_space", WEFT_DATASET_COLOUR_SPACE) &&
-           put_attribute(file, "texel_pitch_mm", H5T_NATIVE_DOUBLE, &layout->texel_pitch_mm);
+           put_attribute(file, "texel_pitch_mm", H5T_NATIVE_DOUBLE, &layout->texel_pitch_mm) &&
+           put_known_number(file, "texel_aspect", layout->texel_aspect) &&
+           put_known_number(file, "plane_mm", layout->plane_mm);
 }
 
 static bool put_array(hid_t file, const char *name, hid_t stored_type, hid_t type, int rank, const hsize_t *size,
@@ -255,6 +263,39 @@ weft_code weft_dataset_file_write_provenance(const weft_dataset_file *file, cons
     H5Sclose(space);
     H5Tclose(type);
     return code;
+}
+
+static bool drop_attribute(hid_t file, const char *name)
+{
+    return H5Aexists(file, name) == 0 || H5Adelete(file, name) >= 0;
+}
+
+static bool drop(hid_t file, const char *name)
+{
+    return H5Lexists(file, name, H5P_DEFAULT) == 0 || H5Ldelete(file, name, H5P_DEFAULT) >= 0;
+}
+
+static bool put_heights(hid_t file, const weft_dataset_heights *heights)
+{
+    const hsize_t size[2] = {(hsize_t)heights->height, (hsize_t)heights->width};
+    return put_array(file, "height", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, 2, size, heights->value) &&
+           put_attribute(file, "height_levels", H5T_NATIVE_INT, &heights->level_count);
+}
+
+weft_code weft_dataset_file_write_relief(const weft_dataset_file *file, double plane_mm,
+                                         const weft_dataset_heights *heights, weft_error *error)
+{
+    bool done = drop_attribute(file->file, "plane_mm") && drop_attribute(file->file, "height_levels") &&
+                drop(file->file, "height") && put_known_number(file->file, "plane_mm", plane_mm) &&
+                (!heights || put_heights(file->file, heights));
+    return done ? WEFT_OK : fail(file->path, error);
+}
+
+weft_code weft_dataset_file_replace_provenance(const weft_dataset_file *file, const char *text, weft_error *error)
+{
+    if (!drop(file->file, "provenance"))
+        return fail(file->path, error);
+    return weft_dataset_file_write_provenance(file, text, error);
 }
 
 weft_code weft_dataset_file_close(weft_dataset_file *file, weft_error *error)

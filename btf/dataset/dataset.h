@@ -47,7 +47,9 @@ typedef struct weft_dataset_layout {
     int view_count;    /* distinct views among them */
     weft_values values;
     weft_distance distance;
-    double texel_pitch_mm;
+    double texel_pitch_mm;              /* the root of the area of a texel */
+    double texel_aspect;                /* width over height of a texel; 0: not known, taken for square */
+    double plane_mm;                    /* of the plane that the cloth is taken for, above that of the texels */
     weft_vec3 *light;                   /* [image_count] direction or position */
     weft_vec3 *view;                    /* [view_count] direction or position */
     int32_t *view_of_image;             /* [image_count] index into view */
@@ -62,6 +64,12 @@ weft_code weft_dataset_layout_allocate(weft_dataset_layout *layout, weft_error *
 /* Zeros for one figure of every image, in layout->figure. Errors: WEFT_SYSTEM. */
 weft_code weft_dataset_layout_allocate_figure(weft_dataset_layout *layout, weft_image_figure figure, weft_error *error);
 void weft_dataset_layout_free(weft_dataset_layout *layout);
+
+/* Width over height of a texel. Pure. */
+double weft_dataset_texel_aspect(const weft_dataset_layout *layout);
+
+/* Width and height of the material. Pure. */
+void weft_dataset_size_mm(const weft_dataset_layout *layout, double size_mm[2]);
 
 /* Unit direction from the centre of texel (x, y) to the light of an image, or to the camera of a view.
  * Far datasets give the stored direction. Pure. */
@@ -108,6 +116,29 @@ bool weft_dataset_has_frames(const weft_dataset *dataset);
  * below the horizon, WEFT_BAD_USAGE for rows outside the material. */
 weft_code weft_dataset_read_frames(weft_dataset *dataset, int y, int height, float *frames, weft_error *error);
 
+/* Heights of the surface (`weft relief`): two or so along each side of a texel, row 0 at the top. */
+typedef struct weft_dataset_heights {
+    int width, height; /* whole multiples of the texels, at most WEFT_MOST_HEIGHTS of them along a side */
+    int level_count;   /* the finest mip levels on which they help, at least 1 */
+    float *value;      /* [height][width] mm above the plane of the texels */
+} weft_dataset_heights;
+
+enum { WEFT_MOST_HEIGHTS = 8 };
+
+/* Whether the dataset holds heights. */
+bool weft_dataset_has_heights(const weft_dataset *dataset);
+
+/* The heights of all texels; none (all zero) where the dataset holds none. Not thread-safe. Errors: WEFT_BAD_INPUT for
+ * one that is not finite or lies further from the plane than twice the longer side; WEFT_SYSTEM. The caller frees with
+ * weft_dataset_heights_free. */
+weft_code weft_dataset_read_heights(weft_dataset *dataset, weft_dataset_heights *heights, weft_error *error);
+void weft_dataset_heights_free(weft_dataset_heights *heights);
+
+/* The surface that the photographs are to be seen through: the heights, or the plane as one height (1 x 1) that helps
+ * on the levels whose texels are no more than twice as large as it is far from them; none where the dataset has
+ * neither, or near lights and views. Errors and ownership as above. */
+weft_code weft_dataset_read_surface(weft_dataset *dataset, weft_dataset_heights *surface, weft_error *error);
+
 /* ---- Writing ---- */
 
 /* Takes whole images in any order, spools them to a scratch file beside the target, and turns them
@@ -139,6 +170,13 @@ weft_code weft_dataset_writer_put_figure(weft_dataset_writer *writer, weft_image
 /* Writes the file under its final name (atomically) and frees the writer, also on failure. `provenance`
  * (JSON text, may be NULL) replaces the one of the layout. */
 weft_code weft_dataset_writer_finish(weft_dataset_writer *writer, const char *provenance, weft_error *error);
+
+/* Gives the closed dataset `path` a plane and heights (NULL: none), in the place of those that it has, and the JSON
+ * object `made` in its provenance under "relief". The file is written anew and then takes the name `output`, which may
+ * be `path`. Errors: WEFT_BAD_INPUT for heights that a reader would refuse; those of reading and writing; WEFT_SYSTEM.
+ */
+weft_code weft_dataset_put_relief(const char *path, const char *output, double plane_mm,
+                                  const weft_dataset_heights *heights, const char *made, weft_error *error);
 
 /* Frees the writer and removes what it wrote. NULL is fine. */
 void weft_dataset_writer_abandon(weft_dataset_writer *writer);

@@ -22,8 +22,9 @@ struct weft_dataset {
     uint64_t file_size;
     weft_dataset_layout layout;
     hid_t file, half, samples, mask;
-    hid_t transfer;        /* of weft_hdf5_whole_transfer */
-    hid_t opacity, frames; /* invalid where the file has none */
+    hid_t transfer;                 /* of weft_hdf5_whole_transfer */
+    hid_t opacity, frames, heights; /* invalid where the file has none */
+    int heights_width, heights_height, heights_levels;
 };
 
 /* Keeps HDF5 from printing its error stack. */
@@ -57,6 +58,11 @@ weft_code weft_dataset_layout_check_counts(const weft_dataset_layout *layout, co
  * 0.001; `row` is the first of them, `width` frames long. Errors as above. */
 weft_code weft_dataset_frames_check(const float *frames, size_t count, int row, int width, const char *path,
                                     weft_code code, weft_error *error);
+
+/* That heights are finite and not further from the plane than twice the longer side, and as many as can be. Errors as
+ * above. */
+weft_code weft_dataset_heights_check(const weft_dataset_layout *layout, const weft_dataset_heights *heights,
+                                     const char *path, weft_code code, weft_error *error);
 
 /* That a figure, where it is known, is finite and not negative for every image, and weights are not all 0. Errors as
  * above. */

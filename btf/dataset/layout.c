@@ -39,6 +39,18 @@ void weft_dataset_layout_free(weft_dataset_layout *layout)
     layout->provenance = NULL;
 }
 
+double weft_dataset_texel_aspect(const weft_dataset_layout *layout)
+{
+    return layout->texel_aspect > 0 ? layout->texel_aspect : 1;
+}
+
+void weft_dataset_size_mm(const weft_dataset_layout *layout, double size_mm[2])
+{
+    double root = sqrt(weft_dataset_texel_aspect(layout));
+    size_mm[0] = layout->width * layout->texel_pitch_mm * root;
+    size_mm[1] = layout->height * layout->texel_pitch_mm / root;
+}
+
 static weft_vec3 direction_from_texel(const weft_dataset_layout *layout, weft_vec3 place, int x, int y)
 {
     if (layout->distance == WEFT_FAR)

@@ -10,7 +10,7 @@
 /* A dataset may claim at most so many times the bytes of its file: room for any filter, not for a bomb. */
 static const uint64_t largest_ratio = 1024;
 
-enum { MAX_NAME = 64, MAX_PROVENANCE = 1 << 24 };
+enum { MAX_NAME = 64, MAX_PROVENANCE = 1 << 24, MAX_LEVELS = 32 };
 
 /* Three reals in HDF5 are three in memory. */
 _Static_assert(sizeof(weft_vec3) == 3 * sizeof(double), "places are read as doubles");
@@ -114,6 +114,12 @@ static weft_code read_number_attribute(const weft_dataset *dataset, const char *
     return code;
 }
 
+/* A number that a file may lack: `value` stays then. */
+static weft_code read_optional_number(const weft_dataset *dataset, const char *name, double *value, weft_error *error)
+{
+    return H5Aexists(dataset->file, name) == 0 ? WEFT_OK : read_number_attribute(dataset, name, value, error);
+}
+
 static weft_code check_colour_space(const weft_dataset *dataset, weft_error *error)
 {
     char text[MAX_NAME];
@@ -153,7 +159,9 @@ static weft_code read_attributes(weft_dataset *dataset, weft_error *error)
     dataset->layout.values = (weft_values)values;
     dataset->layout.distance = (weft_distance)distance;
     WEFT_TRY(check_colour_space(dataset, error));
-    return read_number_attribute(dataset, "texel_pitch_mm", &dataset->layout.texel_pitch_mm, error);
+    WEFT_TRY(read_number_attribute(dataset, "texel_pitch_mm", &dataset->layout.texel_pitch_mm, error));
+    WEFT_TRY(read_optional_number(dataset, "texel_aspect", &dataset->layout.texel_aspect, error));
+    return read_optional_number(dataset, "plane_mm", &dataset->layout.plane_mm, error);
 }
 
 /* ---- Datasets ---- */
@@ -210,6 +218,23 @@ static weft_code open_optional(const weft_dataset *dataset, const char *name, in
     return check_size(dataset, name, rank, size, expected, error);
 }
 
+/* Their size is the reader's to know; that it fits the texels is checked with the values. */
+static weft_code open_heights(weft_dataset *dataset, weft_error *error)
+{
+    hsize_t size[2];
+    double levels = 1;
+    if (H5Lexists(dataset->file, "height", H5P_DEFAULT) <= 0)
+        return WEFT_OK;
+    WEFT_TRY(open_array(dataset, "height", 2, size, &dataset->heights, error));
+    WEFT_TRY(read_optional_number(dataset, "height_levels", &levels, error));
+    dataset->heights_height = limited_int(size[0]);
+    dataset->heights_width = limited_int(size[1]);
+    dataset->heights_levels = levels >= 1 && levels <= MAX_LEVELS ? (int)levels : 0;
+    const weft_dataset_heights heights = {dataset->heights_width, dataset->heights_height, dataset->heights_levels,
+                                          NULL};
+    return weft_dataset_heights_check(&dataset->layout, &heights, dataset->path, WEFT_BAD_INPUT, error);
+}
+
 static weft_code open_texels(weft_dataset *dataset, weft_error *error)
 {
     weft_dataset_layout *layout = &dataset->layout;
@@ -224,7 +249,8 @@ static weft_code open_texels(weft_dataset *dataset, weft_error *error)
     WEFT_TRY(weft_dataset_layout_check_counts(layout, dataset->path, WEFT_BAD_INPUT, error));
     WEFT_TRY(open_optional(dataset, "opacity", 3, (hsize_t[]){samples[0], samples[1], (hsize_t)layout->view_count},
                            &dataset->opacity, error));
-    return open_optional(dataset, "frame", 4, (hsize_t[]){samples[0], samples[1], 2, 3}, &dataset->frames, error);
+    WEFT_TRY(open_optional(dataset, "frame", 4, (hsize_t[]){samples[0], samples[1], 2, 3}, &dataset->frames, error));
+    return open_heights(dataset, error);
 }
 
 static weft_code open_view_count(weft_dataset *dataset, weft_error *error)
@@ -383,7 +409,8 @@ weft_code weft_dataset_open(const char *path, weft_dataset **result, weft_error 
     if (!dataset)
         return weft_fail_memory(error, "dataset", sizeof *dataset);
     dataset->file = dataset->half = dataset->transfer = H5I_INVALID_HID;
-    dataset->samples = dataset->mask = dataset->opacity = dataset->frames = H5I_INVALID_HID;
+    dataset->samples = dataset->mask = H5I_INVALID_HID;
+    dataset->opacity = dataset->frames = dataset->heights = H5I_INVALID_HID;
     dataset->path = strdup(path);
     weft_code code = dataset->path ? WEFT_OK : weft_fail_memory(error, "path", strlen(path));
     if (code == WEFT_OK)

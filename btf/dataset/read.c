@@ -133,6 +133,63 @@ bool weft_dataset_has_opacity(const weft_dataset *dataset)
     return dataset->opacity >= 0;
 }
 
+bool weft_dataset_has_heights(const weft_dataset *dataset)
+{
+    return dataset->heights >= 0;
+}
+
+static weft_code read_height_values(const weft_dataset *dataset, weft_dataset_heights *heights, weft_error *error)
+{
+    if (H5Dread(dataset->heights, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, dataset->transfer, heights->value) < 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': cannot read 'height': %s", dataset->path, weft_hdf5_cause());
+    return weft_dataset_heights_check(&dataset->layout, heights, dataset->path, WEFT_BAD_INPUT, error);
+}
+
+weft_code weft_dataset_read_heights(weft_dataset *dataset, weft_dataset_heights *heights, weft_error *error)
+{
+    *heights = (weft_dataset_heights){0};
+    if (dataset->heights < 0)
+        return WEFT_OK;
+    weft_hdf5_quiet();
+    size_t count = (size_t)dataset->heights_width * (size_t)dataset->heights_height;
+    *heights = (weft_dataset_heights){dataset->heights_width, dataset->heights_height, dataset->heights_levels,
+                                      malloc(count * sizeof *heights->value)};
+    weft_code code = heights->value ? read_height_values(dataset, heights, error)
+                                    : weft_fail_memory(error, "heights", count * sizeof *heights->value);
+    if (code != WEFT_OK)
+        weft_dataset_heights_free(heights);
+    return code;
+}
+
+static weft_code plane_as_heights(const weft_dataset_layout *layout, weft_dataset_heights *plane, weft_error *error)
+{
+    double texels = fabs(layout->plane_mm) / layout->texel_pitch_mm;
+    int levels = texels > 1 ? 1 + (int)ceil(log2(texels)) : 1;
+    *plane = (weft_dataset_heights){1, 1, levels, malloc(sizeof *plane->value)};
+    if (!plane->value)
+        return weft_fail_memory(error, "plane", sizeof *plane->value);
+    plane->value[0] = (float)layout->plane_mm;
+    return WEFT_OK;
+}
+
+weft_code weft_dataset_read_surface(weft_dataset *dataset, weft_dataset_heights *surface, weft_error *error)
+{
+    const weft_dataset_layout *layout = &dataset->layout;
+    *surface = (weft_dataset_heights){0};
+    if (layout->distance == WEFT_NEAR)
+        return WEFT_OK;
+    WEFT_TRY(weft_dataset_read_heights(dataset, surface, error));
+    if (surface->value || layout->plane_mm == 0)
+        return WEFT_OK;
+    return plane_as_heights(layout, surface, error);
+}
+
+void weft_dataset_heights_free(weft_dataset_heights *heights)
+{
+    free(heights->value);
+    *heights = (weft_dataset_heights){0};
+}
+
 bool weft_dataset_has_frames(const weft_dataset *dataset)
 {
     return dataset->frames >= 0;

@@ -66,14 +66,15 @@ static char *provenance(const acquisition *a)
 static weft_code fill_layout(const acquisition *a, weft_dataset_layout *layout, weft_error *error)
 {
     int n = a->direction_count;
-    weft_real area = (a->stitch->width / a->options->width) * (a->stitch->height / a->options->height);
+    weft_real across = a->stitch->width / a->options->width, up = a->stitch->height / a->options->height;
     *layout = (weft_dataset_layout){.width = a->options->width,
                                     .height = a->options->height,
                                     .image_count = n * n,
                                     .view_count = n,
                                     .values = WEFT_REFLECTANCE_COSINE,
                                     .distance = WEFT_FAR,
-                                    .texel_pitch_mm = sqrt(area)};
+                                    .texel_pitch_mm = sqrt(across * up),
+                                    .texel_aspect = fabs(across / up - 1) < 1e-6 ? 0 : across / up};
     WEFT_TRY(weft_dataset_layout_allocate(layout, error));
     for (int view = 0; view < n; view++) {
         layout->view[view] = a->direction[view];

@@ -108,8 +108,10 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
     };
     kind.threads = pane->mode == WEFT_MODE_ANALYTIC && weft_player_has_threads(p);
     kind.noise = pane->mode == WEFT_MODE_ANALYTIC && scene->noise_seed != 0 && p->weave.has_noise;
-    if (pane->mode == WEFT_MODE_RAW)
+    if (pane->mode == WEFT_MODE_RAW) {
         kind.opacity = !p->raw.opaque;
+        kind.relief = scene->relief && weft_raw_texture_has_relief(&p->raw);
+    }
     if (pane->mode == WEFT_MODE_COMPRESSED) {
         kind.lobe_count = p->material.lobe_count;
         kind.view_table = p->material.table.count > 0;

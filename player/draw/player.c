@@ -317,6 +317,14 @@ size_t weft_player_bytes(const weft_player *p, weft_mode mode)
     }
 }
 
+bool weft_player_relief_mm(const weft_player *p, double *range_mm)
+{
+    bool found = p->has[WEFT_MODE_RAW] && weft_raw_texture_has_relief(&p->raw);
+    for (int i = 0; found && range_mm && i < 2; i++)
+        range_mm[i] = p->raw.relief_range_mm[i];
+    return found;
+}
+
 const char *weft_player_raw_format(const weft_player *p)
 {
     return p->has[WEFT_MODE_RAW] ? weft_raw_format_name(p->raw.plan.tiles[WEFT_RAW_SAMPLES].format) : "";

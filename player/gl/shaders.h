@@ -23,7 +23,7 @@ extern const char weft_glsl_geometry_frag[];
 
 /* From reflectance/. */
 extern const char weft_glsl_lafortune[];
-extern const char weft_glsl_layers[];
+extern const char weft_glsl_layers[], weft_glsl_relief[];
 extern const char weft_glsl_woven[];
 extern const char weft_glsl_weave[];
 extern const char weft_glsl_microcylinder[];

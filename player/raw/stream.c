@@ -124,14 +124,18 @@ static weft_code push_all(stream *s, const weft_progress *progress, weft_error *
 
 /* ---- All of it ---- */
 
-static weft_code begin(const weft_raw_images *images, const weft_dataset_layout *layout, const weft_raw_plan *plan,
+static weft_code begin(weft_dataset *dataset, const weft_raw_images *images, const weft_raw_plan *plan,
                        const weft_raw_sink *sink, weft_error *error)
 {
     weft_direction_map map = {0};
-    weft_code code = weft_raw_images_map(images, layout, &map, error);
+    weft_raw_relief relief = {0};
+    weft_code code = weft_raw_images_map(images, weft_dataset_get_layout(dataset), &map, error);
     if (code == WEFT_OK)
-        code = sink->begin(sink->context, plan, &map, error);
+        code = weft_raw_relief_make(dataset, images, &relief, error);
+    if (code == WEFT_OK)
+        code = sink->begin(sink->context, plan, &map, &relief, error);
     weft_direction_map_free(&map);
+    weft_raw_relief_free(&relief);
     return code;
 }
 
@@ -146,7 +150,7 @@ weft_code weft_raw_stream(weft_dataset *dataset, const weft_raw_limits *limits, 
                                 error));
     weft_code code = weft_raw_images_find(dataset, &images, error);
     if (code == WEFT_OK)
-        code = begin(&images, layout, &plan, sink, error);
+        code = begin(dataset, &images, &plan, sink, error);
     if (code == WEFT_OK)
         code = stream_create(&plan, &s, error);
     if (code == WEFT_OK)

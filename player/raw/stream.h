@@ -5,13 +5,15 @@
 
 #include "base/progress.h"
 #include "player/raw/levels.h"
+#include "player/raw/relief.h"
 #include "player/texture/direction_map.h"
 
-/* Where the stream goes. `begin` comes first and may take the directions, leaving none; then every strip; then `end`.
- * An error of the sink ends the stream. */
+/* Where the stream goes. `begin` comes first and may take the directions and the relief, leaving none; then every
+ * strip; then `end`. An error of the sink ends the stream. */
 typedef struct weft_raw_sink {
     void *context;
-    weft_code (*begin)(void *context, const weft_raw_plan *plan, weft_direction_map *directions, weft_error *error);
+    weft_code (*begin)(void *context, const weft_raw_plan *plan, weft_direction_map *directions,
+                       weft_raw_relief *relief, weft_error *error);
     weft_raw_take *strip;
     weft_code (*end)(void *context, bool opaque, weft_error *error);
 } weft_raw_sink;

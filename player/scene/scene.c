@@ -24,6 +24,7 @@ weft_scene weft_scene_default(void)
         .pane_count = 1,
         .pane = {WEFT_MODE_COMPRESSED},
         .divider = 0.5,
+        .relief = true,
         .lobe = {true, true, true},
         .view_table = true,
         .light_table = true,

@@ -151,6 +151,10 @@ static const weft_setting schema[] = {
                    "Keep its samples as half floats (8 bytes), with a shared exponent (4) or in compressed blocks (1); "
                    "auto: the best that fits"),
             CHOICE(raw_format, raw_format_words)),
+    SETTING("model.relief",
+            OPTION("relief", "on|off", EVALUATION,
+                   "See the dataset through the heights that `weft relief` found (default: on, where it has some)"),
+            SWITCH(scene.relief)),
     SETTING("model.layers",
             OPTION("layers", "N", EVALUATION,
                    "Only the first N linear layers of the material, in steps of 4; 0: its lobes (default: all layers)"),

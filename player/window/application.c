@@ -332,6 +332,7 @@ static void find_modes(weft_application *a)
     weft_interaction *i = &a->interaction;
     i->is_reading = a->progress >= 0;
     i->has_environment = weft_player_has_environment(a->player);
+    i->has_relief = weft_player_relief_mm(a->player, NULL);
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++)
         i->available[mode] = weft_player_has(a->player, (weft_mode)mode);
     for (int pane = 0; pane < weft_scene_panes(&i->scene); pane++) {

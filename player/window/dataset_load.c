@@ -37,6 +37,7 @@ typedef struct beginning {
     weft_dataset_load *load;
     weft_raw_plan plan;
     weft_direction_map directions;
+    weft_raw_relief relief;
 } beginning;
 
 typedef struct row {
@@ -47,13 +48,14 @@ typedef struct row {
 static weft_code run_beginning(void *data, weft_error *error)
 {
     const beginning *b = data;
-    return weft_raw_texture_begin(&b->plan, &b->directions, &b->load->texture, error);
+    return weft_raw_texture_begin(&b->plan, &b->directions, &b->relief, &b->load->texture, error);
 }
 
 static void release_beginning(void *data)
 {
     beginning *b = data;
     weft_direction_map_free(&b->directions);
+    weft_raw_relief_free(&b->relief);
     free(b);
 }
 
@@ -85,14 +87,16 @@ static void release_end(void *data)
 
 /* ---- The sink of the stream ---- */
 
-static weft_code begin(void *context, const weft_raw_plan *plan, weft_direction_map *directions, weft_error *error)
+static weft_code begin(void *context, const weft_raw_plan *plan, weft_direction_map *directions,
+                       weft_raw_relief *relief, weft_error *error)
 {
     weft_dataset_load *load = context;
     beginning *b = malloc(sizeof *b);
     if (!b)
         return weft_fail_memory(error, "load", sizeof *b);
-    *b = (beginning){load, *plan, *directions};
+    *b = (beginning){load, *plan, *directions, *relief};
     *directions = (weft_direction_map){0};
+    *relief = (weft_raw_relief){0};
     return weft_load_post(load->background, (weft_load_piece){run_beginning, release_beginning, b, 0}, error);
 }
 

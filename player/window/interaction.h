@@ -8,7 +8,7 @@ typedef enum weft_drag { WEFT_DRAG_NONE, WEFT_DRAG_ORBIT, WEFT_DRAG_PAN, WEFT_DR
 
 typedef struct weft_interaction {
     weft_scene scene, start; /* now, and as it was at first */
-    bool available[WEFT_MODE_COUNT], has_environment, is_reading;
+    bool available[WEFT_MODE_COUNT], has_environment, has_relief, is_reading;
     int width, height; /* of the picture, pixels */
     weft_drag drag;
     bool drag_moves_light; /* also with the left button and the arrow keys */

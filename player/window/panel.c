@@ -209,11 +209,22 @@ static void layer_rows(weft_application *a)
     weft_ui_text(text);
 }
 
+static void relief_row(weft_application *a)
+{
+    char text[64];
+    double range_mm[2];
+    if (!weft_player_relief_mm(a->player, range_mm))
+        return;
+    snprintf(text, sizeof text, "Relief, %.3g to %.3g mm", range_mm[0], range_mm[1]);
+    a->interaction.changed |= weft_ui_toggle(text, &a->interaction.scene.relief);
+}
+
 static void material_section(weft_application *a)
 {
     weft_interaction *i = &a->interaction;
     weft_scene *scene = &i->scene;
     int lobes;
+    relief_row(a);
     layer_rows(a);
     bool view_table, light_table;
     weft_player_material_parts(a->player, &lobes, &view_table, &light_table);

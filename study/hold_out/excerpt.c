@@ -71,7 +71,9 @@ static weft_code make_layout(const weft_dataset_layout *source, const texel_choi
                                     .view_count = source->view_count,
                                     .values = source->values,
                                     .distance = source->distance,
-                                    .texel_pitch_mm = source->texel_pitch_mm * choice->stride};
+                                    .texel_pitch_mm = source->texel_pitch_mm * choice->stride,
+                                    .texel_aspect = source->texel_aspect,
+                                    .plane_mm = source->plane_mm};
     WEFT_TRY(weft_dataset_layout_allocate(layout, error));
     bool is_near = source->distance == WEFT_NEAR;
     weft_vec3 offset = is_near ? offset_of(choice, source->texel_pitch_mm) : weft_vec3_of(0, 0, 0);

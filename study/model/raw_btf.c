@@ -1,6 +1,7 @@
 #include "study/model/raw_btf.h"
 
 #include "btf/dataset/dataset.h"
+#include "reflectance/relief/relief.h"
 #include "study/model/raw_directions.h"
 
 #include <math.h>
@@ -14,11 +15,25 @@ struct weft_raw_btf {
     weft_raw_directions centre; /* everywhere in a far dataset */
     weft_half *samples;         /* [image_count][3] of a texel */
     uint8_t *mask;              /* [image_count] of a texel */
-    float *mean;                /* [image_count][3]; NULL until asked for */
-    uint8_t *mean_mask;         /* [image_count] */
+    weft_dataset_heights heights;
+    weft_relief relief; /* through which samples are seen; of no view where there are no heights */
+    float *mean;        /* [image_count][3]; NULL until asked for */
+    uint8_t *mean_mask; /* [image_count] */
 };
 
 /* ---- Life ---- */
+
+static weft_code open_relief(weft_raw_btf *raw, weft_error *error)
+{
+    double size_mm[2];
+    WEFT_TRY(weft_dataset_read_surface(raw->dataset, &raw->heights, error));
+    if (!raw->heights.value)
+        return WEFT_OK;
+    weft_dataset_size_mm(raw->layout, size_mm);
+    weft_height_field field =
+        weft_height_field_of(raw->heights.value, raw->heights.width, raw->heights.height, size_mm[0], size_mm[1]);
+    return weft_relief_create(&field, raw->layout->view, raw->layout->view_count, &raw->relief, error);
+}
 
 weft_code weft_raw_btf_create(weft_dataset *dataset, weft_raw_btf **result, weft_error *error)
 {
@@ -38,6 +53,8 @@ weft_code weft_raw_btf_create(weft_dataset *dataset, weft_raw_btf **result, weft
     if (code == WEFT_OK)
         code = weft_raw_directions_create(raw->layout, &raw->order, raw->layout->width / 2, raw->layout->height / 2,
                                           &raw->centre, error);
+    if (code == WEFT_OK)
+        code = open_relief(raw, error);
     if (code != WEFT_OK)
         weft_raw_btf_free(raw);
     else
@@ -51,6 +68,8 @@ void weft_raw_btf_free(weft_raw_btf *raw)
         return;
     weft_raw_directions_free(&raw->centre);
     weft_view_order_free(&raw->order);
+    weft_relief_free(&raw->relief);
+    weft_dataset_heights_free(&raw->heights);
     free(raw->samples);
     free(raw->mask);
     free(raw->mean);
@@ -137,25 +156,78 @@ static int wrapped(int index, int count)
     return ((index % count) + count) % count;
 }
 
+/* ---- Through heights ---- */
+
+/* The samples of one view in a texel, between its lights. */
+static weft_code add_view(weft_raw_btf *raw, int view, int x, int y, weft_vec3 light, double weight, blend *b,
+                          weft_error *error)
+{
+    WEFT_TRY(weft_dataset_read_block(raw->dataset, x, y, 1, 1, raw->samples, raw->mask, error));
+    place at = {.half = raw->samples, .mask = raw->mask, .x = x, .y = y};
+    weft_barycentric lights = weft_triangulation_lookup(raw->centre.lights[view], light);
+    const int *image = raw->order.image + raw->order.first[view];
+    for (int i = 0; i < 3; i++)
+        if (lights.index[i] >= 0 && lights.weight[i] > 0)
+            add_image(raw, &at, image[lights.index[i]], weight * (double)lights.weight[i], b);
+    return WEFT_OK;
+}
+
+/* The texels around a place, and what they count for. */
+typedef struct texels_around {
+    int x[4], y[4];
+    double weight[4];
+} texels_around;
+
+static texels_around texels_at(const weft_dataset_layout *layout, weft_real u, weft_real v)
+{
+    texels_around found;
+    double x = (u - floor(u)) * layout->width - 0.5, y = (1 - (v - floor(v))) * layout->height - 0.5;
+    int left = (int)floor(x), upper = (int)floor(y);
+    for (int i = 0; i < 4; i++) {
+        found.weight[i] = (i & 1 ? x - left : left + 1 - x) * (i & 2 ? y - upper : upper + 1 - y);
+        found.x[i] = wrapped(left + (i & 1), layout->width);
+        found.y[i] = wrapped(upper + (i >> 1), layout->height);
+    }
+    return found;
+}
+
+static weft_code sample_through_relief(weft_raw_btf *raw, weft_real u, weft_real v, weft_vec3 light, weft_vec3 view,
+                                       weft_rgb *brdf, weft_error *error)
+{
+    weft_barycentric corners = weft_triangulation_lookup(raw->centre.views, view);
+    weft_relief_tap tap[3];
+    blend b = {0};
+    for (int i = 0; i < 3; i++)
+        corners.index[i] = corners.index[i] < 0 ? -1 : raw->centre.view_of[corners.index[i]];
+    weft_relief_taps(&raw->relief, 1, u, v, view, corners.index, corners.weight, tap);
+    for (int i = 0; i < 3; i++) {
+        texels_around at = texels_at(raw->layout, tap[i].u, tap[i].v);
+        for (int k = 0; k < 4 && tap[i].weight > 0; k++)
+            if (at.weight[k] > 0)
+                WEFT_TRY(add_view(raw, corners.index[i], at.x[k], at.y[k], light, (double)tap[i].weight * at.weight[k],
+                                  &b, error));
+    }
+    *brdf = blend_brdf(&b);
+    return WEFT_OK;
+}
+
 weft_code weft_raw_btf_sample(weft_raw_btf *raw, weft_real u, weft_real v, weft_vec3 light, weft_vec3 view,
                               weft_rgb *brdf, weft_error *error)
 {
     *brdf = (weft_rgb){0, 0, 0};
     if (below_horizon(light, view))
         return WEFT_OK;
-    int width = raw->layout->width, height = raw->layout->height;
-    double x = (u - floor(u)) * width - 0.5, y = (1 - (v - floor(v))) * height - 0.5;
-    int x0 = (int)floor(x), y0 = (int)floor(y);
+    if (raw->heights.value)
+        return sample_through_relief(raw, u, v, light, view, brdf, error);
+    texels_around at = texels_at(raw->layout, u, v);
     blend b = {0};
-    for (int corner = 0; corner < 4; corner++) {
-        int right = corner & 1, down = corner >> 1;
-        double weight = (right ? x - x0 : x0 + 1 - x) * (down ? y - y0 : y0 + 1 - y);
+    for (int i = 0; i < 4; i++) {
         weft_rgb value;
-        if (!(weight > 0))
+        if (!(at.weight[i] > 0))
             continue;
-        WEFT_TRY(sample_texel(raw, wrapped(x0 + right, width), wrapped(y0 + down, height), light, view, &value, error));
+        WEFT_TRY(sample_texel(raw, at.x[i], at.y[i], light, view, &value, error));
         if (!isnan(value.r))
-            blend_add(&b, weight, (double[]){WEFT_PI * value.r, WEFT_PI * value.g, WEFT_PI * value.b});
+            blend_add(&b, at.weight[i], (double[]){WEFT_PI * value.r, WEFT_PI * value.g, WEFT_PI * value.b});
     }
     *brdf = blend_brdf(&b);
     return WEFT_OK;

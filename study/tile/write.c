@@ -237,6 +237,8 @@ static void lay_out(tile_average *average)
     average->tile_layout.height = (int)lround(tile->height);
     double area = tile->width * tile->height / ((double)average->tile_layout.width * average->tile_layout.height);
     average->tile_layout.texel_pitch_mm = average->layout->texel_pitch_mm * sqrt(area);
+    average->tile_layout.texel_aspect = weft_dataset_texel_aspect(average->layout) * (tile->width / tile->height) *
+                                        average->tile_layout.height / average->tile_layout.width;
     average->report->texels_x = average->tile_layout.width;
     average->report->texels_y = average->tile_layout.height;
 }

@@ -242,21 +242,41 @@ static weft_rgba evaluate_raw_mean(void *context, const weft_surface_sample *at)
     return lit_raw(brdf, light);
 }
 
-static raw_model open_raw(stage *s, int size, int views, int lights, weft_values values, weft_raw_format format,
-                          size_t bytes)
+static raw_model open_written(stage *s, weft_raw_format format, size_t bytes)
 {
     weft_raw_limits limits = weft_raw_texture_limits(format);
     limits.bytes = bytes;
     weft_error error = {0};
     raw_model model;
     int skipped;
-    stage_dataset(raw_path, size, views, lights, values, false);
     expect_ok(weft_dataset_open(raw_path, &model.dataset, &error), &error);
     expect_ok(weft_raw_btf_create(model.dataset, &model.raw, &error), &error);
     expect_ok(weft_player_set_dataset(s->player, model.dataset, NULL, &skipped, &error), &error);
     weft_raw_texture_free(&s->player->raw);
     expect_ok(weft_raw_texture_upload(model.dataset, &limits, NULL, &s->player->raw, &error), &error);
     return model;
+}
+
+static raw_model open_raw(stage *s, int size, int views, int lights, weft_values values, weft_raw_format format,
+                          size_t bytes)
+{
+    stage_dataset(raw_path, size, views, lights, values, false);
+    return open_written(s, format, bytes);
+}
+
+/* The same with hills of 0.6 mm on a material of `size` / 2 mm, or only a plane. */
+static raw_model open_relief(stage *s, int size, bool hills)
+{
+    weft_dataset_heights heights = {2 * size, 2 * size, 8, malloc((size_t)(4 * size * size) * sizeof(float))};
+    weft_error error = {0};
+    for (int i = 0; i < 4 * size * size; i++) {
+        double u = (i % (2 * size) + 0.5) / (2 * size), v = 1 - (i / (2 * size) + 0.5) / (2 * size);
+        heights.value[i] = (float)(-0.4 + 0.3 * sin(2 * WEFT_PI * u) * cos(2 * WEFT_PI * v + 1));
+    }
+    stage_dataset(raw_path, size, 37, 19, WEFT_REFLECTANCE_COSINE, false);
+    expect_ok(weft_dataset_put_relief(raw_path, raw_path, -0.4, hills ? &heights : NULL, "{}", &error), &error);
+    weft_dataset_heights_free(&heights);
+    return open_written(s, WEFT_RAW_HALF, SIZE_MAX);
 }
 
 static void close_raw(raw_model *model)
@@ -276,6 +296,33 @@ static void raw_equals_c_interpolation_in_views_and_lights(void **state)
     close_raw(&model);
     model = open_raw(s, 5, 19, 37, WEFT_REFLECTANCE, WEFT_RAW_HALF, SIZE_MAX);
     expect_small("raw 19 x 37", stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
+    close_raw(&model);
+}
+
+static void raw_through_heights_equals_c(void **state)
+{
+    stage *s = *state;
+    weft_scene scene = weft_scene_default();
+    scene.level_choice = WEFT_LEVEL_NONE;
+    for (int hills = 0; hills < 2; hills++) {
+        raw_model model = open_relief(s, 8, hills);
+        expect_small(hills ? "raw through hills" : "raw through a plane",
+                     stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model));
+        close_raw(&model);
+    }
+}
+
+/* So much, at least, the test above would see were they not used. */
+static void heights_that_are_switched_off_are_not_used(void **state)
+{
+    stage *s = *state;
+    weft_scene scene = weft_scene_default();
+    scene.level_choice = WEFT_LEVEL_NONE;
+    scene.relief = false;
+    raw_model model = open_relief(s, 8, true);
+    stage_difference off = stage_compare(s->player, scene, WEFT_MODE_RAW, WIDTH, HEIGHT, evaluate_raw, &model);
+    printf("heights against none: RMSE %.4f/255\n", off.rmse);
+    assert_true(off.rmse > 3);
     close_raw(&model);
 }
 
@@ -500,6 +547,8 @@ int main(void)
         cmocka_unit_test(layers_through_holes_equal_c),
         cmocka_unit_test(the_first_layers_alone_equal_c),
         cmocka_unit_test(raw_equals_c_interpolation_in_views_and_lights),
+        cmocka_unit_test(raw_through_heights_equals_c),
+        cmocka_unit_test(heights_that_are_switched_off_are_not_used),
         cmocka_unit_test(raw_with_a_shared_exponent_equals_c_too),
         cmocka_unit_test(the_last_raw_level_is_the_mean_of_all_texels),
         cmocka_unit_test(a_dataset_that_does_not_fit_loses_its_finest_levels_first),

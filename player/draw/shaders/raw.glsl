@@ -1,6 +1,7 @@
 // The measured samples: barycentric in views and, for each of the three views, in its lights; nine bilinear fetches.
 // Every image is a tile with all its levels, and so is the opacity of every view (player/raw/plan.h).
-// Constant defined by player/draw/programs.c: OPACITY, whether there is any below 1.
+// Constants defined by player/draw/programs.c: OPACITY, whether there is any below 1; RELIEF, whether it is all seen
+// through heights (reflectance/relief/relief.glsl): each view then at a place of its own.
 uniform sampler2DArray raw_sample, raw_opacity;
 uniform int level_count;
 uniform ivec2 raw_tiles, opacity_tiles;           // layers, and width of a tile
@@ -42,13 +43,13 @@ vec3 corners_value(vec2 place, Corners lights)
     return sum;
 }
 
-vec3 trilinear_value(vec3 light, SurfacePoint point, Corners views, int fine, float share)
+vec3 trilinear_value(vec3 light, ReliefTap tap[3], Corners views, int fine, float share)
 {
     vec3 sum = vec3(0.0);
-    vec2 place = place_in_tile(fine, point.coordinate), above = place_in_tile(fine + 1, point.coordinate);
     for (int i = 0; i < 3; i++) {
         if (views.weight[i] == 0.0)
             continue;
+        vec2 place = place_in_tile(fine, tap[i].coordinate), above = place_in_tile(fine + 1, tap[i].coordinate);
         Corners lights = find_corners(views.label[i], light);
         vec3 value = corners_value(place, lights);
         if (share > 0.0)
@@ -58,29 +59,30 @@ vec3 trilinear_value(vec3 light, SurfacePoint point, Corners views, int fine, fl
     return sum;
 }
 
-int chosen_corner(Corners corners, inout float chance)
+int chosen_corner(vec3 weight, inout float chance)
 {
-    if (happens(chance, corners.weight.x))
-        return corners.label.x;
-    float rest = corners.weight.y + corners.weight.z;
-    return happens(chance, rest > 0.0 ? corners.weight.y / rest : 1.0) ? corners.label.y : corners.label.z;
+    if (happens(chance, weight.x))
+        return 0;
+    float rest = weight.y + weight.z;
+    return happens(chance, rest > 0.0 ? weight.y / rest : 1.0) ? 1 : 2;
 }
 
-vec3 chosen_value(vec3 light, SurfacePoint point, Corners views, int fine, float share)
+vec3 chosen_value(vec3 light, ReliefTap tap[3], Corners views, int fine, float share, float chance)
 {
-    int level = happens(point.chance, share) ? fine + 1 : fine;
-    int view = chosen_corner(views, point.chance);
-    int image = chosen_corner(find_corners(view, light), point.chance);
-    return image_value(image, place_in_tile(level, point.coordinate));
+    int level = happens(chance, share) ? fine + 1 : fine;
+    int view = chosen_corner(views.weight, chance);
+    Corners lights = find_corners(views.label[view], light);
+    int image = lights.label[chosen_corner(lights.weight, chance)];
+    return image_value(image, place_in_tile(level, tap[view].coordinate));
 }
 
-float trilinear_opacity(SurfacePoint point, Corners views, int fine, float share)
+float trilinear_opacity(ReliefTap tap[3], Corners views, int fine, float share)
 {
     float sum = 0.0;
-    vec2 place = place_in_tile(fine, point.coordinate), above = place_in_tile(fine + 1, point.coordinate);
     for (int i = 0; i < 3; i++) {
         if (views.weight[i] == 0.0)
             continue;
+        vec2 place = place_in_tile(fine, tap[i].coordinate), above = place_in_tile(fine + 1, tap[i].coordinate);
         float value = opacity_value(views.label[i], place);
         if (share > 0.0)
             value = mix(value, opacity_value(views.label[i], above), share);
@@ -89,10 +91,23 @@ float trilinear_opacity(SurfacePoint point, Corners views, int fine, float share
     return sum;
 }
 
-float chosen_opacity(SurfacePoint point, Corners views, int fine, float share)
+float chosen_opacity(ReliefTap tap[3], Corners views, int fine, float share, float chance)
 {
-    int level = happens(point.chance, share) ? fine + 1 : fine;
-    return opacity_value(chosen_corner(views, point.chance), place_in_tile(level, point.coordinate));
+    int level = happens(chance, share) ? fine + 1 : fine;
+    int view = chosen_corner(views.weight, chance);
+    return opacity_value(views.label[view], place_in_tile(level, tap[view].coordinate));
+}
+
+// Where each view is read; through heights its weight changes, too.
+void find_taps(SurfacePoint point, float level, inout Corners views, out ReliefTap tap[3])
+{
+    for (int i = 0; i < 3; i++)
+        tap[i] = ReliefTap(point.coordinate, views.weight[i]);
+    float share = RELIEF ? clamp(relief_levels - level, 0.0, 1.0) : 0.0;
+    if (share == 0.0)
+        return;
+    relief_taps(share, point.coordinate, point.view, views.label - 1, views.weight, tap);
+    views.weight = vec3(tap[0].weight, tap[1].weight, tap[2].weight);
 }
 
 vec4 radiance(SurfacePoint point)
@@ -102,15 +117,18 @@ vec4 radiance(SurfacePoint point)
     int fine = int(level);
     float share = level - float(fine);
     vec4 sum = vec4(0.0, 0.0, 0.0, 1.0);
+    ReliefTap tap[3];
+    find_taps(point, level, views, tap);
     if (OPACITY)
-        sum.a = STOCHASTIC ? chosen_opacity(point, views, fine, share) : trilinear_opacity(point, views, fine, share);
+        sum.a = STOCHASTIC ? chosen_opacity(tap, views, fine, share, point.chance)
+                           : trilinear_opacity(tap, views, fine, share);
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i);
         if (irradiance == vec3(0.0))
             continue;
         vec3 light = surface_light(point, i);
-        sum.rgb += irradiance * (STOCHASTIC ? chosen_value(light, point, views, fine, share)
-                                            : trilinear_value(light, point, views, fine, share));
+        sum.rgb += irradiance * (STOCHASTIC ? chosen_value(light, tap, views, fine, share, point.chance)
+                                            : trilinear_value(light, tap, views, fine, share));
         point.chance = fract(point.chance + 0.61803399);
     }
     return sum;

@@ -1,0 +1,176 @@
+#include "relief/relief.h"
+#include "base/atomic_file.h"
+#include "base/text/json_text.h"
+#include "cli/arguments.h"
+#include "relief/page.h"
+#include "relief/surface.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct relief_command {
+    weft_common_options common;
+    const char *input, *output, *report, *obj, *normal;
+    weft_relief_options options;
+} relief_command;
+
+static weft_code read_range(const weft_option *option, const char *text, void *target, weft_error *error)
+{
+    double number[2];
+    relief_command *command = target;
+    WEFT_TRY(weft_option_numbers(option->name, text, 2, number, error));
+    if (!(number[0] < number[1]))
+        return weft_fail(error, WEFT_BAD_USAGE, "--range needs LOW,HIGH in mm, the lower one first; it is '%s'", text);
+    command->options.low_mm = number[0];
+    command->options.high_mm = number[1];
+    return WEFT_OK;
+}
+
+static const char *const repeat_words[] = {"auto", "on", "off", NULL};
+
+static const weft_option option_table[] = {
+    {.argument = "NAME.btf.h5",
+     .is_required = true,
+     .kind = WEFT_OPTION_INPUT,
+     .offset = offsetof(relief_command, input)},
+    {"output", 'o', "OTHER.btf.h5", "Write a copy with the heights, and leave NAME.btf.h5 as it is",
+     .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(relief_command, output)},
+    {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
+     .offset = offsetof(relief_command, report)},
+    {"obj", .argument = "FILE.obj", .help = "Write the surface too", .kind = WEFT_OPTION_OUTPUT,
+     .offset = offsetof(relief_command, obj)},
+    {"normal", .argument = "FILE.png", .help = "Write its normals as a picture", .kind = WEFT_OPTION_OUTPUT,
+     .offset = offsetof(relief_command, normal)},
+    {"range", .argument = "LOW,HIGH",
+     .help = "Look for heights between these, in mm above the plane of the texels (default: found)",
+     .read = read_range},
+    {"repeat", .argument = "WHICH",
+     .help = "Whether the material continues at its opposite border: on, off, or auto (default), by how well they fit",
+     .kind = WEFT_OPTION_CHOICE, .offset = offsetof(relief_command, options.repeat), .words = repeat_words},
+    {0},
+};
+
+/* What goes into the provenance and into the event of --json. The caller owns it; NULL where memory is short. */
+static json_t *pack_report(const weft_relief_report *report)
+{
+    static const char *const name[] = {"nothing", "plane", "relief"};
+    json_t *levels = json_array();
+    for (int i = 0; i < report->level_count; i++)
+        weft_json_append(&levels, json_pack("[f, f, f]", report->level_error[i].flat, report->level_error[i].plane,
+                                            report->level_error[i].heights));
+    return json_pack("{s:s, s:f, s:[f, f], s:b, s:i, s:{s:f, s:f, s:f}, s:o}", "verdict", name[report->verdict],
+                     "plane_mm", report->plane_mm, "range_mm", report->low_mm, report->high_mm, "repeats",
+                     report->repeats, "levels_used", report->levels_used, "left_out_error", "flat", report->error.flat,
+                     "plane", report->error.plane, "relief", report->error.heights, "level_error", levels);
+}
+
+static char *print_report(const weft_relief_report *report, const char *event)
+{
+    json_t *object = pack_report(report);
+    if (event)
+        weft_json_put(&object, "event", json_string(event));
+    char *text = object ? json_dumps(object, JSON_COMPACT) : NULL;
+    json_decref(object);
+    return text;
+}
+
+static void say_report(const relief_command *command, const weft_relief_report *report, const char *output)
+{
+    const weft_common_options *common = &command->common;
+    char reason[512];
+    weft_relief_reason(report, reason, sizeof reason);
+    weft_command_say(common, "%s", reason);
+    weft_command_say(common, "plane     %.3f mm above that of the texels", report->plane_mm);
+    weft_command_say(common, "heights   looked for from %.3f to %.3f mm in %d x %d places; the material %s",
+                     report->low_mm, report->high_mm, report->width, report->height,
+                     report->repeats ? "repeats" : "does not repeat");
+    weft_command_say(common,
+                     "left out  %d of %d views in turn: error %.3f flat, %.3f through the plane, %.3f through "
+                     "the heights",
+                     report->compared_count, report->view_count, report->error.flat, report->error.plane,
+                     report->error.heights);
+    weft_command_say(common, "levels    the finest %d of %d gain", report->levels_used, report->level_count);
+    char *event = print_report(report, "relief");
+    if (event)
+        weft_command_event(common, event);
+    free(event);
+    weft_command_say(common, "%s: written", output);
+}
+
+/* The surface that was decided for: heights, or a plane of as many places. */
+static weft_code write_surfaces(const relief_command *command, const weft_relief_report *report,
+                                const weft_dataset_heights *heights, weft_error *error)
+{
+    if (command->obj)
+        WEFT_TRY(weft_surface_write_obj(command->obj, heights, report->width_mm, report->height_mm, error));
+    if (command->normal)
+        WEFT_TRY(weft_surface_write_normals(command->normal, heights, report->width_mm, report->height_mm, error));
+    return WEFT_OK;
+}
+
+static weft_code keep(const relief_command *command, const weft_relief_report *report, weft_error *error)
+{
+    const char *output = command->output ? command->output : command->input;
+    const weft_dataset_heights heights = {report->width, report->height, report->levels_used, report->height_mm_of};
+    char *made = print_report(report, NULL);
+    if (!made)
+        return weft_fail_memory(error, "report", 0);
+    weft_code code =
+        weft_dataset_put_relief(command->input, output, report->verdict == WEFT_RELIEF_NOTHING ? 0 : report->plane_mm,
+                                report->verdict == WEFT_RELIEF_HEIGHTS ? &heights : NULL, made, error);
+    free(made);
+    if (code == WEFT_OK)
+        say_report(command, report, output);
+    return code;
+}
+
+static weft_code write_results(const relief_command *command, weft_relief_report *report, weft_error *error)
+{
+    if (command->report)
+        WEFT_TRY(weft_relief_page_write(command->report, command->input, report, error));
+    WEFT_TRY(keep(command, report, error));
+    const weft_dataset_heights surface = {report->width, report->height, 1, report->height_mm_of};
+    double plane = report->verdict == WEFT_RELIEF_PLANE ? report->plane_mm : 0;
+    for (int i = 0; report->verdict != WEFT_RELIEF_HEIGHTS && i < surface.width * surface.height; i++)
+        surface.value[i] = (float)plane;
+    return write_surfaces(command, report, &surface, error);
+}
+
+static weft_code estimate(const relief_command *command, weft_relief_report *report, weft_error *error)
+{
+    weft_dataset *dataset;
+    weft_progress progress = weft_command_progress(&command->common);
+    WEFT_TRY(weft_output_check(command->output ? command->output : command->input, error));
+    WEFT_TRY(weft_dataset_open(command->input, &dataset, error));
+    weft_code code = weft_relief_estimate(dataset, &command->options, &progress, report, error);
+    weft_dataset_close(dataset);
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    relief_command command = {0};
+    weft_arguments_parse(&weft_command_relief, argc, argv, &command);
+    weft_error error = {0};
+    weft_relief_report report;
+    weft_code code = estimate(&command, &report, &error);
+    if (code == WEFT_OK) {
+        code = write_results(&command, &report, &error);
+        weft_relief_report_free(&report);
+    }
+    return weft_command_exit("relief", &command.common, code, &error);
+}
+
+const weft_command weft_command_relief = {
+    .name = "relief",
+    .summary = "find the heights of a dataset in the parallax of its photographs",
+    .usage = "NAME.btf.h5",
+    .documentation = "Example: weft relief knit.btf.h5 --report knit-relief\n\n"
+                     "Looks for the height at which the views of a place agree. Heights are kept in the dataset where "
+                     "views that are left out are predicted better through them than through the best plane; else the "
+                     "plane, where that is better than none; else nothing.",
+    .options = option_table,
+    .needs = "NAME.btf.h5",
+    .surplus = "one dataset at a time",
+    .run = run,
+};

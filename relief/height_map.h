@@ -1,0 +1,36 @@
+/* The heights of a material, from the costs of a sweep. Private to the room. */
+#ifndef WEFT_RELIEF_HEIGHT_MAP_H
+#define WEFT_RELIEF_HEIGHT_MAP_H
+
+#include "relief/features.h"
+
+typedef struct weft_height_map {
+    int width, height; /* places: those of the grid of the search */
+    float *value;      /* [height][width] mm above the plane of the texels */
+    float *confidence; /* [height][width] how much lower the least cost is than the mean over all heights */
+} weft_height_map;
+
+/* What a map is made from: some views of the features, heights low .. high mm in so many steps, a grid of scale x scale
+ * points in a texel. */
+typedef struct weft_height_search {
+    const weft_features *features;
+    const int *view; /* [view_count] */
+    int view_count, step_count, scale;
+    double low, high;
+} weft_height_search;
+
+/* Sweeps (relief/sweep.h), smooths the costs of every height (Gaussian), takes the least cost of a place and the vertex
+ * of the parabola through it and its neighbours, and the median of 3 x 3 places.
+ * Errors: WEFT_SYSTEM. The caller frees with weft_height_map_free. */
+weft_code weft_height_map_find(const weft_height_search *search, weft_height_map *map, weft_error *error);
+void weft_height_map_free(weft_height_map *map);
+
+/* Means of 2 x 2 places; odd sizes lose their last row or column. Errors: WEFT_SYSTEM. */
+weft_code weft_height_map_halve(const weft_height_map *map, weft_height_map *half, weft_error *error);
+
+/* Narrows low .. high to where the more confident half of a wide search lies, with a margin. The finest levels are left
+ * out where the material is large. Errors: WEFT_SYSTEM. */
+weft_code weft_height_range_find(const weft_features *features, const int *view, int view_count, double *low,
+                                 double *high, weft_error *error);
+
+#endif

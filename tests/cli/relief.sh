@@ -1,0 +1,63 @@
+#!/bin/sh
+# The command weft relief, whole: what it says, writes and refuses. Usage: relief.sh WEFT ASSETS PYTHON
+set -eu
+weft=$1
+assets=$2
+python=$3
+. "$(dirname "$0")/expect.sh"
+scratch=$(mktemp -d "$PWD/relief-XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+awk 'BEGIN {
+    print "theta_deg,phi_deg"
+    print "0,0"
+    for (theta = 15; theta <= 75; theta += 20)
+        for (i = 0; i < 8; i++)
+            print theta "," 45 * i + theta
+}' >directions.csv
+expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --size 20x16 --noise 10 --bounces 0 \
+    --resolution 40 --directions directions.csv
+cp knit.btf.h5 before.btf.h5
+
+expect_ok relief knit.btf.h5 -o deep.btf.h5 --report page --obj surface.obj --normal normals.png
+cmp -s knit.btf.h5 before.btf.h5 || fail "-o does not leave the dataset as it was"
+grep -q "^relief: " out.log || fail "the knit is refused: $(cat out.log)"
+for file in page/index.html page/height.png page/confidence.png normals.png; do
+    [ -s "$file" ] || fail "there is no $file"
+done
+grep -q "Error by view" page/index.html || fail "the page does not show the errors"
+[ "$(grep -c '^v ' surface.obj)" = 1280 ] || fail "the surface does not have 40 x 32 vertices"
+[ "$(grep -c '^f ' surface.obj)" = 2418 ] || fail "the surface does not have 2 x 39 x 31 triangles"
+expect_ok verify deep.btf.h5
+expect_ok info deep.btf.h5
+grep -q "verdict: relief" out.log || fail "the dataset does not say what was decided"
+
+# In place, as events, without what was there before.
+expect_ok relief knit.btf.h5 --json --range=-0.5,0.125
+grep -q '"event":"relief"' out.log || fail "there is no event"
+grep -q '"range_mm":\[-0.5,0.125' out.log || fail "the range is not kept"
+"$python" - <<'PYTHON' || fail "the heights are not in the file"
+import h5py, numpy
+f = h5py.File("knit.btf.h5")
+h = f["height"][:]
+assert h.shape == (32, 40) and numpy.isfinite(h).all(), h.shape
+assert -0.5 <= h.min() and h.max() <= 0.125, (h.min(), h.max())
+assert -0.4 < f.attrs["plane_mm"] < 0 and f.attrs["height_levels"] >= 1
+PYTHON
+
+# Refused in one line, and nothing is written.
+expect_error 2 "needs NAME.btf.h5" relief
+expect_error 2 "--range needs LOW,HIGH" relief knit.btf.h5 --range 1,0
+expect_error 2 "--repeat" relief knit.btf.h5 --repeat perhaps
+expect_error 1 "absent.btf.h5" relief absent.btf.h5
+expect_error 3 "'absent'" relief knit.btf.h5 -o absent/out.btf.h5
+head -c 3000 knit.btf.h5 >cut.btf.h5
+expect_error 1 "cut.btf.h5" relief cut.btf.h5
+"$python" - <<'PYTHON'
+import h5py, shutil
+shutil.copy("knit.btf.h5", "bad.btf.h5")
+h5py.File("bad.btf.h5", "r+")["height"][3, 4] = float("nan")
+PYTHON
+expect_error 1 "bad.btf.h5': height (4, 3) is nan mm" render --raw bad.btf.h5 --mode raw -o no.png
+expect_no_file no.png
