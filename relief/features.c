@@ -32,7 +32,8 @@ static weft_feature_project *best_kernel(void)
 static void read_texel(const reading *r, const weft_walk_block *block, int i, float *value)
 {
     const weft_features *features = r->features;
-    size_t x = (size_t)(block->x + i % block->width), y = (size_t)(block->y + i / block->width);
+    int column = block->x + i % block->width, row = block->y + i / block->width;
+    size_t x = (size_t)column, y = (size_t)row;
     const weft_half *sample = block->samples + 3 * (size_t)i * r->images;
     const uint8_t *mask = block->mask + (size_t)i * r->images;
     for (int view = 0; view < features->view_count; view++) {

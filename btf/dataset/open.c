@@ -221,7 +221,7 @@ static weft_code open_optional(const weft_dataset *dataset, const char *name, in
 /* Their size is the reader's to know; that it fits the texels is checked with the values. */
 static weft_code open_heights(weft_dataset *dataset, weft_error *error)
 {
-    hsize_t size[2];
+    hsize_t size[2] = {0};
     double levels = 1;
     if (H5Lexists(dataset->file, "height", H5P_DEFAULT) <= 0)
         return WEFT_OK;

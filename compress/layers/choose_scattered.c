@@ -89,6 +89,7 @@ static weft_code try_kind(comparison *c, const weft_layer_images *places, weft_l
         code = c->layout->distance == WEFT_NEAR ? add_near(c, &square, &energy, error)
                                                 : add_far(c, &square, &energy, error);
     *error_of = energy > 0 ? sqrt(square / energy) : 0;
+    c->maps = NULL;
     weft_layer_maps_free(&maps);
     weft_layers_free(layers);
     return code;

@@ -76,13 +76,13 @@ static void known_free(known *k)
 
 static weft_code known_allocate(int count, int series_count, known *k, weft_error *error)
 {
-    size_t all = (size_t)count;
+    size_t all = count > 0 ? (size_t)count : 1; /* one that is not used, where nothing is known */
     *k = (known){.count = count,
                  .series_count = series_count,
-                 .image = malloc(all * sizeof *k->image),
-                 .pair = malloc(all * sizeof *k->pair),
-                 .weight = malloc(all * sizeof *k->weight),
-                 .sample = malloc(all * (size_t)series_count * sizeof *k->sample)};
+                 .image = calloc(all, sizeof *k->image),
+                 .pair = calloc(all, sizeof *k->pair),
+                 .weight = calloc(all, sizeof *k->weight),
+                 .sample = calloc(all * (size_t)series_count, sizeof *k->sample)};
     if (k->image && k->pair && k->weight && k->sample)
         return WEFT_OK;
     known_free(k);

@@ -48,7 +48,7 @@ grep -q "dome.lp:4," said || fail "another row is doubted: $(cat said)"
 "$weft" photographs pin -o pin.btf.h5 --opening 40 --size 32x32 --balls 0 -q 2>/dev/null
 "$python" "$here/photographs.py" pin || fail "set pin is wrong"
 
-"$weft" hand checker --opening 40 -o linear --photographs 10 --format exr --width 900 --truth-size 32 -q
+"$weft" hand checker --opening 40 -o linear --photographs 7 --format exr --width 900 --truth-size 32 -q
 "$weft" photographs linear -o linear.btf.h5 --opening 40 --size 32x32 -q 2>/dev/null
 "$python" "$here/photographs.py" linear || fail "set linear is wrong"
 
