@@ -27,10 +27,8 @@ static void print_meaning(const char *help)
 static void print_commands(const char *start)
 {
     for (const weft_command_entry *entry = weft_commands; entry->command; entry++) {
-        if (begins(entry->command->name, start)) {
-            fputs(entry->command->name, stdout);
-            print_meaning(entry->command->summary);
-        }
+        if (begins(entry->command->name, start))
+            printf("%s\t%s\n", entry->command->name, entry->command->summary);
     }
     if (begins("--help", start))
         puts("--help\tlist the commands");

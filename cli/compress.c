@@ -254,9 +254,9 @@ static void say_layers(const weft_common_options *common, const weft_compress_op
         return;
     if (layers->scattered)
         weft_command_say(common,
-                         "photographs that are no grid: completed by kriging; relative RMSE %.4f of photographs left "
-                         "out, one after another",
-                         layers->left_out_error);
+                         "photographs that are no grid: completed by kriging; relative RMSE %.4f where each of %d is "
+                         "predicted by the others of these",
+                         layers->left_out_error, layers->left_out_count);
     weft_command_say(common,
                      "%d layers over %s, learned from %d texels; on images %s to choose: %.4f over the light, "
                      "%.4f over the half vector (relative RMSE)",

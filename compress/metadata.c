@@ -41,7 +41,8 @@ static json_t *describe_kriging(const weft_layers_report *report)
     json_t *numbers = json_object();
     for (int k = 0; k < WEFT_COVARIANCE_NUMBERS; k++)
         weft_json_put(&numbers, name[k], json_real(report->covariance.log2_of[k]));
-    return json_pack("{s:f, s:o}", "left_out_relative_rmse", report->left_out_error, "log2_covariance", numbers);
+    return json_pack("{s:f, s:i, s:o}", "left_out_relative_rmse", report->left_out_error, "left_out_images",
+                     report->left_out_count, "log2_covariance", numbers);
 }
 
 static json_t *describe_layers(const weft_compress_options *options, const weft_layers_report *report)

@@ -8,12 +8,14 @@ shift 2
 : "${SOURCE_DATE_EPOCH:=$(git -C "$(dirname "$0")" log -1 --format=%ct 2>/dev/null || date +%s)}"
 export SOURCE_DATE_EPOCH
 
-# help2man calls the program by the name of the page.
+version=$("$weft" --version)
+
+# help2man takes the name of the page from the line of the version.
 page() { # NAME SUMMARY SECTIONS [COMMAND]
     printf '#!/bin/sh\nexec "%s" %s "$@"\n' "$weft" "${4-}" >"$folder/$1"
     chmod +x "$folder/$1"
     printf '%s\n' "$3" >"$folder/sections"
-    help2man --no-info --section 1 --source Weft --manual "Weft" --version-string "$("$weft" --version)" --name "$2" \
+    help2man --no-info --section 1 --source Weft --manual "Weft" --version-string "$1 ${version#weft }" --name "$2" \
         --include "$folder/sections" --output "$folder/$1.1" "$folder/$1"
     rm -f "$folder/$1" "$folder/sections"
 }

@@ -175,6 +175,7 @@ static weft_code choose_far(const weft_layer_images *images, const weft_training
     known k;
     WEFT_TRY(take(training, images, 0, training->texel_count - 1, MOST_LEFT_OUT, &k, error));
     weft_kriging_samples set = {places_of(&k), k.series_count, k.sample};
+    c->left_out_count = k.count;
     weft_code code = weft_kriging_choose(&set, 1, progress, &c->covariance, &c->left_out_error, error);
     known_free(&k);
     return code;
@@ -349,6 +350,7 @@ static weft_code choose_near(const nearby *n, const weft_progress *progress, wef
     for (int i = 0; i < count && code == WEFT_OK; i++) {
         code = take_nearby(n, i, count, MOST_NEAR_LEFT_OUT, &k[i], error);
         set[i] = (weft_kriging_samples){places_of(&k[i]), k[i].series_count, k[i].sample};
+        c->left_out_count = k[i].count > c->left_out_count ? k[i].count : c->left_out_count;
     }
     if (code == WEFT_OK)
         code = weft_kriging_choose(set, count, progress, &c->covariance, &c->left_out_error, error);

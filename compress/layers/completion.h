@@ -14,7 +14,8 @@ typedef struct weft_completion {
     weft_layer_images images; /* the directions: 81 lights for each of 81 views, or for the one there is; weights 1 */
     weft_training training;   /* the same texels, or some of them, everything valid */
     weft_covariance covariance;
-    double left_out_error; /* relative RMSE of images left out, one after another */
+    int left_out_count;    /* images of a texel that decided the covariance */
+    double left_out_error; /* relative RMSE of these, each predicted by the others of them */
     double noise;          /* mean square of what is noise in a sample */
 } weft_completion;
 

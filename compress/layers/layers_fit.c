@@ -52,6 +52,7 @@ static weft_code learn_from_scattered(fitting *work, weft_layers_report *report,
     WEFT_TRY(weft_completion_make(layout, &work->images, &work->training, &work->options->budget,
                                   weft_dataset_path(work->dataset), work->progress, completion, error));
     report->scattered = true;
+    report->left_out_count = completion->left_out_count;
     report->left_out_error = completion->left_out_error;
     report->covariance = completion->covariance;
     weft_progress_report(work->progress, "learning layers", 1, 2);

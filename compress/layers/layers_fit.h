@@ -23,8 +23,9 @@ typedef struct weft_layers_report {
     double trial_error[2]; /* relative RMSE of each kind, by which it was chosen: on images held out, 0 where none was;
                               of scattered images on the images themselves */
     bool scattered;
-    weft_covariance covariance; /* of scattered images, chosen by leaving images out ... */
-    double left_out_error;      /* ... and the relative RMSE of these */
+    weft_covariance covariance; /* of scattered images, chosen by leaving out each of some images ... */
+    int left_out_count;         /* ... how many these are in a texel ... */
+    double left_out_error;      /* ... and their relative RMSE, each predicted by the others of them */
     int training_texels;
     long masked, empty_texels;
     weft_error_summary fitted; /* level 0, of the training texels, over images that were fitted */

@@ -30,7 +30,9 @@ for command in $commands; do
     for option in $("$weft" --complete "$command" -- | cut -f 1); do
         sed 's/\\//g' "$page" | grep -q -- "$option" || fail "$option is not on the page of $command"
     done
-    "$weft" --help | grep -q "^  $command  *[a-z]" || fail "$command is not in --help"
+    summary=$("$weft" --help | sed -n "s/^  $command  *//p")
+    [ -n "$summary" ] || fail "$command is not in --help"
+    sed 's/\\//g' "$page" | grep -qF -- "weft-$command - $summary" || fail "the page of $command is not headed '$summary'"
     grep -q "weft-$command(1)" moved/share/man/man1/weft.1 || fail "weft.1 does not lead to $command"
 done
 
@@ -61,4 +63,7 @@ expect_completed "moved night silk.weft stage" compress silk.btf.h5 -o ""
 expect_completed "silk.btf.h5 silk.weft stage" play s
 expect_completed "night" register ni
 expect_completed "" nonsense ""
+expect_completed "" compress --lobes = ""
+expect_completed "8bit pca:" compress --tables ""
+expect_completed "silk.btf.h5" compress --lobes = 2 silk.b
 echo "$passed passed, 0 failed"
