@@ -1,24 +1,31 @@
 #include "study/tile/tile.h"
+#include "btf/file_kind.h"
 #include "cli/arguments.h"
+#include "study/blend/blend.h"
 
 #include <stdio.h>
 
 typedef struct tile_command {
     weft_common_options common;
     const char *input, *output, *weave;
+    bool blend;
 } tile_command;
 
 static const weft_option option_table[] = {
-    {.argument = "NAME.btf.h5",
+    {.argument = "NAME.btf.h5|NAME.weft",
      .is_required = true,
      .kind = WEFT_OPTION_INPUT,
      .offset = offsetof(tile_command, input)},
-    {"output", 'o', "TILE.btf.h5", "The dataset to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
-     .offset = offsetof(tile_command, output)},
+    {"output", 'o', "TILE.btf.h5|TILE.weft", "The dataset or material to write", .is_required = true,
+     .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(tile_command, output)},
     {"weave", .argument = "CLOTH.wv",
      .help = "The weave of the cloth: the tile is then as large as that of the weave, not the shortest repeat, and "
              "begins where that begins",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(tile_command, weave)},
+    {"blend",
+     .help = "Of a material: overlap its ends and cut them where they differ least, so that it tiles. It need "
+             "not repeat",
+     .kind = WEFT_OPTION_FLAG, .offset = offsetof(tile_command, blend)},
     {0},
 };
 
@@ -62,33 +69,101 @@ static weft_code make_tile(const tile_command *command, weft_dataset *dataset, c
     return WEFT_OK;
 }
 
+static weft_code average(const tile_command *command, weft_error *error)
+{
+    weft_dataset *dataset = NULL;
+    weft_weave weave = {0};
+    weft_code code = weft_dataset_open(command->input, &dataset, error);
+    if (code == WEFT_OK && command->weave)
+        code = weft_weave_read(command->weave, NULL, 0, &weave, NULL, error);
+    if (code == WEFT_OK)
+        code = make_tile(command, dataset, command->weave ? &weave : NULL, error);
+    weft_weave_free(&weave);
+    weft_dataset_close(dataset);
+    return code;
+}
+
+/* ---- A material whose ends are blended ---- */
+
+static void say_seam(const weft_common_options *common, const char *what, const weft_seam *seam)
+{
+    weft_command_say(common,
+                     "%-9s %.1f %% of %ld pairs of texels across the seam differ more than 99 %% of neighbours in the "
+                     "material do; %.2f times as much as these in the mean",
+                     what, 100 * seam->above_99th, seam->pair_count, seam->mean_difference);
+}
+
+static void say_blend(const tile_command *command, const weft_blend_report *report)
+{
+    const weft_common_options *common = &command->common;
+    weft_command_say(common, "overlap   %d columns, %d rows", report->overlap_x, report->overlap_y);
+    say_seam(common, "before", &report->before);
+    say_seam(common, "after", &report->after);
+    weft_command_say(common, "%s: %d x %d texels", command->output, report->width, report->height);
+    char event[384];
+    snprintf(event, sizeof event,
+             "{\"event\":\"blend\",\"texels\":[%d,%d],\"overlap_texels\":[%d,%d],"
+             "\"before\":{\"above_99th\":%.6g,\"strongest\":%.6g,\"mean_difference\":%.6g},"
+             "\"after\":{\"above_99th\":%.6g,\"strongest\":%.6g,\"mean_difference\":%.6g}}",
+             report->width, report->height, report->overlap_x, report->overlap_y, report->before.above_99th,
+             report->before.strongest, report->before.mean_difference, report->after.above_99th,
+             report->after.strongest, report->after.mean_difference);
+    weft_command_event(common, event);
+}
+
+static weft_code blend(const tile_command *command, weft_error *error)
+{
+    weft_material material, tile = {0};
+    weft_blend_report report;
+    WEFT_TRY(weft_material_read(command->input, &material, error));
+    weft_code code = weft_blend(&material, &tile, &report, error);
+    weft_material_free(&material);
+    if (code == WEFT_OK)
+        code = weft_material_write(command->output, &tile, error);
+    weft_material_free(&tile);
+    if (code == WEFT_OK)
+        say_blend(command, &report);
+    return code;
+}
+
+static weft_code run_on(const tile_command *command, weft_error *error)
+{
+    weft_file_kind kind;
+    WEFT_TRY(weft_file_kind_of(command->input, &kind, error));
+    if (command->blend && command->weave)
+        return weft_fail(error, WEFT_BAD_USAGE, "--weave finds tiles of a cloth that repeats; --blend needs none");
+    if (command->blend && kind != WEFT_FILE_MATERIAL)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' is no material (.weft): --blend cuts what weft compress has made of photographs",
+                         command->input);
+    if (!command->blend && kind == WEFT_FILE_MATERIAL)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' is a material, not a dataset (.btf.h5): to make a material tile, use --blend",
+                         command->input);
+    return command->blend ? blend(command, error) : average(command, error);
+}
+
 static int run(int argc, char **argv)
 {
     tile_command command = {0};
     weft_arguments_parse(&weft_command_tile, argc, argv, &command);
     weft_error error = {0};
-    weft_dataset *dataset = NULL;
-    weft_weave weave = {0};
-    weft_code code = weft_dataset_open(command.input, &dataset, &error);
-    if (code == WEFT_OK && command.weave)
-        code = weft_weave_read(command.weave, NULL, 0, &weave, NULL, &error);
-    if (code == WEFT_OK)
-        code = make_tile(&command, dataset, command.weave ? &weave : NULL, &error);
-    weft_weave_free(&weave);
-    weft_dataset_close(dataset);
+    weft_code code = run_on(&command, &error);
     return weft_command_exit("tile", &command.common, code, &error);
 }
 
 const weft_command weft_command_tile = {
     .name = "tile",
-    .summary = "average the repeats of a dataset into one tile",
-    .usage = "NAME.btf.h5 -o TILE.btf.h5",
+    .summary = "average the repeats of a dataset into one tile, or make a material tile",
+    .usage = "NAME.btf.h5 -o TILE.btf.h5\nNAME.weft --blend -o TILE.weft",
     .documentation = "Example: weft tile denim.btf.h5 --weave denim.wv -o denim-tile.btf.h5\n\n"
-                     "Finds the tile that repeats over a material, to a fraction of a texel, and writes "
+                     "Of a dataset: finds the tile that repeats over a material, to a fraction of a texel, and writes "
                      "a dataset of one tile: the mean of all tiles, image by image. What differs from "
-                     "tile to tile, the irregularity of the yarns and noise, goes away.",
+                     "tile to tile, the irregularity of the yarns and noise, goes away.\n\n"
+                     "Of a material, with --blend: a tile without a visible seam, whatever it shows. Its ends are laid "
+                     "over each other and cut where they differ least.",
     .options = option_table,
-    .needs = "NAME.btf.h5 and -o TILE.btf.h5",
-    .surplus = "one dataset at a time",
+    .needs = "NAME.btf.h5 and -o TILE.btf.h5, or NAME.weft, --blend and -o TILE.weft",
+    .surplus = "one dataset or material at a time",
     .run = run,
 };

@@ -34,7 +34,8 @@ rm -rf "$out/hand"
 "$weft" hand "$weave" --photographs 60 --width 900 --truth-size 0 -q -o "$out/hand"
 "$weft" photographs "$out/hand" --size 96x96 --report "$out/hand-report" -o "$out/hand.btf.h5"
 "$weft" compress "$out/hand.btf.h5" -q -o "$out/hand.weft"
-"$weft" render "$out/hand.weft" -o "$out/hand.png"
+"$weft" tile "$out/hand.weft" --blend -o "$out/hand-tile.weft"
+"$weft" render "$out/hand-tile.weft" -o "$out/hand.png"
 
 if [ -d "$shared/cards-blue" ]; then
     step "And real photographs: nine flash pictures of a card"

@@ -85,6 +85,11 @@ weft_code weft_dataset_fingerprint_compare(weft_dataset *dataset, const char *me
     if (metadata)
         WEFT_TRY(weft_json_parse(metadata, strlen(metadata), 0, "metadata", &object, error));
     json_t *origin = json_object_get(object, "dataset");
+    if (json_object_get(object, "tile")) {
+        snprintf(warning, WEFT_MESSAGE_SIZE, "the material was cut to tile: its texels lie elsewhere than those of '%s'",
+                 weft_dataset_path(dataset));
+        origin = NULL;
+    }
     weft_code code = origin ? weft_dataset_fingerprint_take(dataset, &own, error) : WEFT_OK;
     if (origin && code == WEFT_OK) {
         bool layout = is_another(origin, "layout", own.layout), samples = is_another(origin, "samples", own.samples);

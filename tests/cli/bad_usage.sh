@@ -24,6 +24,9 @@ expect_one_line() {
 expect_one_line 1 "'good.weft' is a material" compress good.weft -o out.weft
 expect_one_line 1 "'good.weft' is a material" compare good.weft good.btf.h5 -o report
 expect_one_line 1 "'good.weft' is a material" tile good.weft -o out.btf.h5
+expect_one_line 1 "'good.btf.h5' is no material" tile good.btf.h5 --blend -o out.weft
+expect_one_line 1 "8 x 8 texels; at least 16 x 16" tile good.weft --blend -o out.weft
+expect_one_line 2 "--blend needs none" tile good.weft --blend --weave "$weave" -o out.weft
 expect_one_line 1 "'good.weft' is a material" render --raw good.weft -o out.png
 expect_one_line 1 "'good.btf.h5' is a dataset" compare good.btf.h5 good.btf.h5 -o report
 expect_no_file out.weft

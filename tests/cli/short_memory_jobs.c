@@ -25,6 +25,11 @@ const short_memory_job short_memory_inputs[] = {
      {"simulate", "coarse.stitch", "-o", "knit.btf.h5", "--size", "2x2", "--noise", "50", "--directions", "few.csv"}},
     {"material", ALL_OR_NOTHING, 1, {"compress", "small.btf.h5", "-o", "small.weft", "--light-table", "on"}},
     {"chosen", ALL_OR_NOTHING, 1, {"compress", "small.btf.h5", "-o", "chosen.weft", "--error", "25"}},
+    {"wide",
+     ALL_OR_NOTHING,
+     1,
+     {"compress", "wide.btf.h5", "-o", "wide.weft", "--layers", "4", "--lobes", "1", "--hold-out", "off", "--tables",
+      "pca:2"}},
     {"sparse", ALL_OR_NOTHING, 1, {"compress", "card.btf.h5", "-o", "card.weft"}},
     {"prediction", ALL_OR_NOTHING, 1, {"bard", "small.btf.h5", "-o", "small.bard.h5"}},
     {"photographed",
@@ -108,6 +113,7 @@ const short_memory_job short_memory_jobs[] = {
      {"compress", IN "small.btf.h5", "-o", "small.weft", "--layers", "4", "--hold-out", "off"}},
     {"bard", ALL_OR_NOTHING, 1, {"bard", IN "small.btf.h5", "-o", "small.bard.h5"}},
     {"tile", ALL_OR_NOTHING, 4, {"tile", IN "waves.btf.h5", "-o", "tile.btf.h5", "--weave", IN "plain.wv"}},
+    {"tile-blend", ALL_OR_NOTHING, 1, {"tile", IN "wide.weft", "--blend", "-o", "tile.weft"}},
     {"fit-weave", ALL_OR_NOTHING, 8, {"fit-weave", IN "waves.btf.h5", "--weave", IN "plain.wv", "-o", "fitted.wv"}},
     {"compare",
      ALL_OR_NOTHING,
@@ -202,6 +208,7 @@ void short_memory_write_inputs(void)
 {
     fixture_far_dataset("waves.btf.h5", 12, 12, 2, waves, 1);
     fixture_far_dataset("small.btf.h5", 6, 6, 2, waves, 1);
+    fixture_far_dataset("wide.btf.h5", 18, 17, 2, waves, 1);
     fixture_near_dataset("card.btf.h5", 4, 5, waves);
     write_collections();
     weft_image sky;

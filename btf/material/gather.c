@@ -1,0 +1,261 @@
+#include "btf/material/gather.h"
+
+#include "btf/material/format.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Texels that are moved as they are ---- */
+
+/* How the texels of a section lie: planes of `texel_bytes` a texel. */
+typedef struct planes {
+    size_t count, texel_bytes;
+} planes;
+
+static planes planes_of(const weft_material *material, weft_section_kind kind)
+{
+    switch (kind) {
+    case WEFT_SECTION_FRAM:
+        return (planes){1, 3 * sizeof(int16_t)};
+    case WEFT_SECTION_RHO:
+        return (planes){1, 4 * sizeof(weft_half)};
+    case WEFT_SECTION_LOBE:
+        return (planes){3 * (size_t)material->lobe_count, 4 * sizeof(weft_half)};
+    case WEFT_SECTION_TABL:
+        return (planes){(size_t)material->view_count, 4};
+    case WEFT_SECTION_STAB:
+        return (planes){(size_t)material->light_count, 4};
+    case WEFT_SECTION_MODL:
+        return (planes){1, 1};
+    default:
+        return (planes){0, 0};
+    }
+}
+
+static int held_within(int value, int size)
+{
+    return value < 0 ? 0 : value >= size ? size - 1 : value;
+}
+
+/* A coordinate of a level, moved as the texel of level 0 at its centre is. */
+static int moved(int at, int level, int centre, int source, int size)
+{
+    return held_within(at + (int)lround((source - centre) / exp2(level)), size);
+}
+
+static int centre_of(int at, int level, int size)
+{
+    return held_within((at << level) + ((1 << level) - 1) / 2, size);
+}
+
+/* The texel of `from` that each of a level of `to` is: place [height][width]. */
+static void find_places(const weft_material *from, const weft_material *to, int level, const weft_texel_mix *mix,
+                        size_t *place)
+{
+    const weft_material_level *source = &from->level[level], *target = &to->level[level];
+    for (int y = 0; y < target->height; y++) {
+        int centre_y = centre_of(y, level, to->level[0].height);
+        for (int x = 0; x < target->width; x++) {
+            int centre_x = centre_of(x, level, to->level[0].width);
+            const weft_texel_mix *at = &mix[(size_t)centre_y * (size_t)to->level[0].width + (size_t)centre_x];
+            int from_x = moved(x, level, centre_x, at->part[0].x, source->width);
+            int from_y = moved(y, level, centre_y, at->part[0].y, source->height);
+            *place++ = (size_t)from_y * (size_t)source->width + (size_t)from_x;
+        }
+    }
+}
+
+static void copy_plane(const char *from, char *to, size_t texel_bytes, const size_t *place, size_t texels)
+{
+    for (size_t i = 0; i < texels; i++)
+        memcpy(to + i * texel_bytes, from + place[i] * texel_bytes, texel_bytes);
+}
+
+static size_t texels_of(const weft_material *material, int level)
+{
+    return (size_t)material->level[level].width * (size_t)material->level[level].height;
+}
+
+static void copy_section(const weft_material *from, weft_material *to, weft_section_kind kind, int level,
+                         const size_t *place)
+{
+    const char *source = weft_section_texels(from, kind, level);
+    char *target = weft_section_texels(to, kind, level);
+    planes layout = planes_of(from, kind);
+    for (size_t p = 0; source && target && p < layout.count; p++)
+        copy_plane(source + p * texels_of(from, level) * layout.texel_bytes,
+                   target + p * texels_of(to, level) * layout.texel_bytes, layout.texel_bytes, place,
+                   texels_of(to, level));
+}
+
+static weft_code copy_basis(const weft_table_basis *from, const size_t *place, size_t texels, weft_table_basis **to,
+                            weft_error *error)
+{
+    if (!from)
+        return WEFT_OK;
+    size_t components = (size_t)from->component_count, directions = (size_t)from->direction_count;
+    WEFT_TRY(weft_table_basis_create(from->component_count, from->direction_count, texels, to, error));
+    memcpy((*to)->mean, from->mean, directions * sizeof *from->mean);
+    memcpy((*to)->component, from->component, components * directions * sizeof *from->component);
+    for (size_t p = 0; p < 3 * components; p++)
+        copy_plane((const char *)from->coefficient + p * from->texel_count, (char *)(*to)->coefficient + p * texels, 1,
+                   place, texels);
+    return WEFT_OK;
+}
+
+static weft_code gather_level(const weft_material *from, const weft_texel_mix *mix, int k, weft_material *to,
+                              weft_error *error)
+{
+    size_t texels = texels_of(to, k), *place = malloc(texels * sizeof *place);
+    if (!place)
+        return weft_fail_memory(error, "places of texels", texels * sizeof *place);
+    find_places(from, to, k, mix, place);
+    for (int kind = WEFT_SECTION_FRAM; kind <= WEFT_SECTION_MODL; kind++)
+        copy_section(from, to, (weft_section_kind)kind, k, place);
+    to->level[k].error = from->level[k].error;
+    weft_code code = copy_basis(from->level[k].table_basis, place, texels, &to->level[k].table_basis, error);
+    if (code == WEFT_OK)
+        code = copy_basis(from->level[k].light_table_basis, place, texels, &to->level[k].light_table_basis, error);
+    free(place);
+    return code;
+}
+
+/* ---- Layers ---- */
+
+static const int8_t *coefficients(const weft_layers_level *level, int group, int x, int y)
+{
+    size_t texel = ((size_t)group * (size_t)level->height + (size_t)y) * (size_t)level->width + (size_t)x;
+    return level->coefficient + WEFT_LAYERS_GROUP * texel;
+}
+
+/* The sum over the texels of level 0 that a texel of level k covers, of one group. */
+static double add_covered(const weft_layers_level *from, const weft_layers_level *to, const weft_texel_mix *mix,
+                          int level, int group, int x, int y, double sum[WEFT_LAYERS_GROUP])
+{
+    double covered = 0;
+    for (int j = y << level; j < (y + 1) << level && j < to->height; j++)
+        for (int i = x << level; i < (x + 1) << level && i < to->width; i++) {
+            const weft_texel_mix *at = &mix[(size_t)j * (size_t)to->width + (size_t)i];
+            for (int p = 0; p < WEFT_MIX_TEXELS; p++) {
+                if (!(at->part[p].weight > 0))
+                    continue;
+                const int8_t *c = coefficients(from, group, at->part[p].x, at->part[p].y);
+                for (int k = 0; k < WEFT_LAYERS_GROUP; k++)
+                    sum[k] += (double)at->part[p].weight * c[k];
+            }
+            covered++;
+        }
+    return covered;
+}
+
+static void mix_level(const weft_layers *from, const weft_texel_mix *mix, int k, weft_layers *to)
+{
+    weft_layers_level *level = &to->level[k];
+#pragma omp parallel for collapse(2)
+    for (int group = 0; group < to->layer_count / WEFT_LAYERS_GROUP; group++)
+        for (int y = 0; y < level->height; y++)
+            for (int x = 0; x < level->width; x++) {
+                double sum[WEFT_LAYERS_GROUP] = {0};
+                double covered = add_covered(&from->level[0], &to->level[0], mix, k, group, x, y, sum);
+                int8_t *code = (int8_t *)coefficients(level, group, x, y);
+                for (int c = 0; c < WEFT_LAYERS_GROUP; c++)
+                    code[c] = (int8_t)lround(sum[c] / covered);
+            }
+}
+
+static int squares_of(int side)
+{
+    return (side + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
+}
+
+static uint8_t ceiling_at(const weft_layers_level *level, int x, int y)
+{
+    return level
+        ->ceiling[(size_t)(y / WEFT_CEILING_SIDE) * (size_t)squares_of(level->width) + (size_t)(x / WEFT_CEILING_SIDE)];
+}
+
+static void raise(uint8_t *ceiling, uint8_t to)
+{
+    *ceiling = *ceiling > to ? *ceiling : to;
+}
+
+/* Of each level from level 0: a square of level k lies over 2^k x 2^k of those of level 0 at most. */
+static void mix_ceilings(const weft_layers *from, const weft_texel_mix *mix, int k, weft_layers *to)
+{
+    int width = to->level[0].width, height = to->level[0].height, columns = squares_of(to->level[k].width);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            size_t square =
+                (size_t)((y >> k) / WEFT_CEILING_SIDE) * (size_t)columns + (size_t)((x >> k) / WEFT_CEILING_SIDE);
+            const weft_texel_mix *at = &mix[(size_t)y * (size_t)width + (size_t)x];
+            for (int p = 0; p < WEFT_MIX_TEXELS; p++)
+                if (at->part[p].weight > 0)
+                    raise(&to->level[k].ceiling[square], ceiling_at(&from->level[0], at->part[p].x, at->part[p].y));
+        }
+}
+
+static void copy_shared(const weft_layers *from, weft_layers *to)
+{
+    size_t views = (size_t)from->view_count, images = (size_t)from->image_count, count = (size_t)from->layer_count;
+    memcpy(to->view, from->view, 3 * views * sizeof *from->view);
+    memcpy(to->light, from->light, 3 * images * sizeof *from->light);
+    memcpy(to->first, from->first, (views + 1) * sizeof *from->first);
+    memcpy(to->scale, from->scale, count * sizeof *from->scale);
+    memcpy(to->value, from->value, 3 * images * count * sizeof *from->value);
+}
+
+static weft_code gather_layers(const weft_layers *from, const weft_texel_mix *mix, weft_material *to, weft_error *error)
+{
+    WEFT_TRY(weft_layers_create(from, to->level[0].width, to->level[0].height, to->level_count, &to->layers, error));
+    copy_shared(from, to->layers);
+    for (int k = 0; k < to->level_count; k++) {
+        mix_level(from, mix, k, to->layers);
+        mix_ceilings(from, mix, k, to->layers);
+    }
+    return WEFT_OK;
+}
+
+/* ---- The material ---- */
+
+static weft_code allocate_like(const weft_material *from, int width, int height, weft_material *to, weft_error *error)
+{
+    *to = (weft_material){.has_models = from->has_models,
+                          .has_table_bases = from->has_table_bases,
+                          .has_opacity = from->has_opacity,
+                          .has_layers = from->has_layers,
+                          .texel_pitch_mm = from->texel_pitch_mm};
+    WEFT_TRY(weft_material_set_shape(to, width, height, from->level_count > 1 ? 0 : 1, from->lobe_count,
+                                     from->view_count, from->light_count, error));
+    if (to->level_count > from->level_count)
+        return weft_fail(error, WEFT_BAD_USAGE, "%d x %d texels are more than the material has", width, height);
+    return weft_material_allocate(to, error);
+}
+
+static weft_code describe_like(const weft_material *from, weft_material *to, weft_error *error)
+{
+    if (from->view_count > 0)
+        memcpy(to->view, from->view, (size_t)from->view_count * sizeof *from->view);
+    if (from->light_count > 0)
+        memcpy(to->light, from->light, (size_t)from->light_count * sizeof *from->light);
+    char *metadata = strdup(from->metadata);
+    if (!metadata)
+        return weft_fail_memory(error, "metadata of the material", strlen(from->metadata));
+    free(to->metadata);
+    to->metadata = metadata;
+    return WEFT_OK;
+}
+
+weft_code weft_material_gather(const weft_material *from, int width, int height, const weft_texel_mix *mix,
+                               weft_material *result, weft_error *error)
+{
+    WEFT_TRY(allocate_like(from, width, height, result, error));
+    weft_code code = describe_like(from, result, error);
+    for (int k = 0; k < result->level_count && code == WEFT_OK; k++)
+        code = gather_level(from, mix, k, result, error);
+    if (code == WEFT_OK && from->layers)
+        code = gather_layers(from->layers, mix, result, error);
+    if (code != WEFT_OK)
+        weft_material_free(result);
+    return code;
+}

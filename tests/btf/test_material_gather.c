@@ -1,0 +1,168 @@
+/* A material made of the texels of another: what is moved, what is mixed, and where its levels come from. */
+#include "btf/material/gather.h"
+#include "tests/btf/layers_example.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/expect_ok.h"
+#include "tests/support/scratch_folder.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NAME "gather.weft"
+
+enum { WIDTH = 5, HEIGHT = 3 }; /* of the example */
+
+static void read_example(weft_material *material)
+{
+    weft_error error = {0};
+    layers_write_example(NAME);
+    expect_ok(weft_material_read(NAME, material, &error), &error);
+}
+
+static weft_texel_mix whole(int x, int y)
+{
+    return (weft_texel_mix){{{x, y, 1}}};
+}
+
+static void place_in_order(weft_texel_mix mix[HEIGHT][WIDTH])
+{
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            mix[y][x] = whole(x, y);
+}
+
+static weft_material gathered(const weft_material *from, int width, int height, const weft_texel_mix *mix)
+{
+    weft_error error = {0};
+    weft_material result;
+    expect_ok(weft_material_gather(from, width, height, mix, &result, &error), &error);
+    return result;
+}
+
+static void texels_in_their_order_are_the_same_file(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_texel_mix mix[HEIGHT][WIDTH];
+    read_example(&material);
+    place_in_order(mix);
+    weft_material same = gathered(&material, WIDTH, HEIGHT, &mix[0][0]);
+    /* Levels of layers are made anew: those of the example are no means. */
+    for (int k = 1; k < material.level_count; k++) {
+        weft_layers_level *a = &material.layers->level[k], *b = &same.layers->level[k];
+        memcpy(a->coefficient, b->coefficient, (size_t)(a->width * a->height * material.layers->layer_count));
+        memcpy(a->ceiling, b->ceiling, weft_ceiling_count(a->width, a->height));
+    }
+    weft_error error = {0};
+    expect_ok(weft_material_write("as_it_was.weft", &material, &error), &error);
+    expect_ok(weft_material_write("same.weft", &same, &error), &error);
+    size_t size, same_size;
+    unsigned char *bytes = scratch_load("as_it_was.weft", &size), *same_bytes = scratch_load("same.weft", &same_size);
+    assert_int_equal(size, same_size);
+    assert_memory_equal(bytes, same_bytes, size);
+    free(bytes);
+    free(same_bytes);
+    weft_material_free(&same);
+    weft_material_free(&material);
+}
+
+/* Every array, by the index that docs/reference/weft-format.md gives it. */
+static void expect_same_texel(const weft_material *a, int k, size_t i, const weft_material *b, int l, size_t j)
+{
+    const weft_material_level *p = &a->level[k], *q = &b->level[l];
+    size_t ni = (size_t)p->width * (size_t)p->height, nj = (size_t)q->width * (size_t)q->height;
+    assert_memory_equal(p->frame + 3 * i, q->frame + 3 * j, 6);
+    assert_memory_equal(p->diffuse + 4 * i, q->diffuse + 4 * j, 8);
+    for (size_t plane = 0; plane < 3 * (size_t)a->lobe_count; plane++)
+        assert_memory_equal(p->lobe + 4 * (plane * ni + i), q->lobe + 4 * (plane * nj + j), 8);
+    for (size_t view = 0; view < (size_t)a->view_count; view++)
+        assert_memory_equal(p->table + 4 * (view * ni + i), q->table + 4 * (view * nj + j), 4);
+    for (size_t light = 0; light < (size_t)a->light_count; light++)
+        assert_memory_equal(p->light_table + 4 * (light * ni + i), q->light_table + 4 * (light * nj + j), 4);
+}
+
+static void texels_and_levels_are_moved_alike(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_texel_mix mix[4];
+    read_example(&material);
+    for (int i = 0; i < 4; i++)
+        mix[i] = whole(i % 2 + 2, i / 2);
+    weft_material part = gathered(&material, 2, 2, mix);
+    for (int y = 0; y < 2; y++)
+        for (int x = 0; x < 2; x++)
+            expect_same_texel(&part, 0, (size_t)(2 * y + x), &material, 0, (size_t)(WIDTH * y + x + 2));
+    /* Two texels to the right are one texel of the next level. */
+    expect_same_texel(&part, 1, 0, &material, 1, 1);
+    assert_int_equal(part.level_count, 2);
+    weft_material_free(&part);
+    weft_material_free(&material);
+}
+
+static void layers_are_mixed_and_all_else_is_the_heaviest(void **state)
+{
+    (void)state;
+    weft_material material;
+    read_example(&material);
+    material.layers->level[0].ceiling[0] = 10;
+    weft_texel_mix mix = {{{4, 1, 0.75f}, {1, 2, 0.25f}}};
+    weft_material one = gathered(&material, 1, 1, &mix);
+    const int8_t *from = material.layers->level[0].coefficient, *to = one.layers->level[0].coefficient;
+    for (int group = 0; group < 2; group++)
+        for (int c = 0; c < 4; c++) {
+            int a = from[4 * (group * WIDTH * HEIGHT + WIDTH * 1 + 4) + c];
+            int b = from[4 * (group * WIDTH * HEIGHT + WIDTH * 2 + 1) + c];
+            assert_int_equal(to[4 * group + c], lround(0.75 * a + 0.25 * b));
+        }
+    assert_int_equal(one.layers->level[0].ceiling[0], 10);
+    expect_same_texel(&one, 0, 0, &material, 0, WIDTH * 1 + 4);
+    weft_material_free(&one);
+    weft_material_free(&material);
+}
+
+static void levels_of_layers_are_means_of_what_they_cover(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_texel_mix mix[HEIGHT][WIDTH];
+    read_example(&material);
+    place_in_order(mix);
+    weft_material same = gathered(&material, WIDTH, HEIGHT, &mix[0][0]);
+    const weft_layers_level *fine = &same.layers->level[0], *last = &same.layers->level[same.level_count - 1];
+    for (int c = 0; c < 4; c++) {
+        double sum = 0;
+        for (int i = 0; i < WIDTH * HEIGHT; i++)
+            sum += fine->coefficient[4 * i + c];
+        assert_int_equal(last->coefficient[c], lround(sum / (WIDTH * HEIGHT)));
+    }
+    /* The upper right texel of level 1 covers one column alone. */
+    int expected = (int)lround((fine->coefficient[4 * 4] + fine->coefficient[4 * (WIDTH + 4)]) / 2.0);
+    assert_int_equal(same.layers->level[1].coefficient[4 * 2], expected);
+    weft_material_free(&same);
+    weft_material_free(&material);
+}
+
+static void more_texels_than_there_were_are_refused(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_material material, larger;
+    weft_texel_mix mix[40] = {0};
+    read_example(&material);
+    assert_int_equal(weft_material_gather(&material, 40, 1, mix, &larger, &error), WEFT_BAD_USAGE);
+    weft_material_free(&material);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(texels_in_their_order_are_the_same_file),
+        cmocka_unit_test(texels_and_levels_are_moved_alike),
+        cmocka_unit_test(layers_are_mixed_and_all_else_is_the_heaviest),
+        cmocka_unit_test(levels_of_layers_are_means_of_what_they_cover),
+        cmocka_unit_test(more_texels_than_there_were_are_refused),
+    };
+    return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
+}
