@@ -39,7 +39,7 @@ weft_code weft_sight_create(const weft_camera *camera, const weft_target *target
         return weft_fail_memory(error, "the calibration of all pixels", pixels * 12);
     }
     calibrate_pixels(sight);
-    weft_code code = weft_drawing_create(target, 1 / (8 * pixels_per_mm), &sight->drawing, error);
+    weft_code code = weft_drawing_create(target, 1 / (4 * pixels_per_mm), &sight->drawing, error);
     if (code != WEFT_OK)
         weft_sight_free(sight);
     return code;
