@@ -1,5 +1,7 @@
 #include "btf/direction/smooth_map.h"
 
+#include "base/real.h"
+
 #include <lapacke.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,28 +111,72 @@ weft_code weft_smooth_map_create(const weft_smooth_map_places *places, weft_smoo
     return code;
 }
 
-/* right = B' y for one set of values. */
-static void spread(const weft_smooth_map *map, const float *value, int series_count, double *right)
+/* Sets of values that are solved for at once: LAPACK's dpbtrs takes one after another, and reads the band anew for
+ * each.
+ */
+enum { TOGETHER = 16 };
+
+typedef double together[TOGETHER];
+
+/* right = B' y for the sets from `first` on. */
+static void spread(const weft_smooth_map *map, const float *value, int first, int series_count, together *right)
 {
+    int sets = series_count - first < TOGETHER ? series_count - first : TOGETHER;
     memset(right, 0, (size_t)map->node_count * sizeof *right);
     for (int i = 0; i < map->count; i++)
-        for (int corner = 0; corner < STENCIL; corner++)
-            right[map->cell[i].index[corner]] +=
-                (double)map->cell[i].weight[corner] * (double)value[(size_t)i * (size_t)series_count];
+        for (int corner = 0; corner < STENCIL; corner++) {
+            const float *of = value + (size_t)i * (size_t)series_count + first;
+            for (int set = 0; set < sets; set++)
+                right[map->cell[i].index[corner]][set] += (double)map->cell[i].weight[corner] * (double)of[set];
+        }
+}
+
+static void subtract(together from, double factor, const together what)
+{
+    for (int set = 0; set < TOGETHER; set++)
+        from[set] -= factor * what[set];
+}
+
+static void divide(together values, double divisor)
+{
+    for (int set = 0; set < TOGETHER; set++)
+        values[set] /= divisor;
+}
+
+/* L L' f = right, in place: forward, then backward substitution. */
+WEFT_HOT static void substitute(const double *band, int node_count, int width, together *right)
+{
+    for (int column = 0; column < node_count; column++) {
+        const double *below = band + (size_t)column * (size_t)(width + 1);
+        divide(right[column], below[0]);
+        for (int i = 1; i <= width && column + i < node_count; i++)
+            subtract(right[column + i], below[i], right[column]);
+    }
+    for (int column = node_count - 1; column >= 0; column--) {
+        const double *below = band + (size_t)column * (size_t)(width + 1);
+        for (int i = 1; i <= width && column + i < node_count; i++)
+            subtract(right[column], below[i], right[column + i]);
+        divide(right[column], below[0]);
+    }
+}
+
+static void keep(const weft_smooth_map *map, together *solved, int first, int series_count, float *node)
+{
+    for (int i = 0; i < map->node_count; i++)
+        for (int set = 0; set < TOGETHER && first + set < series_count; set++)
+            node[(size_t)i * (size_t)series_count + (size_t)(first + set)] = (float)solved[i][set];
 }
 
 weft_code weft_smooth_map_solve(const weft_smooth_map *map, const float *value, int series_count, float *node,
                                 weft_error *error)
 {
-    double *right = malloc((size_t)map->node_count * sizeof *right);
+    together *right = malloc((size_t)map->node_count * sizeof *right);
     if (!right)
         return weft_fail_memory(error, "smooth map", (size_t)map->node_count * sizeof *right);
-    for (int series = 0; series < series_count; series++) {
-        spread(map, value + series, series_count, right);
-        LAPACKE_dpbtrs_work(LAPACK_COL_MAJOR, 'L', map->node_count, map->width, 1, map->band, map->width + 1, right,
-                            map->node_count);
-        for (int i = 0; i < map->node_count; i++)
-            node[(size_t)i * (size_t)series_count + (size_t)series] = (float)right[i];
+    for (int first = 0; first < series_count; first += TOGETHER) {
+        spread(map, value, first, series_count, right);
+        substitute(map->band, map->node_count, map->width, right);
+        keep(map, right, first, series_count, node);
     }
     free(right);
     return WEFT_OK;
