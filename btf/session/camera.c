@@ -114,11 +114,16 @@ static weft_pixel excess_at(const weft_camera *c, weft_pixel p, weft_pixel wante
     return (weft_pixel){got.x - wanted.x, got.y - wanted.y};
 }
 
+static double squared(double x, double y)
+{
+    return x * x + y * y;
+}
+
 /* How far a straight way goes from a point on the side of the axis before the lens turns back: 1 is all of it. Looked
  * at every twentieth of the focal length. */
 static double way_on_the_side_of_the_axis(const weft_camera *c, weft_pixel from, weft_pixel to)
 {
-    double length = hypot(to.x - from.x, to.y - from.y);
+    double length = sqrt(squared(to.x - from.x, to.y - from.y));
     int steps = length < 50 ? (int)ceil(20 * length) : 1000;
     for (int i = 1; i <= steps; i++) {
         double share = (double)i / steps;
@@ -134,13 +139,13 @@ static double way_on_the_side_of_the_axis(const weft_camera *c, weft_pixel from,
 static bool step_nearer(const weft_camera *c, weft_pixel wanted, weft_pixel *p, weft_pixel *excess)
 {
     distortion_slope s = slope_at(c, *p);
-    double determinant = determinant_of(s), distance = hypot(excess->x, excess->y);
+    double determinant = determinant_of(s), distance = squared(excess->x, excess->y);
     weft_pixel step = {(s.yy * excess->x - s.xy * excess->y) / determinant,
                        (s.xx * excess->y - s.xy * excess->x) / determinant};
     for (int halvings = 0; halvings < 20; halvings++) {
         double share = ldexp(1, -halvings);
         weft_pixel next = {p->x - share * step.x, p->y - share * step.y}, left = excess_at(c, next, wanted);
-        if (hypot(left.x, left.y) < distance && way_on_the_side_of_the_axis(c, *p, next) == 1) {
+        if (squared(left.x, left.y) < distance && way_on_the_side_of_the_axis(c, *p, next) == 1) {
             *p = next;
             *excess = left;
             return true;
@@ -164,7 +169,7 @@ weft_pixel weft_camera_undistort(const weft_camera *camera, weft_pixel distorted
     double way = way_on_the_side_of_the_axis(camera, (weft_pixel){0, 0}, wanted);
     weft_pixel p = {way * wanted.x, way * wanted.y};
     weft_pixel excess = excess_at(camera, p, wanted);
-    for (int iteration = 0; iteration < 50 && hypot(excess.x, excess.y) > 1e-15; iteration++) {
+    for (int iteration = 0; iteration < 50 && squared(excess.x, excess.y) > 1e-30; iteration++) {
         if (!step_nearer(camera, wanted, &p, &excess))
             break;
     }
