@@ -25,7 +25,7 @@ refused() {
     [ ! -e refused.btf.h5 ] || fail "a dataset was left behind"
 }
 
-"$weft" hand checker --opening 40 -o free --photographs 12 --rubbish 4 --width 1100 --truth-size 32 -q
+"$weft" hand checker --opening 40 -o free --photographs 12 --rubbish 4 --width 1000 --truth-size 32 -q
 echo nothing >free/broken.jpg
 "$weft" photographs free -o free.btf.h5 --opening 40 --size 32x32 --report report >said 2>/dev/null
 "$python" "$here/photographs.py" free || fail "set free is wrong"

@@ -326,7 +326,7 @@ static void the_drape_is_drawn_in_every_scene_and_measured(void **state)
     options.lobe_count = 1;
     expect_ok(weft_dataset_open("weave.btf.h5", &dataset, &error), &error);
     expect_ok(weft_compress(dataset, &options, NULL, &material, NULL, &error), &error);
-    weft_traced_request request = {dataset, &material, "weave.stitch", 6, 1};
+    weft_traced_request request = {dataset, &material, "weave.stitch", 2, 1};
     expect_ok(weft_traced_truth_measure(&request, NULL, &truth, &error), &error);
     bool drawn = truth.drawn;
     if (drawn) {
