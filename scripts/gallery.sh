@@ -1,0 +1,84 @@
+#!/bin/sh
+# docs/gallery.md and its pictures: the cloths that come with Weft, in the same light. Usage: gallery.sh WEFT [DATASETS]
+# Simulated datasets are kept in DATASETS, and taken from there the next time; photographs of a card are drawn where they exist.
+set -eu
+weft=$(realpath "$1")
+source_dir=$(cd "$(dirname "$0")/.." && pwd)
+pictures="$source_dir/docs/images/gallery"
+page="$source_dir/docs/gallery.md"
+work=${2:-$(mktemp -d)}
+mkdir -p "$work" "$pictures"
+cd "$work"
+[ -n "${2:-}" ] || trap 'rm -rf "$work"' EXIT
+
+# draw FILE.jpg ARGUMENT...: one picture of a cloth.
+draw() {
+    out=$1
+    shift
+    "$weft" render "$@" --size 400x300 -o drawn.png
+    convert drawn.png -quality 88 "$pictures/$out.jpg"
+    rm drawn.png
+}
+
+# kilobytes FILE, title FILE, held_out FILE ROW: what stands in the table.
+kilobytes() { echo "$(($(stat -c %s "$1") / 1000)) kB"; }
+title() { sed -n 's/.*name *= *"\([^"]*\)".*/\1/p' "$1" | head -n 1; }
+held_out() { "$weft" info "$1" | sed -n "s/^  $2: //p" | head -n 1; }
+
+{
+    cat <<'TEXT'
+# Gallery
+
+Every cloth that comes with Weft, in the studio that a first picture begins in. `scripts/gallery.sh WEFT` draws this page.
+
+## Stitches: yarns in space, simulated, compressed
+
+`weft simulate` traces light through yarns. 32 x 32 texels, 64 views x 64 lights; a napkin of 60 mm. *Raw* is what was simulated;
+*compressed* is the same as a material of 16 layers. The errors are relative RMSEs on directions that were never fitted.
+
+| stitch | raw | compressed | bytes, raw / compressed | error, raw interpolated / compressed |
+| --- | --- | --- | --- | --- |
+TEXT
+    for file in "$source_dir"/assets/stitches/*.stitch; do
+        name=$(basename "$file" .stitch)
+        [ -s "$name.btf.h5" ] || "$weft" simulate "$file" -o "$name.btf.h5" --size 32x32 --noise 3 -q >&2
+        [ -s "$name.weft" ] || "$weft" compress "$name.btf.h5" --layers 16 -o "$name.weft" -q >&2
+        draw "$name-raw" --raw "$name.btf.h5" --mesh drape --mesh-size 60 >&2
+        draw "$name" "$name.weft" --mesh drape --mesh-size 60 >&2
+        echo "| $(title "$file") | ![]($(basename "$pictures")/$name-raw.jpg) | ![]($(basename "$pictures")/$name.jpg)" \
+            "| $(kilobytes "$name.btf.h5") / $(kilobytes "$name.weft")" \
+            "| $(held_out "$name.weft" photographs_interpolated) / $(held_out "$name.weft" not_fitted) |" |
+            sed 's#](gallery/#](images/gallery/#g'
+    done
+    cat <<'TEXT'
+
+## Weaves: analytic, from published parameters
+
+A few numbers a yarn, no photographs: Irawan and Marschner's model. A cloth of 300 mm, and a ball of 30 mm that shows the yarns.
+
+| weave | cloth | ball |
+| --- | --- | --- |
+TEXT
+    for file in "$source_dir"/assets/weaves/*.wv; do
+        name=$(basename "$file" .wv)
+        draw "$name" --weave "$file" >&2
+        draw "$name-ball" --weave "$file" --mesh sphere --mesh-size 30 >&2
+        echo "| $(title "$file") | ![](images/gallery/$name.jpg) | ![](images/gallery/$name-ball.jpg) |"
+    done
+    cat <<'TEXT'
+
+## Cloth of threads without yarns: the microcylinder model
+
+| cloth | drape | ball |
+| --- | --- | --- |
+TEXT
+    for file in "$source_dir"/assets/microcylinder/*.mc; do
+        name=$(basename "$file" .mc)
+        draw "$name" --weave "$file" >&2
+        draw "$name-ball" --weave "$file" --mesh sphere >&2
+        echo "| $(title "$file") | ![](images/gallery/$name.jpg) | ![](images/gallery/$name-ball.jpg) |"
+    done
+    echo
+    echo "[All pages](README.md)"
+} >"$page.new"
+mv "$page.new" "$page"
