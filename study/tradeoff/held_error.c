@@ -198,7 +198,7 @@ static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *mode
     weft_dataset *others;
     weft_compress_report report;
     weft_compress_options options = model->options;
-    options.levels = true; /* those of fewer texels come from there */
+    options.levels = bench->has_pictures; /* fewer texels come from there */
     WEFT_TRY(weft_excerpt_write(&bench->excerpt, unseen, bench->scratch_path, &others, error));
     weft_code code = weft_compress(others, &options, NULL, material, &report, error);
     weft_dataset_close(others);
@@ -261,7 +261,7 @@ static void free_said(said *s)
 }
 
 static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *model, const weft_material *fitted,
-                              const weft_trial *trial, said *answer, weft_error *error)
+                              const weft_trial *trial, said *answer, weft_weight *weight, weft_error *error)
 {
     weft_material material;
     weft_predictor *predictor;
@@ -271,18 +271,20 @@ static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *m
         code = weft_trial_ask(trial, predictor, &answer->held, &answer->fitted, error);
         weft_predictor_free(predictor);
     }
+    if (code == WEFT_OK)
+        code = weft_weight_of(&material, weight, error);
     weft_material_free(&material);
     return code;
 }
 
 static weft_code ask_model(weft_held_bench *bench, const weft_priced_model *model, int split, const weft_trial *trial,
-                           const uint8_t *unseen, said *answer, weft_error *error)
+                           const uint8_t *unseen, said *answer, weft_weight *weight, weft_error *error)
 {
     if (model->family == WEFT_PRICED_RAW)
         return weft_trial_ask_photographs(trial, &answer->held, error);
     if (!bench->is_fitted)
         WEFT_TRY(fit_split(bench, model, unseen, &bench->material[split], error));
-    return ask_material(bench, model, &bench->material[split], trial, answer, error);
+    return ask_material(bench, model, &bench->material[split], trial, answer, weight, error);
 }
 
 static weft_code take_answer(const weft_held_bench *bench, int split, const weft_trial *trial, said *answer, said *all,
@@ -304,7 +306,7 @@ static weft_code measure_split(weft_held_bench *bench, const weft_priced_model *
     if (code == WEFT_OK)
         code = weft_trial_create(&bench->excerpt, weft_splits_held(&bench->splits, split), masks.next, &trial, error);
     if (code == WEFT_OK)
-        code = ask_model(bench, model, split, &trial, masks.unseen, &answer, error);
+        code = ask_model(bench, model, split, &trial, masks.unseen, &answer, &measured->weight, error);
     if (code == WEFT_OK)
         code = take_answer(bench, split, &trial, &answer, all, measured, error);
     free_said(&answer);

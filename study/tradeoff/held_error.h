@@ -7,6 +7,7 @@
 #include "study/hold_out/split.h"
 #include "study/hold_out/trial.h"
 #include "study/tradeoff/priced_model.h"
+#include "study/tradeoff/weight.h"
 
 /* Which samples. A texel's brightness in an image is the mean of its channels, divided by the cosine of the light where
  * the dataset holds that. */
@@ -26,6 +27,7 @@ typedef struct weft_held_error {
     int picture_count;            /* of held-out images whose texels are neighbours */
     weft_picture_quality quality; /* the mean over these, each shown as its photograph needs */
     double fit_s;
+    weft_weight weight;           /* of the fit without what is held out */
     int worst_image;              /* the picture with the largest relative RMSE */
     weft_image sample, predicted; /* of it, sRGB encoded; empty without pictures */
 } weft_held_error;

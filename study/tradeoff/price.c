@@ -9,6 +9,7 @@
 #include "study/hold_out/excerpt.h"
 #include "study/model/model.h"
 #include "study/tradeoff/variant.h"
+#include "study/tradeoff/weight.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -221,10 +222,12 @@ static weft_code time_frame(weft_price_shop *shop, weft_mode mode, double *frame
 static weft_code price_material(weft_price_shop *shop, const weft_material *material, weft_price *price,
                                 weft_error *error)
 {
-    uint64_t by_texels, shared;
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
-    WEFT_TRY(weft_material_weigh(material, &by_texels, &shared, error));
-    price->bytes = (double)by_texels / shop->share + (double)shared;
+    weft_weight weight;
+    WEFT_TRY(weft_weight_of(material, &weight, error));
+    int smaller = material->level[0].width < weft_dataset_get_layout(shop->block)->width ? 2 : 1;
+    price->bytes = weft_weight_scaled(&weight, (layout->width + smaller - 1) / smaller,
+                                      (layout->height + smaller - 1) / smaller, material->level_count > 1);
     price->bits_a_texel = 8 * price->bytes / ((double)layout->width * layout->height);
     price->fit_s = shop->fit_s / shop->share;
     price->fetches = weft_fetches_of_material(material);

@@ -7,22 +7,29 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of the images this share at least is left where a tenth of the views and a tenth of the lights are held out. */
+static const double least_share = 0.8;
+
 /* ---- The list ---- */
 
 typedef struct model_list {
     const weft_dataset_layout *layout;
+    bool has_opacity;
     weft_priced_model *model;
     int count;
 } model_list;
 
-/* What weft compress makes of the options, less than they ask for where there are too few images. */
+/* Whether weft compress makes of the options what they ask for, also without the images that are held out. */
 static bool is_carried(const weft_dataset_layout *layout, const weft_compress_options *options)
 {
+    weft_dataset_layout left = *layout;
+    left.image_count = (int)(least_share * layout->image_count);
     int lobes;
-    weft_compress_model model = weft_compress_plan(layout, options, &lobes);
-    bool has_table = model == WEFT_COMPRESS_TABLE;
-    int directions = layout->image_count / 4 - 1 - 4 * options->lobe_count - layout->view_count;
+    bool has_table = weft_compress_plan(&left, options, &lobes) == WEFT_COMPRESS_TABLE;
+    int directions = left.image_count / 4 - 1 - 4 * options->lobe_count - layout->view_count;
     bool has_light_table = has_table && directions >= layout->image_count / layout->view_count;
+    if (options->layer_count > 0)
+        return true;
     return lobes == options->lobe_count && has_table == options->table && (!options->light_table || has_light_table);
 }
 
@@ -111,9 +118,9 @@ static void add_tables(model_list *list)
 }
 
 /* Beside layers there is a diffuse term for players without them. */
-static weft_compress_options layers_alone(int layers)
+static weft_compress_options layers_alone(const model_list *list, int layers)
 {
-    weft_compress_options options = lobes_and_table(0, false);
+    weft_compress_options options = lobes_and_table(0, list->has_opacity);
     options.layer_count = layers;
     return options;
 }
@@ -121,7 +128,7 @@ static weft_compress_options layers_alone(int layers)
 static void add_layers(model_list *list)
 {
     for (int layers = 8; layers <= WEFT_LAYERS_MAX; layers *= 2) {
-        weft_compress_options options = layers_alone(layers);
+        weft_compress_options options = layers_alone(list, layers);
         char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
         snprintf(name, sizeof name, "%d layers", layers);
         snprintf(arguments, sizeof arguments, "--layers %d", layers);
@@ -134,7 +141,7 @@ static void add_layers(model_list *list)
 
 static void add_subset(model_list *list, weft_photographs_taken taken, const char *what)
 {
-    const weft_compress_options options[2] = {lobes_and_table(2, true), layers_alone(32)};
+    const weft_compress_options options[2] = {lobes_and_table(2, true), layers_alone(list, 32)};
     for (int i = 0; i < 2; i++) {
         char name[WEFT_PRICED_NAME];
         snprintf(name, sizeof name, "%s, %s", i == 0 ? "2 lobes, T" : "32 layers", what);
@@ -160,9 +167,9 @@ static void add_raw(model_list *list)
     *model = (weft_priced_model){.name = "the photographs, interpolated", .family = WEFT_PRICED_RAW, .work = 1};
 }
 
-int weft_priced_models_list(const weft_dataset_layout *layout, weft_priced_model *model)
+int weft_priced_models_list(const weft_dataset_layout *layout, bool has_opacity, weft_priced_model *model)
 {
-    model_list list = {.layout = layout, .model = model};
+    model_list list = {.layout = layout, .has_opacity = has_opacity, .model = model};
     add_lobes(&list);
     /* That of add_tables, which others share. */
     for (int i = list.count - 1; i >= 0; i--) {

@@ -34,9 +34,10 @@ typedef struct weft_priced_model {
     int work;          /* of a fit, beside that of others */
 } weft_priced_model;
 
-/* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. One that is made
- * from the fit of another (table_bits, fewer_texels) comes right after it. Pure. */
-int weft_priced_models_list(const weft_dataset_layout *layout, weft_priced_model *model);
+/* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. Opacity lies in
+ * T, which layers then have beside them. One that is made from the fit of another (table_bits, fewer_texels) comes
+ * right after it. Pure. */
+int weft_priced_models_list(const weft_dataset_layout *layout, bool has_opacity, weft_priced_model *model);
 
 /* Whether the model is made from the same fit as the other. Pure. */
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other);

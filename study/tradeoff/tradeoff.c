@@ -40,7 +40,8 @@ static weft_code study_model(studying *work, const weft_priced_model *model, wef
 static weft_code study_models(studying *work, weft_error *error)
 {
     weft_priced_model model[WEFT_PRICED_MOST];
-    int count = weft_priced_models_list(weft_dataset_get_layout(work->dataset), model);
+    int count =
+        weft_priced_models_list(weft_dataset_get_layout(work->dataset), weft_dataset_has_opacity(work->dataset), model);
     for (int i = 0; i < count; i++)
         work->work_total += model[i].work;
     for (int i = 0; i < count; i++) {
