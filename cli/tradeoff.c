@@ -21,13 +21,14 @@ static void say_row(const weft_common_options *common, const weft_tradeoff_row *
 {
     const weft_error_summary *held = &row->measured.held[WEFT_SAMPLES_ALL],
                              *fitted = &row->measured.fitted[WEFT_SAMPLES_ALL];
-    char frame[32] = "", beside[32] = "";
+    char frame[32] = "", beside[32] = "", presets[64];
+    weft_tradeoff_print_presets(row, presets, sizeof presets);
     if (row->price.frame_ms > 0)
         snprintf(frame, sizeof frame, "%.1f", row->price.frame_ms);
     if (fitted->count > 0)
         snprintf(beside, sizeof beside, "%.4f", fitted->relative_rmse);
     weft_command_say(common, "%-36s %12.0f %8.1f %9s %12.4f %8s  %s", row->model.name, row->price.bytes,
-                     row->price.fit_s, frame, held->relative_rmse, beside, weft_preset_name(row->preset));
+                     row->price.fit_s, frame, held->relative_rmse, beside, presets);
 }
 
 static weft_code say_results(const tradeoff_command *command, const weft_tradeoff *result, weft_error *error)

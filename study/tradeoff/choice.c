@@ -2,19 +2,22 @@
 
 #include <math.h>
 
+/* An error so many times the least is as good: another split would say another one. */
+static const double best_share = 1.01;
+
 const char *weft_preset_name(weft_preset preset)
 {
-    static const char *const name[] = {"", "small", "balanced", "best"};
+    static const char *const name[WEFT_PRESET_COUNT] = {"", "small", "balanced", "best"};
     return name[preset];
 }
 
 const char *weft_preset_reason(weft_preset preset)
 {
-    static const char *const reason[] = {
+    static const char *const reason[WEFT_PRESET_COUNT] = {
         "",
         "the fewest bytes with an error no more than halfway, by ratio, from the best to the smallest file",
         "the bend of the curve: farthest below the line between small and best, both axes logarithmic",
-        "the least error",
+        "the fewest bytes with an error within a hundredth of the least",
     };
     return reason[preset];
 }
@@ -39,14 +42,14 @@ static bool may_serve(const weft_offer *offer, size_t count, size_t which)
     return offer[which].may_be_chosen && !weft_offer_is_beaten(offer, count, which);
 }
 
-static size_t find_best(const weft_offer *offer, size_t count)
+static double least_error(const weft_offer *offer, size_t count)
 {
-    size_t best = count;
+    double least = INFINITY;
     for (size_t i = 0; i < count; i++) {
-        if (may_serve(offer, count, i) && (best == count || offer[i].error < offer[best].error))
-            best = i;
+        if (may_serve(offer, count, i))
+            least = fmin(least, offer[i].error);
     }
-    return best;
+    return least;
 }
 
 /* The fewest bytes with an error of at most this. */
@@ -87,10 +90,12 @@ static size_t find_bend(const weft_offer *offer, size_t count, size_t small, siz
 
 size_t weft_preset_choose(const weft_offer *offer, size_t count, weft_preset preset)
 {
-    size_t best = find_best(offer, count), smallest = find_smallest(offer, count, INFINITY);
-    if (best == count || preset == WEFT_PRESET_NONE)
+    size_t smallest = find_smallest(offer, count, INFINITY);
+    if (smallest == count || preset == WEFT_PRESET_NONE)
         return count;
-    size_t small = find_smallest(offer, count, sqrt(offer[best].error * offer[smallest].error));
+    double least = least_error(offer, count), halfway = sqrt(least * offer[smallest].error);
+    size_t best = find_smallest(offer, count, best_share * least);
+    size_t small = find_smallest(offer, count, fmax(halfway, best_share * least));
     if (preset == WEFT_PRESET_BEST)
         return best;
     return preset == WEFT_PRESET_SMALL ? small : find_bend(offer, count, small, best);

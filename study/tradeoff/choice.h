@@ -5,7 +5,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-typedef enum weft_preset { WEFT_PRESET_NONE, WEFT_PRESET_SMALL, WEFT_PRESET_BALANCED, WEFT_PRESET_BEST } weft_preset;
+typedef enum weft_preset {
+    WEFT_PRESET_NONE,
+    WEFT_PRESET_SMALL,
+    WEFT_PRESET_BALANCED,
+    WEFT_PRESET_BEST,
+    WEFT_PRESET_COUNT
+} weft_preset;
 
 /* "", "small", "balanced", "best". Pure. */
 const char *weft_preset_name(weft_preset preset);
@@ -25,7 +31,7 @@ bool weft_offer_is_beaten(const weft_offer *offer, size_t count, size_t which);
 
 /* The offer that a preset chooses among those that may be chosen and are not beaten:
  *
- *     best:     the least error
+ *     best:     the fewest bytes with an error within a hundredth of the least, which says nothing
  *     small:    the fewest bytes with an error of at most sqrt(least error x error of the smallest file): halfway, by
  *               ratio, between the best and the smallest
  *     balanced: of those between small and best the one farthest below the straight line between the two, both axes

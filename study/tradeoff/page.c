@@ -21,7 +21,7 @@ static void put_choices(weft_page *page, const weft_tradeoff *tradeoff)
     for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++) {
         for (int i = 0; i < tradeoff->row_count; i++) {
             const weft_tradeoff_row *row = &tradeoff->row[i];
-            if (row->preset != preset)
+            if (!row->is_chosen[preset])
                 continue;
             fprintf(page->html,
                     "<tr><td><b>%s</b></td><td class=\"text\"><a href=\"#model-%d\">%s</a></td><td>%.0f</td>"
@@ -63,10 +63,9 @@ static void put_summary(weft_page *page, const weft_tradeoff *tradeoff)
 
 static void print_label(const weft_tradeoff_row *row, char *label, size_t size)
 {
-    if (row->preset != WEFT_PRESET_NONE)
-        snprintf(label, size, "%s: %s", weft_preset_name(row->preset), row->model.name);
-    else
-        snprintf(label, size, "%s", row->model.name);
+    char presets[NAME];
+    weft_tradeoff_print_presets(row, presets, sizeof presets);
+    snprintf(label, size, "%s%s%s", presets, presets[0] ? ": " : "", row->model.name);
 }
 
 static double x_of(const weft_tradeoff_row *row, int plot)
@@ -79,7 +78,7 @@ static weft_code put_plot(weft_page *page, const weft_tradeoff *tradeoff, int wh
     static const char *const title[] = {"Error by size", "Error by time of a frame", "Error by time of the fit"};
     static const char *const x_label[] = {"bytes of the file", "ms a frame", "seconds"};
     weft_plot_point point[WEFT_PRICED_MOST];
-    char label[WEFT_PRICED_MOST][NAME + 16], target[WEFT_PRICED_MOST][NAME], picture[WEFT_PRICED_MOST][NAME];
+    char label[WEFT_PRICED_MOST][2 * NAME], target[WEFT_PRICED_MOST][NAME], picture[WEFT_PRICED_MOST][NAME];
     for (int i = 0; i < tradeoff->row_count; i++) {
         const weft_tradeoff_row *row = &tradeoff->row[i];
         print_label(row, label[i], sizeof label[i]);
@@ -92,7 +91,7 @@ static weft_code put_plot(weft_page *page, const weft_tradeoff *tradeoff, int wh
                                      .label = label[i],
                                      .picture = row->measured.picture_count > 0 ? picture[i] : NULL,
                                      .target = target[i],
-                                     .is_marked = row->preset != WEFT_PRESET_NONE,
+                                     .is_marked = row->is_chosen[WEFT_PRESET_NONE],
                                      .is_joined = which == 0 && !row->is_beaten && row->model.arguments[0]};
     }
     const weft_plot plot = {title[which], x_label[which], "relative RMSE, not fitted", tradeoff->row_count, point};
@@ -145,10 +144,11 @@ static void put_row(weft_page *page, const weft_tradeoff_row *row, int number)
 {
     const weft_price *price = &row->price;
     bool is_fitted = row->model.family != WEFT_PRICED_RAW;
+    char presets[NAME];
+    weft_tradeoff_print_presets(row, presets, sizeof presets);
     fprintf(page->html, "<tr id=\"model-%d\"%s><td>%d</td><td class=\"text\">%s%s%s%s</td><td class=\"text\">", number,
-            row->preset != WEFT_PRESET_NONE ? " class=\"weak\"" : "", number, row->model.name,
-            row->preset != WEFT_PRESET_NONE ? " <b>(" : "", weft_preset_name(row->preset),
-            row->preset != WEFT_PRESET_NONE ? ")</b>" : "");
+            row->is_chosen[WEFT_PRESET_NONE] ? " class=\"weak\"" : "", number, row->model.name,
+            row->is_chosen[WEFT_PRESET_NONE] ? " <b>(" : "", presets, row->is_chosen[WEFT_PRESET_NONE] ? ")</b>" : "");
     fprintf(page->html, "<code>%s</code></td><td>%d</td><td>%.0f</td><td>%.4g</td>", row->model.arguments,
             price->photograph_count, price->bytes, price->bits_a_texel);
     put_number(page, "%.1f", price->fit_s, is_fitted);

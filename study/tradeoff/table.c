@@ -33,12 +33,14 @@ json_t *weft_tradeoff_row_to_json(const weft_tradeoff_row *row)
 {
     const weft_price *price = &row->price;
     const weft_held_error *m = &row->measured;
+    char presets[64];
+    weft_tradeoff_print_presets(row, presets, sizeof presets);
     json_t *object = json_pack("{s:s, s:s, s:s, s:i, s:f, s:f, s:f, s:f, s:i, s:i, s:s, s:b}", "model", row->model.name,
                                "family", family_name(row->model.family), "options", row->model.arguments, "photographs",
                                price->photograph_count, "bytes", price->bytes, "bits_a_texel", price->bits_a_texel,
                                "fit_seconds", price->fit_s, "evaluations_a_second", price->evaluations_a_second,
                                "texture_reads_a_pixel", price->fetches.reads, "fetched_bytes_a_pixel",
-                               price->fetches.bytes, "preset", weft_preset_name(row->preset), "beaten", row->is_beaten);
+                               price->fetches.bytes, "preset", presets, "beaten", row->is_beaten);
     if (price->frame_ms > 0)
         weft_json_put(&object, "frame_ms", json_real(price->frame_ms));
     weft_json_put(&object, "not_fitted", json_of_errors(m->held));
@@ -64,10 +66,12 @@ static void print_row(const weft_tradeoff_row *row, FILE *table)
 {
     const weft_price *price = &row->price;
     const weft_held_error *m = &row->measured;
+    char presets[64];
+    weft_tradeoff_print_presets(row, presets, sizeof presets);
     print_word(row->model.name, table);
     print_word(family_name(row->model.family), table);
     print_word(row->model.arguments, table);
-    print_word(weft_preset_name(row->preset), table);
+    print_word(presets, table);
     fprintf(table, "%d,%.0f,%.4g,%.4g,%.4g,", price->photograph_count, price->bytes, price->bits_a_texel, price->fit_s,
             price->evaluations_a_second);
     if (price->frame_ms > 0)
@@ -82,7 +86,7 @@ static void print_row(const weft_tradeoff_row *row, FILE *table)
 
 static void print_table(const weft_tradeoff *tradeoff, FILE *table)
 {
-    fputs("model,family,options,preset,photographs,bytes,bits_a_texel,fit_s,evaluations_a_second,frame_ms,"
+    fputs("model,family,options,presets,photographs,bytes,bits_a_texel,fit_s,evaluations_a_second,frame_ms,"
           "texture_reads_a_pixel,fetched_bytes_a_pixel",
           table);
     for (int i = 0; i < 2 * WEFT_SAMPLE_KINDS; i++) {

@@ -66,10 +66,10 @@ static void choose(weft_tradeoff *result)
     }
     for (size_t i = 0; i < count; i++)
         result->row[i].is_beaten = weft_offer_is_beaten(offer, count, i);
-    for (weft_preset preset = WEFT_PRESET_BEST; preset > WEFT_PRESET_NONE; preset--) {
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset < WEFT_PRESET_COUNT; preset++) {
         size_t chosen = weft_preset_choose(offer, count, preset);
         if (chosen < count)
-            result->row[chosen].preset = preset;
+            result->row[chosen].is_chosen[preset] = result->row[chosen].is_chosen[WEFT_PRESET_NONE] = true;
     }
 }
 
@@ -165,4 +165,14 @@ void weft_tradeoff_print_held(const weft_tradeoff *tradeoff, char *text, size_t 
     else
         snprintf(text, size, "%d of %d views and %d of %d lights", tradeoff->view_held_count, tradeoff->view_count,
                  tradeoff->light_held_count, tradeoff->light_count);
+}
+
+void weft_tradeoff_print_presets(const weft_tradeoff_row *row, char *text, size_t size)
+{
+    text[0] = 0;
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset < WEFT_PRESET_COUNT; preset++) {
+        size_t used = strlen(text);
+        if (row->is_chosen[preset])
+            snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", weft_preset_name(preset));
+    }
 }

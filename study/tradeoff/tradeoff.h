@@ -13,8 +13,8 @@ typedef struct weft_tradeoff_row {
     weft_priced_model model;
     weft_price price;
     weft_held_error measured;
-    weft_preset preset; /* that chooses it, if any */
-    bool is_beaten;     /* by another that weft compress makes (study/tradeoff/choice.h) */
+    bool is_chosen[WEFT_PRESET_COUNT]; /* by each preset; by [WEFT_PRESET_NONE] where by any */
+    bool is_beaten;                    /* by another that weft compress makes (study/tradeoff/choice.h) */
 } weft_tradeoff_row;
 
 /* Freed with weft_tradeoff_free. */
@@ -41,6 +41,9 @@ void weft_tradeoff_free(weft_tradeoff *tradeoff);
 
 /* "8 of 81 views and 8 of 81 lights": what was held out of the fits. */
 void weft_tradeoff_print_held(const weft_tradeoff *tradeoff, char *text, size_t size);
+
+/* "small", "small, balanced": the presets that choose a row; "" where none does. */
+void weft_tradeoff_print_presets(const weft_tradeoff_row *row, char *text, size_t size);
 
 /* A row as JSON. The caller owns it; NULL where memory is short. */
 json_t *weft_tradeoff_row_to_json(const weft_tradeoff_row *row);

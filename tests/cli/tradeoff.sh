@@ -27,7 +27,7 @@ for model in "diffuse" "1 lobe" "diffuse, T" "32 layers" "the photographs, inter
     grep -q "^$model  *[0-9]" out.log || fail "there is no price of $model: $(cat out.log)"
 done
 for preset in small balanced best; do
-    grep -q "(\|<b>$preset</b>" prices/index.html || fail "the page does not show the preset $preset"
+    grep -q "<td><b>$preset</b></td>" prices/index.html || fail "the page does not show the preset $preset"
 done
 grep -q "no times of frames: " out.log || fail "it does not say why there are no times of frames"
 grep -q "There are no times of frames: " prices/index.html || fail "the page does not say why there are none"
@@ -46,9 +46,9 @@ assert 500 < float(diffuse["bytes"]) < 20000 and diffuse["options"] == "--lobes 
 for row in rows:
     assert 0 < float(row["not_fitted_all_relative_rmse"]) < 2 and 0 <= float(row["flip"]) < 1, row
     assert row["frame_ms"] == "" and float(row["evaluations_a_second"]) > 0, row
-best = [row for row in rows if row["preset"] == "best"]
+best = [row for row in rows if "best" in row["presets"]]
 least = min(float(row["not_fitted_all_relative_rmse"]) for row in rows if row["options"])
-assert len(best) == 1 and float(best[0]["not_fitted_all_relative_rmse"]) == least, best
+assert len(best) == 1 and float(best[0]["not_fitted_all_relative_rmse"]) <= 1.01 * least, best
 PYTHON
 
 # Refused in one line, before the work.

@@ -58,6 +58,19 @@ static void balanced_is_the_bend(void **state)
     assert_int_equal(weft_preset_choose(curve, 5, WEFT_PRESET_BALANCED), 1);
 }
 
+/* A file ten times as large for half a hundredth less error is not better. */
+static void a_hundredth_is_not_worth_any_bytes(void **state)
+{
+    (void)state;
+    weft_offer near[] = {{100, 0.3, true}, {1000, 0.1005, true}, {10000, 0.1, true}};
+    assert_int_equal(weft_preset_choose(near, 3, WEFT_PRESET_BEST), 1);
+    near[1].error = 0.102;
+    assert_int_equal(weft_preset_choose(near, 3, WEFT_PRESET_BEST), 2);
+    near[0].error = 0.1002;
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset < WEFT_PRESET_COUNT; preset++)
+        assert_int_equal(weft_preset_choose(near, 3, preset), 0);
+}
+
 static void nothing_is_chosen_of_nothing(void **state)
 {
     (void)state;
@@ -381,6 +394,7 @@ int main(void)
         cmocka_unit_test(offers_are_beaten_by_what_can_be_had),
         cmocka_unit_test(presets_choose_by_their_rules),
         cmocka_unit_test(balanced_is_the_bend),
+        cmocka_unit_test(a_hundredth_is_not_worth_any_bytes),
         cmocka_unit_test(nothing_is_chosen_of_nothing),
         cmocka_unit_test(the_list_has_what_the_photographs_carry),
         cmocka_unit_test(fewer_photographs_are_spread),
