@@ -3,8 +3,11 @@
 
 #include "base/atomic_file.h"
 #include "btf/direction/direction.h"
+#include "btf/material/metadata.h"
 #include "compress/compress.h"
+#include "study/hold_out/record.h"
 #include "study/tradeoff/plot.h"
+#include "study/tradeoff/preset.h"
 #include "study/tradeoff/tradeoff.h"
 
 #include <math.h>
@@ -352,6 +355,59 @@ static void bytes_are_those_of_the_file(void **state)
     assert_int_not_equal(access(scratch, F_OK), 0);
 }
 
+/* ---- Presets ---- */
+
+/* Nobody can predict more than a fifth of it. */
+static weft_rgb noisy(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    double noise =
+        sin(127.1 * light.x + 311.7 * light.y + 74.7 * view.x + 269.5 * view.y + 3.3 * x + 7.9 * y) * 43758.5453;
+    double factor = 0.7 + 0.6 * (noise - floor(noise));
+    weft_rgb value = rough(x, y, light, view);
+    return (weft_rgb){factor * value.r, factor * value.g, factor * value.b};
+}
+
+/* The file that weft compress would write, with what it was measured to be. */
+static double compress_as_chosen(weft_dataset *dataset, const weft_compress_options *options,
+                                 const weft_preset_prediction *prediction, weft_hold_out *held_out)
+{
+    weft_material material;
+    weft_error error = {0};
+    uint64_t bytes;
+    expect_ok(weft_hold_out_measure(dataset, options, 1, scratch, NULL, held_out, &error), &error);
+    expect_ok(weft_compress(dataset, options, NULL, &material, NULL, &error), &error);
+    expect_ok(weft_hold_out_store(held_out, &material, &error), &error);
+    expect_ok(weft_material_put_metadata(&material, "predicted", weft_preset_to_json(prediction), &error), &error);
+    expect_ok(weft_material_size(&material, &bytes, &error), &error);
+    weft_material_free(&material);
+    return (double)bytes;
+}
+
+/* All texels are measured both times, but other directions. */
+static void a_preset_predicts_size_and_error(void **state)
+{
+    (void)state;
+    weft_dataset *dataset;
+    weft_error error = {0};
+    fixture_far_dataset(path, 10, 9, 4, noisy, 0);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    weft_compress_options options = weft_compress_default_options();
+    weft_preset_prediction prediction;
+    weft_hold_out held_out;
+    options.weights = WEFT_WEIGHTS_SCREEN;
+    expect_ok(weft_preset_predict(dataset, WEFT_PRESET_SMALL, scratch, NULL, &options, &prediction, &error), &error);
+    assert_int_equal(options.weights, WEFT_WEIGHTS_SCREEN);
+    assert_false(options.light_table);
+    double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
+    assert_float_equal(prediction.bytes, bytes, 0.02 * bytes);
+    double measured = held_out.material.all.relative_rmse;
+    assert_float_equal(prediction.error, measured, 0.1 * measured);
+    assert_true(fabs(prediction.error - measured) > 1e-6 * measured);
+    weft_dataset_close(dataset);
+    unlink(path);
+    assert_int_not_equal(access(scratch, F_OK), 0);
+}
+
 /* ---- Plots ---- */
 
 static int find_discs(const char *svg, double x[], double y[], int most)
@@ -401,6 +457,7 @@ int main(void)
         cmocka_unit_test(errors_are_told_apart_where_eyes_look),
         cmocka_unit_test(variants_are_made_of_the_same_fit),
         cmocka_unit_test(bytes_are_those_of_the_file),
+        cmocka_unit_test(a_preset_predicts_size_and_error),
         cmocka_unit_test(points_lie_on_logarithmic_axes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
