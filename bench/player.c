@@ -6,6 +6,7 @@
 #include "bench/measure.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
+#include "player/texture/fetches.h"
 #include "reflectance/lafortune/lafortune.h"
 
 #include <math.h>
@@ -176,13 +177,6 @@ static double memory_speed(void)
     return 2 * 1e-6 * COPIED / best_ms;
 }
 
-/* Eight texels of packed words and three entries of each table (player/texture/material_texture.h). */
-static int fetched_bytes(const weft_material *material)
-{
-    int words = 16 * (1 + (3 * material->lobe_count + 1) / 2);
-    return 8 * (words + 3 * 4 * ((material->view_count > 0) + (material->light_count > 0)));
-}
-
 static double sum_of_c(const weft_material *material, const weft_surface_sample *surface, long *pixels)
 {
     weft_error error = {0};
@@ -215,9 +209,9 @@ static void judge_material(weft_player *player, const char *path)
     stop_on(weft_player_read_surface(player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &surface, &error), &error);
     double start = bench_now_ms(CLOCK_MONOTONIC), sum = sum_of_c(&material, surface, &pixels),
            c_ms = bench_now_ms(CLOCK_MONOTONIC) - start;
-    double frame_gb = 1e-9 * fetched_bytes(&material) * (double)pixels, speed = memory_speed();
+    double frame_gb = 1e-9 * weft_fetches_of_material(&material).bytes * (double)pixels, speed = memory_speed();
     printf("compressed: %ld pixels, %d bytes fetched for each; memory would do for %.0f frames/s (%.1f GB/s copied)\n",
-           pixels, fetched_bytes(&material), speed / frame_gb, speed);
+           pixels, weft_fetches_of_material(&material).bytes, speed / frame_gb, speed);
     printf("            the evaluator in C takes %.0f ms on one thread (mean green %.4f)\n", c_ms,
            sum / (double)pixels);
     free(surface);

@@ -19,6 +19,7 @@ const weft_command_entry weft_commands[] = {
     {"Look and measure:", &weft_command_render},
     {NULL, &weft_command_play},
     {NULL, &weft_command_compare},
+    {NULL, &weft_command_tradeoff},
     {NULL, &weft_command_eval},
     {NULL, &weft_command_info},
     {NULL, &weft_command_verify},

@@ -1,9 +1,11 @@
 #include "compress/compress.h"
 #include "base/atomic_file.h"
+#include "btf/material/metadata.h"
 #include "cli/arguments.h"
 #include "cli/describe.h"
 #include "study/hold_out/record.h"
 #include "study/inspect/model_report.h"
+#include "study/tradeoff/preset.h"
 
 #include <limits.h>
 #include <math.h>
@@ -18,6 +20,7 @@ typedef struct compress_command {
     weft_compress_options options;
     int hold_out;             /* splits; 0: off */
     int lobes, table, layers; /* NOT_GIVEN, or as in the options */
+    weft_preset preset;
 } compress_command;
 
 enum { NOT_GIVEN = -1 };
@@ -63,6 +66,7 @@ static weft_code read_hold_out(const weft_option *option, const char *text, void
 /* In the order of weft_frame_choice and of weft_sample_weights. */
 static const char *const frame_words[] = {"off", "given", "on", NULL};
 static const char *const switch_words[] = {"off", "on", NULL};
+static const char *const preset_words[] = {"off", "small", "balanced", "best", NULL}; /* in the order of weft_preset */
 static const char *const weight_words[] = {"even", "screen", NULL};
 
 static const weft_option option_table[] = {
@@ -113,6 +117,13 @@ static const weft_option option_table[] = {
      .help = "Choose the model of each texel so that the error is least and the file no larger; tables may have fewer "
              "bits. Fits every model first, without a checkpoint",
      .read = read_budget},
+    {"preset", .argument = "small|balanced|best",
+     .help =
+         "Choose lobes, tables or layers: tries models on some texels, without some of the views and of the lights, "
+         "and says before the work how large the file will be and how well it will predict these; afterwards how "
+         "large it is, and how well it does. small: few bytes; best: the least error; balanced: between them, where "
+         "more bytes gain little (see tradeoff)",
+     .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, preset), .words = preset_words},
     {"hold-out", .argument = "off|N",
      .help = "Fit some texels N times without about a tenth of the views and of the lights, others each time, and say "
              "how well the material predicts these (default: 1); the material itself is fitted to all images",
@@ -125,10 +136,25 @@ static const weft_option option_table[] = {
     {0},
 };
 
+/* A preset chooses what these options say. */
+static weft_code check_preset(const compress_command *command, weft_error *error)
+{
+    const weft_compress_options usual = weft_compress_default_options(), *o = &command->options;
+    bool chosen = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || command->layers != NOT_GIVEN ||
+                  o->light_table || o->table_components > 0 || o->frames != usual.frames || o->target_error > 0 ||
+                  o->budget_bytes > 0;
+    if (command->preset == WEFT_PRESET_NONE || !chosen)
+        return WEFT_OK;
+    return weft_fail(error, WEFT_BAD_USAGE,
+                     "--preset chooses the model: leave out --lobes, --table, --light-table, --tables, --layers, "
+                     "--frames, --error and --budget");
+}
+
 static weft_code check(void *values, weft_error *error)
 {
     const compress_command *command = values;
     const weft_compress_options *o = &command->options;
+    WEFT_TRY(check_preset(command, error));
     if (command->layers > 0 && command->layers % WEFT_LAYERS_GROUP != 0)
         return weft_fail(error, WEFT_BAD_USAGE, "--layers is a multiple of %d, not %d", WEFT_LAYERS_GROUP,
                          command->layers);
@@ -332,6 +358,40 @@ static weft_code measure_hold_out(const compress_command *command, weft_dataset 
     return code;
 }
 
+/* Before the work: what the preset chose, and what is predicted of it. */
+static weft_code choose_preset(const compress_command *command, weft_dataset *dataset, weft_compress_options *options,
+                               const weft_progress *progress, weft_preset_prediction *prediction, weft_error *error)
+{
+    char scratch_path[PATH_MAX];
+    *prediction = (weft_preset_prediction){0};
+    if (command->preset == WEFT_PRESET_NONE)
+        return WEFT_OK;
+    snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
+    WEFT_TRY(weft_preset_predict(dataset, command->preset, scratch_path, progress, options, prediction, error));
+    weft_command_say(&command->common, "preset %s: %s (%s)", weft_preset_name(prediction->preset), prediction->model,
+                     prediction->arguments);
+    weft_command_say(&command->common, "  predicted: %.3f MB, relative RMSE %.3f on directions that are not fitted",
+                     prediction->bytes * 1e-6, prediction->error);
+    json_t *object = command->common.json ? weft_preset_to_json(prediction) : NULL;
+    weft_code code = object ? weft_command_describe(&command->common, "predicted", object, error) : WEFT_OK;
+    json_decref(object);
+    return code;
+}
+
+static void say_prediction(const compress_command *command, const weft_preset_prediction *prediction,
+                           const weft_hold_out *held_out)
+{
+    double bytes = (double)weft_file_bytes(command->output);
+    if (prediction->preset == WEFT_PRESET_NONE)
+        return;
+    weft_command_say(&command->common, "predicted %.3f MB, is %.3f MB (%+.1f %%)", prediction->bytes * 1e-6,
+                     bytes * 1e-6, 100 * (bytes / prediction->bytes - 1));
+    if (held_out->split_count > 0)
+        weft_command_say(&command->common, "predicted relative RMSE %.3f %s, is %.3f (%+.1f %%)", prediction->error,
+                         weft_hold_out_about(held_out), held_out->material.all.relative_rmse,
+                         100 * (held_out->material.all.relative_rmse / prediction->error - 1));
+}
+
 static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
 {
     weft_progress progress = weft_command_progress(&command->common);
@@ -340,11 +400,14 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     weft_material material = {0};
     weft_compress_report report;
     weft_hold_out held_out;
+    weft_preset_prediction prediction = {0};
     weft_code code = weft_dataset_open(command->input, &dataset, error);
     if (code == WEFT_OK) {
         options = resolve(command, dataset);
-        code = measure_hold_out(command, dataset, &options, &progress, &held_out, error);
+        code = choose_preset(command, dataset, &options, &progress, &prediction, error);
     }
+    if (code == WEFT_OK)
+        code = measure_hold_out(command, dataset, &options, &progress, &held_out, error);
     if (code == WEFT_OK) {
         options.checkpoint_path = partial_path;
         options.log = weft_command_log(&command->common);
@@ -352,6 +415,8 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     }
     if (code == WEFT_OK && held_out.split_count > 0)
         code = weft_hold_out_store(&held_out, &material, error);
+    if (code == WEFT_OK && prediction.preset != WEFT_PRESET_NONE)
+        code = weft_material_put_metadata(&material, "predicted", weft_preset_to_json(&prediction), error);
     if (code == WEFT_OK)
         code = weft_material_write(command->output, &material, error);
     if (code == WEFT_OK && command->report)
@@ -366,6 +431,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
         say_layers(&command->common, &options, &report);
         say_errors(&command->common, &material);
         say_sizes(command, layout, &report);
+        say_prediction(command, &prediction, &held_out);
     }
     weft_material_free(&material);
     weft_dataset_close(dataset);

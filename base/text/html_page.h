@@ -9,6 +9,9 @@
  *     <td class="text">            a cell of words, at the left; a table's first column is at the left anyway
  *     <tr class="bad">, "weak"     a row that reports a failure, or something to look at; also <figure class="bad">
  *     <svg class="chart">          as wide as the page
+ *     <svg class="plot">           a scatter of points, by study/tradeoff/plot.h; <div class="plots"> holds three
+ *     <div class="pairs">          rows of two small pictures side by side
+ *     class="colour0" to "colour4" what belongs together
  *
  * It is light or dark as the reader's system is. Pictures enlarge at a click; those of one row, figure or gallery may
  * then be wiped one against the other. */

@@ -104,6 +104,13 @@ void weft_layers_free(weft_layers *layers)
     free(layers);
 }
 
+void weft_layers_drop_finest(weft_layers *layers)
+{
+    free(layers->level[0].coefficient);
+    free(layers->level[0].ceiling);
+    memmove(layers->level, layers->level + 1, (size_t)--layers->level_count * sizeof *layers->level);
+}
+
 /* ---- Ceilings ---- */
 
 float weft_ceiling_of_code(uint8_t code)

@@ -71,6 +71,9 @@ weft_code weft_layers_create(const weft_layers *shape, int width, int height, in
                              weft_error *error);
 void weft_layers_free(weft_layers *layers);
 
+/* Takes the finest level away; there must be another. */
+void weft_layers_drop_finest(weft_layers *layers);
+
 /* ---- Ceilings ---- */
 
 /* 2^((code - 192) / 8), about 6e-8 .. 235. Pure. */

@@ -128,18 +128,33 @@ weft_code weft_material_add_models(weft_material *material, weft_error *error)
     return code;
 }
 
+static void free_level(weft_material_level *level)
+{
+    free(level->frame);
+    free(level->diffuse);
+    free(level->lobe);
+    free(level->table);
+    free(level->light_table);
+    free(level->model);
+    weft_table_basis_free(level->table_basis);
+    weft_table_basis_free(level->light_table_basis);
+}
+
+void weft_material_drop_finest(weft_material *material)
+{
+    if (material->level_count < 2)
+        return;
+    free_level(&material->level[0]);
+    memmove(material->level, material->level + 1, (size_t)--material->level_count * sizeof *material->level);
+    material->texel_pitch_mm *= 2;
+    if (material->layers)
+        weft_layers_drop_finest(material->layers);
+}
+
 void weft_material_free(weft_material *material)
 {
-    for (int k = 0; k < material->level_count; k++) {
-        free(material->level[k].frame);
-        free(material->level[k].diffuse);
-        free(material->level[k].lobe);
-        free(material->level[k].table);
-        free(material->level[k].light_table);
-        free(material->level[k].model);
-        weft_table_basis_free(material->level[k].table_basis);
-        weft_table_basis_free(material->level[k].light_table_basis);
-    }
+    for (int k = 0; k < material->level_count; k++)
+        free_level(&material->level[k]);
     weft_layers_free(material->layers);
     free(material->view);
     free(material->light);

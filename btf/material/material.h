@@ -65,6 +65,10 @@ weft_code weft_material_create(int width, int height, int lobe_count, int view_c
                                weft_material *material, weft_error *error);
 void weft_material_free(weft_material *material);
 
+/* Takes the finest level away, of the layers, too: the same material with a quarter of the texels. Does nothing where
+ * there is but one. */
+void weft_material_drop_finest(weft_material *material);
+
 /* Adds maps of models, all 0. Errors: WEFT_SYSTEM. */
 weft_code weft_material_add_models(weft_material *material, weft_error *error);
 
@@ -78,6 +82,9 @@ weft_code weft_material_write(const char *path, const weft_material *material, w
 
 /* Bytes of the file that weft_material_write would write. Errors: as there. */
 weft_code weft_material_size(const weft_material *material, uint64_t *size, weft_error *error);
+
+/* The same in two parts: what grows with the number of texels, and what all of them share. Errors: as there. */
+weft_code weft_material_weigh(const weft_material *material, uint64_t *by_texels, uint64_t *shared, weft_error *error);
 
 /* Reads and checks all of a file: every size against the file before anything is allocated, every checksum.
  * Errors: WEFT_BAD_INPUT naming the file and the section. The caller frees with weft_material_free. */

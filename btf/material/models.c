@@ -99,6 +99,23 @@ weft_code weft_material_find_models(weft_material *material, weft_error *error)
     return WEFT_OK;
 }
 
+static void round_codes(uint8_t *table, size_t texels, int count, int bits)
+{
+    for (size_t i = 0; table && i < 4 * texels * (size_t)count; i++)
+        table[i] = i % 4 == 3 ? table[i] : weft_table_code_rounded(table[i], bits);
+}
+
+weft_code weft_material_round_tables(weft_material *material, int bits, weft_error *error)
+{
+    for (int k = 0; k < material->level_count; k++) {
+        weft_material_level *level = &material->level[k];
+        size_t texels = (size_t)level->width * (size_t)level->height;
+        round_codes(level->table, texels, material->view_count, bits);
+        round_codes(level->light_table, texels, material->light_count, bits);
+    }
+    return weft_material_find_models(material, error);
+}
+
 void weft_material_count_models(const weft_material *material, int level, long count[WEFT_MODEL_CODES])
 {
     const weft_material_level *at = &material->level[level];

@@ -27,6 +27,9 @@ uint8_t weft_table_code_rounded(uint8_t code, int bits);
  * how many bits would hold them. Errors: WEFT_SYSTEM. */
 weft_code weft_material_find_models(weft_material *material, weft_error *error);
 
+/* Rounds the codes of T and S to so many bits (4, 6 or 8), and sets the maps of models. Errors: WEFT_SYSTEM. */
+weft_code weft_material_round_tables(weft_material *material, int bits, weft_error *error);
+
 /* Number of texels of a level with each model; all 0 without maps. */
 void weft_material_count_models(const weft_material *material, int level, long count[WEFT_MODEL_CODES]);
 

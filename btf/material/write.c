@@ -288,13 +288,37 @@ weft_code weft_material_write(const char *path, const weft_material *material, w
     return code;
 }
 
-weft_code weft_material_size(const weft_material *material, uint64_t *size, weft_error *error)
+/* Of a section as it is stored, what grows with the number of texels: of a basis all but its mean and components. */
+static uint64_t bytes_by_texels(const weft_material *material, const weft_section *section)
+{
+    weft_section_kind kind = weft_section_kind_of(section->type);
+    if (kind == WEFT_SECTION_TPCA || kind == WEFT_SECTION_SPCA) {
+        const weft_table_basis *basis = basis_of(material, kind, (int)section->level);
+        uint64_t shared = weft_table_basis_size(basis->component_count, basis->direction_count, 0);
+        return section->stored_size - section->stored_size * shared / basis->size;
+    }
+    bool is_texels = kind == WEFT_SECTION_ALPH || weft_section_texels(material, kind, (int)section->level);
+    return is_texels ? section->stored_size : 0;
+}
+
+weft_code weft_material_weigh(const weft_material *material, uint64_t *by_texels, uint64_t *shared, weft_error *error)
 {
     file_image file = {.path = "the material"};
     weft_code code = check_header(file.path, material, error);
     if (code == WEFT_OK)
         code = fill(&file, material, error);
-    *size = file.size;
+    *by_texels = 0;
+    for (int i = 0; i < file.section_count; i++)
+        *by_texels += bytes_by_texels(material, &file.section[i]);
+    *shared = file.size - *by_texels;
     free(file.bytes);
+    return code;
+}
+
+weft_code weft_material_size(const weft_material *material, uint64_t *size, weft_error *error)
+{
+    uint64_t by_texels, shared;
+    weft_code code = weft_material_weigh(material, &by_texels, &shared, error);
+    *size = by_texels + shared;
     return code;
 }

@@ -1,13 +1,12 @@
 #include "study/blend/blend.h"
 
-#include "base/text/json_text.h"
 #include "btf/material/gather.h"
+#include "btf/material/metadata.h"
 #include "study/blend/cut.h"
 #include "study/blend/seam.h"
 
 #include <jansson.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* ---- Where each texel comes from ---- */
 
@@ -86,17 +85,9 @@ static json_t *describe_seam(const weft_seam *seam)
 
 static weft_code describe(const weft_blend_report *report, weft_material *tile, weft_error *error)
 {
-    json_t *object = json_loads(tile->metadata, 0, NULL);
     json_t *done = json_pack("{s:[i, i], s:o, s:o}", "overlap_texels", report->overlap_x, report->overlap_y, "before",
                              describe_seam(&report->before), "after", describe_seam(&report->after));
-    weft_json_put(&object, "tile", done);
-    char *text = object ? json_dumps(object, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
-    json_decref(object);
-    if (!text)
-        return weft_fail_memory(error, "metadata of the material", 0);
-    free(tile->metadata);
-    tile->metadata = text;
-    return WEFT_OK;
+    return weft_material_put_metadata(tile, "tile", done, error);
 }
 
 static weft_code measure(const weft_blend_pictures *pictures, const weft_texel_mix *mix, const weft_material *tile,

@@ -1,7 +1,7 @@
 #include "study/compare/scenes.h"
 
-#include "base/clock.h"
 #include "player/gl/context.h"
+#include "study/error/frame_time.h"
 #include "study/error/visible_error.h"
 
 #include <stdio.h>
@@ -41,27 +41,9 @@ static weft_scene scene_of(const setting *s, weft_mode mode)
     return scene;
 }
 
-static weft_code draw(weft_player *player, const weft_scene *scene, int samples, weft_image *picture,
-                      double *elapsed_ms, weft_error *error)
+static weft_code draw(weft_player *player, const weft_scene *scene, weft_image *picture, weft_error *error)
 {
-    double started_s = weft_now_s();
-    weft_code code = weft_player_picture(player, scene, PICTURE_SIZE, PICTURE_SIZE, samples, NULL, picture, error);
-    *elapsed_ms = 1e3 * (weft_now_s() - started_s);
-    return code;
-}
-
-/* Two pictures of different numbers of frames: what they share (buffers, reading back) drops out of the difference. */
-static weft_code time_frame(weft_player *player, const weft_scene *scene, double *frame_ms, weft_error *error)
-{
-    double few_ms = 0, many_ms = 0;
-    const int few = 1, many = PICTURE_SAMPLES;
-    weft_image picture;
-    WEFT_TRY(draw(player, scene, few, &picture, &few_ms, error));
-    weft_image_free(&picture);
-    WEFT_TRY(draw(player, scene, many, &picture, &many_ms, error));
-    weft_image_free(&picture);
-    *frame_ms = (many_ms - few_ms) / (many * many - few * few);
-    return WEFT_OK;
+    return weft_player_picture(player, scene, PICTURE_SIZE, PICTURE_SIZE, PICTURE_SAMPLES, NULL, picture, error);
 }
 
 static weft_code set_mesh(weft_player *player, const char *name, weft_error *error)
@@ -96,10 +78,10 @@ static weft_code draw_scene(weft_player *player, int index, weft_scenes *scenes,
         if (!scenes->has[mode])
             continue;
         weft_scene scene = scene_of(&settings[index], (weft_mode)mode);
-        double elapsed_ms;
-        WEFT_TRY(draw(player, &scene, PICTURE_SAMPLES, &pictures->picture[mode], &elapsed_ms, error));
+        WEFT_TRY(draw(player, &scene, &pictures->picture[mode], error));
         if (index == 0)
-            WEFT_TRY(time_frame(player, &scene, &scenes->frame_ms[mode], error));
+            WEFT_TRY(
+                weft_frame_time_measure(player, &scene, PICTURE_SIZE, PICTURE_SIZE, &scenes->frame_ms[mode], error));
     }
     return WEFT_OK;
 }
@@ -132,11 +114,9 @@ static weft_code draw_bard(weft_player *player, const char *path, const weft_pro
     weft_dataset_close(bard);
     for (int i = 0; i < WEFT_SCENE_COUNT && code == WEFT_OK; i++) {
         weft_scene scene = scene_of(&settings[i], WEFT_MODE_RAW);
-        double elapsed_ms;
         code = set_mesh(player, settings[i].mesh, error);
         if (code == WEFT_OK)
-            code =
-                draw(player, &scene, PICTURE_SAMPLES, &scenes->scene[i].picture[WEFT_SCENE_BARD], &elapsed_ms, error);
+            code = draw(player, &scene, &scenes->scene[i].picture[WEFT_SCENE_BARD], error);
     }
     scenes->has[WEFT_SCENE_BARD] = code == WEFT_OK;
     return code;

@@ -143,6 +143,47 @@ weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const we
     return code;
 }
 
+/* ---- A material of fewer texels ---- */
+
+static weft_rgb sample_material(const weft_predictor *predictor, weft_real u, weft_real v, weft_vec3 light,
+                                weft_vec3 view)
+{
+    float factor[3 * WEFT_LAYERS_MAX];
+    const weft_layers *layers = predictor->material->layers;
+    if (!layers) {
+        weft_rgba value = weft_material_sample(predictor->material, &predictor->directions, 0, u, v, light, view);
+        return scaled(quantity(predictor->layout, light), (weft_rgb){value.r, value.g, value.b});
+    }
+    weft_layer_factors(&predictor->maps, light, view, factor);
+    weft_rgb value = weft_layers_sample(layers, layers->layer_count, factor, 0, u, v, light.z);
+    return light.z > 0 ? scaled(quantity(predictor->layout, light) / light.z, value) : (weft_rgb){0};
+}
+
+static void predict_by_coarser(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                               weft_rgb *prediction)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    weft_real u = (x + 0.5) / layout->width, v = 1 - (y + 0.5) / layout->height;
+    for (int i = 0; i < image_count; i++) {
+        weft_vec3 light = weft_dataset_light_direction(layout, image[i], x, y);
+        weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image[i]], x, y);
+        prediction[i] = sample_material(predictor, u, v, light, view);
+    }
+}
+
+weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, const weft_material *material,
+                                             weft_predictor **result, weft_error *error)
+{
+    WEFT_TRY(create(layout, predict_by_coarser, result, error));
+    (*result)->material = material;
+    weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
+    if (code == WEFT_OK && material->layers)
+        code = weft_layer_maps_create(material->layers, &(*result)->maps, error);
+    if (code != WEFT_OK)
+        weft_predictor_free(*result);
+    return code;
+}
+
 /* ---- Weave ---- */
 
 enum { SIDE = 4, POINTS = SIDE * SIDE };

@@ -17,6 +17,11 @@ typedef struct weft_predictor weft_predictor;
 weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const weft_material *material,
                                      weft_predictor **result, weft_error *error);
 
+/* A material of fewer texels over the same area, as the player shows it at the centres of the texels of the dataset:
+ * interpolated between its own, which repeat. Errors: WEFT_SYSTEM. */
+weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, const weft_material *material,
+                                             weft_predictor **result, weft_error *error);
+
 /* A weave without its noise, laid on the material; a texel is the mean of 4 x 4 points. The weave stays the caller's.
  */
 weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,

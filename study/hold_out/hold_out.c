@@ -1,8 +1,6 @@
 #include "study/hold_out/hold_out.h"
 
-#include "study/error/predictor.h"
-#include "study/hold_out/excerpt.h"
-#include "study/hold_out/interpolation.h"
+#include "study/hold_out/trial.h"
 
 #include <malloc.h>
 #include <math.h>
@@ -15,170 +13,16 @@ enum { SIDE = 12, LAYERS_SIDE = 24, BLOCK_SIDE = 64 };
 /* Of the excerpt, at most. */
 static const long most_samples = 1L << 22;
 
-/* ---- One split ---- */
-
-/* Samples channel by channel beside what a model says of them; a slot is empty where `group` is 0. */
-typedef struct comparison {
-    size_t count;
-    weft_compared *value; /* [count] */
-    uint8_t *group;       /* [count] flags of study/hold_out/split.h */
-} comparison;
-
-/* One split at work. It looks at the images that are held out and, to tell what being fitted is worth, at those that
- * the next split holds out: as many of the same rings, but fitted here. */
-typedef struct trial {
-    const weft_excerpt *excerpt;
-    int *image;     /* [held_count + fitted_count] the images that are held out, then the others */
-    uint8_t *flags; /* of those: why each is held out, here or in the next split */
-    int held_count, fitted_count;
-    weft_predictor *predictor;
-    weft_interpolation *interpolation;
-    comparison material, photographs; /* of what is held out */
-    comparison fitted;
-} trial;
-
-static void put(comparison *compared, size_t slot, uint8_t flags, const weft_half *half, weft_rgb prediction)
-{
-    const double said[3] = {(double)prediction.r, (double)prediction.g, (double)prediction.b};
-    for (size_t c = 0; c < 3 && !isnan(said[c]); c++) {
-        compared->value[slot + c] =
-            (weft_compared){.sample = weft_float_of_half(half[c]), .prediction = (float)said[c]};
-        compared->group[slot + c] = flags;
-    }
-}
-
-/* The samples of a texel into its own slots. */
-static void compare_samples(trial *t, int x, int y, const weft_rgb *material, const weft_rgb *photographs)
-{
-    const weft_dataset_layout *layout = &t->excerpt->layout;
-    size_t texel = (size_t)y * (size_t)layout->width + (size_t)x, held = (size_t)t->held_count;
-    for (size_t i = 0; i < held + (size_t)t->fitted_count; i++) {
-        size_t at = texel * (size_t)layout->image_count + (size_t)t->image[i];
-        const weft_half *half = t->excerpt->samples + 3 * at;
-        weft_vec3 light = weft_dataset_light_direction(layout, t->image[i], x, y);
-        weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[t->image[i]], x, y);
-        if (t->excerpt->mask[at] || !(light.z > 0 && view.z > 0))
-            continue;
-        if (i >= held) {
-            put(&t->fitted, 3 * (texel * (size_t)t->fitted_count + i - held), t->flags[i], half, material[i]);
-            continue;
-        }
-        put(&t->material, 3 * (texel * held + i), t->flags[i], half, material[i]);
-        put(&t->photographs, 3 * (texel * held + i), t->flags[i], half, photographs[i]);
-    }
-}
-
-static weft_code compare_texel(trial *t, int x, int y, weft_error *error)
-{
-    int images = t->held_count + t->fitted_count;
-    weft_rgb *prediction = malloc(2 * (size_t)images * sizeof *prediction);
-    if (!prediction)
-        return weft_fail_memory(error, "predictions", 2 * (size_t)images * sizeof *prediction);
-    weft_rgb *photographs = prediction + images;
-    weft_predictor_predict(t->predictor, x, y, t->image, images, prediction);
-    weft_code code = weft_interpolation_predict(t->interpolation, x, y, photographs, error);
-    if (code == WEFT_OK)
-        compare_samples(t, x, y, prediction, photographs);
-    free(prediction);
-    return code;
-}
-
-static weft_code compare_texels(trial *t, weft_error *error)
-{
-    const weft_dataset_layout *layout = &t->excerpt->layout;
-    weft_code code = WEFT_OK;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int texel = 0; texel < layout->width * layout->height; texel++) {
-        weft_error own = {0};
-        weft_code own_code = compare_texel(t, texel % layout->width, texel / layout->width, &own);
-#pragma omp critical
-        if (own_code != WEFT_OK) {
-            code = own_code;
-            if (error)
-                *error = own;
-        }
-    }
-    return code;
-}
-
-static weft_code allocate_comparison(const weft_excerpt *excerpt, int image_count, comparison *compared,
-                                     weft_error *error)
-{
-    size_t count = 3 * (size_t)excerpt->layout.width * (size_t)excerpt->layout.height * (size_t)image_count;
-    *compared = (comparison){count, calloc(count + 1, sizeof *compared->value), calloc(count + 1, 1)};
-    return compared->value && compared->group
-               ? WEFT_OK
-               : weft_fail_memory(error, "samples", count * (sizeof *compared->value + 1));
-}
-
-static void free_comparison(comparison *compared)
-{
-    free(compared->value);
-    free(compared->group);
-}
-
-static void list_images(const uint8_t *held, const uint8_t *next, int image_count, trial *t)
-{
-    for (int i = 0; i < image_count; i++) {
-        if (!held[i])
-            continue;
-        t->flags[t->held_count] = held[i];
-        t->image[t->held_count++] = i;
-    }
-    for (int i = 0; i < image_count; i++) {
-        if (held[i] || !next[i])
-            continue;
-        t->flags[t->held_count + t->fitted_count] = next[i];
-        t->image[t->held_count + t->fitted_count++] = i;
-    }
-}
-
-static weft_code allocate_trial(const weft_excerpt *excerpt, const uint8_t *held, const uint8_t *next, trial *t,
-                                weft_error *error)
-{
-    size_t images = (size_t)excerpt->layout.image_count;
-    *t = (trial){.excerpt = excerpt, .image = calloc(images, sizeof *t->image), .flags = calloc(images, 1)};
-    if (!t->image || !t->flags)
-        return weft_fail_memory(error, "images", images * (sizeof *t->image + 1));
-    list_images(held, next, excerpt->layout.image_count, t);
-    WEFT_TRY(allocate_comparison(excerpt, t->held_count, &t->material, error));
-    WEFT_TRY(allocate_comparison(excerpt, t->held_count, &t->photographs, error));
-    return allocate_comparison(excerpt, t->fitted_count, &t->fitted, error);
-}
-
-static void free_trial(trial *t)
-{
-    weft_predictor_free(t->predictor);
-    weft_interpolation_free(t->interpolation);
-    free(t->image);
-    free(t->flags);
-    free_comparison(&t->material);
-    free_comparison(&t->photographs);
-    free_comparison(&t->fitted);
-}
-
 /* ---- Errors ---- */
 
-static void drop_empty_slots(comparison *compared)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < compared->count; i++) {
-        if (!compared->group[i])
-            continue;
-        compared->value[kept] = compared->value[i];
-        compared->group[kept++] = compared->group[i];
-    }
-    compared->count = kept;
-}
-
-static weft_code summarise_group(const comparison *compared, int flags, weft_error_summary *result, weft_error *error)
+static weft_code summarise_group(const weft_asked_samples *compared, int flags, weft_error_summary *result,
+                                 weft_error *error)
 {
     return weft_error_summary_of_group(compared->value, compared->group, compared->count, flags, result, error);
 }
 
-static weft_code summarise(comparison *compared, weft_hold_out_error *result, weft_error *error)
+static weft_code summarise(const weft_asked_samples *compared, weft_hold_out_error *result, weft_error *error)
 {
-    drop_empty_slots(compared);
     WEFT_TRY(weft_error_summary_of(compared->value, compared->count, &result->all, error));
     WEFT_TRY(summarise_group(compared, WEFT_HELD_VIEW, &result->view, error));
     WEFT_TRY(summarise_group(compared, WEFT_HELD_LIGHT, &result->light, error));
@@ -240,21 +84,34 @@ static weft_code fit_without(const measuring *work, const uint8_t *held, weft_ma
     return code;
 }
 
-static weft_code predict(const weft_material *material, const uint8_t *held, trial *t, weft_error *error)
+/* What one split says. */
+typedef struct answers {
+    weft_asked_samples material, fitted, photographs;
+} answers;
+
+static void free_answers(answers *said)
 {
-    WEFT_TRY(weft_predictor_of_material(&t->excerpt->layout, material, &t->predictor, error));
-    WEFT_TRY(weft_interpolation_create(t->excerpt, held, t->image, t->held_count, &t->interpolation, error));
-    return compare_texels(t, error);
+    weft_asked_samples_free(&said->material);
+    weft_asked_samples_free(&said->fitted);
+    weft_asked_samples_free(&said->photographs);
 }
 
-static weft_code measure_trial(measuring *work, trial *t, weft_error *error)
+static weft_code ask(const weft_trial *trial, const weft_material *material, answers *said, weft_error *error)
+{
+    weft_predictor *predictor;
+    WEFT_TRY(weft_predictor_of_material(&trial->excerpt->layout, material, &predictor, error));
+    weft_code code = weft_trial_ask(trial, predictor, &said->material, &said->fitted, error);
+    weft_predictor_free(predictor);
+    return code == WEFT_OK ? weft_trial_ask_photographs(trial, &said->photographs, error) : code;
+}
+
+static weft_code take_answers(measuring *work, const answers *said, weft_error *error)
 {
     weft_hold_out_error material, photographs;
     weft_error_summary fitted;
-    WEFT_TRY(summarise(&t->material, &material, error));
-    WEFT_TRY(summarise(&t->photographs, &photographs, error));
-    drop_empty_slots(&t->fitted);
-    WEFT_TRY(weft_error_summary_of(t->fitted.value, t->fitted.count, &fitted, error));
+    WEFT_TRY(summarise(&said->material, &material, error));
+    WEFT_TRY(summarise(&said->photographs, &photographs, error));
+    WEFT_TRY(weft_error_summary_of(said->fitted.value, said->fitted.count, &fitted, error));
     take_errors(&material, &work->material_taken, &work->result->material);
     take_errors(&photographs, &work->photographs_taken, &work->result->photographs);
     take_into_mean(&fitted, &work->fitted_taken, &work->result->fitted);
@@ -269,13 +126,15 @@ static weft_code measure_split(measuring *work, int split, weft_error *error)
     weft_compress_report report;
     WEFT_TRY(fit_without(work, held, &material, &report, error));
     work->result->smaller_model |= report.model != work->whole_model || report.lobe_count != work->whole_lobes;
-    trial t;
-    weft_code code = allocate_trial(&work->excerpt, held, next, &t, error);
+    weft_trial trial;
+    answers said = {0};
+    weft_code code = weft_trial_create(&work->excerpt, held, next, &trial, error);
     if (code == WEFT_OK)
-        code = predict(&material, held, &t, error);
+        code = ask(&trial, &material, &said, error);
     if (code == WEFT_OK)
-        code = measure_trial(work, &t, error);
-    free_trial(&t);
+        code = take_answers(work, &said, error);
+    free_answers(&said);
+    weft_trial_free(&trial);
     weft_material_free(&material);
     return code;
 }

@@ -1,6 +1,7 @@
 #include "study/hold_out/record.h"
 
 #include "base/text/json_text.h"
+#include "btf/material/metadata.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -53,15 +54,7 @@ json_t *weft_hold_out_to_json(const weft_hold_out *r)
 
 weft_code weft_hold_out_store(const weft_hold_out *result, weft_material *material, weft_error *error)
 {
-    json_t *metadata = json_loads(material->metadata, 0, NULL);
-    weft_json_put(&metadata, "held_out", weft_hold_out_to_json(result));
-    char *text = metadata ? json_dumps(metadata, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
-    json_decref(metadata);
-    if (!text)
-        return weft_fail_memory(error, "metadata of the material", 0);
-    free(material->metadata);
-    material->metadata = text;
-    return WEFT_OK;
+    return weft_material_put_metadata(material, "held_out", weft_hold_out_to_json(result), error);
 }
 
 weft_code weft_hold_out_bytes(const weft_hold_out *result, uint64_t *bytes, weft_error *error)

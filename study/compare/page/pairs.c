@@ -1,7 +1,7 @@
 #include "study/compare/page/sections.h"
 
 #include "base/picture/colour.h"
-#include "study/compare/sample_picture.h"
+#include "study/error/sample_picture.h"
 
 #include <stdio.h>
 

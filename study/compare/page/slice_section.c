@@ -1,7 +1,7 @@
 #include "study/compare/page/sections.h"
 
 #include "btf/direction/direction.h"
-#include "study/compare/sample_picture.h"
+#include "study/error/sample_picture.h"
 
 #include <math.h>
 #include <stdio.h>

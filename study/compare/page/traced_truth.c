@@ -1,6 +1,6 @@
 #include "study/compare/page/sections.h"
 
-#include "study/compare/sample_picture.h"
+#include "study/error/sample_picture.h"
 
 #include <stdio.h>
 

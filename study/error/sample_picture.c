@@ -1,4 +1,4 @@
-#include "study/compare/sample_picture.h"
+#include "study/error/sample_picture.h"
 
 #include "base/numeric/statistics.h"
 #include "base/picture/colour.h"

@@ -1,6 +1,6 @@
 /* Pictures of samples for the eye: exposure, sRGB, differences in false colour. */
-#ifndef WEFT_STUDY_COMPARE_SAMPLE_PICTURE_H
-#define WEFT_STUDY_COMPARE_SAMPLE_PICTURE_H
+#ifndef WEFT_STUDY_ERROR_SAMPLE_PICTURE_H
+#define WEFT_STUDY_ERROR_SAMPLE_PICTURE_H
 
 #include "base/picture/image.h"
 

@@ -1,0 +1,85 @@
+#include "study/tradeoff/tradeoff.h"
+#include "cli/arguments.h"
+#include "cli/describe.h"
+
+typedef struct tradeoff_command {
+    weft_common_options common;
+    const char *input, *folder;
+} tradeoff_command;
+
+static const weft_option option_table[] = {
+    {.argument = "NAME.btf.h5",
+     .is_required = true,
+     .kind = WEFT_OPTION_INPUT,
+     .offset = offsetof(tradeoff_command, input)},
+    {"output", 'o', "REPORT/", "The folder for the page and its pictures", .is_required = true,
+     .kind = WEFT_OPTION_FOLDER, .offset = offsetof(tradeoff_command, folder)},
+    {0},
+};
+
+static void say_row(const weft_common_options *common, const weft_tradeoff_row *row)
+{
+    const weft_error_summary *held = &row->measured.held[WEFT_SAMPLES_ALL],
+                             *fitted = &row->measured.fitted[WEFT_SAMPLES_ALL];
+    char frame[32] = "", beside[32] = "", presets[64];
+    weft_tradeoff_print_presets(row, presets, sizeof presets);
+    if (row->price.frame_ms > 0)
+        snprintf(frame, sizeof frame, "%.1f", row->price.frame_ms);
+    if (fitted->count > 0)
+        snprintf(beside, sizeof beside, "%.4f", fitted->relative_rmse);
+    weft_command_say(common, "%-36s %12.0f %8.1f %9s %12.4f %8s  %s", row->model.name, row->price.bytes,
+                     row->price.fit_s, frame, held->relative_rmse, beside, presets);
+}
+
+static weft_code say_results(const tradeoff_command *command, const weft_tradeoff *result, weft_error *error)
+{
+    const weft_common_options *common = &command->common;
+    char held[160];
+    weft_tradeoff_print_held(result, held, sizeof held);
+    weft_command_say(common, "relative RMSE with %s held out, on %ld of %ld texels:", held, result->measured_texels,
+                     result->texels);
+    weft_command_say(common, "%-36s %12s %8s %9s %12s %8s", "model", "bytes", "fit, s", "ms a frame", "not fitted",
+                     "fitted");
+    for (int i = 0; i < result->row_count; i++) {
+        say_row(common, &result->row[i]);
+        json_t *object = common->json ? weft_tradeoff_row_to_json(&result->row[i]) : NULL;
+        weft_code code = object ? weft_command_describe(common, "model", object, error) : WEFT_OK;
+        json_decref(object);
+        WEFT_TRY(common->json && !object ? weft_fail_memory(error, "event", 0) : code);
+    }
+    if (result->why_not_drawn[0])
+        weft_command_say(common, "no times of frames: %s", result->why_not_drawn);
+    weft_command_say(common, "page: %s/index.html", command->folder);
+    return WEFT_OK;
+}
+
+static int run(int argc, char **argv)
+{
+    tradeoff_command command = {0};
+    weft_arguments_parse(&weft_command_tradeoff, argc, argv, &command);
+    weft_progress progress = weft_command_progress(&command.common);
+    weft_tradeoff result;
+    weft_error error = {0};
+    weft_code code = weft_tradeoff_study(command.input, command.folder, &progress, &result, &error);
+    if (code == WEFT_OK) {
+        code = say_results(&command, &result, &error);
+        weft_tradeoff_free(&result);
+    }
+    return weft_command_exit("tradeoff", &command.common, code, &error);
+}
+
+const weft_command weft_command_tradeoff = {
+    .name = "tradeoff",
+    .summary = "price every model of a dataset in bytes, time and error",
+    .usage = "NAME.btf.h5 -o REPORT/",
+    .documentation =
+        "Example: weft tradeoff silk.btf.h5 -o silk-prices\n\n"
+        "Fits every model that the dataset can carry: lobes with and without tables, layers, smaller tables, fewer "
+        "photographs and texels. Writes one HTML page: bytes, time of the fit and of a frame, and the error on "
+        "photographs that were held out of the fit, beside that on those that were not; plots of one against the "
+        "other; which models are worth their price; and the same as comma-separated values. Takes minutes.",
+    .options = option_table,
+    .needs = "a dataset and -o REPORT/",
+    .surplus = "one dataset at a time",
+    .run = run,
+};

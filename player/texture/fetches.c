@@ -1,0 +1,38 @@
+#include "player/texture/fetches.h"
+
+enum { LEVELS = 2, CORNERS = 3 /* of a triangle of directions */, BILINEAR = 4, TRILINEAR = 8 };
+
+/* Eight texels of packed words and three entries of each table (player/texture/material_texture.h). */
+static weft_fetches of_lobes(const weft_material *material)
+{
+    int texels = LEVELS * BILINEAR, words = 1 + (3 * material->lobe_count + 1) / 2;
+    int entries = CORNERS * ((material->view_count > 0) + (material->light_count > 0));
+    return (weft_fetches){texels * (words + entries), texels * (16 * words + 4 * entries)};
+}
+
+/* Coefficients of four layers at once from two levels; their factors, four half floats, from two rows of view nodes for
+ * each channel; a ceiling (player/draw/shaders/layered.glsl). With opacity, three entries of T at each of eight texels.
+ */
+static weft_fetches of_layers(const weft_material *material)
+{
+    int groups = material->layers->layer_count / WEFT_LAYERS_GROUP, coefficients = LEVELS * groups,
+        factors = 2 * 3 * groups;
+    weft_fetches fetches = {coefficients + factors + 1, 4 * BILINEAR * coefficients + 8 * TRILINEAR * factors + 1};
+    if (weft_material_has_holes(material)) {
+        fetches.reads += CORNERS * LEVELS * BILINEAR;
+        fetches.bytes += 4 * CORNERS * LEVELS * BILINEAR;
+    }
+    return fetches;
+}
+
+weft_fetches weft_fetches_of_material(const weft_material *material)
+{
+    return material->layers ? of_layers(material) : of_lobes(material);
+}
+
+/* Three lights of each of three views (player/draw/shaders/raw.glsl). */
+weft_fetches weft_fetches_of_raw(void)
+{
+    int reads = CORNERS * CORNERS * LEVELS;
+    return (weft_fetches){reads, reads * BILINEAR * 3 * (int)sizeof(weft_half)};
+}

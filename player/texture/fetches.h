@@ -1,0 +1,19 @@
+/* What a pixel fetches from a material, under one light and with neighbouring texels, levels and directions all
+ * evaluated (WEFT_FILTER_EXACT). */
+#ifndef WEFT_PLAYER_TEXTURE_FETCHES_H
+#define WEFT_PLAYER_TEXTURE_FETCHES_H
+
+#include "btf/material/material.h"
+
+/* Reads of textures, as the shader has them, and the bytes of all texels that the hardware then interpolates. */
+typedef struct weft_fetches {
+    int reads, bytes;
+} weft_fetches;
+
+/* Of a material: of its layers where it has some, else of lobes and tables. Pure. */
+weft_fetches weft_fetches_of_material(const weft_material *material);
+
+/* Of a dataset in mode raw, as half floats. Pure. */
+weft_fetches weft_fetches_of_raw(void);
+
+#endif

@@ -1,0 +1,352 @@
+#include "study/tradeoff/held_error.h"
+
+#include "base/numeric/statistics.h"
+#include "compress/compress.h"
+#include "study/tradeoff/held_pictures.h"
+#include "study/tradeoff/variant.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SPLITS = 4 /* of a handful of images, each held out in turn */ };
+
+static const double highlight_share = 0.95, shadow_share = 0.2, grazing_cosine = 0.6088; /* of 52.5 degrees */
+
+struct weft_held_bench {
+    const char *scratch_path;
+    char *material_path;
+    weft_excerpt excerpt;
+    weft_splits splits;
+    int split_count; /* that are measured: the first ones */
+    bool has_pictures;
+    uint8_t *kinds; /* [texel][image] bits 1 << weft_sample_kind */
+    bool is_fitted; /* the materials below are, of this model */
+    weft_priced_model fitted_model;
+    double fit_s;
+    weft_material material[MOST_SPLITS];
+};
+
+const char *weft_sample_kind_name(weft_sample_kind kind)
+{
+    static const char *const name[] = {"all", "grazing", "highlights", "shadows"};
+    return name[kind];
+}
+
+void weft_held_error_free(weft_held_error *measured)
+{
+    weft_image_free(&measured->sample);
+    weft_image_free(&measured->predicted);
+}
+
+/* ---- Kinds of samples ---- */
+
+static float brightness(const weft_excerpt *excerpt, int x, int y, size_t texel, int image)
+{
+    const weft_dataset_layout *layout = &excerpt->layout;
+    size_t at = texel * (size_t)layout->image_count + (size_t)image;
+    double sum = 0, cosine = (double)weft_dataset_light_direction(layout, image, x, y).z;
+    for (size_t c = 0; c < 3; c++)
+        sum += (double)weft_float_of_half(excerpt->samples[3 * at + c]);
+    if (layout->values == WEFT_REFLECTANCE_COSINE)
+        sum /= fmax(cosine, 1e-3);
+    return excerpt->mask[at] || !(cosine > 0) ? NAN : (float)(sum / 3);
+}
+
+static bool is_grazing(const weft_dataset_layout *layout, int image, int x, int y)
+{
+    weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
+    weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
+    return light.z < grazing_cosine || view.z < grazing_cosine;
+}
+
+/* `value` and `sorted` are [image_count]. */
+static void mark_texel(weft_held_bench *bench, int x, int y, float *value, float *sorted)
+{
+    const weft_dataset_layout *layout = &bench->excerpt.layout;
+    size_t texel = (size_t)y * (size_t)layout->width + (size_t)x, images = (size_t)layout->image_count, count = 0;
+    uint8_t *kinds = bench->kinds + texel * images;
+    for (int i = 0; i < layout->image_count; i++) {
+        value[i] = brightness(&bench->excerpt, x, y, texel, i);
+        if (!isnan(value[i]))
+            sorted[count++] = value[i];
+    }
+    float bright = weft_quantile_of_floats(sorted, count, highlight_share),
+          dark = weft_quantile_of_floats(sorted, count, shadow_share);
+    for (int i = 0; i < layout->image_count; i++)
+        kinds[i] =
+            (uint8_t)(1 << WEFT_SAMPLES_ALL | is_grazing(layout, i, x, y) << WEFT_SAMPLES_GRAZING |
+                      (value[i] >= bright) << WEFT_SAMPLES_HIGHLIGHTS | (value[i] <= dark) << WEFT_SAMPLES_SHADOWS);
+}
+
+static weft_code mark_samples(weft_held_bench *bench, weft_error *error)
+{
+    const weft_dataset_layout *layout = &bench->excerpt.layout;
+    size_t images = (size_t)layout->image_count, texels = (size_t)layout->width * (size_t)layout->height;
+    float *value = malloc(2 * images * sizeof *value);
+    bench->kinds = malloc(texels * images);
+    if (!value || !bench->kinds) {
+        free(value);
+        return weft_fail_memory(error, "samples", texels * images);
+    }
+    for (int texel = 0; texel < (int)texels; texel++)
+        mark_texel(bench, texel % layout->width, texel / layout->width, value, value + images);
+    free(value);
+    return WEFT_OK;
+}
+
+/* ---- The bench ---- */
+
+static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side, uint64_t split,
+                         weft_held_bench *bench, weft_error *error)
+{
+    if (asprintf(&bench->material_path, "%s.weft", bench->scratch_path) < 0) {
+        bench->material_path = NULL;
+        return weft_fail_memory(error, "path", strlen(bench->scratch_path));
+    }
+    WEFT_TRY(weft_splits_create(weft_dataset_get_layout(dataset), split, 2, &bench->splits, error));
+    bench->split_count = 1;
+    if (bench->splits.kind == WEFT_SPLIT_EACH)
+        bench->split_count = bench->splits.count < MOST_SPLITS ? bench->splits.count : MOST_SPLITS;
+    WEFT_TRY(weft_excerpt_read(dataset, kind, side, &bench->excerpt, error));
+    return mark_samples(bench, error);
+}
+
+weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, uint64_t split,
+                                 const char *scratch_path, weft_held_bench **result, weft_error *error)
+{
+    weft_held_bench *bench = calloc(1, sizeof *bench);
+    if (!bench)
+        return weft_fail_memory(error, "bench", sizeof *bench);
+    bench->scratch_path = scratch_path;
+    bench->has_pictures = kind == WEFT_EXCERPT_BLOCK;
+    weft_code code = prepare(dataset, kind, side, split, bench, error);
+    if (code == WEFT_OK)
+        *result = bench;
+    else
+        weft_held_bench_free(bench);
+    return code;
+}
+
+static void forget_fit(weft_held_bench *bench)
+{
+    for (int s = 0; s < MOST_SPLITS; s++)
+        weft_material_free(&bench->material[s]);
+    bench->is_fitted = false;
+}
+
+void weft_held_bench_free(weft_held_bench *bench)
+{
+    if (!bench)
+        return;
+    forget_fit(bench);
+    weft_excerpt_free(&bench->excerpt);
+    weft_splits_free(&bench->splits);
+    free(bench->kinds);
+    free(bench->material_path);
+    free(bench);
+}
+
+const weft_excerpt *weft_held_bench_texels(const weft_held_bench *bench)
+{
+    return &bench->excerpt;
+}
+
+const weft_splits *weft_held_bench_splits(const weft_held_bench *bench)
+{
+    return &bench->splits;
+}
+
+/* ---- Fits ---- */
+
+/* What is held out of a fit, beside what the model does without: [image_count] each. */
+typedef struct split_masks {
+    uint8_t *left_out; /* by the model */
+    uint8_t *unseen;   /* by the model or by the split */
+    uint8_t *next;     /* by the next split, but fitted here */
+} split_masks;
+
+static void free_masks(split_masks *masks)
+{
+    free(masks->left_out);
+    free(masks->unseen);
+    free(masks->next);
+}
+
+static weft_code make_masks(const weft_held_bench *bench, const weft_priced_model *model, int split, split_masks *masks,
+                            weft_error *error)
+{
+    size_t images = (size_t)bench->excerpt.layout.image_count;
+    const uint8_t *held = weft_splits_held(&bench->splits, split);
+    const uint8_t *next = weft_splits_held(&bench->splits, (split + 1) % bench->splits.count);
+    int taken;
+    *masks = (split_masks){malloc(images), malloc(images), malloc(images)};
+    if (!masks->left_out || !masks->unseen || !masks->next)
+        return weft_fail_memory(error, "images", 3 * images);
+    WEFT_TRY(weft_photographs_leave_out(&bench->excerpt.layout, model->photographs, masks->left_out, &taken, error));
+    for (size_t i = 0; i < images; i++) {
+        masks->unseen[i] = held[i] || masks->left_out[i];
+        masks->next[i] = masks->left_out[i] ? 0 : next[i];
+    }
+    return WEFT_OK;
+}
+
+static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *model, const uint8_t *unseen,
+                           weft_material *material, weft_error *error)
+{
+    weft_dataset *others;
+    weft_compress_report report;
+    weft_compress_options options = model->options;
+    options.levels = bench->has_pictures; /* fewer texels come from there */
+    WEFT_TRY(weft_excerpt_write(&bench->excerpt, unseen, bench->scratch_path, &others, error));
+    weft_code code = weft_compress(others, &options, NULL, material, &report, error);
+    weft_dataset_close(others);
+    if (code == WEFT_OK)
+        bench->fit_s += report.seconds;
+    return code;
+}
+
+static weft_code make_predictor(const weft_held_bench *bench, const weft_priced_model *model,
+                                const weft_material *material, weft_predictor **predictor, weft_error *error)
+{
+    const weft_dataset_layout *layout = &bench->excerpt.layout;
+    return model->fewer_texels ? weft_predictor_of_coarser_material(layout, material, predictor, error)
+                               : weft_predictor_of_material(layout, material, predictor, error);
+}
+
+/* ---- Errors ---- */
+
+static weft_code summarise(const weft_held_bench *bench, const weft_asked_samples *asked,
+                           weft_error_summary result[WEFT_SAMPLE_KINDS], weft_error *error)
+{
+    uint8_t *group = malloc(asked->count + 1);
+    if (!group)
+        return weft_fail_memory(error, "samples", asked->count);
+    weft_code code = WEFT_OK;
+    for (int kind = 0; kind < WEFT_SAMPLE_KINDS && code == WEFT_OK; kind++) {
+        for (size_t i = 0; i < asked->count; i++)
+            group[i] = bench->kinds[asked->sample[i]] >> kind & 1;
+        code = weft_error_summary_of_group(asked->value, group, asked->count, 1, &result[kind], error);
+    }
+    free(group);
+    return code;
+}
+
+/* Moves the values of `more` behind those of `all`. */
+static weft_code append(weft_asked_samples *all, weft_asked_samples *more, weft_error *error)
+{
+    size_t count = all->count + more->count;
+    weft_compared *value = realloc(all->value, (count + 1) * sizeof *value);
+    all->value = value ? value : all->value;
+    uint32_t *sample = realloc(all->sample, (count + 1) * sizeof *sample);
+    all->sample = sample ? sample : all->sample;
+    if (!value || !sample)
+        return weft_fail_memory(error, "samples", count * (sizeof *value + sizeof *sample));
+    memcpy(value + all->count, more->value, more->count * sizeof *value);
+    memcpy(sample + all->count, more->sample, more->count * sizeof *sample);
+    all->count = count;
+    return WEFT_OK;
+}
+
+/* What is said of the images of one split, and of all splits before it. */
+typedef struct said {
+    weft_asked_samples held, fitted;
+} said;
+
+static void free_said(said *s)
+{
+    weft_asked_samples_free(&s->held);
+    weft_asked_samples_free(&s->fitted);
+}
+
+static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *model, const weft_material *fitted,
+                              const weft_trial *trial, said *answer, weft_weight *weight, weft_error *error)
+{
+    weft_material material;
+    weft_predictor *predictor;
+    WEFT_TRY(weft_variant_make(fitted, model, bench->material_path, &material, error));
+    weft_code code = make_predictor(bench, model, &material, &predictor, error);
+    if (code == WEFT_OK) {
+        code = weft_trial_ask(trial, predictor, &answer->held, &answer->fitted, error);
+        weft_predictor_free(predictor);
+    }
+    if (code == WEFT_OK)
+        code = weft_weight_of(&material, weight, error);
+    weft_material_free(&material);
+    return code;
+}
+
+static weft_code ask_model(weft_held_bench *bench, const weft_priced_model *model, int split, const weft_trial *trial,
+                           const uint8_t *unseen, said *answer, weft_weight *weight, weft_error *error)
+{
+    if (model->family == WEFT_PRICED_RAW)
+        return weft_trial_ask_photographs(trial, &answer->held, error);
+    if (!bench->is_fitted)
+        WEFT_TRY(fit_split(bench, model, unseen, &bench->material[split], error));
+    return ask_material(bench, model, &bench->material[split], trial, answer, weight, error);
+}
+
+static weft_code take_answer(const weft_held_bench *bench, int split, const weft_trial *trial, said *answer, said *all,
+                             weft_held_error *measured, weft_error *error)
+{
+    WEFT_TRY(append(&all->held, &answer->held, error));
+    WEFT_TRY(append(&all->fitted, &answer->fitted, error));
+    return bench->has_pictures && split == 0 ? weft_held_pictures_compare(trial, &answer->held, measured, error)
+                                             : WEFT_OK;
+}
+
+static weft_code measure_split(weft_held_bench *bench, const weft_priced_model *model, int split, said *all,
+                               weft_held_error *measured, weft_error *error)
+{
+    split_masks masks;
+    weft_trial trial = {0};
+    said answer = {0};
+    weft_code code = make_masks(bench, model, split, &masks, error);
+    if (code == WEFT_OK)
+        code = weft_trial_create(&bench->excerpt, weft_splits_held(&bench->splits, split), masks.next, &trial, error);
+    if (code == WEFT_OK)
+        code = ask_model(bench, model, split, &trial, masks.unseen, &answer, &measured->weight, error);
+    if (code == WEFT_OK)
+        code = take_answer(bench, split, &trial, &answer, all, measured, error);
+    free_said(&answer);
+    weft_trial_free(&trial);
+    free_masks(&masks);
+    return code;
+}
+
+static weft_code measure_splits(weft_held_bench *bench, const weft_priced_model *model, said *all,
+                                weft_held_error *measured, weft_error *error)
+{
+    for (int split = 0; split < bench->split_count; split++)
+        WEFT_TRY(measure_split(bench, model, split, all, measured, error));
+    measured->fit_s = bench->fit_s;
+    WEFT_TRY(summarise(bench, &all->held, measured->held, error));
+    WEFT_TRY(summarise(bench, &all->fitted, measured->fitted, error));
+    if (measured->held[WEFT_SAMPLES_ALL].count == 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "every sample that was held out is masked");
+    return WEFT_OK;
+}
+
+weft_code weft_held_bench_measure(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
+                                  weft_error *error)
+{
+    said all = {0};
+    *measured = (weft_held_error){0};
+    if (model->family != WEFT_PRICED_RAW &&
+        !(bench->is_fitted && weft_priced_models_share_fit(model, &bench->fitted_model))) {
+        forget_fit(bench);
+        bench->fit_s = 0;
+    }
+    weft_code code = measure_splits(bench, model, &all, measured, error);
+    if (code == WEFT_OK && model->family != WEFT_PRICED_RAW) {
+        bench->is_fitted = true;
+        bench->fitted_model = *model;
+    }
+    free_said(&all);
+    if (code != WEFT_OK) {
+        forget_fit(bench);
+        weft_held_error_free(measured);
+    }
+    return code;
+}

@@ -1,0 +1,57 @@
+/* The error of a model on images that it was not fitted to, in all of them and where eyes look. */
+#ifndef WEFT_STUDY_TRADEOFF_HELD_ERROR_H
+#define WEFT_STUDY_TRADEOFF_HELD_ERROR_H
+
+#include "base/picture/image.h"
+#include "study/error/picture_quality.h"
+#include "study/hold_out/split.h"
+#include "study/hold_out/trial.h"
+#include "study/tradeoff/priced_model.h"
+#include "study/tradeoff/weight.h"
+
+/* Which samples. A texel's brightness in an image is the mean of its channels, divided by the cosine of the light where
+ * the dataset holds that. */
+typedef enum weft_sample_kind {
+    WEFT_SAMPLES_ALL,
+    WEFT_SAMPLES_GRAZING,    /* view or light 52.5 degrees or more from the normal: the ring of 60 degrees or beyond */
+    WEFT_SAMPLES_HIGHLIGHTS, /* the brightest twentieth of each texel over all images */
+    WEFT_SAMPLES_SHADOWS,    /* the darkest fifth */
+    WEFT_SAMPLE_KINDS
+} weft_sample_kind;
+
+/* "all", "grazing", "highlights", "shadows". Pure. */
+const char *weft_sample_kind_name(weft_sample_kind kind);
+
+typedef struct weft_held_error {
+    weft_error_summary held[WEFT_SAMPLE_KINDS], fitted[WEFT_SAMPLE_KINDS];
+    int picture_count;            /* of held-out images whose texels are neighbours */
+    weft_picture_quality quality; /* the mean over these, each shown as its photograph needs */
+    double fit_s;
+    weft_weight weight;           /* of the fit without what is held out */
+    int worst_image;              /* the picture with the largest relative RMSE */
+    weft_image sample, predicted; /* of it, sRGB encoded; empty without pictures */
+} weft_held_error;
+void weft_held_error_free(weft_held_error *measured);
+
+/* Some texels of a dataset, and the images that are held out of them. */
+typedef struct weft_held_bench weft_held_bench;
+
+/* Reads at most side x side texels of the kind; `split` says which directions are held out: others for other numbers
+ * (study/hold_out/split.h). Pictures are compared where texels are neighbours (WEFT_EXCERPT_BLOCK). Files are written
+ * to the folder of `scratch_path`, which must outlive the bench, nameless once they are complete. The caller frees.
+ * Errors: those of weft_splits_create and of reading. */
+weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, uint64_t split,
+                                 const char *scratch_path, weft_held_bench **result, weft_error *error);
+void weft_held_bench_free(weft_held_bench *bench);
+
+/* Its texels, and what is held out of them. */
+const weft_excerpt *weft_held_bench_texels(const weft_held_bench *bench);
+const weft_splits *weft_held_bench_splits(const weft_held_bench *bench);
+
+/* Fits the model without what is held out, and measures it there. The fit of the model before is used again where it is
+ * the same. The caller frees *measured. Errors: those of weft_compress; WEFT_BAD_USAGE where all that is held out is
+ * masked. */
+weft_code weft_held_bench_measure(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
+                                  weft_error *error);
+
+#endif

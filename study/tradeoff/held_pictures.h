@@ -1,0 +1,13 @@
+/* Held-out images beside what a model makes of them, as pictures. */
+#ifndef WEFT_STUDY_TRADEOFF_HELD_PICTURES_H
+#define WEFT_STUDY_TRADEOFF_HELD_PICTURES_H
+
+#include "study/tradeoff/held_error.h"
+
+/* Compares some images that a trial holds out, of those with the most reasons to be, with what is said of them, under
+ * the exposure that the photograph needs; masked texels are black in both. Sets the pictures and their quality in
+ * `measured`. Errors: WEFT_SYSTEM. */
+weft_code weft_held_pictures_compare(const weft_trial *trial, const weft_asked_samples *said, weft_held_error *measured,
+                                     weft_error *error);
+
+#endif

@@ -1,0 +1,194 @@
+#include "study/tradeoff/preset.h"
+
+#include "base/text/json_text.h"
+#include "compress/compress.h"
+#include "study/hold_out/record.h"
+#include "study/tradeoff/held_error.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { ERROR_SIDE = 24, SIZE_SIDE = 32, SPLIT = 1 /* the measurement begins with 0 */ };
+
+/* ---- The models ---- */
+
+typedef struct choosing {
+    weft_dataset *dataset;
+    const weft_compress_options *given;
+    const char *scratch_path;
+    const weft_progress *progress;
+    int count;
+    weft_priced_model model[WEFT_PRICED_MOST];
+    weft_offer offer[WEFT_PRICED_MOST];
+} choosing;
+
+/* What is chosen of the options; all else is as it was given. */
+static weft_compress_options merge(const weft_compress_options *given, const weft_compress_options *chosen)
+{
+    weft_compress_options merged = *given;
+    merged.lobe_count = chosen->lobe_count;
+    merged.table = chosen->table;
+    merged.light_table = chosen->light_table;
+    merged.frames = chosen->frames;
+    merged.layer_count = chosen->layer_count;
+    merged.table_components = chosen->table_components;
+    return merged;
+}
+
+static void list_models(choosing *work)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    int count = weft_priced_models_list(layout, weft_dataset_has_opacity(work->dataset), work->model);
+    for (int i = 0; i < count; i++) {
+        if (!work->model[i].arguments[0] || work->model[i].options.light_table)
+            continue;
+        work->model[work->count] = work->model[i];
+        work->model[work->count].options = merge(work->given, &work->model[i].options);
+        work->model[work->count++].options.checkpoint_path = NULL;
+    }
+}
+
+/* ---- Errors ---- */
+
+static weft_code measure_models(choosing *work, weft_held_bench *bench, weft_error *error)
+{
+    static const char step[] = "trying models";
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    for (int i = 0; i < work->count; i++) {
+        weft_held_error measured;
+        weft_progress_report(work->progress, step, i, work->count);
+        WEFT_TRY(weft_held_bench_measure(bench, &work->model[i], &measured, error));
+        work->offer[i] =
+            (weft_offer){weft_weight_scaled(&measured.weight, layout->width, layout->height, work->given->levels),
+                         measured.held[WEFT_SAMPLES_ALL].relative_rmse, true};
+        weft_held_error_free(&measured);
+    }
+    weft_progress_report(work->progress, step, work->count, work->count);
+    return WEFT_OK;
+}
+
+/* Near lights need texels at even distances, and the model for few images needs neighbours. */
+static weft_excerpt_kind choose_texels(const choosing *work)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    int lobes;
+    if (weft_compress_plan(layout, work->given, &lobes) == WEFT_COMPRESS_SPARSE)
+        return WEFT_EXCERPT_BLOCK;
+    return layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
+}
+
+static weft_code measure(choosing *work, weft_error *error)
+{
+    weft_held_bench *bench;
+    WEFT_TRY(weft_held_bench_create(work->dataset, choose_texels(work), ERROR_SIDE, SPLIT, work->scratch_path, &bench,
+                                    error));
+    weft_code code = measure_models(work, bench, error);
+    weft_held_bench_free(bench);
+    return code;
+}
+
+/* ---- The size ---- */
+
+/* What the measurement afterwards adds, with numbers of full length. */
+static weft_code added_bytes(const weft_preset_prediction *prediction, double *bytes, weft_error *error)
+{
+    const double number = 0.12345678901234567;
+    const weft_error_summary summary = {number, number, number, number, 10 + number, 1000000};
+    const weft_hold_out_error errors = {summary, summary, summary, summary};
+    const weft_hold_out held_out = {.split_count = 1,
+                                    .view_count = 81,
+                                    .view_held_count = 8,
+                                    .light_count = 81,
+                                    .light_held_count = 8,
+                                    .image_count = 6561,
+                                    .image_held_count = 1232,
+                                    .texel_count = 144,
+                                    .dataset_texel_count = 4096,
+                                    .material = errors,
+                                    .photographs = errors,
+                                    .fitted = summary};
+    static const char name[] = ",\"predicted\":";
+    uint64_t measured;
+    WEFT_TRY(weft_hold_out_bytes(&held_out, &measured, error));
+    json_t *own = weft_preset_to_json(prediction);
+    size_t predicted = own ? json_dumpb(own, NULL, 0, JSON_COMPACT) : 0;
+    json_decref(own);
+    *bytes = (double)(measured + predicted + sizeof name - 1);
+    return predicted > 0 ? WEFT_OK : weft_fail_memory(error, "prediction", 0);
+}
+
+static weft_code fit_block(const choosing *work, const weft_compress_options *options, weft_weight *weight,
+                           weft_error *error)
+{
+    weft_excerpt excerpt;
+    weft_dataset *block;
+    weft_material material;
+    WEFT_TRY(weft_excerpt_read(work->dataset, WEFT_EXCERPT_BLOCK, SIZE_SIDE, &excerpt, error));
+    uint8_t *none = calloc((size_t)excerpt.layout.image_count, 1);
+    weft_code code = none ? weft_excerpt_write(&excerpt, none, work->scratch_path, &block, error)
+                          : weft_fail_memory(error, "images", (size_t)excerpt.layout.image_count);
+    free(none);
+    weft_excerpt_free(&excerpt);
+    WEFT_TRY(code);
+    code = weft_compress(block, options, NULL, &material, NULL, error);
+    weft_dataset_close(block);
+    WEFT_TRY(code);
+    code = weft_weight_of(&material, weight, error);
+    weft_material_free(&material);
+    return code;
+}
+
+/* The metadata are those of the whole dataset, not of the block. */
+static weft_code predict_bytes(const choosing *work, const weft_compress_options *options,
+                               weft_preset_prediction *prediction, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    weft_weight weight;
+    double added;
+    WEFT_TRY(fit_block(work, options, &weight, error));
+    WEFT_TRY(added_bytes(prediction, &added, error));
+    prediction->bytes = weft_weight_scaled(&weight, layout->width, layout->height, options->levels) + added +
+                        (double)strlen(layout->provenance);
+    return WEFT_OK;
+}
+
+/* ---- The whole ---- */
+
+static weft_code choose(choosing *work, weft_preset preset, weft_compress_options *options,
+                        weft_preset_prediction *prediction, weft_error *error)
+{
+    list_models(work);
+    WEFT_TRY(measure(work, error));
+    size_t chosen = weft_preset_choose(work->offer, (size_t)work->count, preset);
+    const weft_priced_model *model = &work->model[chosen];
+    *prediction = (weft_preset_prediction){.preset = preset, .error = work->offer[chosen].error};
+    memcpy(prediction->model, model->name, sizeof prediction->model);
+    memcpy(prediction->arguments, model->arguments, sizeof prediction->arguments);
+    WEFT_TRY(predict_bytes(work, &model->options, prediction, error));
+    *options = merge(options, &model->options);
+    return WEFT_OK;
+}
+
+weft_code weft_preset_predict(weft_dataset *dataset, weft_preset preset, const char *scratch_path,
+                              const weft_progress *progress, weft_compress_options *options,
+                              weft_preset_prediction *prediction, weft_error *error)
+{
+    choosing *work = calloc(1, sizeof *work);
+    if (!work)
+        return weft_fail_memory(error, "models", sizeof *work);
+    const weft_compress_options given = *options;
+    work->dataset = dataset;
+    work->given = &given;
+    work->scratch_path = scratch_path;
+    work->progress = progress;
+    weft_code code = choose(work, preset, options, prediction, error);
+    free(work);
+    return code;
+}
+
+json_t *weft_preset_to_json(const weft_preset_prediction *prediction)
+{
+    return json_pack("{s:s, s:s, s:s, s:f, s:f}", "preset", weft_preset_name(prediction->preset), "model",
+                     prediction->model, "options", prediction->arguments, "bytes", prediction->bytes, "relative_rmse",
+                     prediction->error);
+}

@@ -1,0 +1,290 @@
+#include "study/tradeoff/price.h"
+
+#include "base/atomic_file.h"
+#include "base/clock.h"
+#include "compress/compress.h"
+#include "player/draw/player.h"
+#include "player/gl/context.h"
+#include "study/error/frame_time.h"
+#include "study/hold_out/excerpt.h"
+#include "study/model/model.h"
+#include "study/tradeoff/variant.h"
+#include "study/tradeoff/weight.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { FRAME_WIDTH = 730, FRAME_HEIGHT = 400, EVALUATIONS_AT_ONCE = 64 };
+
+static const double evaluating_s = 0.1, largest_theta_rad = 1.3;
+
+struct weft_price_shop {
+    weft_dataset *dataset; /* the whole */
+    weft_dataset *block;   /* what is fitted; the same where that is small */
+    const char *scratch_path;
+    const weft_progress *progress;
+    char *material_path;
+    int side;
+    double share; /* of the texels that are fitted */
+    weft_headless *headless;
+    weft_player *player;
+    char why_not_drawn[WEFT_MESSAGE_SIZE], renderer[128];
+    bool is_fitted;
+    weft_priced_model fitted_model;
+    weft_material fitted;
+    double fit_s;
+};
+
+/* ---- The shop ---- */
+
+/* The middle of the dataset, without some images (left_out [image_count]; NULL: all). */
+static weft_code write_block(weft_price_shop *shop, const uint8_t *left_out, weft_dataset **block, weft_error *error)
+{
+    weft_excerpt excerpt;
+    WEFT_TRY(weft_excerpt_read(shop->dataset, WEFT_EXCERPT_BLOCK, shop->side, &excerpt, error));
+    uint8_t *none = left_out ? NULL : calloc((size_t)excerpt.layout.image_count, 1);
+    weft_code code = left_out || none ? WEFT_OK : weft_fail_memory(error, "images", (size_t)excerpt.layout.image_count);
+    if (code == WEFT_OK)
+        code = weft_excerpt_write(&excerpt, left_out ? left_out : none, shop->scratch_path, block, error);
+    free(none);
+    weft_excerpt_free(&excerpt);
+    return code;
+}
+
+static weft_code set_drape(weft_player *player, weft_error *error)
+{
+    weft_mesh mesh;
+    WEFT_TRY(weft_mesh_open("drape", &mesh, error));
+    weft_code code = weft_player_set_mesh(player, &mesh, error);
+    weft_mesh_free(&mesh);
+    return code;
+}
+
+/* Without OpenGL nothing is drawn, and the shop says why. */
+static weft_code open_player(weft_price_shop *shop, weft_error *error)
+{
+    weft_error absence = {0};
+    if (weft_headless_create(WEFT_GL_CORE, &shop->headless, &absence) != WEFT_OK) {
+        shop->headless = NULL;
+        snprintf(shop->why_not_drawn, sizeof shop->why_not_drawn, "%s", absence.message);
+        return WEFT_OK;
+    }
+    snprintf(shop->renderer, sizeof shop->renderer, "%s", weft_gl_renderer());
+    WEFT_TRY(weft_player_create(&shop->player, error));
+    return set_drape(shop->player, error);
+}
+
+static weft_code prepare(weft_price_shop *shop, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
+    if (asprintf(&shop->material_path, "%s.weft", shop->scratch_path) < 0) {
+        shop->material_path = NULL;
+        return weft_fail_memory(error, "path", strlen(shop->scratch_path));
+    }
+    shop->block = shop->dataset;
+    if (layout->width > shop->side || layout->height > shop->side)
+        WEFT_TRY(write_block(shop, NULL, &shop->block, error));
+    shop->share = (double)weft_price_shop_texels(shop) / ((double)layout->width * layout->height);
+    return open_player(shop, error);
+}
+
+weft_code weft_price_shop_open(weft_dataset *dataset, int side, const char *scratch_path, const weft_progress *progress,
+                               weft_price_shop **result, weft_error *error)
+{
+    weft_price_shop *shop = calloc(1, sizeof *shop);
+    if (!shop)
+        return weft_fail_memory(error, "prices", sizeof *shop);
+    shop->dataset = dataset;
+    shop->side = side;
+    shop->scratch_path = scratch_path;
+    shop->progress = progress;
+    weft_code code = prepare(shop, error);
+    if (code == WEFT_OK)
+        *result = shop;
+    else
+        weft_price_shop_close(shop);
+    return code;
+}
+
+void weft_price_shop_close(weft_price_shop *shop)
+{
+    if (!shop)
+        return;
+    weft_player_free(shop->player);
+    weft_headless_free(shop->headless);
+    if (shop->block != shop->dataset)
+        weft_dataset_close(shop->block);
+    weft_material_free(&shop->fitted);
+    free(shop->material_path);
+    free(shop);
+}
+
+long weft_price_shop_texels(const weft_price_shop *shop)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(shop->block);
+    return (long)layout->width * layout->height;
+}
+
+const char *weft_price_shop_why_not_drawn(const weft_price_shop *shop)
+{
+    return shop->why_not_drawn;
+}
+
+const char *weft_price_shop_renderer(const weft_price_shop *shop)
+{
+    return shop->renderer;
+}
+
+/* ---- Evaluating ---- */
+
+/* An additive sequence (its steps are powers of the root of x^5 = x + 1) fills places and directions evenly. */
+static weft_query query_of(long number)
+{
+    double value[4], step = 1;
+    for (int i = 0; i < 4; i++) {
+        step /= 1.1673039782614187;
+        value[i] = fmod(0.5 + step * (double)number, 1);
+    }
+    weft_angles light = {largest_theta_rad * value[0], 2 * WEFT_PI * value[1]};
+    weft_angles view = {largest_theta_rad * value[2], 2 * WEFT_PI * value[3]};
+    return (weft_query){.light = weft_direction_of_angles(light),
+                        .view = weft_direction_of_angles(view),
+                        .has_place = true,
+                        .u = fmod(value[0] + value[3], 1),
+                        .v = fmod(value[1] + value[2], 1)};
+}
+
+/* At least some, then as many as a tenth of a second allows. */
+static weft_code time_evaluations(const char *path, double *per_second, weft_error *error)
+{
+    const weft_model_options options = {0};
+    weft_model *model;
+    long count = 0;
+    WEFT_TRY(weft_model_open(path, &options, &model, error));
+    weft_code code = WEFT_OK;
+    double began = weft_now_s(), elapsed = 0;
+    while (code == WEFT_OK && elapsed < evaluating_s) {
+        for (int i = 0; i < EVALUATIONS_AT_ONCE && code == WEFT_OK; i++) {
+            weft_query query = query_of(count++);
+            weft_rgb brdf;
+            code = weft_model_brdf(model, &query, &brdf, error);
+        }
+        elapsed = weft_now_s() - began;
+    }
+    weft_model_close(model);
+    *per_second = (double)count / elapsed;
+    return code;
+}
+
+/* ---- Fitting ---- */
+
+static weft_code fit_block(weft_price_shop *shop, const weft_priced_model *model, weft_dataset *block,
+                           weft_error *error)
+{
+    weft_compress_report report;
+    shop->is_fitted = false;
+    weft_material_free(&shop->fitted);
+    WEFT_TRY(weft_compress(block, &model->options, NULL, &shop->fitted, &report, error));
+    shop->is_fitted = true;
+    shop->fitted_model = *model;
+    shop->fit_s = report.seconds;
+    return WEFT_OK;
+}
+
+static weft_code fit(weft_price_shop *shop, const weft_priced_model *model, const uint8_t *left_out, weft_error *error)
+{
+    weft_dataset *some;
+    if (shop->is_fitted && weft_priced_models_share_fit(model, &shop->fitted_model))
+        return WEFT_OK;
+    if (model->photographs == WEFT_PHOTOGRAPHS_ALL)
+        return fit_block(shop, model, shop->block, error);
+    WEFT_TRY(write_block(shop, left_out, &some, error));
+    weft_code code = fit_block(shop, model, some, error);
+    weft_dataset_close(some);
+    return code;
+}
+
+/* ---- Prices ---- */
+
+static weft_code time_frame(weft_price_shop *shop, weft_mode mode, double *frame_ms, weft_error *error)
+{
+    weft_scene scene = weft_scene_default();
+    scene.pane_count = 1;
+    scene.pane[0] = mode;
+    scene.labels = false;
+    scene.filter = WEFT_FILTER_EXACT;
+    return weft_frame_time_measure(shop->player, &scene, FRAME_WIDTH, FRAME_HEIGHT, frame_ms, error);
+}
+
+static weft_code price_material(weft_price_shop *shop, const weft_material *material, weft_price *price,
+                                weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
+    weft_weight weight;
+    WEFT_TRY(weft_weight_of(material, &weight, error));
+    int smaller = material->level[0].width < weft_dataset_get_layout(shop->block)->width ? 2 : 1;
+    price->bytes = weft_weight_scaled(&weight, (layout->width + smaller - 1) / smaller,
+                                      (layout->height + smaller - 1) / smaller, material->level_count > 1);
+    price->bits_a_texel = 8 * price->bytes / ((double)layout->width * layout->height);
+    price->fit_s = shop->fit_s / shop->share;
+    price->fetches = weft_fetches_of_material(material);
+    WEFT_TRY(weft_material_write(shop->material_path, material, error));
+    weft_code code = time_evaluations(shop->material_path, &price->evaluations_a_second, error);
+    unlink(shop->material_path);
+    WEFT_TRY(code);
+    if (!shop->player)
+        return WEFT_OK;
+    WEFT_TRY(weft_player_set_material(shop->player, material, error));
+    return time_frame(shop, WEFT_MODE_COMPRESSED, &price->frame_ms, error);
+}
+
+static weft_code price_raw(weft_price_shop *shop, weft_price *price, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
+    int skipped_levels;
+    price->bits_a_texel = 8.0 * 3 * sizeof(weft_half) * layout->image_count;
+    price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
+    price->fetches = weft_fetches_of_raw();
+    WEFT_TRY(time_evaluations(weft_dataset_path(shop->dataset), &price->evaluations_a_second, error));
+    if (!shop->player)
+        return WEFT_OK;
+    WEFT_TRY(weft_player_set_dataset(shop->player, shop->block, shop->progress, &skipped_levels, error));
+    weft_code code = time_frame(shop, WEFT_MODE_RAW, &price->frame_ms, error);
+    weft_player_clear(shop->player, WEFT_MODE_RAW);
+    return code;
+}
+
+static weft_code price_model(weft_price_shop *shop, const weft_priced_model *model, const uint8_t *left_out,
+                             weft_price *price, bool *has_parts, weft_error *error)
+{
+    if (model->family == WEFT_PRICED_RAW)
+        return price_raw(shop, price, error);
+    WEFT_TRY(fit(shop, model, left_out, error));
+    *has_parts = !model->options.light_table || shop->fitted.light_count > 0;
+    if (!*has_parts)
+        return WEFT_OK;
+    weft_material material;
+    WEFT_TRY(weft_variant_make(&shop->fitted, model, shop->material_path, &material, error));
+    weft_code code = price_material(shop, &material, price, error);
+    weft_material_free(&material);
+    return code;
+}
+
+weft_code weft_price_ask(weft_price_shop *shop, const weft_priced_model *model, weft_price *price, bool *has_parts,
+                         weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
+    uint8_t *left_out = malloc((size_t)layout->image_count);
+    if (!left_out)
+        return weft_fail_memory(error, "images", (size_t)layout->image_count);
+    *price = (weft_price){0};
+    *has_parts = true;
+    weft_code code = weft_photographs_leave_out(layout, model->photographs, left_out, &price->photograph_count, error);
+    if (code == WEFT_OK)
+        code = price_model(shop, model, left_out, price, has_parts, error);
+    free(left_out);
+    return code;
+}

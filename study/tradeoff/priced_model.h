@@ -1,0 +1,50 @@
+/* The models that a price list offers for a dataset. */
+#ifndef WEFT_STUDY_TRADEOFF_PRICED_MODEL_H
+#define WEFT_STUDY_TRADEOFF_PRICED_MODEL_H
+
+#include "compress/options/options.h"
+
+enum { WEFT_PRICED_MOST = 40, WEFT_PRICED_NAME = 48, WEFT_PRICED_ARGUMENTS = 64 };
+
+typedef enum weft_priced_family {
+    WEFT_PRICED_LOBES,
+    WEFT_PRICED_TABLES, /* lobes with T or S */
+    WEFT_PRICED_LAYERS,
+    WEFT_PRICED_FEWER, /* photographs or texels */
+    WEFT_PRICED_RAW,   /* the photographs, interpolated */
+    WEFT_PRICED_FAMILIES
+} weft_priced_family;
+
+/* What is taken of the photographs. */
+typedef enum weft_photographs_taken {
+    WEFT_PHOTOGRAPHS_ALL,
+    WEFT_PHOTOGRAPHS_SECOND_RINGS, /* of views and lights: 0, 30 and 60 degrees of ubo81 */
+    WEFT_PHOTOGRAPHS_41_VIEWS,     /* spread evenly */
+    WEFT_PHOTOGRAPHS_21_VIEWS
+} weft_photographs_taken;
+
+typedef struct weft_priced_model {
+    char name[WEFT_PRICED_NAME];
+    char arguments[WEFT_PRICED_ARGUMENTS]; /* of weft compress; "" where that has none for it */
+    weft_priced_family family;
+    weft_compress_options options; /* not of raw */
+    weft_photographs_taken photographs;
+    int table_bits;    /* 4 or 6: T is rounded after the fit; 0: as it was fitted */
+    bool fewer_texels; /* half of them along each side */
+    int work;          /* of a fit, beside that of others */
+} weft_priced_model;
+
+/* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. Opacity lies in
+ * T, which layers then have beside them. One that is made from the fit of another (table_bits, fewer_texels) comes
+ * right after it. Pure. */
+int weft_priced_models_list(const weft_dataset_layout *layout, bool has_opacity, weft_priced_model *model);
+
+/* Whether the model is made from the same fit as the other. Pure. */
+bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other);
+
+/* Marks the images that are not taken with 1 in left_out [image_count], others with 0; *taken_count receives how many
+ * are taken. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_photographs_leave_out(const weft_dataset_layout *layout, weft_photographs_taken taken, uint8_t *left_out,
+                                     int *taken_count, weft_error *error);
+
+#endif

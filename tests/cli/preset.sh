@@ -1,0 +1,61 @@
+#!/bin/sh
+# weft compress --preset, whole: what it predicts, keeps and refuses. Usage: preset.sh WEFT ASSETS PYTHON
+set -eu
+weft=$1
+assets=$2
+python=$3
+. "$(dirname "$0")/expect.sh"
+scratch=$(mktemp -d "$PWD/preset-XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+awk 'BEGIN {
+    print "theta_deg,phi_deg"
+    print "0,0"
+    for (i = 0; i < 6; i++)
+        print 40 "," 60 * i + 7
+}' >directions.csv
+expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --size 8x8 --noise 10 --bounces 0 \
+    --resolution 20 --directions directions.csv
+# A preset says before the work what it will cost, and keeps to it.
+expect_ok compress knit.btf.h5 -o knit.weft --preset balanced --json
+cp out.log events.log
+expect_ok info knit.weft --json
+"$python" - <<'PYTHON' || fail "the preset does not keep to what it says"
+import json, os, re
+events = [json.loads(line) for line in open("events.log")]
+predicted = next(e for e in events if e["event"] == "predicted")
+measured = next(e for e in events if e["event"] == "held_out")
+first_fit = next(i for i, e in enumerate(events) if e.get("stage") == "fitting texels")
+assert events.index(predicted) < first_fit, "it is said after the work"
+size = os.path.getsize("knit.weft")
+assert abs(predicted["bytes"] / size - 1) < 0.02, (predicted["bytes"], size)
+assert abs(predicted["relative_rmse"] / measured["not_fitted"]["relative_rmse"] - 1) < 0.25, (predicted, measured)
+notes = [e["text"] for e in events if e["event"] == "note"]
+assert any(re.match(r"predicted [0-9.]+ MB, is [0-9.]+ MB", n) for n in notes), notes
+kept = json.loads(open("out.log").read())["metadata"]["predicted"]
+assert kept == {k: v for k, v in predicted.items() if k != "event"}, kept
+assert predicted["preset"] == "balanced" and predicted["options"].startswith("--"), predicted
+PYTHON
+[ "$(ls -A | grep -c held-out)" = 0 ] || fail "compress --preset leaves files behind"
+
+# The same model without a preset is the same material but for what was predicted.
+options=$("$python" - <<'PYTHON'
+import json
+events = [json.loads(line) for line in open("events.log")]
+print(next(e for e in events if e["event"] == "predicted")["options"])
+PYTHON
+)
+# shellcheck disable=SC2086
+expect_ok compress knit.btf.h5 -o plain.weft $options
+"$python" - <<'PYTHON' || fail "the preset does not compress as its options do"
+import os
+sizes = os.path.getsize("knit.weft"), os.path.getsize("plain.weft")
+assert 0 < sizes[0] - sizes[1] < 400, sizes
+PYTHON
+for option in "--lobes 2" "--table off" "--layers 8" "--tables pca:4" "--light-table on" "--frames off" "--error 5" "--budget 1"; do
+    # shellcheck disable=SC2086
+    expect_error 2 "--preset chooses the model" compress knit.btf.h5 -o none.weft --preset small $option
+done
+expect_error 2 "--preset" compress knit.btf.h5 -o none.weft --preset tiny
+expect_no_file none.weft

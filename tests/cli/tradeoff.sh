@@ -1,0 +1,59 @@
+#!/bin/sh
+# The command weft tradeoff, whole: what it says, writes and refuses. Usage: tradeoff.sh WEFT ASSETS PYTHON
+set -eu
+weft=$1
+assets=$2
+python=$3
+. "$(dirname "$0")/expect.sh"
+scratch=$(mktemp -d "$PWD/tradeoff-XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+awk 'BEGIN {
+    print "theta_deg,phi_deg"
+    print "0,0"
+    for (i = 0; i < 6; i++)
+        print 40 "," 60 * i + 7
+}' >directions.csv
+expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --size 8x8 --noise 10 --bounces 0 \
+    --resolution 20 --directions directions.csv
+cp knit.btf.h5 before.btf.h5
+
+# Frames of so many models would take long: the page says that it has none.
+export __EGL_VENDOR_LIBRARY_DIRS=/nonexistent
+expect_ok tradeoff knit.btf.h5 -o prices
+cmp -s knit.btf.h5 before.btf.h5 || fail "the dataset is changed"
+for model in "diffuse" "1 lobe" "diffuse, T" "32 layers" "the photographs, interpolated"; do
+    grep -q "^$model  *[0-9]" out.log || fail "there is no price of $model: $(cat out.log)"
+done
+for preset in small balanced best; do
+    grep -q "<td><b>$preset</b></td>" prices/index.html || fail "the page does not show the preset $preset"
+done
+grep -q "no times of frames: " out.log || fail "it does not say why there are no times of frames"
+grep -q "There are no times of frames: " prices/index.html || fail "the page does not say why there are none"
+[ "$(grep -c '<svg class="plot"' prices/index.html)" = 2 ] || fail "there are not two plots: of size and of the fit"
+if ls prices | grep -v '^index.html$\|^tradeoff.csv$\|^model-[0-9]*\(-photograph\)\?.png$'; then
+    fail "something is left behind"
+fi
+"$python" - <<'PYTHON' || fail "the table is not what it should be"
+import csv
+rows = list(csv.DictReader(open("prices/tradeoff.csv")))
+by_name = {row["model"]: row for row in rows}
+assert len(by_name) == len(rows) > 8
+raw, diffuse = by_name["the photographs; interpolated"], by_name["diffuse"]
+assert float(raw["bytes"]) == 8 * 8 * 49 * 6 and raw["photographs"] == "49", raw
+assert 500 < float(diffuse["bytes"]) < 20000 and diffuse["options"] == "--lobes 0 --table off", diffuse
+for row in rows:
+    assert 0 < float(row["not_fitted_all_relative_rmse"]) < 2 and 0 <= float(row["flip"]) < 1, row
+    assert row["frame_ms"] == "" and float(row["evaluations_a_second"]) > 0, row
+best = [row for row in rows if "best" in row["presets"]]
+least = min(float(row["not_fitted_all_relative_rmse"]) for row in rows if row["options"])
+assert len(best) == 1 and float(best[0]["not_fitted_all_relative_rmse"]) <= 1.01 * least, best
+PYTHON
+
+# Refused in one line, before the work.
+expect_error 2 "needs a dataset and -o REPORT/" tradeoff knit.btf.h5
+expect_error 1 "absent.btf.h5" tradeoff absent.btf.h5 -o none
+expect_error 1 "directions.csv" tradeoff directions.csv -o none
+expect_error 3 "knit.btf.h5/none" tradeoff knit.btf.h5 -o knit.btf.h5/none
+[ ! -e none ] || fail "a folder is left of a study that was refused"
