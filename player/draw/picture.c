@@ -48,7 +48,7 @@ weft_code weft_player_picture(weft_player *p, const weft_scene *scene, int width
 
 /* ---- Surface samples ---- */
 
-enum { PLANES = 3 };
+enum { PLANES = 4 };
 
 typedef struct surface_target {
     GLuint buffer, depth, plane[PLANES];
@@ -56,7 +56,8 @@ typedef struct surface_target {
 
 static weft_code create_target(int width, int height, surface_target *t, weft_error *error)
 {
-    static const GLenum attachments[PLANES] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+    static const GLenum attachments[PLANES] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
+                                               GL_COLOR_ATTACHMENT3};
     for (int i = 0; i < PLANES; i++)
         WEFT_TRY(weft_gl_texture((weft_texture_format){GL_RGBA32F, GL_RGBA, GL_FLOAT}, width, height, 0, NULL,
                                  &t->plane[i], error));
@@ -107,10 +108,13 @@ static void set_sample(weft_surface_sample *sample, int plane, const float value
         memcpy(sample->view, value, sizeof sample->view);
         sample->covered = value[3];
         break;
-    default:
+    case 2:
         sample->u = value[0];
         sample->v = value[1];
         sample->key_share = value[2];
+        break;
+    default:
+        memcpy(sample->sides, value, sizeof sample->sides);
         break;
     }
 }

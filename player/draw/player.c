@@ -217,6 +217,15 @@ long weft_player_weave_revision(const weft_player *p)
     return p->weave_revision;
 }
 
+void weft_player_lay_weave(weft_player *p, const weft_weave_layout *layout)
+{
+    double *cells = p->texel_count[WEFT_MODE_ANALYTIC];
+    const weft_weave_layout *before = &p->weave.layout;
+    cells[0] *= layout->tiles_u / before->tiles_u;
+    cells[1] *= layout->tiles_v / before->tiles_v;
+    p->weave.layout = *layout;
+}
+
 weft_weave_layout weft_player_weave_layout(const weft_player *p)
 {
     return p->weave.layout;

@@ -45,6 +45,8 @@ weft_code weft_player_set_threads(weft_player *player, const weft_microcylinder_
 bool weft_player_has_threads(const weft_player *player);
 /* Grows whenever a weave or threads are set; 0: none yet. */
 long weft_player_weave_revision(const weft_player *player);
+/* Lays the weave that is there in another way. */
+void weft_player_lay_weave(weft_player *player, const weft_weave_layout *layout);
 /* How it was laid last. */
 weft_weave_layout weft_player_weave_layout(const weft_player *player);
 
@@ -100,6 +102,7 @@ typedef struct weft_surface_sample {
     float light[3], level;
     float view[3], covered; /* 1 on the mesh, 0 beside it */
     float u, v, key_share;  /* key_share: of the first light that is not in shadow */
+    float sides[4];         /* of the footprint, texels (cells of a weave): across, up */
 } weft_surface_sample;
 
 /* The inputs of the reflectance of `mode` for the scene's first frame, one pane: sample [height][width], row 0 at the

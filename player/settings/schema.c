@@ -86,7 +86,7 @@ static const weft_setting schema[] = {
     SETTING("size.mesh_mm",
             OPTION("mesh-size", "MM", MESH_AND_CAMERA,
                    "Side of the plane or of the draped cloth, diameter of the sphere, longest side of an OBJ file "
-                   "(default: 300; the plane: as large as the material)"),
+                   "(default: 300; sphere: 60; plane: the material once, or 20 mm of a weave)"),
             NUMBER(mesh_size_mm, 0, 1e9), .read = weft_choose_mesh_size),
     SETTING("size.mesh_unit_mm",
             OPTION("mesh-unit", "mm|cm|m", MESH_AND_CAMERA, "Unit of an OBJ file, instead of --mesh-size"),

@@ -69,16 +69,18 @@ weft_code weft_settings_check_files(const weft_settings *s, const char *source, 
     return WEFT_OK;
 }
 
-double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm)
+double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm,
+                            double plane_mm)
 {
     if (!settings->real_size || !(mesh->size > 0 && mesh->coordinate_length > 0 && material_width_mm > 0))
         return settings->scene.repeat;
     bool is_plane = strcmp(settings->mesh, "plane") == 0;
     double unit_mm = settings->mesh_unit_mm;
-    double size_mm = settings->mesh_size_mm > 0 ? settings->mesh_size_mm
-                     : is_plane                 ? material_width_mm
-                     : unit_mm > 0              ? unit_mm * mesh->size
-                                                : WEFT_SETTINGS_MESH_MM;
+    double size_mm = settings->mesh_size_mm > 0              ? settings->mesh_size_mm
+                     : is_plane                              ? plane_mm
+                     : unit_mm > 0                           ? unit_mm * mesh->size
+                     : strcmp(settings->mesh, "sphere") == 0 ? WEFT_SETTINGS_SPHERE_MM
+                                                             : WEFT_SETTINGS_MESH_MM;
     return mesh->coordinate_length * size_mm / (mesh->size * material_width_mm);
 }
 

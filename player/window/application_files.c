@@ -32,7 +32,7 @@ weft_code weft_application_open_files(weft_application *a, weft_error *error)
     if (weft_watch_create(&a->watch, &no_watch) != WEFT_OK)
         weft_log_line(&a->setup.log, no_watch.message);
     WEFT_TRY(weft_space_mouse_create(&a->mouse, error));
-    return weft_scene_loader_create(a->setup.request, a->setup.cloth_width_mm, &a->loader, error);
+    return weft_scene_loader_create(a->setup.request, &a->loader, error);
 }
 
 void weft_application_close_files(weft_application *a)

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { WIDTH = 64, HEIGHT = 48, CLOTH_MM = 100 };
+enum { WIDTH = 64, HEIGHT = 48 };
 
 typedef struct fixture {
     stage *stage;
@@ -67,7 +67,7 @@ static fixture *open_scene_as(const char *material, const char *dataset, weft_ra
     f->request.settings.raw_format = format;
     f->request.settings.material = material ? strdup(material) : NULL;
     f->request.settings.dataset = dataset ? strdup(dataset) : NULL;
-    expect_ok(weft_scene_loader_create(&f->request, CLOTH_MM, &f->loader, &error), &error);
+    expect_ok(weft_scene_loader_create(&f->request, &f->loader, &error), &error);
     expect_ok(weft_scene_loader_attach(f->loader, f->stage->player, &error), &error);
     return f;
 }

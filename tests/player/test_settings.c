@@ -270,12 +270,12 @@ static void a_cloth_has_its_real_size(void **state)
     assert_float_equal(mesh.coordinate_length, 0.5, 1e-12);
     weft_settings s = parsed("{\"version\": 1, \"files\": {\"mesh\": \"box.obj\"}}", "shot.png");
     s.mesh_unit_mm = 10; /* a unit of texture coordinates is 5 mm */
-    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5), 2, 1e-12);
+    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5, 2.5), 2, 1e-12);
     s.mesh_size_mm = 100; /* and now 25 */
-    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5), 10, 1e-12);
+    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5, 2.5), 10, 1e-12);
     s.real_size = false;
     s.scene.repeat = 3;
-    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5), 3, 0);
+    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5, 2.5), 3, 0);
     weft_mesh_free(&mesh);
     weft_settings_free(&s);
 }

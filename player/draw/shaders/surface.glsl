@@ -4,6 +4,7 @@
 // lights, 2 of views (player/draw/probe.h).
 uniform sampler2D surface_rotation;
 uniform sampler2D surface_place;
+uniform sampler2D surface_sides;
 uniform vec3 ray_right, ray_up, ray_forward; // the ray through a pixel: x right + y up + forward
 uniform vec2 pane_origin;
 uniform vec3 eye;
@@ -23,6 +24,7 @@ struct SurfacePoint {
     vec3 view;       // in these axes
     vec2 coordinate; // texture coordinates of the material, repeated
     float level;     // log2 of the pixel's footprint in texels, may be negative
+    vec4 sides;      // of that footprint, texels; 0: the level does not follow from it
     float key_share; // of the first light that is not in shadow
     float chance;    // in [0, 1)
 };
@@ -56,6 +58,7 @@ SurfacePoint plotted_point()
     point.view.z = max(point.view.z, 0.0);
     point.coordinate = probe_place.xy;
     point.level = probe_place.z;
+    point.sides = vec4(0.0);
     point.key_share = 1.0;
     point.chance = 0.0;
     return point;
@@ -96,6 +99,7 @@ SurfacePoint surface_point()
     point.view = above_horizon(-normalize(ray) * point.axes);
     point.coordinate = place.xy;
     point.level = place.z;
+    point.sides = textureLod(surface_sides, pixel, 0.0);
     point.key_share = SHADOWS ? unshadowed_share(eye + abs(place.w) * ray) : 1.0;
     point.chance = STOCHASTIC ? pixel_chance() : 0.0;
     return point;
