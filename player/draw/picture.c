@@ -5,13 +5,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_SIDE = 16384, MAX_SAMPLES = 64 };
+/* SOFT_FRAMES: of a picture with soft shadows at least. */
+enum { MAX_SIDE = 16384, MAX_SAMPLES = 64, SOFT_FRAMES = 36 };
+
+static long least_frames(const weft_scene *scene)
+{
+    bool is_soft = scene->environment || (scene->light_count > 0 && scene->key_size_rad > 0);
+    return scene->environment_reference               ? WEFT_ENVIRONMENT_PARTS
+           : weft_scene_has_shadows(scene) && is_soft ? SOFT_FRAMES
+                                                      : 1;
+}
 
 static weft_code add_frames(weft_player *p, const weft_scene *scene, int samples, const weft_progress *progress,
                             weft_canvas *canvas, weft_error *error)
 {
     long places = (long)samples * samples, total = places;
-    while (scene->environment_reference && total < WEFT_ENVIRONMENT_PARTS)
+    while (total < least_frames(scene))
         total += places;
     for (long i = 0; i < total; i++) {
         weft_sampling sampling = {
@@ -84,7 +93,7 @@ static weft_code draw_surface(weft_player *p, const weft_scene *scene, const wef
                               weft_error *error)
 {
     GLuint program;
-    weft_player_draw_shadows(p, scene);
+    weft_player_draw_shadows(p, scene, pane->sampling.frame);
     WEFT_TRY(weft_player_draw_layers(p, scene, pane, 1, error));
     WEFT_TRY(weft_programs_find_geometry(&p->programs, weft_scene_has_shadows(scene), &program, error));
     glBindFramebuffer(GL_FRAMEBUFFER, target);

@@ -41,7 +41,7 @@ int weft_scene_panes(const weft_scene *scene)
 
 bool weft_scene_has_shadows(const weft_scene *scene)
 {
-    return scene->shadows && scene->light_count > 0;
+    return scene->shadows && (scene->light_count > 0 || scene->environment);
 }
 
 void weft_scene_keep_lit(weft_scene *scene)

@@ -7,7 +7,7 @@
 
 enum { WIDTH = 160, HEIGHT = 100 };
 
-static const double brightest_share = 0.98, white = 0.9, dimmest_white = 0.5, dimmest_mean = 0.1;
+static const double brightest_share = 0.98, white = 0.9, dimmest_white = 0.5, dimmest_mean = 0.1, brightest_mean = 0.17;
 
 /* What the request shows first, small, alone, and as bright as reflectance. */
 static weft_scene small_scene(const weft_scene *scene)
@@ -16,6 +16,7 @@ static weft_scene small_scene(const weft_scene *scene)
     small.layout = WEFT_LAYOUT_PANES;
     small.pane_count = 1;
     small.exposure = 1;
+    small.shadows = small.ground = false;
     small.labels = small.show_level = small.show_extrapolation = small.environment_reference = false;
     return small;
 }
@@ -43,7 +44,10 @@ static double exposure_for(float *value, size_t count)
     double bright = (double)weft_quantile_of_floats(value, count, (float)brightest_share);
     if (!(bright > 0) || (bright >= dimmest_white && bright <= 1))
         return 1;
-    return weft_clamp(fmax(white / bright, bright > 1 ? dimmest_mean / exp(sum / positive) : 0), 1e-6, 1e6);
+    double mean = exp(sum / positive);
+    double exposure =
+        bright > 1 ? fmax(white / bright, dimmest_mean / mean) : fmin(white / bright, brightest_mean / mean);
+    return weft_clamp(exposure, 1e-6, 1e6);
 }
 
 weft_code weft_expose(const weft_scene_request *request, weft_player *player, weft_scene *scene, bool *changed,

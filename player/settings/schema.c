@@ -55,12 +55,12 @@ static const weft_setting schema[] = {
     SETTING("files.weave",
             OPTION("weave", "CLOTH.wv|CLOTH.mc", SHOWN, "Show this weave or microcylinder cloth in mode analytic"),
             NAME(weave)),
-    SETTING(
-        "files.environment",
-        OPTION(
-            "environment", "MAP.hdr|MAP.exr", LIGHT,
-            "Light from a map of the sphere, twice as wide as high; without --light it is the only light. off: none"),
-        NAME(environment), .read = weft_choose_environment),
+    SETTING("files.environment",
+            OPTION("environment", "studio|overcast|sky|MAP|none", LIGHT,
+                   "Light from all around, with a key light of its own (default: studio), or from a map of the sphere, "
+                   ".hdr or "
+                   ".exr, twice as wide as high. none, or --light alone: bare lights"),
+            NAME(environment), .read = weft_choose_environment),
     SETTING("files.mesh",
             OPTION("mesh", "MESH", MESH_AND_CAMERA,
                    "drape (default), sphere, plane, or an OBJ file with texture coordinates"),
@@ -115,8 +115,14 @@ static const weft_setting schema[] = {
      .most = WEFT_SCENE_MAX_LIGHTS,
      .stride = sizeof(weft_light),
      .count_offset = offsetof(weft_settings, scene.light_count)},
-    SETTING("light.shadows", OPTION("shadows", "on|off", LIGHT, "Shadows of the key light"), .may_be_empty = true,
-            SWITCH(scene.shadows)),
+    SETTING("light.shadows", OPTION("shadows", "on|off", LIGHT, "Shadows of the key light and of the environment"),
+            .may_be_empty = true, SWITCH(scene.shadows)),
+    SETTING(
+        "light.key_size_deg",
+        OPTION("light-size", "DEG", LIGHT, "Radius of the key light on the sky: how soft its shadow is (default: 0)"),
+        ANGLE(scene.key_size_rad), .low = 0, .high = 45),
+    SETTING("light.ground", OPTION("ground", "on|off", LIGHT, "A ground that takes the shadows, and a backdrop"),
+            .may_be_empty = true, SWITCH(scene.ground)),
     SETTING("light.environment.lit", SWITCH(scene.environment)),
     SETTING("light.environment.turn_deg", OPTION("environment-turn", "DEG", LIGHT, "Turn the map about the vertical"),
             ANGLE(scene.environment_turn_rad), TURNED),

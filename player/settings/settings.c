@@ -1,6 +1,7 @@
 #include "player/settings/settings.h"
 
 #include "base/atomic_file.h"
+#include "player/scene/surroundings.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -60,7 +61,8 @@ weft_code weft_settings_read(const char *path, weft_settings *settings, weft_err
 weft_code weft_settings_check_files(const weft_settings *s, const char *source, weft_error *error)
 {
     static const char *const kind[] = {"material", "dataset", "weave", "environment", "mesh"};
-    const char *const file[] = {s->material, s->dataset, s->weave, s->environment,
+    const char *const file[] = {s->material, s->dataset, s->weave,
+                                s->environment && !weft_surroundings_are(s->environment) ? s->environment : NULL,
                                 s->mesh && !weft_mesh_is_built_in(s->mesh) ? s->mesh : NULL};
     for (size_t i = 0; i < sizeof file / sizeof file[0]; i++)
         if (file[i] && access(file[i], F_OK) != 0)

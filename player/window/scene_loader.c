@@ -219,7 +219,7 @@ static weft_code clear_what_is_not_named(weft_scene_loader *l, weft_error *error
     if (s->environment)
         return WEFT_OK;
     weft_loader_cancel(l->loader, WEFT_SLOT_ENVIRONMENT);
-    return weft_player_set_environment(l->stage.player, NULL, error);
+    return weft_player_set_environment(l->stage.player, NULL, 0, error);
 }
 
 static weft_code open_picture(weft_scene_loader *l, const char *path, weft_error *error)

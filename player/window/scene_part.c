@@ -2,6 +2,8 @@
 
 #include "btf/dataset/fingerprint.h"
 #include "btf/file_kind.h"
+#include "player/scene/environment.h"
+#include "player/scene/surroundings.h"
 #include "player/window/dataset_load.h"
 #include "reflectance/microcylinder/file.h"
 
@@ -108,7 +110,8 @@ static weft_code read_part(void *data, weft_load *load, weft_error *error)
     case WEFT_SLOT_WEAVE:
         return read_weave(p, error);
     case WEFT_SLOT_ENVIRONMENT:
-        return weft_image_read(p->path, &p->image, NULL, error);
+        return weft_surroundings_are(p->path) ? weft_surroundings_map(p->path, &p->image, error)
+                                              : weft_image_read(p->path, &p->image, NULL, error);
     default:
         return read_dataset(p, load, error);
     }
@@ -127,7 +130,8 @@ static weft_code show_weave(part *p, weft_error *error)
 static weft_code show_environment(part *p, weft_error *error)
 {
     weft_error cause = {0};
-    weft_code code = weft_player_set_environment(p->stage->player, &p->image, &cause);
+    int regions = weft_surroundings_are(p->path) ? WEFT_ENVIRONMENT_SMOOTH_REGIONS : WEFT_ENVIRONMENT_REGIONS;
+    weft_code code = weft_player_set_environment(p->stage->player, &p->image, regions, &cause);
     if (code != WEFT_OK)
         return weft_fail(error, code, "'%s': %s", p->path, cause.message);
     if (p->by_user)

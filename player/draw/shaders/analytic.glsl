@@ -7,6 +7,7 @@ uniform vec2 weave_tiles;     // for one material
 uniform vec2 weave_corner;    // where a tile begins, tiles from that of the material
 uniform uvec2 noise_seed;     // low and high bits
 
+// Frames that share a pixel do not sharpen the yarns: a box of a pixel alone leaves moire of threads of its size.
 // log2 of the footprint in cells where the texture begins to fade, and where the mean is all there is.
 const float FADE_BEGIN = -1.0;
 const float FADE_END = 1.0;

@@ -13,18 +13,18 @@ uniform highp sampler2D front_depth; // of the layer in front, where BEHIND
 
 layout(location = 0) out vec4 rotation; // unit quaternion: the axes of the surface in the world
 layout(location = 1) out vec4 place;    // texture coordinates, level, distance along the view; negative: mirrored
-layout(location = 2) out vec4 sides;    // of the pixel, texels: across, up; 0 where the level does not follow from them
+layout(location = 2) out vec4 sides;    // of the whole pixel, texels: across, up; 0 where the level does not follow from them
 
 // The sides of the pixel in texture space, in texels.
 vec4 footprint_of(vec2 coordinate)
 {
-    return vec4(dFdx(coordinate) * texel_count, dFdy(coordinate) * texel_count) * exp2(level_bias);
+    return vec4(dFdx(coordinate) * texel_count, dFdy(coordinate) * texel_count);
 }
 
 // The larger of the two, as OpenGL chooses its mip level.
 float footprint_level(vec4 footprint)
 {
-    return 0.5 * log2(max(max(dot(footprint.xy, footprint.xy), dot(footprint.zw, footprint.zw)), 1e-20));
+    return 0.5 * log2(max(max(dot(footprint.xy, footprint.xy), dot(footprint.zw, footprint.zw)), 1e-20)) + level_bias;
 }
 
 // Divides by the largest of the four components (Shepperd 1978). Columns: the axes.
