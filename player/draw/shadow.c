@@ -62,22 +62,28 @@ void weft_shadow_map_forget(weft_shadow_map *map)
     memset(map->light, 0, sizeof map->light);
 }
 
-bool weft_shadow_map_begin(weft_shadow_map *map, int layer, weft_vec3 light, weft_vec3 centre, double radius)
+bool weft_shadow_map_begin(weft_shadow_map *map, int layer, bool is_soft, weft_vec3 light, weft_vec3 centre,
+                           double radius)
 {
+    int side = is_soft ? SIDE / 2 : SIDE;
     weft_vec3 change = weft_subtract(light, map->light[layer]);
-    if (weft_dot(change, change) == 0)
+    if (weft_dot(change, change) == 0 && map->share[layer] == (float)side / SIDE)
         return false;
     map->light[layer] = light;
+    map->share[layer] = (float)side / SIDE;
     map->texel = 2 * 1.01 * radius / SIDE;
     float clip_of_world[16];
     look_along(light, centre, 1.01 * radius, 2, 0, clip_of_world);
     look_along(light, centre, 1.01 * radius, 1, 0.5, map->of_world[layer]);
     glBindFramebuffer(GL_FRAMEBUFFER, map->buffer);
     glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, map->depth, 0, layer);
-    glViewport(0, 0, SIDE, SIDE);
+    glViewport(0, 0, side, side);
+    glScissor(0, 0, side, side);
+    glEnable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glClear(GL_DEPTH_BUFFER_BIT);
+    glDisable(GL_SCISSOR_TEST);
     /* Both sides of a thin cloth are lit: its depth is moved away from the light by its slope and a little more. */
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(2.5f, 16);
@@ -96,6 +102,7 @@ void weft_shadow_map_bind(const weft_shadow_map *map, GLuint program, int unit)
 {
     weft_gl_bind(program, "shadow_map", unit, GL_TEXTURE_2D_ARRAY, map->depth);
     weft_gl_set_float(program, "shadow_texel", map->texel);
+    glUniform1fv(glGetUniformLocation(program, "shadow_share"), WEFT_SHADOW_LAYERS, map->share);
     glUniformMatrix4fv(glGetUniformLocation(program, "shadow_of_world"), WEFT_SHADOW_LAYERS, GL_FALSE,
                        map->of_world[0]);
 }

@@ -32,7 +32,7 @@ static void gather_bright(weft_image *image, const weft_surface_sample *surface,
     }
 }
 
-static double exposure_for(float *value, size_t count)
+static double exposure_for(float *value, size_t count, bool has_ground)
 {
     double sum = 0, positive = 0;
     for (size_t i = 0; i < count; i++) {
@@ -44,9 +44,11 @@ static double exposure_for(float *value, size_t count)
     double bright = (double)weft_quantile_of_floats(value, count, (float)brightest_share);
     if (!(bright > 0) || (bright >= dimmest_white && bright <= 1))
         return 1;
-    double mean = exp(sum / positive);
-    double exposure =
-        bright > 1 ? fmax(white / bright, dimmest_mean / mean) : fmin(white / bright, brightest_mean / mean);
+    double mean = exp(sum / positive), exposure = white / bright;
+    if (bright > 1)
+        exposure = fmax(exposure, dimmest_mean / mean);
+    else if (has_ground)
+        exposure = fmin(exposure, brightest_mean / mean);
     return weft_clamp(exposure, 1e-6, 1e6);
 }
 
@@ -64,7 +66,7 @@ weft_code weft_expose(const weft_scene_request *request, weft_player *player, we
     weft_code code = weft_player_read_surface(player, &small, small.pane[0], WIDTH, HEIGHT, &surface, error);
     if (code == WEFT_OK) {
         gather_bright(&image, surface, &count);
-        scene->exposure = exposure_for(image.pixels, count);
+        scene->exposure = exposure_for(image.pixels, count, scene->ground);
         *changed = scene->exposure != 1;
     }
     free(surface);

@@ -10,7 +10,8 @@ uniform vec2 pane_origin;
 uniform vec3 eye;
 uniform mat4 shadow_of_world[SHADOW_LAYERS];
 uniform highp sampler2DArrayShadow shadow_map; // of the first light, then of directions of the environment
-uniform float shadow_texel;                    // of the map, in the world
+uniform float shadow_texel;                    // of the map, in the world, where a layer uses all of it
+uniform float shadow_share[SHADOW_LAYERS];     // of its side that a layer uses
 uniform vec3 fill_direction[SHADOW_LAYERS - 1];
 uniform int key_count;   // lights that cast a shadow: 0 or the first
 uniform int scene_count; // the first of them; the others are the environment
@@ -82,7 +83,7 @@ bool happens(inout float chance, float share)
 // facets, which the interpolated normal smooths over, would shade it.
 vec3 place_in_shadow(vec3 position, vec3 normal, int layer)
 {
-    return (shadow_of_world[layer] * vec4(position + 2.5 * shadow_texel * normal, 1.0)).xyz;
+    return (shadow_of_world[layer] * vec4(position + 2.5 * shadow_texel / shadow_share[layer] * normal, 1.0)).xyz;
 }
 
 bool is_in_map(vec3 at)
@@ -100,7 +101,7 @@ float unshadowed_share(vec3 position, vec3 normal, int layer)
     float sum = 4.0 - float(count);
     for (int i = 0; i < count; i++) {
         vec2 shift = (vec2(float(i % 2), float(i / 2)) - 0.5) * 1.5 * texel;
-        sum += texture(shadow_map, vec4(at.xy + shift, float(layer), at.z));
+        sum += texture(shadow_map, vec4(at.xy * shadow_share[layer] + shift, float(layer), at.z));
     }
     return 0.25 * sum;
 }
@@ -114,7 +115,7 @@ float fill_share(vec3 position, vec3 normal, int count)
         cosine = max(cosine, 0.0);
         vec3 at = place_in_shadow(position, normal, i + 1);
         all_of_it += cosine;
-        seen += cosine * (is_in_map(at) ? texture(shadow_map, vec4(at.xy, float(i + 1), at.z)) : 1.0);
+        seen += cosine * (is_in_map(at) ? texture(shadow_map, vec4(at.xy * shadow_share[i + 1], float(i + 1), at.z)) : 1.0);
     }
     return seen / all_of_it;
 }
