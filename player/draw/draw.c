@@ -46,6 +46,8 @@ void weft_player_set_point(const weft_player *p, GLuint program, const weft_scen
 {
     set_rays(program, scene, pane);
     set_lights(p, program, scene, pane->sampling.frame);
+    /* A frame at rest takes longer and shows less of its choices. */
+    weft_gl_set_int(program, "chosen_places", pane->sampling.frame < 0 ? 1 : 3);
     weft_gl_set_float(program, "sequence", sequence_of(p, pane->sampling.frame));
     weft_layer_bind(layer, program);
     if (!weft_scene_has_shadows(scene))

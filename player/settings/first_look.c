@@ -116,3 +116,22 @@ weft_code weft_first_look(weft_scene_request *request, weft_error *error)
         light_from(&settings->scene, measured.first_light);
     return WEFT_OK;
 }
+
+void weft_first_fit(weft_scene_request *request, const weft_mesh *mesh)
+{
+    const double margin = 0.93;
+    weft_orbit *orbit = &request->settings.scene.orbit;
+    weft_orbit_axes axes = weft_orbit_axes_of(orbit);
+    float centre[3], radius;
+    if (request->source || request->has_camera)
+        return;
+    weft_mesh_bounds(mesh, centre, &radius);
+    for (int i = 0; i < mesh->vertex_count; i++) {
+        const float *p = mesh->vertex[i].position;
+        weft_vec3 at = weft_vec3_of((weft_real)((p[0] - centre[0]) / radius), (weft_real)((p[1] - centre[1]) / radius),
+                                    (weft_real)((p[2] - centre[2]) / radius));
+        double aside = fmax(fabs((double)weft_dot(at, axes.right)), fabs((double)weft_dot(at, axes.up)));
+        double needed = (double)weft_dot(at, axes.backward) + aside / (margin * weft_orbit_slope());
+        orbit->distance = fmax(orbit->distance, needed);
+    }
+}

@@ -12,4 +12,7 @@
  * nothing. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_first_look(weft_scene_request *request, weft_error *error);
 
+/* Moves the camera of such a picture away until all of the mesh is in it, with a margin. */
+void weft_first_fit(weft_scene_request *request, const weft_mesh *mesh);
+
 #endif

@@ -57,9 +57,9 @@ static const weft_setting schema[] = {
             NAME(weave)),
     SETTING("files.environment",
             OPTION("environment", "studio|overcast|sky|MAP|none", LIGHT,
-                   "Light from all around, with a key light of its own (default: studio), or from a map of the sphere, "
-                   ".hdr or "
-                   ".exr, twice as wide as high. none, or --light alone: bare lights"),
+                   "Light from all around with a key light of its own: studio, unless there is a --light; or from a "
+                   "map of the "
+                   "sphere, .hdr or .exr, twice as wide as high. none: the lights alone"),
             NAME(environment), .read = weft_choose_environment),
     SETTING("files.mesh",
             OPTION("mesh", "MESH", MESH_AND_CAMERA,

@@ -4,6 +4,7 @@
 #include "btf/file_kind.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"
+#include "player/settings/first_look.h"
 #include "player/window/dataset_load.h"
 #include "reflectance/microcylinder/file.h"
 
@@ -142,6 +143,7 @@ static weft_code show_environment(part *p, weft_error *error)
 static weft_code show_mesh(part *p, weft_error *error)
 {
     WEFT_TRY(weft_player_set_mesh(p->stage->player, &p->mesh, error));
+    weft_first_fit(p->stage->request, &p->mesh);
     p->stage->mesh = p->mesh;
     p->stage->mesh.vertex = NULL;
     p->stage->mesh.index = NULL;

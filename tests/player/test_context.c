@@ -2,8 +2,8 @@
 #include "../support/keep_modules.h"
 #include "player/draw/probe.h"
 #include "player/draw/programs.h"
-#include "stage.h"
 #include "player/scene/environment.h"
+#include "stage.h"
 
 #include <stdio.h>
 #include <stdlib.h>

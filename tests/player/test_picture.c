@@ -1,9 +1,9 @@
 /* Layouts, filters and lights of whole pictures. */
 #include "base/numeric/error_summary.h"
 #include "base/picture/colour.h"
+#include "player/scene/environment.h"
 #include "player/scene/false_colour.h"
 #include "stage.h"
-#include "player/scene/environment.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,6 +6,7 @@ uniform sampler2D weave_mean; // column: light, row: view; BRDF in 1/sr
 uniform vec2 weave_tiles;     // for one material
 uniform vec2 weave_corner;    // where a tile begins, tiles from that of the material
 uniform uvec2 noise_seed;     // low and high bits
+uniform int chosen_places;    // where STOCHASTIC
 
 // Frames that share a pixel do not sharpen the yarns: a box of a pixel alone leaves moire of threads of its size.
 // log2 of the footprint in cells where the texture begins to fade, and where the mean is all there is.
@@ -78,13 +79,17 @@ vec3 place_radiance(SurfacePoint point, vec2 aside)
     return sum;
 }
 
-// The mean of places on a grid across the footprint, or any one place of it.
+// The mean of places on a grid across the footprint, or of a few places anywhere in it.
 vec3 yarn_radiance(SurfacePoint point)
 {
-    if (STOCHASTIC)
-        return place_radiance(point, vec2(point.chance, fract(113.0 * point.chance)) - 0.5);
-    ivec2 count = places_of(point);
     vec3 sum = vec3(0.0);
+    if (STOCHASTIC) {
+        vec2 first = vec2(point.chance, 113.0 * point.chance);
+        for (int i = 0; i < chosen_places; i++)
+            sum += place_radiance(point, fract(first + float(i) * vec2(0.75487767, 0.56984029)) - 0.5);
+        return sum / float(chosen_places);
+    }
+    ivec2 count = places_of(point);
     for (int i = 0; i < count.x * count.y; i++)
         sum += place_radiance(point, (vec2(i % count.x, i / count.x) + 0.5) / vec2(count) - 0.5);
     return sum / float(count.x * count.y);
