@@ -423,7 +423,7 @@ static weft_rgb cloth_at(const cloth_model *model, const weft_surface_sample *at
 
 static int places_along(float x, float y)
 {
-    return (int)fmin(fmax(ceil(2 * hypot((double)x, (double)y)), 1), 4);
+    return (int)fmin(fmax(ceil(2 * hypot((double)x, (double)y)), 1), 3);
 }
 
 static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)

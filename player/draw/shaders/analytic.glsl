@@ -14,7 +14,7 @@ const float FADE_BEGIN = -1.0;
 const float FADE_END = 1.0;
 // How many times longer than wide a footprint may be and be sampled along its length; how many places at most on a side.
 const float LONGEST = 4.0;
-const float MOST_PLACES = 4.0;
+const float MOST_PLACES = 3.0;
 
 vec3 mean_brdf(Corners lights, Corners views)
 {

@@ -14,14 +14,14 @@ vec3 sweep(float rise)
     return backdrop * mix(1.0, 0.42, smoothstep(-0.12, 0.55, rise));
 }
 
-// Of the light that would fall on it. Beyond 3.5 radii of the mesh lies none of note of the sky.
-vec3 unshaded(vec3 place, float away)
+// Of the light that would fall on it.
+vec3 unshaded(vec3 place)
 {
     if (!SHADOWS)
         return vec3(1.0);
     const vec3 up = vec3(0.0, 0.0, 1.0);
     vec3 key = key_count > 0 ? ground_key * unshadowed_share(place, up, 0) : vec3(0.0);
-    vec3 fill = ground_fill * fill_share(place, up, away < 3.5 ? fill_count : 0);
+    vec3 fill = ground_fill * fill_share(place, up);
     return (key + fill) / max(ground_key + ground_fill, vec3(1e-6));
 }
 
@@ -33,6 +33,6 @@ void main()
     bool is_below = eye.z > ground_height && ray.z < 0.0;
     vec3 place = is_below ? eye + (ground_height - eye.z) / ray.z * ray : vec3(1e9);
     float away = length(place.xy - ground_centre.xy) / ground_size;
-    vec3 lit = backdrop * (1.0 - 0.25 * smoothstep(0.5, 5.0, away)) * unshaded(place, away);
+    vec3 lit = backdrop * (1.0 - 0.25 * smoothstep(0.5, 5.0, away)) * unshaded(place);
     colour = vec4(mix(lit, sweep(rise), smoothstep(2.0, 7.0, away)), 1.0);
 }

@@ -13,6 +13,7 @@ uniform highp sampler2DArrayShadow shadow_map; // of the first light, then of di
 uniform float shadow_texel;                    // of the map, in the world, where a layer uses all of it
 uniform float shadow_share[SHADOW_LAYERS];     // of its side that a layer uses
 uniform vec3 fill_direction[SHADOW_LAYERS - 1];
+uniform int shadow_taps; // 1 or 4
 uniform int key_count;   // lights that cast a shadow: 0 or the first
 uniform int scene_count; // the first of them; the others are the environment
 uniform int fill_count;  // 0: the environment casts no shadows
@@ -91,31 +92,34 @@ bool is_in_map(vec3 at)
     return all(lessThan(abs(at.xy - 0.5), vec2(0.499)));
 }
 
-// Sixteen comparisons, bilinear by the hardware: a soft edge of about three texels of the map.
+// Four or sixteen comparisons, bilinear by the hardware: an edge of one texel of the map or of about three. Software
+// rasterisers pass over a loop that no pixel takes, not over a branch.
 float unshadowed_share(vec3 position, vec3 normal, int layer)
 {
     vec3 at = place_in_shadow(position, normal, layer);
-    // Software rasterisers pass over a loop that no pixel takes, not over a branch.
-    int count = is_in_map(at) ? 4 : 0;
-    float texel = 1.0 / float(textureSize(shadow_map, 0).x);
-    float sum = 4.0 - float(count);
+    int count = is_in_map(at) ? shadow_taps : 0;
+    float texel = shadow_taps > 1 ? 1.5 / float(textureSize(shadow_map, 0).x) : 0.0;
+    float seen = float(shadow_taps - count);
     for (int i = 0; i < count; i++) {
-        vec2 shift = (vec2(float(i % 2), float(i / 2)) - 0.5) * 1.5 * texel;
-        sum += texture(shadow_map, vec4(at.xy * shadow_share[layer] + shift, float(layer), at.z));
+        vec2 shift = (vec2(float(i % 2), float(i / 2)) - 0.5) * texel;
+        seen += texture(shadow_map, vec4(at.xy * shadow_share[layer] + shift, float(layer), at.z));
     }
-    return 0.25 * sum;
+    return seen / float(shadow_taps);
 }
 
 // What is seen of a few directions of the environment, those counting more that the surface faces.
-float fill_share(vec3 position, vec3 normal, int count)
+float fill_share(vec3 position, vec3 normal)
 {
     float seen = 1e-3, all_of_it = 1e-3;
-    for (int i = 0; i < count; i++) {
-        float cosine = dot(fill_direction[i], normal);
-        cosine = max(cosine, 0.0);
+    for (int i = 0; i < fill_count; i++) {
+        float cosine = max(dot(fill_direction[i], normal), 0.0);
         vec3 at = place_in_shadow(position, normal, i + 1);
+        int count = is_in_map(at) ? 1 : 0;
+        float share = float(1 - count);
+        for (int tap = 0; tap < count; tap++)
+            share = texture(shadow_map, vec4(at.xy * shadow_share[i + 1], float(i + 1), at.z));
         all_of_it += cosine;
-        seen += cosine * (is_in_map(at) ? texture(shadow_map, vec4(at.xy * shadow_share[i + 1], float(i + 1), at.z)) : 1.0);
+        seen += cosine * share;
     }
     return seen / all_of_it;
 }
@@ -127,7 +131,7 @@ void find_shadows(vec3 position, inout SurfacePoint point)
         return;
     if (key_count > 0)
         point.key_share = unshadowed_share(position, point.axes[2], 0);
-    point.env_share = fill_share(position, point.axes[2], fill_count);
+    point.env_share = fill_share(position, point.axes[2]);
 }
 
 SurfacePoint surface_point()
