@@ -44,6 +44,16 @@ bool weft_scene_has_shadows(const weft_scene *scene)
     return scene->shadows && (scene->light_count > 0 || scene->environment);
 }
 
+weft_scene weft_scene_in_bare_light(const weft_scene *scene)
+{
+    weft_scene bare = *scene;
+    bare.light[0] = weft_scene_default().light[0];
+    bare.light_count = 1;
+    bare.key_size_rad = 0;
+    bare.environment = bare.ground = false;
+    return bare;
+}
+
 void weft_scene_keep_lit(weft_scene *scene)
 {
     if (scene->environment || scene->light_count > 0)

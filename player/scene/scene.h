@@ -92,6 +92,9 @@ int weft_scene_panes(const weft_scene *scene);
 /* Whether there is light that casts shadows. Pure. */
 bool weft_scene_has_shadows(const weft_scene *scene);
 
+/* The same scene under the default light alone, without environment and ground. Pure. */
+weft_scene weft_scene_in_bare_light(const weft_scene *scene);
+
 /* A scene without any light gets the default one. In place. */
 void weft_scene_keep_lit(weft_scene *scene);
 

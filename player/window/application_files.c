@@ -1,6 +1,7 @@
 #include "player/window/application_state.h"
 
 #include "base/clock.h"
+#include "player/scene/surroundings.h"
 #include "player/window/scene_part.h"
 
 #include <stdio.h>
@@ -75,6 +76,23 @@ void weft_application_open(weft_application *a, const char *path)
     watch_files(a, &ignored);
     snprintf(note, sizeof note, "reading %.256s", path ? path : "all files again");
     tell_outcome(a, code, &error, note);
+}
+
+void weft_application_change_surroundings(weft_application *a)
+{
+    weft_error error = {0};
+    weft_scene *scene = &a->interaction.scene;
+    const char *name = a->interaction.wants_surroundings;
+    a->interaction.wants_surroundings = NULL;
+    a->interaction.changed = true;
+    bool is_bare = !weft_surroundings_are(name);
+    if (is_bare)
+        *scene = weft_scene_in_bare_light(scene);
+    else
+        weft_surroundings_light(name, scene);
+    scene->shadows = scene->ground = !is_bare;
+    if (!is_bare)
+        tell_outcome(a, weft_scene_loader_open_surroundings(a->loader, name, &error), &error, "");
 }
 
 void weft_application_change_mesh(weft_application *a)

@@ -277,6 +277,11 @@ weft_code weft_scene_loader_open_mesh(weft_scene_loader *l, const char *name, we
     return start_by_user(l, WEFT_SLOT_MESH, name, error);
 }
 
+weft_code weft_scene_loader_open_surroundings(weft_scene_loader *l, const char *name, weft_error *error)
+{
+    return start_by_user(l, WEFT_SLOT_ENVIRONMENT, name, error);
+}
+
 weft_code weft_scene_loader_reload_slot(weft_scene_loader *l, int slot, weft_error *error)
 {
     const char *path = *weft_scene_stage_path(&l->stage, (weft_scene_slot)slot);

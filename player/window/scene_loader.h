@@ -39,6 +39,9 @@ weft_code weft_scene_loader_open(weft_scene_loader *loader, const char *path, we
 /* The same for a mesh, built in or a file. */
 weft_code weft_scene_loader_open_mesh(weft_scene_loader *loader, const char *name, weft_error *error);
 
+/* The same for a built-in environment. */
+weft_code weft_scene_loader_open_surroundings(weft_scene_loader *loader, const char *name, weft_error *error);
+
 /* Begins to read again what is shown: all files, or that of a slot (player/window/scene_part.h). Errors: WEFT_SYSTEM.
  */
 weft_code weft_scene_loader_reload(weft_scene_loader *loader, weft_error *error);
