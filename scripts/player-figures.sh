@@ -93,7 +93,7 @@ for pane in raw even screen; do
     screen) files="$demo/gabardine.weft" ;;
     esac
     # shellcheck disable=SC2086 # a list of options
-    "$weft" render $files --size 480x420 -o weights-$pane.png --quiet
+    "$weft" render $files --environment none --size 480x420 -o weights-$pane.png --quiet
 done
 convert weights-raw.png weights-even.png weights-screen.png +append -strip -define png:compression-level=9 "$images/weights.png"
 
