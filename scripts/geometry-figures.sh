@@ -28,7 +28,7 @@ done
 
 # With and without mip levels.
 drape="--shadows=on --no-labels --quiet --size 420x380"
-far="--environment none $drape --repeat 150 --camera=-70,34,3.3 --light 50,-120"
+far="$drape --repeat 150 --camera=-70,34,3.3 --light 50,-120"
 for format in png exr; do
     "$weft" render plain_knit.weft $far --level none --samples 1 -o "one.$format"
     "$weft" render plain_knit.weft $far --samples 1 -o "mip.$format"
@@ -40,7 +40,7 @@ done
 join drape-levels.png 3 -label 'without mip-mapping' one.png -label 'with mip-mapping' mip.png -label '256 samples a pixel' many.png
 
 # With and without T.
-near="--environment none --shadows=on --no-labels --quiet --size 420x340 --repeat 24 --camera=20,16,3.2 --light 45,0 --exposure 1.2"
+near="--shadows=on --no-labels --quiet --size 420x340 --repeat 24 --camera=20,16,3.2 --light 45,0 --exposure 1.2"
 "$weft" render lobes.weft $near -o lobes.png
 "$weft" render --raw two_colour_loops.btf.h5 $near -o data.png
 "$weft" render two_colour_loops.weft $near -o table.png

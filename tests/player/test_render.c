@@ -236,11 +236,11 @@ static void a_picture_begins_in_a_studio(void **state)
 static void a_path_gives_a_picture_for_every_frame(void **state)
 {
     (void)state;
-    assert_int_equal(
-        run("printf 'time_s,azimuth_deg,light_phi_deg\\n0,-70,-110\\n0.5,20,0\\n1,20,30\\n' > path.csv; "
-            "$WEFT render cloth.weft --path path.csv --light 45,0 --fps 4 --size 40x30 --samples 1 --exposure "
-            "1 -q -o turn%02d.png"),
-        0);
+    assert_int_equal(run("printf 'time_s,azimuth_deg,light_phi_deg\\n0,-70,-110\\n0.5,20,0\\n1,20,30\\n' > path.csv; "
+                         "$WEFT render cloth.weft --path path.csv --camera=-70,28,3.6 --light 45,0 --fps 4 --size "
+                         "40x30 --samples 1 --exposure "
+                         "1 -q -o turn%02d.png"),
+                     0);
     assert_int_equal(
         run("ls turn*.png | tr '\\n' ' ' | grep -qx 'turn00.png turn01.png turn02.png turn03.png turn04.png '"), 0);
     assert_int_equal(run("$WEFT render cloth.weft --size 40x30 --samples 1 --camera=20,28,3.6 --light 45,0 --exposure "
