@@ -6,6 +6,7 @@
 #include "bench/measure.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
+#include "player/scene/surroundings.h"
 #include "player/texture/fetches.h"
 #include "reflectance/lafortune/lafortune.h"
 
@@ -157,6 +158,31 @@ static void time_mode(weft_player *player, weft_mode mode, weft_canvas *canvas)
     }
 }
 
+/* As a window opens: environment, key light, shadows, ground; a cloth of cells of 1/8 mm, 300 mm wide. */
+static void time_studio(weft_player *player, weft_mode mode, weft_canvas *canvas)
+{
+    char what[64];
+    weft_error error = {0};
+    weft_image map;
+    weft_scene scene = weft_scene_default();
+    weft_weave_layout layout = weft_player_weave_layout(player);
+    stop_on(weft_surroundings_map("studio", &map, &error), &error);
+    stop_on(weft_player_set_environment(player, &map, WEFT_ENVIRONMENT_SMOOTH_REGIONS, &error), &error);
+    weft_image_free(&map);
+    weft_surroundings_light("studio", &scene);
+    scene.pane[0] = mode;
+    scene.repeat = mode == WEFT_MODE_ANALYTIC ? 300 / (0.75 * layout.tiles_u) : 8;
+    scene.shadows = scene.ground = true;
+    snprintf(what, sizeof what, "%s, studio", weft_mode_name(mode));
+    time_scene(player, scene, what, canvas);
+    scene.ground = false;
+    snprintf(what, sizeof what, "%s, studio without ground", weft_mode_name(mode));
+    time_scene(player, scene, what, canvas);
+    scene.shadows = false;
+    snprintf(what, sizeof what, "%s, studio without shadows", weft_mode_name(mode));
+    time_scene(player, scene, what, canvas);
+}
+
 /* ---- Against memory, and against C ---- */
 
 enum { COPIED = 256 << 20 };
@@ -256,7 +282,7 @@ static void load_environment(weft_player *player, const char *path)
     weft_error error = {0};
     weft_image image;
     stop_on(weft_image_read(path, &image, NULL, &error), &error);
-    stop_on(weft_player_set_environment(player, &image, &error), &error);
+    stop_on(weft_player_set_environment(player, &image, WEFT_ENVIRONMENT_REGIONS, &error), &error);
     weft_image_free(&image);
 }
 
@@ -302,6 +328,10 @@ int main(int argc, char **argv)
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
         if (weft_player_has(player, (weft_mode)mode))
             time_mode(player, (weft_mode)mode, &canvas);
+    }
+    for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
+        if (weft_player_has(player, (weft_mode)mode))
+            time_studio(player, (weft_mode)mode, &canvas);
     }
     for (int i = 1; i < argc; i++) {
         if (has_extension(argv[i], ".weft"))

@@ -1,4 +1,3 @@
-#include "capture/settings.h"
 #include "cli/arguments.h"
 #include "player/gl/context.h"
 #include "player/window/application.h"
@@ -34,7 +33,6 @@ static weft_code play(play_command *command, weft_error *error)
     const weft_application_setup setup = {
         .request = &command->values.scene,
         .frame_limit = command->frame_limit,
-        .cloth_width_mm = weft_rig_settings_default().opening_mm,
         .measure = weft_scene_error_describe,
         .log = weft_command_log(common),
     };

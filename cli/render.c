@@ -1,4 +1,3 @@
-#include "capture/settings.h"
 #include "cli/arguments.h"
 #include "player/gl/context.h"
 #include "player/settings/exposure.h"
@@ -111,7 +110,7 @@ static weft_code draw(render_command *command, weft_player *player, weft_error *
     weft_scene_request *scene = &command->values.scene;
     if (command->path_file)
         WEFT_TRY(weft_path_read(command->path_file, &command->path, error));
-    WEFT_TRY(weft_scene_load(scene, weft_rig_settings_default().opening_mm, player, &progress, &log, error));
+    WEFT_TRY(weft_scene_load(scene, player, &progress, &log, error));
     WEFT_TRY(look(command, player, &scene->settings.scene, error));
     if (!command->path_file)
         return draw_picture(command, player, error);

@@ -23,7 +23,7 @@ step "3/5 Compress: two lobes and a view table a texel, all mip levels, errors a
 "$weft" compress "$out/gabardine.btf.h5" --lobes 2 --weights screen -o "$out/gabardine.weft"
 
 step "4/5 Draw: raw BTF, compressed material and analytic cloth side by side"
-"$weft" render "$out/gabardine.weft" --raw "$out/gabardine.btf.h5" --weave "$weave" --mode split --mesh drape --size 1500x560 \
+"$weft" render "$out/gabardine.weft" --raw "$out/gabardine.btf.h5" --weave "$weave" --mode split --repeat 40 --size 1500x560 \
     -o "$out/side-by-side.png"
 
 step "5/5 Compare them with numbers"

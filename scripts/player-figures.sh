@@ -60,7 +60,8 @@ small="--size 640x420"
 gabardine="$demo/gabardine.weft --raw $demo/gabardine.btf.h5"
 # shellcheck disable=SC2086 # lists of options
 {
-    draw side-by-side $gabardine --weave "$weave" --mode split $studio --size 1440x500
+    # The rig photographed the cloth magnified, so that its camera resolves yarns. Here it is nearer to its size.
+    draw side-by-side $gabardine --weave "$weave" --mode split --repeat 40 --size 1110x390
     draw player-wipe $gabardine --layout wipe $studio $small
     draw player-difference $gabardine --layout difference $studio $small
     draw player-levels "$demo/gabardine.weft" $studio $small --repeat 20 --show level
@@ -92,7 +93,7 @@ for pane in raw even screen; do
     screen) files="$demo/gabardine.weft" ;;
     esac
     # shellcheck disable=SC2086 # a list of options
-    "$weft" render $files --size 480x420 -o weights-$pane.png --quiet
+    "$weft" render $files --environment none --size 480x420 -o weights-$pane.png --quiet
 done
 convert weights-raw.png weights-even.png weights-screen.png +append -strip -define png:compression-level=9 "$images/weights.png"
 

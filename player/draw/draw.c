@@ -4,6 +4,8 @@
 #include "player/draw/player_parts.h"
 #include "player/scene/false_colour.h"
 
+#include <stdio.h>
+
 static const double golden_ratio = 0.6180339887498949;
 
 static void set_lights(const weft_player *p, GLuint program, const weft_scene *scene, long frame)
@@ -12,6 +14,17 @@ static void set_lights(const weft_player *p, GLuint program, const weft_scene *s
     weft_gl_set_int(program, "light_count", lighting.count);
     glUniform3fv(glGetUniformLocation(program, "light_direction"), lighting.count, lighting.direction[0]);
     glUniform3fv(glGetUniformLocation(program, "light_irradiance"), lighting.count, lighting.irradiance[0]);
+    weft_gl_set_int(program, "scene_count", lighting.scene_count);
+    weft_gl_set_int(program, "key_count", lighting.scene_count > 0);
+    weft_gl_set_int(program, "fill_count", lighting.fill_count);
+    /* What moves under many lights has no time for more. */
+    weft_gl_set_int(program, "shadow_taps", frame < 0 && lighting.fill_count > 0 ? 1 : 4);
+    for (int i = 0; i < lighting.fill_count; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "fill_direction[%d]", i);
+        weft_gl_set_vec3(program, name, (double)lighting.fill[i].x, (double)lighting.fill[i].y,
+                         (double)lighting.fill[i].z);
+    }
 }
 
 /* Successive frames start their choices a golden section apart: evenly spread, however many there are. */
@@ -35,6 +48,8 @@ void weft_player_set_point(const weft_player *p, GLuint program, const weft_scen
 {
     set_rays(program, scene, pane);
     set_lights(p, program, scene, pane->sampling.frame);
+    /* A frame at rest takes longer and shows less of its choices. */
+    weft_gl_set_int(program, "chosen_places", pane->sampling.frame < 0 ? 1 : 3);
     weft_gl_set_float(program, "sequence", sequence_of(p, pane->sampling.frame));
     weft_layer_bind(layer, program);
     if (!weft_scene_has_shadows(scene))
@@ -130,19 +145,77 @@ static void draw_screen(const weft_player *p)
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-static void draw_background(const weft_player *p, const weft_scene *scene, const weft_pane *pane)
+/* Only where the depth is that of nothing. */
+static void draw_screen_behind(const weft_player *p)
 {
-    bool has_map = scene->environment && p->environment;
-    GLuint program = has_map ? p->environment_background : p->background;
-    glDisable(GL_BLEND);
-    glUseProgram(program);
-    if (has_map) {
-        set_rays(program, scene, pane);
-        weft_gl_bind(program, "map", 0, GL_TEXTURE_2D, p->environment_map);
-        weft_gl_set_float(program, "strength", scene->environment_strength * scene->exposure);
-        weft_gl_set_float(program, "turn", scene->environment_turn_rad / (2 * WEFT_PI));
-    }
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_FALSE);
+    glDepthRangef(1, 1);
     draw_screen(p);
+    glDepthRangef(0, 1);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_DEPTH_TEST);
+}
+
+typedef void draw_there(const weft_player *p);
+
+static void draw_environment(const weft_player *p, const weft_scene *scene, const weft_pane *pane, draw_there *draw)
+{
+    GLuint program = p->environment_background;
+    glUseProgram(program);
+    set_rays(program, scene, pane);
+    weft_gl_bind(program, "map", 0, GL_TEXTURE_2D, p->environment_map);
+    weft_gl_set_float(program, "strength", scene->environment_strength * scene->exposure);
+    weft_gl_set_float(program, "turn", scene->environment_turn_rad / (2 * WEFT_PI));
+    draw(p);
+}
+
+/* What falls on the ground, of the first light and of all others. */
+static void set_ground_light(const weft_player *p, GLuint program, const weft_scene *scene, long frame)
+{
+    weft_lighting l = weft_lighting_of(scene, p->environment, frame);
+    double sum[2][3] = {{0}};
+    for (int i = 0; i < l.count; i++)
+        for (int c = 0; c < 3; c++)
+            sum[i > 0 || l.scene_count == 0][c] += (double)(l.irradiance[i][c] * fmaxf(l.direction[i][2], 0));
+    weft_gl_set_vec3(program, "ground_key", sum[0][0], sum[0][1], sum[0][2]);
+    weft_gl_set_vec3(program, "ground_fill", sum[1][0], sum[1][1], sum[1][2]);
+}
+
+static const double backdrop[3] = {0.34, 0.335, 0.33};
+
+static weft_code draw_ground(weft_player *p, const weft_scene *scene, const weft_pane *pane, draw_there *draw,
+                             weft_error *error)
+{
+    GLuint program;
+    WEFT_TRY(weft_programs_find_ground(&p->programs, weft_scene_has_shadows(scene), &program, error));
+    glUseProgram(program);
+    weft_player_set_point(p, program, scene, pane, &p->layer[0]);
+    weft_vec3 eye = weft_orbit_eye(&scene->orbit, p->centre, p->radius);
+    weft_gl_set_vec3(program, "eye", (double)eye.x, (double)eye.y, (double)eye.z);
+    weft_gl_set_vec3(program, "backdrop", backdrop[0], backdrop[1], backdrop[2]);
+    weft_gl_set_float(program, "ground_height", p->lowest_z);
+    weft_gl_set_vec3(program, "ground_centre", (double)p->centre.x, (double)p->centre.y, p->lowest_z);
+    weft_gl_set_float(program, "ground_size", p->radius);
+    set_ground_light(p, program, scene, pane->sampling.frame);
+    draw(p);
+    return WEFT_OK;
+}
+
+static weft_code draw_background(weft_player *p, const weft_scene *scene, const weft_pane *pane, draw_there *draw,
+                                 weft_error *error)
+{
+    glDisable(GL_BLEND);
+    if (scene->ground)
+        return draw_ground(p, scene, pane, draw, error);
+    if (scene->environment && p->environment) {
+        draw_environment(p, scene, pane, draw);
+        return WEFT_OK;
+    }
+    glUseProgram(p->background);
+    draw(p);
+    return WEFT_OK;
 }
 
 static weft_code shade_layer(weft_player *p, const weft_scene *scene, const weft_pane *pane, const weft_layer *layer,
@@ -164,26 +237,40 @@ static bool is_opaque(const weft_player *p, weft_mode mode)
     return mode == WEFT_MODE_ANALYTIC || (mode == WEFT_MODE_RAW ? p->raw.opaque : p->material.opaque);
 }
 
-/* Through the holes of the cloth one more layer is seen, and the background. Reflectance is that of the whole texel,
- * holes included, and takes no further factor. */
-static weft_code draw_pane(weft_player *p, const weft_scene *scene, const weft_pane *pane, GLuint target,
-                           weft_error *error)
+/* Nothing of the background is drawn that opaque cloth hides. */
+static weft_code draw_opaque_pane(weft_player *p, const weft_scene *scene, const weft_pane *pane, GLuint target,
+                                  weft_error *error)
 {
-    bool opaque = is_opaque(p, pane->mode);
-    int layers = opaque ? 1 : WEFT_LAYER_COUNT;
-    WEFT_TRY(weft_player_draw_layers(p, scene, pane, layers, error));
+    WEFT_TRY(weft_player_draw_layers(p, scene, pane, 1, error));
     glBindFramebuffer(GL_FRAMEBUFFER, target);
     glViewport(pane->left, 0, pane->width, pane->height);
-    draw_background(p, scene, pane);
-    weft_code code = WEFT_OK;
-    for (int i = layers - 1; code == WEFT_OK && i >= 0; i--) {
-        if (!opaque)
-            glEnable(GL_BLEND);
+    WEFT_TRY(shade_layer(p, scene, pane, &p->layer[0], target, error));
+    return draw_background(p, scene, pane, draw_screen_behind, error);
+}
+
+/* Through the holes of the cloth one more layer is seen, and the background. Reflectance is that of the whole texel,
+ * holes included, and takes no further factor. */
+static weft_code draw_pane_with_holes(weft_player *p, const weft_scene *scene, const weft_pane *pane, GLuint target,
+                                      weft_error *error)
+{
+    WEFT_TRY(weft_player_draw_layers(p, scene, pane, WEFT_LAYER_COUNT, error));
+    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    glViewport(pane->left, 0, pane->width, pane->height);
+    weft_code code = draw_background(p, scene, pane, draw_screen, error);
+    for (int i = WEFT_LAYER_COUNT - 1; code == WEFT_OK && i >= 0; i--) {
+        glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         code = shade_layer(p, scene, pane, &p->layer[i], target, error);
     }
     glDisable(GL_BLEND);
     return code;
+}
+
+static weft_code draw_pane(weft_player *p, const weft_scene *scene, const weft_pane *pane, GLuint target,
+                           weft_error *error)
+{
+    return is_opaque(p, pane->mode) ? draw_opaque_pane(p, scene, pane, target, error)
+                                    : draw_pane_with_holes(p, scene, pane, target, error);
 }
 
 /* ---- Layouts ---- */
@@ -294,7 +381,7 @@ weft_code weft_player_draw(weft_player *p, const weft_scene *scene, int width, i
     WEFT_TRY(check_scene(p, scene, width, height, error));
     GLint target;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-    weft_player_draw_shadows(p, scene);
+    weft_player_draw_shadows(p, scene, sampling.frame);
     const weft_pane whole = {.width = width, .height = height, .sampling = sampling};
     WEFT_TRY(draw[scene->layout](p, scene, &whole, (GLuint)target, error));
     p->frames_drawn++;

@@ -5,13 +5,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_SIDE = 16384, MAX_SAMPLES = 64 };
+/* SOFT_FRAMES: of a picture with soft shadows at least. */
+enum { MAX_SIDE = 16384, MAX_SAMPLES = 64, SOFT_FRAMES = 36 };
+
+static long least_frames(const weft_scene *scene)
+{
+    bool is_soft = scene->environment || (scene->light_count > 0 && scene->key_size_rad > 0);
+    return scene->environment_reference               ? WEFT_ENVIRONMENT_PARTS
+           : weft_scene_has_shadows(scene) && is_soft ? SOFT_FRAMES
+                                                      : 1;
+}
 
 static weft_code add_frames(weft_player *p, const weft_scene *scene, int samples, const weft_progress *progress,
                             weft_canvas *canvas, weft_error *error)
 {
     long places = (long)samples * samples, total = places;
-    while (scene->environment_reference && total < WEFT_ENVIRONMENT_PARTS)
+    while (total < least_frames(scene))
         total += places;
     for (long i = 0; i < total; i++) {
         weft_sampling sampling = {
@@ -48,7 +57,7 @@ weft_code weft_player_picture(weft_player *p, const weft_scene *scene, int width
 
 /* ---- Surface samples ---- */
 
-enum { PLANES = 3 };
+enum { PLANES = 4 };
 
 typedef struct surface_target {
     GLuint buffer, depth, plane[PLANES];
@@ -56,7 +65,8 @@ typedef struct surface_target {
 
 static weft_code create_target(int width, int height, surface_target *t, weft_error *error)
 {
-    static const GLenum attachments[PLANES] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+    static const GLenum attachments[PLANES] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
+                                               GL_COLOR_ATTACHMENT3};
     for (int i = 0; i < PLANES; i++)
         WEFT_TRY(weft_gl_texture((weft_texture_format){GL_RGBA32F, GL_RGBA, GL_FLOAT}, width, height, 0, NULL,
                                  &t->plane[i], error));
@@ -83,7 +93,7 @@ static weft_code draw_surface(weft_player *p, const weft_scene *scene, const wef
                               weft_error *error)
 {
     GLuint program;
-    weft_player_draw_shadows(p, scene);
+    weft_player_draw_shadows(p, scene, pane->sampling.frame);
     WEFT_TRY(weft_player_draw_layers(p, scene, pane, 1, error));
     WEFT_TRY(weft_programs_find_geometry(&p->programs, weft_scene_has_shadows(scene), &program, error));
     glBindFramebuffer(GL_FRAMEBUFFER, target);
@@ -107,10 +117,13 @@ static void set_sample(weft_surface_sample *sample, int plane, const float value
         memcpy(sample->view, value, sizeof sample->view);
         sample->covered = value[3];
         break;
-    default:
+    case 2:
         sample->u = value[0];
         sample->v = value[1];
         sample->key_share = value[2];
+        break;
+    default:
+        memcpy(sample->sides, value, sizeof sample->sides);
         break;
     }
 }

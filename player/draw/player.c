@@ -89,6 +89,9 @@ weft_code weft_player_set_mesh(weft_player *p, const weft_mesh *mesh, weft_error
     weft_shadow_map_forget(&p->shadow);
     p->centre = weft_vec3_of((weft_real)centre[0], (weft_real)centre[1], (weft_real)centre[2]);
     p->radius = (double)radius;
+    p->lowest_z = (double)mesh->vertex[0].position[2];
+    for (int i = 1; i < mesh->vertex_count; i++)
+        p->lowest_z = fmin(p->lowest_z, (double)mesh->vertex[i].position[2]);
     p->triangle_count = mesh->triangle_count;
     p->coarse_count = mesh->coarse_count;
     glGenVertexArrays(1, &p->vertex_array);
@@ -217,6 +220,15 @@ long weft_player_weave_revision(const weft_player *p)
     return p->weave_revision;
 }
 
+void weft_player_lay_weave(weft_player *p, const weft_weave_layout *layout)
+{
+    double *cells = p->texel_count[WEFT_MODE_ANALYTIC];
+    const weft_weave_layout *before = &p->weave.layout;
+    cells[0] *= layout->tiles_u / before->tiles_u;
+    cells[1] *= layout->tiles_v / before->tiles_v;
+    p->weave.layout = *layout;
+}
+
 weft_weave_layout weft_player_weave_layout(const weft_player *p)
 {
     return p->weave.layout;
@@ -256,13 +268,13 @@ static weft_code upload_map(const weft_image *image, GLuint *texture, weft_error
     return weft_gl_check("uploading an environment map", error);
 }
 
-weft_code weft_player_set_environment(weft_player *p, const weft_image *image, weft_error *error)
+weft_code weft_player_set_environment(weft_player *p, const weft_image *image, int region_count, weft_error *error)
 {
     weft_environment *environment = NULL;
     GLuint map = 0;
     if (image) {
         environment = calloc(1, sizeof *environment);
-        weft_code code = environment ? weft_environment_of_image(image, environment, error)
+        weft_code code = environment ? weft_environment_of_image(image, region_count, environment, error)
                                      : weft_fail_memory(error, "environment", sizeof *environment);
         if (code == WEFT_OK)
             code = upload_map(image, &map, error);

@@ -45,6 +45,8 @@ weft_code weft_player_set_threads(weft_player *player, const weft_microcylinder_
 bool weft_player_has_threads(const weft_player *player);
 /* Grows whenever a weave or threads are set; 0: none yet. */
 long weft_player_weave_revision(const weft_player *player);
+/* Lays the weave that is there in another way. */
+void weft_player_lay_weave(weft_player *player, const weft_weave_layout *layout);
 /* How it was laid last. */
 weft_weave_layout weft_player_weave_layout(const weft_player *player);
 
@@ -65,9 +67,11 @@ void weft_player_material_parts(const weft_player *player, int *lobe_count, bool
 /* Largest measured angle of the views and lights of a mode, from the normal. */
 void weft_player_last_ring(const weft_player *player, weft_mode mode, double *view_rad, double *light_rad);
 
-/* Lights everything from `image`, where the scene asks for it (player/scene/environment.h says how the map lies); NULL
- * takes the environment away. Errors: those of weft_environment_of_image; what was there then stays. */
-weft_code weft_player_set_environment(weft_player *player, const weft_image *image, weft_error *error);
+/* Lights everything from `image`, where the scene asks for it (player/scene/environment.h says how the map lies, and
+ * how many regions it may take); NULL takes the environment away. Errors: those of weft_environment_of_image; what was
+ * there then stays. */
+weft_code weft_player_set_environment(weft_player *player, const weft_image *image, int region_count,
+                                      weft_error *error);
 bool weft_player_has_environment(const weft_player *player);
 
 /* How one frame samples its pixels. */
@@ -100,6 +104,7 @@ typedef struct weft_surface_sample {
     float light[3], level;
     float view[3], covered; /* 1 on the mesh, 0 beside it */
     float u, v, key_share;  /* key_share: of the first light that is not in shadow */
+    float sides[4];         /* of the whole pixel, texels (cells of a weave): across, up */
 } weft_surface_sample;
 
 /* The inputs of the reflectance of `mode` for the scene's first frame, one pane: sample [height][width], row 0 at the

@@ -21,7 +21,7 @@ struct weft_player {
     GLuint vertex_array, vertex_buffer, index_buffer;
     int triangle_count, coarse_count; /* coarse ones come after the others (player/mesh/mesh.h) */
     weft_vec3 centre;
-    double radius;
+    double radius, lowest_z;
     /* What may lie on it */
     bool has[WEFT_MODE_COUNT];
     weft_raw_texture raw;
@@ -73,7 +73,7 @@ weft_program_kind weft_player_kind(const weft_player *player, const weft_scene *
 void weft_player_bind_mode(const weft_player *player, const weft_scene *scene, weft_mode mode, GLuint program);
 
 /* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. */
-void weft_player_draw_shadows(weft_player *player, const weft_scene *scene);
+void weft_player_draw_shadows(weft_player *player, const weft_scene *scene, long frame);
 
 /* Shows `texture`, which is taken. last_ring_z: the smallest z of the views and of the lights. */
 void weft_player_take_raw(weft_player *player, weft_raw_texture *texture, const double last_ring_z[2]);

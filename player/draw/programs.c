@@ -1,5 +1,6 @@
 #include "player/draw/programs.h"
 
+#include "player/draw/shadow.h"
 #include "player/gl/shaders.h"
 #include "player/scene/false_colour.h"
 
@@ -23,14 +24,15 @@ static void define(const weft_program_kind *kind, char *text, size_t size)
 {
     snprintf(
         text, size,
-        "#define MAX_LIGHTS %d\n#define LEVEL_COLOURS %d\n#define LIGHT_COUNT %s\n#define ONE_LIGHT %s\n"
+        "#define MAX_LIGHTS %d\n#define SHADOW_LAYERS %d\n#define LEVEL_COLOURS %d\n#define LIGHT_COUNT %s\n#define "
+        "ONE_LIGHT %s\n"
         "#define STOCHASTIC %s\n#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
         "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n"
         "#define LAYER_GROUPS %d\n#define HALF_VECTOR %s\n#define RELIEF %s\n",
-        WEFT_MAX_LIGHTS, WEFT_LEVEL_COLOURS, kind->one_light ? "1" : "light_count", name_of(kind->one_light),
-        name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity), kind->lobe_count,
-        name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits), name_of(kind->noise),
-        kind->layer_groups, name_of(kind->half_vector), name_of(kind->relief));
+        WEFT_MAX_LIGHTS, WEFT_SHADOW_LAYERS, WEFT_LEVEL_COLOURS, kind->one_light ? "1" : "light_count",
+        name_of(kind->one_light), name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity),
+        kind->lobe_count, name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits),
+        name_of(kind->noise), kind->layer_groups, name_of(kind->half_vector), name_of(kind->relief));
 }
 
 static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)
@@ -93,6 +95,7 @@ void weft_programs_free(weft_programs *p)
     for (int i = 0; i < 2; i++) {
         glDeleteProgram(p->surface[i]);
         glDeleteProgram(p->geometry[i]);
+        glDeleteProgram(p->ground[i]);
     }
     *p = (weft_programs){0};
 }
@@ -129,18 +132,28 @@ weft_code weft_programs_find_surface(weft_programs *p, bool behind, GLuint *prog
     return WEFT_OK;
 }
 
-weft_code weft_programs_find_geometry(weft_programs *p, bool shadows, GLuint *program, weft_error *error)
+/* A program of what lies on the surface or beside it: `fragment` after what every shading needs. */
+static weft_code find_with_surface(const char *name, const char *fragment, bool shadows, GLuint *wanted,
+                                   GLuint *program, weft_error *error)
 {
-    GLuint *wanted = &p->geometry[shadows];
     if (!*wanted) {
         const weft_program_kind kind = {.shadows = shadows};
         char constants[640];
         define(&kind, constants, sizeof constants);
         const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
-        const char *const fragment[] = {constants, weft_glsl_rotation, weft_glsl_surface, weft_glsl_geometry_frag,
-                                        NULL};
-        WEFT_TRY(weft_gl_program("geometry", vertex, fragment, wanted, error));
+        const char *const parts[] = {constants, weft_glsl_rotation, weft_glsl_surface, fragment, NULL};
+        WEFT_TRY(weft_gl_program(name, vertex, parts, wanted, error));
     }
     *program = *wanted;
     return WEFT_OK;
+}
+
+weft_code weft_programs_find_geometry(weft_programs *p, bool shadows, GLuint *program, weft_error *error)
+{
+    return find_with_surface("geometry", weft_glsl_geometry_frag, shadows, &p->geometry[shadows], program, error);
+}
+
+weft_code weft_programs_find_ground(weft_programs *p, bool shadows, GLuint *program, weft_error *error)
+{
+    return find_with_surface("ground", weft_glsl_ground_frag, shadows, &p->ground[shadows], program, error);
 }

@@ -13,14 +13,14 @@ weft_code weft_shadow_map_create(weft_shadow_map *map, weft_error *error)
     const char *const vertex[] = {weft_glsl_surface_vert, NULL}, *const fragment[] = {weft_glsl_depth_frag, NULL};
     *map = (weft_shadow_map){0};
     WEFT_TRY(weft_gl_program("shadow", vertex, fragment, &map->program, error));
-    WEFT_TRY(weft_gl_texture(format, SIDE, SIDE, 0, NULL, &map->depth, error));
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    WEFT_TRY(weft_gl_texture(format, SIDE, SIDE, WEFT_SHADOW_LAYERS, NULL, &map->depth, error));
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
     glGenFramebuffers(1, &map->buffer);
     glBindFramebuffer(GL_FRAMEBUFFER, map->buffer);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, map->depth, 0);
+    glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, map->depth, 0, 0);
     glDrawBuffers(1, (const GLenum[]){GL_NONE});
     glReadBuffer(GL_NONE);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -59,23 +59,31 @@ static void look_along(weft_vec3 light, weft_vec3 centre, double radius, double 
 
 void weft_shadow_map_forget(weft_shadow_map *map)
 {
-    map->light = weft_vec3_of(0, 0, 0);
+    memset(map->light, 0, sizeof map->light);
 }
 
-bool weft_shadow_map_begin(weft_shadow_map *map, weft_vec3 light, weft_vec3 centre, double radius)
+bool weft_shadow_map_begin(weft_shadow_map *map, int layer, bool is_soft, weft_vec3 light, weft_vec3 centre,
+                           double radius)
 {
-    weft_vec3 change = weft_subtract(light, map->light);
-    if (weft_dot(change, change) == 0)
+    int side = is_soft ? SIDE / 2 : SIDE;
+    weft_vec3 change = weft_subtract(light, map->light[layer]);
+    if (weft_dot(change, change) == 0 && map->share[layer] == (float)side / SIDE)
         return false;
-    map->light = light;
+    map->light[layer] = light;
+    map->share[layer] = (float)side / SIDE;
+    map->texel = 2 * 1.01 * radius / SIDE;
     float clip_of_world[16];
     look_along(light, centre, 1.01 * radius, 2, 0, clip_of_world);
-    look_along(light, centre, 1.01 * radius, 1, 0.5, map->of_world);
+    look_along(light, centre, 1.01 * radius, 1, 0.5, map->of_world[layer]);
     glBindFramebuffer(GL_FRAMEBUFFER, map->buffer);
-    glViewport(0, 0, SIDE, SIDE);
+    glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, map->depth, 0, layer);
+    glViewport(0, 0, side, side);
+    glScissor(0, 0, side, side);
+    glEnable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glClear(GL_DEPTH_BUFFER_BIT);
+    glDisable(GL_SCISSOR_TEST);
     /* Both sides of a thin cloth are lit: its depth is moved away from the light by its slope and a little more. */
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(2.5f, 16);
@@ -92,6 +100,9 @@ void weft_shadow_map_end(void)
 
 void weft_shadow_map_bind(const weft_shadow_map *map, GLuint program, int unit)
 {
-    weft_gl_bind(program, "shadow_map", unit, GL_TEXTURE_2D, map->depth);
-    glUniformMatrix4fv(glGetUniformLocation(program, "shadow_of_world"), 1, GL_FALSE, map->of_world);
+    weft_gl_bind(program, "shadow_map", unit, GL_TEXTURE_2D_ARRAY, map->depth);
+    weft_gl_set_float(program, "shadow_texel", map->texel);
+    glUniform1fv(glGetUniformLocation(program, "shadow_share"), WEFT_SHADOW_LAYERS, map->share);
+    glUniformMatrix4fv(glGetUniformLocation(program, "shadow_of_world"), WEFT_SHADOW_LAYERS, GL_FALSE,
+                       map->of_world[0]);
 }

@@ -1,3 +1,4 @@
+#include "player/draw/lighting.h"
 #include "player/draw/player_parts.h"
 
 #include "player/draw/player.h"
@@ -104,13 +105,24 @@ void weft_player_shade(const weft_player *p, const weft_pane *pane, const weft_l
     glDisable(GL_DEPTH_TEST);
 }
 
-void weft_player_draw_shadows(weft_player *p, const weft_scene *scene)
+/* Coarse triangles will do for soft ones. */
+static void draw_shadow(weft_player *p, int layer, weft_vec3 light, bool is_soft)
+{
+    if (weft_shadow_map_begin(&p->shadow, layer, is_soft, light, p->centre, p->radius)) {
+        draw_mesh(p, is_soft && p->coarse_count > 0);
+        weft_shadow_map_end();
+    }
+}
+
+void weft_player_draw_shadows(weft_player *p, const weft_scene *scene, long frame)
 {
     if (!weft_scene_has_shadows(scene))
         return;
-    weft_vec3 light = weft_direction_of_angles(scene->light[0].direction);
-    if (weft_shadow_map_begin(&p->shadow, light, p->centre, p->radius)) {
-        draw_mesh(p, false);
-        weft_shadow_map_end();
-    }
+    weft_lighting lighting = weft_lighting_of(scene, p->environment, frame);
+    const float *key = lighting.direction[0];
+    if (lighting.scene_count > 0)
+        draw_shadow(p, 0, weft_vec3_of((weft_real)key[0], (weft_real)key[1], (weft_real)key[2]),
+                    scene->key_size_rad > 0);
+    for (int i = 0; i < lighting.fill_count; i++)
+        draw_shadow(p, 1 + i, lighting.fill[i], true);
 }

@@ -7,14 +7,15 @@
 
 typedef struct weft_layer {
     int width, height;
-    GLuint buffer, rotation, place, depth; /* player/draw/shaders/surface.frag.glsl says what the textures hold */
+    GLuint buffer, rotation, place, sides,
+        depth; /* player/draw/shaders/surface.frag.glsl says what the textures hold */
 } weft_layer;
 
 /* Makes the layer at least this large. The caller frees with weft_layer_free, also on failure. Errors: WEFT_SYSTEM. */
 weft_code weft_layer_resize(weft_layer *layer, int width, int height, weft_error *error);
 void weft_layer_free(weft_layer *layer);
 
-/* Sets surface_rotation and surface_place of player/draw/shaders/surface.glsl. */
+/* Sets surface_rotation, surface_place and surface_sides of player/draw/shaders/surface.glsl. */
 void weft_layer_bind(const weft_layer *layer, GLuint program);
 
 #endif

@@ -130,12 +130,12 @@ static double spread(const map *m, const region *r)
     return weight > 0 && !is_pixel(r) ? weight - (x * x + y * y + z * z) / weight : 0;
 }
 
-/* Returns how many there are: fewer than WEFT_ENVIRONMENT_REGIONS where few pixels are lit. */
-static int find_regions(const map *m, region regions[WEFT_ENVIRONMENT_REGIONS])
+/* Returns how many there are: fewer than `most` where few pixels are lit. */
+static int find_regions(const map *m, int most, region regions[WEFT_ENVIRONMENT_REGIONS])
 {
     int count = 1;
     regions[0] = (region){0, m->width, 0, m->height};
-    while (count < WEFT_ENVIRONMENT_REGIONS) {
+    while (count < most) {
         int widest = 0;
         for (int i = 1; i < count; i++) {
             if (spread(m, &regions[i]) > spread(m, &regions[widest]))
@@ -228,12 +228,12 @@ static void set_region(const map *m, const region *r, int number, weft_environme
         finish_part(&f);
 }
 
-static void set_lights(const map *m, weft_environment *environment)
+static void set_lights(const map *m, int most, weft_environment *environment)
 {
     region regions[WEFT_ENVIRONMENT_REGIONS];
-    int count = find_regions(m, regions);
-    *environment = (weft_environment){0};
-    for (int i = 0; i < WEFT_ENVIRONMENT_REGIONS; i++) {
+    int count = find_regions(m, most, regions);
+    *environment = (weft_environment){.region_count = most};
+    for (int i = 0; i < most; i++) {
         if (i < count)
             set_region(m, &regions[i], i, environment);
         else
@@ -243,7 +243,8 @@ static void set_lights(const map *m, weft_environment *environment)
     }
 }
 
-weft_code weft_environment_of_image(const weft_image *image, weft_environment *environment, weft_error *error)
+weft_code weft_environment_of_image(const weft_image *image, int region_count, weft_environment *environment,
+                                    weft_error *error)
 {
     if (image->width != 2 * image->height)
         return weft_fail(error, WEFT_BAD_INPUT,
@@ -259,7 +260,7 @@ weft_code weft_environment_of_image(const weft_image *image, weft_environment *e
     const region sphere = {0, m.width, 0, m.height};
     bool lit = sum_of(&m, &sphere, WEIGHT) > 0;
     if (lit)
-        set_lights(&m, environment);
+        set_lights(&m, region_count, environment);
     free(m.above);
     return lit ? WEFT_OK : weft_fail(error, WEFT_BAD_INPUT, "the environment map is black");
 }

@@ -11,7 +11,7 @@
 #include "base/picture/image.h"
 #include "base/vector.h"
 
-enum { WEFT_ENVIRONMENT_REGIONS = 48, WEFT_ENVIRONMENT_PARTS = 128 };
+enum { WEFT_ENVIRONMENT_REGIONS = 48, WEFT_ENVIRONMENT_SMOOTH_REGIONS = 6, WEFT_ENVIRONMENT_PARTS = 128 };
 
 typedef struct weft_distant_light {
     weft_vec3 direction; /* of the world, unit, toward the light */
@@ -19,6 +19,7 @@ typedef struct weft_distant_light {
 } weft_distant_light;
 
 typedef struct weft_environment {
+    int region_count;
     weft_distant_light region[WEFT_ENVIRONMENT_REGIONS];
     /* [part][region]; parts that follow each other lie far apart within their region. Each has the irradiance of a
      * whole region: it stands for all of it in its frame. */
@@ -27,7 +28,9 @@ typedef struct weft_environment {
 
 /* `image` holds radiance on the sphere by longitude and latitude: the top row is the world's +z, the middle column +y,
  * and x = +1 lies a quarter to the right of it. Negative and non-finite values count as 0, those above 1e30 as that.
+ * region_count: WEFT_ENVIRONMENT_REGIONS, or fewer for a map without small bright lights.
  * Errors: WEFT_BAD_INPUT for a map that is black or not twice as wide as high; WEFT_SYSTEM. */
-weft_code weft_environment_of_image(const weft_image *image, weft_environment *environment, weft_error *error);
+weft_code weft_environment_of_image(const weft_image *image, int region_count, weft_environment *environment,
+                                    weft_error *error);
 
 #endif

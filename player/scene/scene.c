@@ -41,7 +41,17 @@ int weft_scene_panes(const weft_scene *scene)
 
 bool weft_scene_has_shadows(const weft_scene *scene)
 {
-    return scene->shadows && scene->light_count > 0;
+    return scene->shadows && (scene->light_count > 0 || scene->environment);
+}
+
+weft_scene weft_scene_in_bare_light(const weft_scene *scene)
+{
+    weft_scene bare = *scene;
+    bare.light[0] = weft_scene_default().light[0];
+    bare.light_count = 1;
+    bare.key_size_rad = 0;
+    bare.environment = bare.ground = false;
+    return bare;
 }
 
 void weft_scene_keep_lit(weft_scene *scene)

@@ -53,7 +53,9 @@ typedef struct weft_scene {
     weft_orbit orbit;
     weft_light light[WEFT_SCENE_MAX_LIGHTS]; /* the first is the key light: it casts shadows and is dragged */
     int light_count;                         /* may be 0 under an environment */
-    bool shadows;
+    double key_size_rad;                     /* of the key light, as a radius on the sky: how soft its shadow is */
+    bool shadows;                            /* of the key light and, roughly, of the environment */
+    bool ground;                             /* that takes them, before a backdrop, in the place of the background */
     bool environment;            /* lit by the player's environment map, if it has one, besides the lights */
     double environment_turn_rad; /* of the map about the world's z */
     double environment_strength;
@@ -87,8 +89,11 @@ weft_scene weft_scene_default(void);
 /* The modes in the order of their panes: pane_count of them side by side, else two. Pure. */
 int weft_scene_panes(const weft_scene *scene);
 
-/* Whether there is a key light, and it casts shadows. Pure. */
+/* Whether there is light that casts shadows. Pure. */
 bool weft_scene_has_shadows(const weft_scene *scene);
+
+/* The same scene under the default light alone, without environment and ground. Pure. */
+weft_scene weft_scene_in_bare_light(const weft_scene *scene);
 
 /* A scene without any light gets the default one. In place. */
 void weft_scene_keep_lit(weft_scene *scene);

@@ -1,6 +1,7 @@
 #include "player/settings/choices.h"
 
 #include "btf/file_kind.h"
+#include "player/scene/surroundings.h"
 #include "player/settings/scene_options.h"
 
 #include <math.h>
@@ -174,10 +175,19 @@ weft_code weft_choose_environment(const weft_option *option, const char *text, v
 {
     (void)option;
     weft_scene_request *request = target;
-    bool off = strcmp(text, "off") == 0;
-    request->settings.scene.environment = !off;
-    if (!off && !request->has_lights && !request->source)
-        request->settings.scene.light_count = 0;
+    weft_scene *scene = &request->settings.scene;
+    bool off = strcmp(text, "off") == 0 || strcmp(text, "none") == 0;
+    const weft_scene before = *scene;
+    if (weft_surroundings_are(text))
+        weft_look(request, text);
+    else if (!off && !request->source)
+        scene->light_count = 0;
+    scene->environment = !off;
+    if (request->has_lights) {
+        memcpy(scene->light, before.light, sizeof scene->light);
+        scene->light_count = before.light_count;
+        scene->key_size_rad = before.key_size_rad;
+    }
     return weft_option_copy(off ? NULL : text, &request->settings.environment, error);
 }
 

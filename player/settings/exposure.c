@@ -7,7 +7,7 @@
 
 enum { WIDTH = 160, HEIGHT = 100 };
 
-static const double brightest_share = 0.98, white = 0.9, dimmest_white = 0.5, dimmest_mean = 0.1;
+static const double brightest_share = 0.98, white = 0.9, dimmest_white = 0.5, dimmest_mean = 0.1, brightest_mean = 0.17;
 
 /* What the request shows first, small, alone, and as bright as reflectance. */
 static weft_scene small_scene(const weft_scene *scene)
@@ -16,6 +16,7 @@ static weft_scene small_scene(const weft_scene *scene)
     small.layout = WEFT_LAYOUT_PANES;
     small.pane_count = 1;
     small.exposure = 1;
+    small.shadows = small.ground = false;
     small.labels = small.show_level = small.show_extrapolation = small.environment_reference = false;
     return small;
 }
@@ -31,7 +32,7 @@ static void gather_bright(weft_image *image, const weft_surface_sample *surface,
     }
 }
 
-static double exposure_for(float *value, size_t count)
+static double exposure_for(float *value, size_t count, bool has_ground)
 {
     double sum = 0, positive = 0;
     for (size_t i = 0; i < count; i++) {
@@ -43,7 +44,12 @@ static double exposure_for(float *value, size_t count)
     double bright = (double)weft_quantile_of_floats(value, count, (float)brightest_share);
     if (!(bright > 0) || (bright >= dimmest_white && bright <= 1))
         return 1;
-    return weft_clamp(fmax(white / bright, bright > 1 ? dimmest_mean / exp(sum / positive) : 0), 1e-6, 1e6);
+    double mean = exp(sum / positive), exposure = white / bright;
+    if (bright > 1)
+        exposure = fmax(exposure, dimmest_mean / mean);
+    else if (has_ground)
+        exposure = fmin(exposure, brightest_mean / mean);
+    return weft_clamp(exposure, 1e-6, 1e6);
 }
 
 weft_code weft_expose(const weft_scene_request *request, weft_player *player, weft_scene *scene, bool *changed,
@@ -60,7 +66,7 @@ weft_code weft_expose(const weft_scene_request *request, weft_player *player, we
     weft_code code = weft_player_read_surface(player, &small, small.pane[0], WIDTH, HEIGHT, &surface, error);
     if (code == WEFT_OK) {
         gather_bright(&image, surface, &count);
-        scene->exposure = exposure_for(image.pixels, count);
+        scene->exposure = exposure_for(image.pixels, count, scene->ground);
         *changed = scene->exposure != 1;
     }
     free(surface);

@@ -7,7 +7,9 @@
 /* Exposes the scene by a small picture of its first mode, unless the request gave an exposure or began from another
  * picture. The exposure stays 1, which shows reflectance, where it leaves the brightest 2 % of the mesh between half of
  * white and white; otherwise it brings them to 0.9. A picture that glares all over is not made darker than a mean
- * (geometric) of 0.1. *changed: the exposure is no longer 1. Needs what weft_player_draw does. Errors: those of it. */
+ * (geometric) of 0.1, and cloth before a ground, beside which it looks as dark as it is, not brighter than
+ * one of 0.17. *changed: the exposure is no
+ * longer 1. Needs what weft_player_draw does. Errors: those of it. */
 weft_code weft_expose(const weft_scene_request *request, weft_player *player, weft_scene *scene, bool *changed,
                       weft_error *error);
 

@@ -1,6 +1,7 @@
 #include "player/settings/first_look.h"
 
 #include "btf/material/material.h"
+#include "player/scene/surroundings.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -84,6 +85,16 @@ static weft_code lay_flat(weft_settings *settings, weft_error *error)
     return settings->mesh ? WEFT_OK : weft_fail_memory(error, "settings", 0);
 }
 
+/* Unless light was asked for, or its absence. */
+static weft_code in_studio(weft_scene_request *request, weft_error *error)
+{
+    char **environment = &request->settings.environment;
+    if (request->has_lights || weft_scene_request_has(request, "environment"))
+        return WEFT_OK;
+    weft_look(request, weft_surroundings_words[0]);
+    return weft_option_copy(weft_surroundings_words[0], environment, error);
+}
+
 weft_code weft_first_look(weft_scene_request *request, weft_error *error)
 {
     weft_settings *settings = &request->settings;
@@ -96,7 +107,7 @@ weft_code weft_first_look(weft_scene_request *request, weft_error *error)
     bool known;
     WEFT_TRY(find_measured(settings, &known, &measured, error));
     if (!known || holds_default(&measured))
-        return WEFT_OK;
+        return in_studio(request, error);
     if (!weft_scene_request_has(request, "mesh"))
         WEFT_TRY(lay_flat(settings, error));
     if (!request->has_camera)
@@ -104,4 +115,23 @@ weft_code weft_first_look(weft_scene_request *request, weft_error *error)
     if (!request->has_lights && settings->scene.light_count > 0)
         light_from(&settings->scene, measured.first_light);
     return WEFT_OK;
+}
+
+void weft_first_fit(weft_scene_request *request, const weft_mesh *mesh)
+{
+    const double margin = 0.93;
+    weft_orbit *orbit = &request->settings.scene.orbit;
+    weft_orbit_axes axes = weft_orbit_axes_of(orbit);
+    float centre[3], radius;
+    if (request->source || request->has_camera)
+        return;
+    weft_mesh_bounds(mesh, centre, &radius);
+    for (int i = 0; i < mesh->vertex_count; i++) {
+        const float *p = mesh->vertex[i].position;
+        weft_vec3 at = weft_vec3_of((weft_real)((p[0] - centre[0]) / radius), (weft_real)((p[1] - centre[1]) / radius),
+                                    (weft_real)((p[2] - centre[2]) / radius));
+        double aside = fmax(fabs((double)weft_dot(at, axes.right)), fabs((double)weft_dot(at, axes.up)));
+        double needed = (double)weft_dot(at, axes.backward) + aside / (margin * weft_orbit_slope());
+        orbit->distance = fmax(orbit->distance, needed);
+    }
 }

@@ -1,5 +1,7 @@
 #include "player/settings/scene_options.h"
 
+#include "player/scene/surroundings.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -60,7 +62,8 @@ static weft_code start(weft_scene_request *r, weft_error *error)
 /* Before any work is done, and before a window opens. */
 static weft_code check_files(const weft_settings *s, weft_error *error)
 {
-    const char *const file[] = {s->material, s->dataset, s->weave, s->environment};
+    bool is_map = s->environment && !weft_surroundings_are(s->environment);
+    const char *const file[] = {s->material, s->dataset, s->weave, is_map ? s->environment : NULL};
     for (size_t i = 0; i < sizeof file / sizeof file[0]; i++)
         if (file[i] && access(file[i], F_OK) != 0)
             return weft_fail(error, WEFT_BAD_INPUT, "there is no file '%s'", file[i]);
@@ -99,4 +102,16 @@ weft_code weft_scene_request_complete(weft_scene_request *r, weft_error *error)
 void weft_scene_request_free(weft_scene_request *r)
 {
     weft_settings_free(&r->settings);
+}
+
+void weft_look(weft_scene_request *r, const char *surroundings)
+{
+    weft_scene *scene = &r->settings.scene;
+    weft_surroundings_light(surroundings, scene);
+    if (!weft_scene_request_has(r, "shadows"))
+        scene->shadows = true;
+    if (!weft_scene_request_has(r, "ground"))
+        scene->ground = true;
+    if (!weft_scene_request_has(r, "tone"))
+        scene->tone = WEFT_TONE_SOFT;
 }

@@ -33,6 +33,10 @@ weft_code weft_scene_request_add(weft_scene_request *request, const weft_setting
 weft_code weft_scene_request_complete(weft_scene_request *request, weft_error *error);
 void weft_scene_request_free(weft_scene_request *request);
 
+/* Lights the scene by a built-in environment, with its shadows on a ground and highlights that keep their shape, where
+ * the request says nothing else. */
+void weft_look(weft_scene_request *request, const char *surroundings);
+
 /* Whether an option of this name was given. Pure. */
 bool weft_scene_request_has(const weft_scene_request *request, const char *name);
 

@@ -55,12 +55,12 @@ static const weft_setting schema[] = {
     SETTING("files.weave",
             OPTION("weave", "CLOTH.wv|CLOTH.mc", SHOWN, "Show this weave or microcylinder cloth in mode analytic"),
             NAME(weave)),
-    SETTING(
-        "files.environment",
-        OPTION(
-            "environment", "MAP.hdr|MAP.exr", LIGHT,
-            "Light from a map of the sphere, twice as wide as high; without --light it is the only light. off: none"),
-        NAME(environment), .read = weft_choose_environment),
+    SETTING("files.environment",
+            OPTION("environment", "studio|overcast|sky|MAP|none", LIGHT,
+                   "Light from all around with a key light of its own: studio, unless there is a --light; or from a "
+                   "map of the "
+                   "sphere, .hdr or .exr, twice as wide as high. none: the lights alone"),
+            NAME(environment), .read = weft_choose_environment),
     SETTING("files.mesh",
             OPTION("mesh", "MESH", MESH_AND_CAMERA,
                    "drape (default), sphere, plane, or an OBJ file with texture coordinates"),
@@ -86,7 +86,7 @@ static const weft_setting schema[] = {
     SETTING("size.mesh_mm",
             OPTION("mesh-size", "MM", MESH_AND_CAMERA,
                    "Side of the plane or of the draped cloth, diameter of the sphere, longest side of an OBJ file "
-                   "(default: 300; the plane: as large as the material)"),
+                   "(default: 300; sphere: 60; plane: the material once, or 20 mm of a weave)"),
             NUMBER(mesh_size_mm, 0, 1e9), .read = weft_choose_mesh_size),
     SETTING("size.mesh_unit_mm",
             OPTION("mesh-unit", "mm|cm|m", MESH_AND_CAMERA, "Unit of an OBJ file, instead of --mesh-size"),
@@ -115,8 +115,14 @@ static const weft_setting schema[] = {
      .most = WEFT_SCENE_MAX_LIGHTS,
      .stride = sizeof(weft_light),
      .count_offset = offsetof(weft_settings, scene.light_count)},
-    SETTING("light.shadows", OPTION("shadows", "on|off", LIGHT, "Shadows of the key light"), .may_be_empty = true,
-            SWITCH(scene.shadows)),
+    SETTING("light.shadows", OPTION("shadows", "on|off", LIGHT, "Shadows of the key light and of the environment"),
+            .may_be_empty = true, SWITCH(scene.shadows)),
+    SETTING(
+        "light.key_size_deg",
+        OPTION("light-size", "DEG", LIGHT, "Radius of the key light on the sky: how soft its shadow is (default: 0)"),
+        ANGLE(scene.key_size_rad), .low = 0, .high = 45),
+    SETTING("light.ground", OPTION("ground", "on|off", LIGHT, "A ground that takes the shadows, and a backdrop"),
+            .may_be_empty = true, SWITCH(scene.ground)),
     SETTING("light.environment.lit", SWITCH(scene.environment)),
     SETTING("light.environment.turn_deg", OPTION("environment-turn", "DEG", LIGHT, "Turn the map about the vertical"),
             ANGLE(scene.environment_turn_rad), TURNED),

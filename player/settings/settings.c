@@ -1,6 +1,7 @@
 #include "player/settings/settings.h"
 
 #include "base/atomic_file.h"
+#include "player/scene/surroundings.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -60,7 +61,8 @@ weft_code weft_settings_read(const char *path, weft_settings *settings, weft_err
 weft_code weft_settings_check_files(const weft_settings *s, const char *source, weft_error *error)
 {
     static const char *const kind[] = {"material", "dataset", "weave", "environment", "mesh"};
-    const char *const file[] = {s->material, s->dataset, s->weave, s->environment,
+    const char *const file[] = {s->material, s->dataset, s->weave,
+                                s->environment && !weft_surroundings_are(s->environment) ? s->environment : NULL,
                                 s->mesh && !weft_mesh_is_built_in(s->mesh) ? s->mesh : NULL};
     for (size_t i = 0; i < sizeof file / sizeof file[0]; i++)
         if (file[i] && access(file[i], F_OK) != 0)
@@ -69,16 +71,18 @@ weft_code weft_settings_check_files(const weft_settings *s, const char *source, 
     return WEFT_OK;
 }
 
-double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm)
+double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm,
+                            double plane_mm)
 {
     if (!settings->real_size || !(mesh->size > 0 && mesh->coordinate_length > 0 && material_width_mm > 0))
         return settings->scene.repeat;
     bool is_plane = strcmp(settings->mesh, "plane") == 0;
     double unit_mm = settings->mesh_unit_mm;
-    double size_mm = settings->mesh_size_mm > 0 ? settings->mesh_size_mm
-                     : is_plane                 ? material_width_mm
-                     : unit_mm > 0              ? unit_mm * mesh->size
-                                                : WEFT_SETTINGS_MESH_MM;
+    double size_mm = settings->mesh_size_mm > 0              ? settings->mesh_size_mm
+                     : is_plane                              ? plane_mm
+                     : unit_mm > 0                           ? unit_mm * mesh->size
+                     : strcmp(settings->mesh, "sphere") == 0 ? WEFT_SETTINGS_SPHERE_MM
+                                                             : WEFT_SETTINGS_MESH_MM;
     return mesh->coordinate_length * size_mm / (mesh->size * material_width_mm);
 }
 

@@ -12,7 +12,7 @@ typedef struct weft_settings {
     char *material, *dataset, *weave, *environment; /* files */
     char *mesh;                                     /* "drape", "sphere", "plane" or a file */
     weft_raw_format raw_format;                     /* how samples of the dataset are kept */
-    double mesh_size_mm; /* length of the mesh's `size`; 0: WEFT_SETTINGS_MESH_MM, or as mesh_unit_mm says */
+    double mesh_size_mm; /* length of the mesh's `size`; 0: that of its kind below, or as mesh_unit_mm says */
     double mesh_unit_mm; /* length of a file's unit; 0: not known */
     bool real_size;      /* the scene's `repeat` follows from the sizes of cloth and mesh */
     double tiles[2];     /* of the weave across the material; 0: as the virtual rig lays it out */
@@ -21,7 +21,13 @@ typedef struct weft_settings {
     weft_scene scene;
 } weft_settings;
 
-enum { WEFT_SETTINGS_MAX_SIDE = 16384, WEFT_SETTINGS_MAX_SAMPLES = 64, WEFT_SETTINGS_MESH_MM = 300 };
+enum {
+    WEFT_SETTINGS_MAX_SIDE = 16384,
+    WEFT_SETTINGS_MAX_SAMPLES = 64,
+    WEFT_SETTINGS_MESH_MM = 300,
+    WEFT_SETTINGS_SPHERE_MM = 60,
+    WEFT_SETTINGS_SWATCH_MM = 20
+};
 
 /* The default scene on the drape, 960 x 540, no models. The caller frees with weft_settings_free.
  * Errors: WEFT_SYSTEM. */
@@ -47,8 +53,10 @@ weft_code weft_settings_read(const char *path, weft_settings *settings, weft_err
 weft_code weft_settings_check_files(const weft_settings *settings, const char *source, weft_error *error);
 
 /* Materials for one unit of the texture coordinates of `mesh`: with real_size so many that a material is
- * material_width_mm wide on it (once across the plane, unless the plane has a size), else what the scene says. Pure. */
-double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm);
+ * material_width_mm wide on it, else what the scene says. plane_mm is the side of the plane where the settings give
+ * none. Pure. */
+double weft_settings_repeat(const weft_settings *settings, const weft_mesh *mesh, double material_width_mm,
+                            double plane_mm);
 
 /* Whether a picture can be written under this name: .png, .exr, .tif. Pure. */
 bool weft_settings_is_picture(const char *path);

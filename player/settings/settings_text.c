@@ -1,6 +1,7 @@
 #include "player/settings/settings.h"
 
 #include "base/text/json_text.h"
+#include "player/scene/surroundings.h"
 #include "player/settings/json.h"
 #include "player/settings/relative_path.h"
 
@@ -23,15 +24,31 @@ static void list_files(weft_settings *settings, char **name[FILE_COUNT])
     name[4] = &settings->mesh;
 }
 
-/* The result is owned. A file that is called as a built-in mesh is kept apart from it by its folder. */
-static weft_code name_beside(const char *path, bool is_mesh, const char *beside, char **name, weft_error *error)
+typedef bool built_in(const char *name);
+
+static bool none_built_in(const char *name)
 {
-    if (is_mesh && weft_mesh_is_built_in(path)) {
+    (void)name;
+    return false;
+}
+
+static built_in *built_in_of(char *const *name, const weft_settings *settings)
+{
+    return name == &settings->mesh          ? weft_mesh_is_built_in
+           : name == &settings->environment ? weft_surroundings_are
+                                            : none_built_in;
+}
+
+/* The result is owned. A file that is called as something built in is kept apart from it by its folder. */
+static weft_code name_beside(const char *path, built_in *is_built_in, const char *beside, char **name,
+                             weft_error *error)
+{
+    if (is_built_in(path)) {
         *name = strdup(path);
         return *name ? WEFT_OK : weft_fail_memory(error, path, strlen(path));
     }
     WEFT_TRY(weft_path_relative_to(path, beside, name, error));
-    if (!is_mesh || !weft_mesh_is_built_in(*name))
+    if (!is_built_in(*name))
         return WEFT_OK;
     char *dotted = NULL;
     int length = asprintf(&dotted, "./%s", *name);
@@ -64,7 +81,7 @@ weft_code weft_settings_format(const weft_settings *settings, const char *beside
     list_files(&named, name);
     for (int i = 0; i < FILE_COUNT; i++) {
         if (*name[i] && code == WEFT_OK)
-            code = name_beside(*name[i], name[i] == &named.mesh, beside, &owned[i], error);
+            code = name_beside(*name[i], built_in_of(name[i], &named), beside, &owned[i], error);
         *name[i] = owned[i];
     }
     if (code == WEFT_OK)
@@ -89,7 +106,7 @@ static weft_code find_files(weft_settings *settings, const char *source, weft_er
     char **name[FILE_COUNT];
     list_files(settings, name);
     for (int i = 0; i < FILE_COUNT; i++) {
-        if (!*name[i] || (name[i] == &settings->mesh && weft_mesh_is_built_in(*name[i])))
+        if (!*name[i] || built_in_of(name[i], settings)(*name[i]))
             continue;
         char *found = weft_path_beside(*name[i], source);
         if (!found)

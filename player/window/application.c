@@ -271,6 +271,8 @@ static weft_code advance(weft_application *a, weft_error *error)
 static void grant_wishes(weft_application *a)
 {
     weft_interaction *i = &a->interaction;
+    if (i->wants_surroundings)
+        weft_application_change_surroundings(a);
     if (i->wants_mesh)
         weft_application_change_mesh(a);
     if (i->wants_reload) {

@@ -14,7 +14,6 @@ typedef weft_code weft_scene_measure(weft_player *player, const weft_scene *scen
 typedef struct weft_application_setup {
     weft_scene_request *request; /* what is shown first; its size is that of the window, in screen coordinates */
     long frame_limit;            /* 0: until the window is closed */
-    double cloth_width_mm;       /* player/window/scene_loader.h */
     weft_scene_measure *measure; /* of a picture that rests */
     weft_log log;                /* hears what the user is told of files and devices */
 } weft_application_setup;

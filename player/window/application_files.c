@@ -1,6 +1,7 @@
 #include "player/window/application_state.h"
 
 #include "base/clock.h"
+#include "player/scene/surroundings.h"
 #include "player/window/scene_part.h"
 
 #include <stdio.h>
@@ -32,7 +33,7 @@ weft_code weft_application_open_files(weft_application *a, weft_error *error)
     if (weft_watch_create(&a->watch, &no_watch) != WEFT_OK)
         weft_log_line(&a->setup.log, no_watch.message);
     WEFT_TRY(weft_space_mouse_create(&a->mouse, error));
-    return weft_scene_loader_create(a->setup.request, a->setup.cloth_width_mm, &a->loader, error);
+    return weft_scene_loader_create(a->setup.request, &a->loader, error);
 }
 
 void weft_application_close_files(weft_application *a)
@@ -75,6 +76,23 @@ void weft_application_open(weft_application *a, const char *path)
     watch_files(a, &ignored);
     snprintf(note, sizeof note, "reading %.256s", path ? path : "all files again");
     tell_outcome(a, code, &error, note);
+}
+
+void weft_application_change_surroundings(weft_application *a)
+{
+    weft_error error = {0};
+    weft_scene *scene = &a->interaction.scene;
+    const char *name = a->interaction.wants_surroundings;
+    a->interaction.wants_surroundings = NULL;
+    a->interaction.changed = true;
+    bool is_bare = !weft_surroundings_are(name);
+    if (is_bare)
+        *scene = weft_scene_in_bare_light(scene);
+    else
+        weft_surroundings_light(name, scene);
+    scene->shadows = scene->ground = !is_bare;
+    if (!is_bare)
+        tell_outcome(a, weft_scene_loader_open_surroundings(a->loader, name, &error), &error, "");
 }
 
 void weft_application_change_mesh(weft_application *a)

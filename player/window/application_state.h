@@ -63,6 +63,7 @@ void weft_application_open(weft_application *application, const char *path);
 
 /* Begins to read the mesh that was wished for. */
 void weft_application_change_mesh(weft_application *application);
+void weft_application_change_surroundings(weft_application *application);
 
 /* Takes in what has been read, what has changed on disk, and the SpaceMouse. */
 void weft_application_poll_files(weft_application *application);

@@ -1,5 +1,6 @@
 #include "player/window/panel.h"
 
+#include "player/scene/surroundings.h"
 #include "player/window/ui_bridge.h"
 
 #include <math.h>
@@ -121,7 +122,10 @@ static void map_legend(const weft_application *a)
 static bool light_rows(weft_light *light, bool removable, bool *removed)
 {
     double theta_rad = light->direction.theta_rad, phi_rad = light->direction.phi_rad;
-    bool changed = weft_ui_angle("Height", &theta_rad, 0, 110);
+    double height_rad = WEFT_PI / 2 - theta_rad;
+    bool changed = weft_ui_angle("Height", &height_rad, -20, 90);
+    if (changed)
+        theta_rad = WEFT_PI / 2 - height_rad;
     changed |= weft_ui_angle("Around", &phi_rad, -360, 360);
     light->direction = (weft_angles){theta_rad, phi_rad};
     changed |= weft_ui_colour("Irradiance", light->irradiance);
@@ -162,6 +166,18 @@ static void add_light(weft_interaction *i)
     weft_ui_enable();
 }
 
+/* With its own key light, shadows and ground; "Bare": one light and nothing else. */
+static void surroundings_row(weft_application *a)
+{
+    static const char *const name[] = {"Studio", "Overcast", "Sky", "Bare"};
+    const char *shown = a->setup.request->settings.environment;
+    int chosen = a->interaction.scene.environment ? -1 : 3;
+    for (int k = 0; chosen < 0 && shown && weft_surroundings_words[k]; k++)
+        chosen = strcmp(shown, weft_surroundings_words[k]) == 0 ? k : chosen;
+    if (weft_ui_choice("Set", &chosen, name, NULL, 4))
+        a->interaction.wants_surroundings = chosen < 3 ? weft_surroundings_words[chosen] : "none";
+}
+
 static void environment_rows(weft_application *a)
 {
     weft_interaction *i = &a->interaction;
@@ -184,7 +200,10 @@ static void light_section(weft_application *a)
     map_legend(a);
     i->changed |= weft_ui_toggle("Shadows", &i->scene.shadows);
     weft_ui_same_line();
+    i->changed |= weft_ui_toggle("Ground", &i->scene.ground);
+    weft_ui_same_line();
     add_light(i);
+    surroundings_row(a);
     environment_rows(a);
     lights(i);
 }

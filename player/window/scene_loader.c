@@ -44,15 +44,13 @@ static weft_code start_all(weft_scene_loader *l, weft_error *error)
     return WEFT_OK;
 }
 
-weft_code weft_scene_loader_create(weft_scene_request *request, double cloth_width_mm, weft_scene_loader **result,
-                                   weft_error *error)
+weft_code weft_scene_loader_create(weft_scene_request *request, weft_scene_loader **result, weft_error *error)
 {
     *result = NULL;
     weft_scene_loader *l = calloc(1, sizeof *l);
     if (!l)
         return weft_fail_memory(error, "loader", sizeof *l);
     l->stage.request = request;
-    l->stage.cloth_width_mm = cloth_width_mm;
     weft_code code = weft_first_look(request, error);
     if (code == WEFT_OK)
         code = weft_loader_create(&l->loader, error);
@@ -186,11 +184,11 @@ weft_code weft_scene_loader_finish(weft_scene_loader *l, const weft_progress *pr
     return WEFT_OK;
 }
 
-weft_code weft_scene_load(weft_scene_request *request, double cloth_width_mm, weft_player *player,
-                          const weft_progress *progress, const weft_log *log, weft_error *error)
+weft_code weft_scene_load(weft_scene_request *request, weft_player *player, const weft_progress *progress,
+                          const weft_log *log, weft_error *error)
 {
     weft_scene_loader *loader = NULL;
-    WEFT_TRY(weft_scene_loader_create(request, cloth_width_mm, &loader, error));
+    WEFT_TRY(weft_scene_loader_create(request, &loader, error));
     weft_code code = weft_scene_loader_attach(loader, player, error);
     if (code == WEFT_OK)
         code = weft_scene_loader_finish(loader, progress, log, error);
@@ -221,7 +219,7 @@ static weft_code clear_what_is_not_named(weft_scene_loader *l, weft_error *error
     if (s->environment)
         return WEFT_OK;
     weft_loader_cancel(l->loader, WEFT_SLOT_ENVIRONMENT);
-    return weft_player_set_environment(l->stage.player, NULL, error);
+    return weft_player_set_environment(l->stage.player, NULL, 0, error);
 }
 
 static weft_code open_picture(weft_scene_loader *l, const char *path, weft_error *error)
@@ -277,6 +275,11 @@ weft_code weft_scene_loader_open(weft_scene_loader *l, const char *path, weft_er
 weft_code weft_scene_loader_open_mesh(weft_scene_loader *l, const char *name, weft_error *error)
 {
     return start_by_user(l, WEFT_SLOT_MESH, name, error);
+}
+
+weft_code weft_scene_loader_open_surroundings(weft_scene_loader *l, const char *name, weft_error *error)
+{
+    return start_by_user(l, WEFT_SLOT_ENVIRONMENT, name, error);
 }
 
 weft_code weft_scene_loader_reload_slot(weft_scene_loader *l, int slot, weft_error *error)

@@ -7,10 +7,8 @@
 typedef struct weft_scene_loader weft_scene_loader;
 
 /* Begins to read what the settings of `request` name, which must live on; needs no OpenGL. From here on the settings
- * name what is shown. `cloth_width_mm` is the width of a weave where nothing says how wide its material is. The caller
- * frees with weft_scene_loader_free, before the player. Errors: WEFT_SYSTEM. */
-weft_code weft_scene_loader_create(weft_scene_request *request, double cloth_width_mm, weft_scene_loader **result,
-                                   weft_error *error);
+ * name what is shown. The caller frees with weft_scene_loader_free, before the player. Errors: WEFT_SYSTEM. */
+weft_code weft_scene_loader_create(weft_scene_request *request, weft_scene_loader **result, weft_error *error);
 void weft_scene_loader_free(weft_scene_loader *loader);
 
 /* Says where to show it; before all functions below. Errors: WEFT_SYSTEM. */
@@ -28,8 +26,8 @@ weft_code weft_scene_loader_finish(weft_scene_loader *loader, const weft_progres
                                    weft_error *error);
 
 /* All of these at once, for who only wants the picture. Errors: as above. */
-weft_code weft_scene_load(weft_scene_request *request, double cloth_width_mm, weft_player *player,
-                          const weft_progress *progress, const weft_log *log, weft_error *error);
+weft_code weft_scene_load(weft_scene_request *request, weft_player *player, const weft_progress *progress,
+                          const weft_log *log, weft_error *error);
 
 /* Share of the file that is being read; -1: none. */
 double weft_scene_loader_progress(weft_scene_loader *loader);
@@ -40,6 +38,9 @@ weft_code weft_scene_loader_open(weft_scene_loader *loader, const char *path, we
 
 /* The same for a mesh, built in or a file. */
 weft_code weft_scene_loader_open_mesh(weft_scene_loader *loader, const char *name, weft_error *error);
+
+/* The same for a built-in environment. */
+weft_code weft_scene_loader_open_surroundings(weft_scene_loader *loader, const char *name, weft_error *error);
 
 /* Begins to read again what is shown: all files, or that of a slot (player/window/scene_part.h). Errors: WEFT_SYSTEM.
  */

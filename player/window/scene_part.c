@@ -2,6 +2,9 @@
 
 #include "btf/dataset/fingerprint.h"
 #include "btf/file_kind.h"
+#include "player/scene/environment.h"
+#include "player/scene/surroundings.h"
+#include "player/settings/first_look.h"
 #include "player/window/dataset_load.h"
 #include "reflectance/microcylinder/file.h"
 
@@ -18,7 +21,7 @@ typedef struct part {
     double width_mm, tiles[2];
     bool knows_measured;
     weft_measured measured; /* of a material or a dataset */
-    weft_weave_layout layout;
+    weft_woven woven;
     char note[WEFT_MESSAGE_SIZE];
     /* One of these */
     weft_material material;
@@ -64,8 +67,10 @@ static weft_code read_weave(part *p, weft_error *error)
         return weft_microcylinder_read(p->path, NULL, 0, &p->threads, error);
     weft_weave weave = {0};
     WEFT_TRY(weft_weave_read(p->path, NULL, 0, &weave, p->note, error));
-    p->layout = weft_weave_lay_out(&weave, p->tiles[0], p->tiles[1]);
-    p->width_mm = p->stage->cloth_width_mm;
+    bool is_laid = weave.layout.tiles_u > 0 || p->tiles[0] > 0;
+    p->woven.on_material = weft_weave_lay_out(&weave, p->tiles[0], p->tiles[1]);
+    p->woven.alone = is_laid ? p->woven.on_material : weft_weave_square(&weave);
+    p->woven.tile_width_mm = weave.tile_width * weft_weave_cell_pitch_mm(&weave);
     weft_code code = weft_weave_texels_of(&weave, &p->texels, error);
     weft_weave_free(&weave);
     return code;
@@ -106,7 +111,8 @@ static weft_code read_part(void *data, weft_load *load, weft_error *error)
     case WEFT_SLOT_WEAVE:
         return read_weave(p, error);
     case WEFT_SLOT_ENVIRONMENT:
-        return weft_image_read(p->path, &p->image, NULL, error);
+        return weft_surroundings_are(p->path) ? weft_surroundings_map(p->path, &p->image, error)
+                                              : weft_image_read(p->path, &p->image, NULL, error);
     default:
         return read_dataset(p, load, error);
     }
@@ -118,13 +124,15 @@ static weft_code show_weave(part *p, weft_error *error)
 {
     if (p->is_threads)
         return weft_player_set_threads(p->stage->player, &p->threads.cloth, error);
-    return weft_player_set_weave_texels(p->stage->player, &p->texels, &p->layout, error);
+    p->stage->woven = p->woven;
+    return weft_player_set_weave_texels(p->stage->player, &p->texels, &p->woven.alone, error);
 }
 
 static weft_code show_environment(part *p, weft_error *error)
 {
     weft_error cause = {0};
-    weft_code code = weft_player_set_environment(p->stage->player, &p->image, &cause);
+    int regions = weft_surroundings_are(p->path) ? WEFT_ENVIRONMENT_SMOOTH_REGIONS : WEFT_ENVIRONMENT_REGIONS;
+    weft_code code = weft_player_set_environment(p->stage->player, &p->image, regions, &cause);
     if (code != WEFT_OK)
         return weft_fail(error, code, "'%s': %s", p->path, cause.message);
     if (p->by_user)
@@ -135,6 +143,7 @@ static weft_code show_environment(part *p, weft_error *error)
 static weft_code show_mesh(part *p, weft_error *error)
 {
     WEFT_TRY(weft_player_set_mesh(p->stage->player, &p->mesh, error));
+    weft_first_fit(p->stage->request, &p->mesh);
     p->stage->mesh = p->mesh;
     p->stage->mesh.vertex = NULL;
     p->stage->mesh.index = NULL;
@@ -175,15 +184,23 @@ static weft_code show_in_player(part *p, weft_error *error)
     }
 }
 
-/* The first model that says how wide it is says so for all. */
+/* The first measured model that says how wide it is says so for all. A weave lies on it as it was photographed, yarns
+ * on yarns; alone it has its own size. */
 static void lay_out(weft_scene_stage *stage)
 {
-    static const weft_scene_slot order[] = {WEFT_SLOT_MATERIAL, WEFT_SLOT_DATASET, WEFT_SLOT_WEAVE};
     weft_settings *settings = &stage->request->settings;
-    double width_mm = 0;
-    for (size_t i = 0; i < sizeof order / sizeof *order && width_mm == 0; i++)
-        width_mm = stage->width_mm[order[i]];
-    settings->scene.repeat = weft_settings_repeat(settings, &stage->mesh, width_mm);
+    const double *measured_mm = stage->width_mm;
+    double width_mm =
+        measured_mm[WEFT_SLOT_MATERIAL] > 0 ? measured_mm[WEFT_SLOT_MATERIAL] : measured_mm[WEFT_SLOT_DATASET];
+    const weft_woven *woven = &stage->woven;
+    bool is_woven = settings->weave && !weft_player_has_threads(stage->player);
+    bool is_measured = settings->material || settings->dataset;
+    if (is_woven)
+        weft_player_lay_weave(stage->player, is_measured ? &woven->on_material : &woven->alone);
+    if (is_woven && !is_measured)
+        width_mm = woven->alone.tiles_u * woven->tile_width_mm;
+    settings->scene.repeat =
+        weft_settings_repeat(settings, &stage->mesh, width_mm, is_measured ? width_mm : WEFT_SETTINGS_SWATCH_MM);
 }
 
 static void note_measured(const part *p)

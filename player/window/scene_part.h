@@ -15,13 +15,19 @@ typedef enum weft_scene_slot {
     WEFT_SLOT_COUNT
 } weft_scene_slot;
 
+/* How a weave lies where it is shown. */
+typedef struct weft_woven {
+    weft_weave_layout on_material, alone;
+    double tile_width_mm;
+} weft_woven;
+
 /* What parts change as they are read and shown. */
 typedef struct weft_scene_stage {
     weft_scene_request *request;      /* its settings name what is shown */
-    double cloth_width_mm;            /* of a weave whose file does not say how wide its material is */
     weft_player *player;              /* must be set before a dataset is started, and before anything is shown */
     char *metadata;                   /* of the material read last; the reader's alone */
-    double width_mm[WEFT_SLOT_COUNT]; /* of a model; 0: unknown */
+    double width_mm[WEFT_SLOT_COUNT]; /* of a measured model; 0: unknown */
+    weft_woven woven;                 /* of the weave that is shown */
     weft_mesh mesh;                   /* that is shown, without its vertices */
     bool by_user;                     /* of the part shown last: it was asked for while playing */
     weft_scene_slot slot;             /* of the part shown last */

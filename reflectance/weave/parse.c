@@ -13,6 +13,7 @@ enum { MAX_TILE_SIDE = 4096, MAX_CELLS = 1 << 20 };
 typedef struct weave_values {
     double tile_width, tile_height, alpha, beta, delta, highlight_width, warp_area, weft_area;
     double inclination_noise[4], fineness, period, frozen_radius;
+    double cell_pitch_mm;
     weft_weave_layout layout;
 } weave_values;
 
@@ -37,6 +38,7 @@ static const weft_block_field weave_fields[] = {
     {"fineness", offsetof(weave_values, fineness), 1, true, 0, LARGE},
     {"period", offsetof(weave_values, period), 1, true, 0, LARGE},
     {"frozenRadius", offsetof(weave_values, frozen_radius), 1, true, 0, 1},
+    {"cellPitch", offsetof(weave_values, cell_pitch_mm), 1, true, 0, LARGE},
     {"tilesU", offsetof(weave_values, layout.tiles_u), 1, true, 0, LARGE},
     {"tilesV", offsetof(weave_values, layout.tiles_v), 1, true, 0, LARGE},
     {"cornerU", offsetof(weave_values, layout.corner_u), 1, true, -LARGE, LARGE},
@@ -212,6 +214,7 @@ static void store_values(weft_weave *weave, const weave_values *values)
     weave->weft_area = (weft_real)values->weft_area;
     weave->fineness = (weft_real)values->fineness;
     weave->period = (weft_real)values->period;
+    weave->cell_pitch_mm = values->cell_pitch_mm;
     weave->layout = values->layout;
     for (int i = 0; i < 4; i++)
         weave->inclination_noise_deg[i] = (weft_real)values->inclination_noise[i];

@@ -34,3 +34,19 @@ weft_weave_layout weft_weave_lay_out(const weft_weave *weave, double tiles_u, do
         return (weft_weave_layout){.tiles_u = tiles_u, .tiles_v = tiles_v};
     return weave->layout.tiles_u > 0 ? weave->layout : weft_weave_whole_tiles(weave);
 }
+
+double weft_weave_cell_pitch_mm(const weft_weave *weave)
+{
+    return weave->cell_pitch_mm > 0 ? weave->cell_pitch_mm : WEFT_WEAVE_CELL_PITCH_MM;
+}
+
+static int greatest_common_divisor(int a, int b)
+{
+    return b == 0 ? a : greatest_common_divisor(b, a % b);
+}
+
+weft_weave_layout weft_weave_square(const weft_weave *weave)
+{
+    int common = greatest_common_divisor(weave->tile_width, weave->tile_height);
+    return (weft_weave_layout){.tiles_u = weave->tile_height / common, .tiles_v = weave->tile_width / common};
+}

@@ -38,6 +38,7 @@ typedef struct weft_weave {
     weft_real inclination_noise_deg[4];
     weft_real fineness;       /* intensity noise: fineness x fineness rectangles per segment; 0 = off */
     weft_real period;         /* of the inclination noise, cells; 0 = off */
+    double cell_pitch_mm;     /* side of a cell; 0: its file does not say (weft_weave_cell_pitch_mm) */
     int *pattern;             /* [tile_height][tile_width] 0-based index into yarn; first row = top of the tile */
     weft_weave_layout layout; /* on the material that it was fitted to; 0 tiles: its file does not say */
     int yarn_count;
@@ -77,6 +78,14 @@ weft_weave_layout weft_weave_whole_tiles(const weft_weave *weave);
 /* How a weave lies on a material: tiles_u x tiles_v from the lower left corner where these are above 0, else as its
  * file says, else in whole tiles. Pure. */
 weft_weave_layout weft_weave_lay_out(const weft_weave *weave, double tiles_u, double tiles_v);
+
+/* Side of a cell as the file states it, else WEFT_WEAVE_CELL_PITCH_MM: 40 threads a centimetre where yarns are one cell
+ * wide, a cloth for shirts. Pure. */
+#define WEFT_WEAVE_CELL_PITCH_MM 0.25
+double weft_weave_cell_pitch_mm(const weft_weave *weave);
+
+/* The smallest square of whole tiles, for cloth that lies on no material: its cells are square. Pure. */
+weft_weave_layout weft_weave_square(const weft_weave *weave);
 
 /* Where a point of the cloth lies: U along x, V along y, tile units, any sign. */
 typedef struct weft_weave_point {

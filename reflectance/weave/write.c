@@ -49,6 +49,8 @@ static void write_head(FILE *out, const weft_weave *weave)
     write_number(out, "  ", "period", weave->period);
     for (int i = 0; i < 4; i++)
         write_number(out, "  ", noise[i], weave->inclination_noise_deg[i]);
+    if (weave->cell_pitch_mm > 0)
+        fprintf(out, "  cellPitch = %.17g,\n", weave->cell_pitch_mm);
     if (weave->layout.tiles_u > 0)
         write_layout(out, &weave->layout);
 }

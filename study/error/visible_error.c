@@ -24,15 +24,23 @@ weft_code weft_visible_error_of(const weft_image *data, const weft_image *model,
     return code;
 }
 
-static weft_code draw_alone(weft_player *player, const weft_scene *scene, weft_mode mode, int width, int height,
+/* By themselves, under the lights alone: choices at random among many lights would count as errors. */
+static weft_scene bare(const weft_scene *scene)
+{
+    weft_scene bare = *scene;
+    bare.layout = WEFT_LAYOUT_PANES;
+    bare.pane_count = 1;
+    bare.labels = bare.show_level = bare.show_extrapolation = bare.environment = bare.ground = false;
+    bare.key_size_rad = 0;
+    weft_scene_keep_lit(&bare);
+    return bare;
+}
+
+static weft_code draw_alone(weft_player *player, weft_scene scene, weft_mode mode, int width, int height,
                             weft_image *image, weft_error *error)
 {
-    weft_scene alone = *scene;
-    alone.layout = WEFT_LAYOUT_PANES;
-    alone.pane_count = 1;
-    alone.pane[0] = mode;
-    alone.labels = alone.show_level = alone.show_extrapolation = false;
-    return weft_player_picture(player, &alone, width, height, 1, NULL, image, error);
+    scene.pane[0] = mode;
+    return weft_player_picture(player, &scene, width, height, 1, NULL, image, error);
 }
 
 weft_code weft_visible_error_measure(weft_player *player, const weft_scene *scene, weft_mode mode, int width,
@@ -40,11 +48,12 @@ weft_code weft_visible_error_measure(weft_player *player, const weft_scene *scen
 {
     weft_image data = {0}, model = {0};
     weft_surface_sample *surface = NULL;
-    weft_code code = draw_alone(player, scene, WEFT_MODE_RAW, width, height, &data, error);
+    weft_scene alone = bare(scene);
+    weft_code code = draw_alone(player, alone, WEFT_MODE_RAW, width, height, &data, error);
     if (code == WEFT_OK)
-        code = draw_alone(player, scene, mode, width, height, &model, error);
+        code = draw_alone(player, alone, mode, width, height, &model, error);
     if (code == WEFT_OK)
-        code = weft_player_read_surface(player, scene, mode, width, height, &surface, error);
+        code = weft_player_read_surface(player, &alone, mode, width, height, &surface, error);
     if (code == WEFT_OK)
         code = weft_visible_error_of(&data, &model, surface, result, error);
     weft_image_free(&data);

@@ -12,7 +12,7 @@
     " \"camera\": {\"azimuth_deg\": -71.3, \"elevation_deg\": 12.7, \"distance\": 2.2999999999999998},\n"              \
     " \"light\": {\"lights\": [{\"theta_deg\": 41.1, \"phi_deg\": 170.9, \"irradiance\": [0.3, 0.5, 0.7]},\n"          \
     "   {\"theta_deg\": 1e-3, \"phi_deg\": -0.1, \"irradiance\": [1, 2, 3]}],\n"                                       \
-    "  \"shadows\": true, \"exposure\": 1.7, \"tone\": \"soft\",\n"                                                    \
+    "  \"shadows\": true, \"key_size_deg\": 3.1, \"ground\": true, \"exposure\": 1.7, \"tone\": \"soft\",\n"           \
     "  \"environment\": {\"lit\": true, \"turn_deg\": 33.3, \"strength\": 0.9, \"reference\": true}},\n"               \
     " \"mip\": {\"level\": \"fixed\", \"fixed_level\": 1.1, \"filter\": \"stochastic\"},\n"                            \
     " \"model\": {\"raw_format\": \"bc6h\", \"lobes\": [true, false, true], \"view_table\": false, \"light_table\": "  \

@@ -2,6 +2,7 @@
 #include "../support/keep_modules.h"
 #include "player/draw/probe.h"
 #include "player/draw/programs.h"
+#include "player/scene/environment.h"
 #include "stage.h"
 
 #include <stdio.h>
@@ -147,8 +148,8 @@ static void nothing_stays_behind_when_a_player_is_freed(void **state)
     scene.shadows = scene.environment = true;
     expect_ok(weft_image_create(4, 2, &image, &error), &error);
     image.pixels[0] = 1;
-    expect_ok(weft_player_set_environment(player, &image, &error), &error);
-    expect_ok(weft_player_set_environment(player, &image, &error), &error);
+    expect_ok(weft_player_set_environment(player, &image, WEFT_ENVIRONMENT_REGIONS, &error), &error);
+    expect_ok(weft_player_set_environment(player, &image, WEFT_ENVIRONMENT_REGIONS, &error), &error);
     weft_image_free(&image);
     expect_ok(weft_player_picture(player, &scene, 40, 30, 1, NULL, &image, &error), &error);
     weft_image_free(&image);

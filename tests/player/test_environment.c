@@ -22,7 +22,7 @@ static weft_environment *environment_of(const weft_image *image)
     weft_error error = {0};
     weft_environment *environment = malloc(sizeof *environment);
     assert_non_null(environment);
-    assert_int_equal(weft_environment_of_image(image, environment, &error), WEFT_OK);
+    assert_int_equal(weft_environment_of_image(image, WEFT_ENVIRONMENT_REGIONS, environment, &error), WEFT_OK);
     return environment;
 }
 
@@ -105,7 +105,7 @@ static void expect_refused(const weft_image *image)
 {
     weft_error error = {0};
     weft_environment *environment = malloc(sizeof *environment);
-    assert_int_equal(weft_environment_of_image(image, environment, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_environment_of_image(image, WEFT_ENVIRONMENT_REGIONS, environment, &error), WEFT_BAD_INPUT);
     assert_true(error.message[0] != 0);
     free(environment);
 }

@@ -1,6 +1,7 @@
 /* Layouts, filters and lights of whole pictures. */
 #include "base/numeric/error_summary.h"
 #include "base/picture/colour.h"
+#include "player/scene/environment.h"
 #include "player/scene/false_colour.h"
 #include "stage.h"
 
@@ -204,7 +205,7 @@ static void a_matt_surface_under_a_white_sky_shows_its_albedo(void **state)
     expect_ok(weft_image_create(64, 32, &sky, &error), &error);
     for (int i = 0; i < 3 * 64 * 32; i++)
         sky.pixels[i] = 1;
-    expect_ok(weft_player_set_environment(s->player, &sky, &error), &error);
+    expect_ok(weft_player_set_environment(s->player, &sky, WEFT_ENVIRONMENT_REGIONS, &error), &error);
     weft_image_free(&sky);
     weft_scene scene = scene_of(WEFT_MODE_COMPRESSED);
     scene.environment = scene.environment_reference = true;
@@ -220,7 +221,7 @@ static void a_matt_surface_under_a_white_sky_shows_its_albedo(void **state)
     }
     assert_true(covered > PIXELS / 5);
     weft_image_free(&image);
-    expect_ok(weft_player_set_environment(s->player, NULL, &error), &error);
+    expect_ok(weft_player_set_environment(s->player, NULL, WEFT_ENVIRONMENT_REGIONS, &error), &error);
     set_models(s->player);
 }
 

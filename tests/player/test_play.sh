@@ -16,7 +16,7 @@ if [ "${4-}" != inside ]; then
 fi
 
 cd play
-open_window cloth.weft --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 320x240
+open_window cloth.weft --environment none --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 320x240
 
 next=none
 shoot() { # WHAT: takes a screenshot that must differ from the one before

@@ -84,7 +84,7 @@ static void three_panes_show_three_different_pictures(void **state)
 {
     (void)state;
     assert_int_equal(run("$WEFT render cloth.weft --raw cloth.btf.h5 --weave $WEAVES/cotton_denim.wv --mode split "
-                         "--size 240x100 --samples 1 --quiet -o split.png"),
+                         "--environment none --size 240x100 --samples 1 --quiet -o split.png"),
                      0);
     weft_image image = read_picture("split.png", 240, 100);
     for (int pane = 0; pane < 3; pane++)
@@ -128,7 +128,7 @@ static void a_difference_has_its_scale_in_png_but_not_among_the_numbers_of_exr(v
         snprintf(without, sizeof without, "without.%s", type[is_png]);
         snprintf(command, sizeof command,
                  "for f in '-o %s' '--no-labels -o %s'; do $WEFT render cloth.weft --raw cloth.btf.h5 "
-                 "--layout difference --size 400x200 --samples 1 --quiet $f || exit 9; done",
+                 "--environment none --layout difference --size 400x200 --samples 1 --quiet $f || exit 9; done",
                  with, without);
         assert_int_equal(run(command), 0);
         weft_image a = read_picture(with, 400, 200), b = read_picture(without, 400, 200);
@@ -163,10 +163,10 @@ static void a_picture_can_be_drawn_again_bit_for_bit(void **state)
 static void a_folder_moved_as_a_whole_still_draws_its_pictures(void **state)
 {
     (void)state;
-    assert_int_equal(
-        run("mkdir -p box/shots && cp cloth.weft box && "
-            "$WEFT render box/cloth.weft --mesh plane --size 40x30 --samples 1 --quiet -o box/shots/a.png"),
-        0);
+    assert_int_equal(run("mkdir -p box/shots && cp cloth.weft box && "
+                         "$WEFT render box/cloth.weft --environment none --mesh plane --size 40x30 --samples 1 --quiet "
+                         "-o box/shots/a.png"),
+                     0);
     assert_int_equal(run("rm -rf moved && mkdir moved && mv box moved/crate && cd moved/crate/shots && "
                          "$WEFT render --settings a.png --quiet -o b.png && cmp a.png b.png"),
                      0);
@@ -179,8 +179,9 @@ static void a_folder_moved_as_a_whole_still_draws_its_pictures(void **state)
 static void a_picture_without_good_settings_is_refused(void **state)
 {
     (void)state;
-    assert_int_equal(
-        run("$WEFT render cloth.weft --mesh plane --exposure 1 --size 40x30 --samples 1 --quiet -o shot.png"), 0);
+    assert_int_equal(run("$WEFT render cloth.weft --mesh plane --environment none --exposure 1 --size 40x30 --samples "
+                         "1 --quiet -o shot.png"),
+                     0);
     assert_int_equal(run("$WEFT render --settings cloth.weft -o c.png"), WEFT_BAD_INPUT);
     assert_int_equal(run("head -c 60 shot.png > cut.png; $WEFT render --settings cut.png -o c.png"), WEFT_BAD_INPUT);
     expect_said("cut.png");
@@ -197,21 +198,48 @@ static void a_picture_without_good_settings_is_refused(void **state)
 static void a_cloth_twice_as_large_repeats_twice_as_often(void **state)
 {
     (void)state;
-    assert_int_equal(run("$WEFT render cloth.weft --size 40x30 --samples 1 --mesh-size 240 --quiet -o real.png"), 0);
+    assert_int_equal(
+        run("$WEFT render cloth.weft --environment none --size 40x30 --samples 1 --mesh-size 240 --quiet -o real.png"),
+        0);
     /* 24 texels of 0.5 mm: 12 mm */
-    assert_int_equal(run("$WEFT render cloth.weft --size 40x30 --samples 1 --repeat 20 --quiet -o given.png"), 0);
+    assert_int_equal(
+        run("$WEFT render cloth.weft --environment none --size 40x30 --samples 1 --repeat 20 --quiet -o given.png"), 0);
     weft_image real = read_picture("real.png", 40, 30), given = read_picture("given.png", 40, 30);
     assert_memory_equal(real.pixels, given.pixels, sizeof(float) * 3 * 40 * 30);
     weft_image_free(&real);
     weft_image_free(&given);
 }
 
+/* Settings and pixels: lit all round before a backdrop, unless a bare light is asked for. */
+static void a_picture_begins_in_a_studio(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$WEFT render cloth.weft --size 40x30 --samples 1 -q -o begun.png && "
+                         "$WEFT render cloth.weft --environment studio --size 40x30 --samples 1 -q -o studio.png && "
+                         "cmp begun.png studio.png && "
+                         "tr -d '\\n ' < begun.png | grep -aq '\"environment\":\"studio\".*\"ground\":true'"),
+                     0);
+    assert_int_equal(run("$WEFT render --settings begun.png -q -o again.png && cmp begun.png again.png"), 0);
+    assert_int_equal(
+        run("$WEFT render cloth.weft --environment none --exposure 1 --size 40x30 --samples 1 -q -o bare.png && "
+            "$WEFT render cloth.weft --light 45,-110 --exposure 1 --size 40x30 --samples 1 -q -o light.png && "
+            "cmp bare.png light.png && "
+            "tr -d '\\n ' < bare.png | grep -aq '\"environment\":null.*\"ground\":false'"),
+        0);
+    assert_int_equal(
+        run("$WEFT render cloth.weft --environment sky --shadows=off --ground=off --size 40x30 --samples 1 "
+            "-q -o sky.png && "
+            "tr -d '\\n ' < sky.png | grep -aq '\"shadows\":false.*\"ground\":false.*\"lit\":true'"),
+        0);
+}
+
 static void a_path_gives_a_picture_for_every_frame(void **state)
 {
     (void)state;
     assert_int_equal(run("printf 'time_s,azimuth_deg,light_phi_deg\\n0,-70,-110\\n0.5,20,0\\n1,20,30\\n' > path.csv; "
-                         "$WEFT render cloth.weft --path path.csv --fps 4 --size 40x30 --samples 1 --exposure 1 -q "
-                         "-o turn%02d.png"),
+                         "$WEFT render cloth.weft --path path.csv --camera=-70,28,3.6 --light 45,0 --fps 4 --size "
+                         "40x30 --samples 1 --exposure "
+                         "1 -q -o turn%02d.png"),
                      0);
     assert_int_equal(
         run("ls turn*.png | tr '\\n' ' ' | grep -qx 'turn00.png turn01.png turn02.png turn03.png turn04.png '"), 0);
@@ -234,11 +262,12 @@ static void a_path_gives_a_picture_for_every_frame(void **state)
 static void a_sequence_on_a_full_disk_stops_with_whole_pictures(void **state)
 {
     (void)state;
-    assert_int_equal(run("printf 'time_s,distance\\n0,60\\n1,2\\n' > near.csv; rm -rf full; mkdir full; "
-                         "(ulimit -f 40; $WEFT render cloth.weft --path near.csv --fps 3 --size 300x300 "
-                         "--samples 1 -q "
-                         "-o full/f%d.exr)"),
-                     WEFT_SYSTEM);
+    assert_int_equal(
+        run("printf 'time_s,distance\\n0,60\\n1,2\\n' > near.csv; rm -rf full; mkdir full; "
+            "(ulimit -f 40; $WEFT render cloth.weft --environment none --path near.csv --fps 3 --size 300x300 "
+            "--samples 1 -q "
+            "-o full/f%d.exr)"),
+        WEFT_SYSTEM);
     expect_said("full/f");
     assert_int_equal(run("ls -A full | grep -v '^f[0-9].exr$'"), 1);
     assert_int_equal(
@@ -369,6 +398,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_folder_moved_as_a_whole_still_draws_its_pictures),
         cmocka_unit_test(a_picture_without_good_settings_is_refused),
         cmocka_unit_test(a_cloth_twice_as_large_repeats_twice_as_often),
+        cmocka_unit_test(a_picture_begins_in_a_studio),
         cmocka_unit_test(a_path_gives_a_picture_for_every_frame),
         cmocka_unit_test(a_sequence_on_a_full_disk_stops_with_whole_pictures),
         cmocka_unit_test(the_reference_of_an_environment_tells_its_error),

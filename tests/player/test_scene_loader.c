@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { WIDTH = 64, HEIGHT = 48, CLOTH_MM = 100 };
+enum { WIDTH = 64, HEIGHT = 48 };
 
 typedef struct fixture {
     stage *stage;
@@ -67,7 +67,7 @@ static fixture *open_scene_as(const char *material, const char *dataset, weft_ra
     f->request.settings.raw_format = format;
     f->request.settings.material = material ? strdup(material) : NULL;
     f->request.settings.dataset = dataset ? strdup(dataset) : NULL;
-    expect_ok(weft_scene_loader_create(&f->request, CLOTH_MM, &f->loader, &error), &error);
+    expect_ok(weft_scene_loader_create(&f->request, &f->loader, &error), &error);
     expect_ok(weft_scene_loader_attach(f->loader, f->stage->player, &error), &error);
     return f;
 }
@@ -353,6 +353,36 @@ static void a_scene_may_be_closed_while_it_is_read(void **state)
     }
 }
 
+/* 6 cells of 0.36 mm on 300 mm of cloth; what is measured lays it by its own size. */
+static void a_weave_has_its_own_size_until_it_lies_on_a_material(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_scene_request request = {0};
+    weft_scene_loader *loader;
+    expect_ok(weft_settings_init(&request.settings, &error), &error);
+    request.settings.weave = strdup(WEFT_ASSETS "/weaves/cotton_denim.wv");
+    expect_ok(weft_scene_loader_create(&request, &loader, &error), &error);
+    expect_ok(weft_scene_loader_attach(loader, the_fixture.stage->player, &error), &error);
+    expect_ok(weft_scene_loader_finish(loader, NULL, NULL, &error), &error);
+    weft_weave_layout layout = weft_player_weave_layout(the_fixture.stage->player);
+    assert_true(layout.tiles_u == 2 && layout.tiles_v == 1);
+    assert_float_equal(request.settings.scene.repeat, 300 / (6 * 0.36), 1e-6);
+    bool shown = true, some = true;
+    char note[WEFT_MESSAGE_SIZE];
+    expect_ok(weft_scene_loader_open(loader, "scene_load/b.weft", &error), &error);
+    for (int i = 0; i < 1000 && some; i++) {
+        expect_ok(weft_scene_loader_poll(loader, &shown, note, &error), &error);
+        some = weft_scene_loader_progress(loader) >= 0;
+        usleep(some ? 5000 : 0);
+    }
+    layout = weft_player_weave_layout(the_fixture.stage->player);
+    assert_true(layout.tiles_u == 4 && layout.tiles_v == 2); /* about twelve cells across, as the virtual rig has it */
+    assert_float_equal(request.settings.scene.repeat, 300 / (8 * 0.5), 1e-6);
+    weft_scene_loader_free(loader);
+    weft_scene_request_free(&request);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -369,6 +399,7 @@ int main(void)
         cmocka_unit_test(a_picture_brings_its_settings_and_files_back),
         cmocka_unit_test(a_file_that_was_written_again_is_read_again),
         cmocka_unit_test(a_scene_may_be_closed_while_it_is_read),
+        cmocka_unit_test(a_weave_has_its_own_size_until_it_lies_on_a_material),
     };
     return cmocka_run_group_tests(tests, make_files, close_stage);
 }

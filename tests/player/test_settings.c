@@ -57,6 +57,7 @@ static void every_value_is_read(void **state)
     assert_true(scene->repeat == 0.1 && scene->orbit.distance == 2.3 && scene->exposure == 1.7);
     assert_true(scene->orbit.azimuth_rad == weft_rad_of_deg(-71.3) && scene->light_count == 2);
     assert_true(scene->light[1].direction.phi_rad == weft_rad_of_deg(-0.1) && scene->light[0].irradiance[2] == 0.7);
+    assert_true(scene->key_size_rad == weft_rad_of_deg(3.1) && scene->ground);
     assert_true(scene->shadows && scene->environment && scene->environment_reference && scene->tone == WEFT_TONE_SOFT);
     assert_true(scene->environment_strength == 0.9 && scene->environment_turn_rad == weft_rad_of_deg(33.3));
     assert_true(scene->level_choice == WEFT_LEVEL_FIXED && scene->level == 1.1);
@@ -193,7 +194,7 @@ static void what_the_help_calls_the_default_is_it(void **state)
         checked += text != NULL;
         free(text);
     }
-    assert_int_equal(checked, 7); /* camera, light, size, samples, strength, divider, noise */
+    assert_int_equal(checked, 8); /* camera, light, light-size, size, samples, strength, divider, noise */
     free(expected);
 }
 
@@ -270,12 +271,12 @@ static void a_cloth_has_its_real_size(void **state)
     assert_float_equal(mesh.coordinate_length, 0.5, 1e-12);
     weft_settings s = parsed("{\"version\": 1, \"files\": {\"mesh\": \"box.obj\"}}", "shot.png");
     s.mesh_unit_mm = 10; /* a unit of texture coordinates is 5 mm */
-    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5), 2, 1e-12);
+    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5, 2.5), 2, 1e-12);
     s.mesh_size_mm = 100; /* and now 25 */
-    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5), 10, 1e-12);
+    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5, 2.5), 10, 1e-12);
     s.real_size = false;
     s.scene.repeat = 3;
-    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5), 3, 0);
+    assert_float_equal(weft_settings_repeat(&s, &mesh, 2.5, 2.5), 3, 0);
     weft_mesh_free(&mesh);
     weft_settings_free(&s);
 }

@@ -398,24 +398,51 @@ static double resolved_noise(const cloth_model *model, const weft_weave_point *p
     return model->weave.fineness > 0 ? fmin(fmax((level - log2(side) + 1) / 2, 0), 1) : 0;
 }
 
+/* log2 of the width of the footprint in cells; a long one counts as a quarter of its length at least. */
+static double width_of_footprint(const weft_surface_sample *at)
+{
+    const float *s = at->sides;
+    double longer = fmax(hypot(s[0], s[1]), hypot(s[2], s[3])), area = fabs((double)s[0] * s[3] - (double)s[1] * s[2]);
+    return longer > 0 ? log2(fmax(area / longer, longer / 4)) : (double)at->level;
+}
+
+/* At a place of the footprint, -1/2 to 1/2 of its sides. */
+static weft_rgb cloth_at(const cloth_model *model, const weft_surface_sample *at, double across, double up)
+{
+    const weft_weave_layout *layout = &model->layout;
+    const float *s = at->sides;
+    double u = (double)at->u + (across * s[0] + up * s[2]) / (layout->tiles_u * model->weave.tile_width);
+    double v = (double)at->v + (across * s[1] + up * s[3]) / (layout->tiles_v * model->weave.tile_height);
+    bool noisy = model->noise_seed != 0;
+    double U = (u - floor(u)) * layout->tiles_u - layout->corner_u + noisy * floor(u) * ceil(layout->tiles_u);
+    double V = (v - floor(v)) * layout->tiles_v - layout->corner_v + noisy * floor(v) * ceil(layout->tiles_v);
+    weft_weave_point place = weft_weave_locate(&model->weave, U, V, (uint64_t)model->noise_seed);
+    place.intensity += (1 - place.intensity) * resolved_noise(model, &place, (double)at->level);
+    return weft_weave_brdf(&model->weave, &place, vector(at->light), vector(at->view));
+}
+
+static int places_along(float x, float y)
+{
+    return (int)fmin(fmax(ceil(2 * hypot((double)x, (double)y)), 1), 3);
+}
+
 static weft_rgba evaluate_cloth(void *context, const weft_surface_sample *at)
 {
     cloth_model *model = context;
     weft_vec3 light = vector(at->light), view = vector(at->view);
     if (!(light.z > 0))
         return (weft_rgba){0, 0, 0, 1};
-    double fade = fmin(fmax(((double)at->level + 1) / 2, 0), 1);
-    const weft_weave_layout *layout = &model->layout;
-    double u = (double)at->u, v = (double)at->v;
-    bool noisy = model->noise_seed != 0;
-    double U = (u - floor(u)) * layout->tiles_u - layout->corner_u + noisy * floor(u) * ceil(layout->tiles_u);
-    double V = (v - floor(v)) * layout->tiles_v - layout->corner_v + noisy * floor(v) * ceil(layout->tiles_v);
-    weft_weave_point place = weft_weave_locate(&model->weave, U, V, (uint64_t)model->noise_seed);
-    place.intensity += (1 - place.intensity) * resolved_noise(model, &place, (double)at->level);
-    weft_rgb near = weft_weave_brdf(&model->weave, &place, light, view), far = mean_brdf(model, light, view);
-    return lit((weft_rgb){WEFT_PI * (near.r + fade * (far.r - near.r)), WEFT_PI * (near.g + fade * (far.g - near.g)),
-                          WEFT_PI * (near.b + fade * (far.b - near.b))},
-               light, 1);
+    double fade = fmin(fmax((width_of_footprint(at) + 1) / 2, 0), 1);
+    int across = places_along(at->sides[0], at->sides[1]), up = places_along(at->sides[2], at->sides[3]);
+    weft_rgb far = mean_brdf(model, light, view), sum = {fade * far.r, fade * far.g, fade * far.b};
+    for (int i = 0; i < across * up; i++) {
+        weft_rgb near = cloth_at(model, at, (i % across + 0.5) / across - 0.5, (i / across + 0.5) / up - 0.5);
+        double weight = (1 - fade) / (across * up);
+        sum.r += weight * near.r;
+        sum.g += weight * near.g;
+        sum.b += weight * near.b;
+    }
+    return lit((weft_rgb){WEFT_PI * sum.r, WEFT_PI * sum.g, WEFT_PI * sum.b}, light, 1);
 }
 
 /* Means of the tile: exact ones, but under noise those that test_weave_texels.c holds against the noisy texture. */

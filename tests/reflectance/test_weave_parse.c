@@ -167,6 +167,34 @@ static void a_layout_survives_being_written(void **state)
     free(text);
 }
 
+static void the_pitch_of_cells_survives_being_written(void **state)
+{
+    (void)state;
+    weft_weave weave, again;
+    weft_error error = {0};
+    char *text = edited("tileWidth = 2,", "cellPitch = 0.123456789, tileWidth = 2,");
+    assert_int_equal(weft_weave_parse(text, "pitch.wv", NULL, 0, &weave, NULL, &error), WEFT_OK);
+    assert_int_equal(weft_weave_write("pitch.wv", &weave, NULL, &error), WEFT_OK);
+    assert_int_equal(weft_weave_read("pitch.wv", NULL, 0, &again, NULL, &error), WEFT_OK);
+    assert_true(weft_weave_cell_pitch_mm(&weave) == 0.123456789 && again.cell_pitch_mm == 0.123456789);
+    weft_weave_free(&weave);
+    weft_weave_free(&again);
+    remove("pitch.wv");
+    free(text);
+}
+
+static void a_weave_without_a_pitch_has_the_default_one(void **state)
+{
+    (void)state;
+    weft_weave weave;
+    weft_error error = {0};
+    assert_int_equal(weft_weave_parse(WEAVE_TEXT, "plain.wv", NULL, 0, &weave, NULL, &error), WEFT_OK);
+    assert_true(weave.cell_pitch_mm == 0 && weft_weave_cell_pitch_mm(&weave) == 0.25);
+    weft_weave_free(&weave);
+    expect_error("tileWidth = 2,", "cellPitch = -1, tileWidth = 2,",
+                 "plain.wv:4:15: cellPitch = -1 is outside [0, 1e+06]");
+}
+
 static void half_a_layout_is_refused(void **state)
 {
     (void)state;
@@ -238,6 +266,8 @@ int main(void)
         cmocka_unit_test(parameters_fill_in_numbers_and_colours),
         cmocka_unit_test(mistakes_are_named_with_line_and_column),
         cmocka_unit_test(a_layout_survives_being_written),
+        cmocka_unit_test(the_pitch_of_cells_survives_being_written),
+        cmocka_unit_test(a_weave_without_a_pitch_has_the_default_one),
         cmocka_unit_test(half_a_layout_is_refused),
         cmocka_unit_test(numbers_that_are_none_are_refused),
         cmocka_unit_test(a_text_cut_anywhere_is_refused),

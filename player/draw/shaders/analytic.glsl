@@ -6,10 +6,15 @@ uniform sampler2D weave_mean; // column: light, row: view; BRDF in 1/sr
 uniform vec2 weave_tiles;     // for one material
 uniform vec2 weave_corner;    // where a tile begins, tiles from that of the material
 uniform uvec2 noise_seed;     // low and high bits
+uniform int chosen_places;    // where STOCHASTIC
 
+// Frames that share a pixel do not sharpen the yarns: a box of a pixel alone leaves moire of threads of its size.
 // log2 of the footprint in cells where the texture begins to fade, and where the mean is all there is.
 const float FADE_BEGIN = -1.0;
 const float FADE_END = 1.0;
+// How many times longer than wide a footprint may be and be sampled along its length; how many places at most on a side.
+const float LONGEST = 4.0;
+const float MOST_PLACES = 3.0;
 
 vec3 mean_brdf(Corners lights, Corners views)
 {
@@ -28,14 +33,31 @@ float fade_at(float level)
     return clamp((level - FADE_BEGIN) / (FADE_END - FADE_BEGIN), 0.0, 1.0);
 }
 
+// log2 of the footprint's width in cells, or of what its length leaves where that is too long.
+float footprint_width(SurfacePoint point)
+{
+    float across = length(point.sides.xy), up = length(point.sides.zw), area = determinant(mat2(point.sides.xy, point.sides.zw));
+    float longer = max(across, up);
+    return longer > 0.0 ? log2(max(abs(area) / longer, longer / LONGEST)) : point.level;
+}
+
+// Two places a cell, so that a yarn is not missed.
+ivec2 places_of(SurfacePoint point)
+{
+    vec2 sides = vec2(length(point.sides.xy), length(point.sides.zw));
+    return ivec2(clamp(ceil(2.0 * sides), 1.0, MOST_PLACES));
+}
+
 // With noise the cloth does not repeat with the material: the tiles of each copy count on from those before. Where a
 // pixel does not resolve the cells of the intensity noise their mean is left, so that nothing sparkles.
-WeavePoint cloth_place(SurfacePoint point)
+WeavePoint cloth_place(SurfacePoint point, vec2 aside)
 {
-    vec2 coordinate = fract(point.coordinate) * weave_tiles - weave_corner;
+    vec2 cells = aside.x * point.sides.xy + aside.y * point.sides.zw;
+    vec2 at = point.coordinate + cells / (weave_tiles * weave_texel(weave_table, 0).xy);
+    vec2 coordinate = fract(at) * weave_tiles - weave_corner;
     if (!NOISE)
         return weave_locate(weave_table, coordinate, uvec2(0u));
-    coordinate += floor(point.coordinate) * ceil(weave_tiles);
+    coordinate += floor(at) * ceil(weave_tiles);
     WeavePoint place = weave_locate(weave_table, coordinate, noise_seed);
     vec2 size = weave_yarn_texel(weave_table, place.yarn, 2).xy;
     float fineness = weave_texel(weave_table, 1).x;
@@ -44,25 +66,56 @@ WeavePoint cloth_place(SurfacePoint point)
     return place;
 }
 
-vec4 radiance(SurfacePoint point)
+// Over pi, times the light, of the yarns at one place.
+vec3 place_radiance(SurfacePoint point, vec2 aside)
 {
-    float fade = fade_at(point.level);
-    if (STOCHASTIC)
-        fade = happens(point.chance, fade) ? 1.0 : 0.0;
-    Corners views = find_corners(0, point.view);
-    WeavePoint place = cloth_place(point);
+    WeavePoint place = cloth_place(point, aside);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i);
-        if (irradiance == vec3(0.0))
-            continue;
-        vec3 light = surface_light(point, i);
-        vec3 brdf = vec3(0.0);
-        if (fade > 0.0)
-            brdf = fade * mean_brdf(find_corners(0, light), views);
-        if (fade < 1.0)
-            brdf += (1.0 - fade) * weave_brdf(weave_table, place, light, point.view);
-        sum += irradiance * brdf;
+        if (irradiance != vec3(0.0))
+            sum += irradiance * weave_brdf(weave_table, place, surface_light(point, i), point.view);
     }
+    return sum;
+}
+
+// The mean of places on a grid across the footprint, or of a few places anywhere in it.
+vec3 yarn_radiance(SurfacePoint point)
+{
+    vec3 sum = vec3(0.0);
+    if (STOCHASTIC) {
+        vec2 first = vec2(point.chance, 113.0 * point.chance);
+        for (int i = 0; i < chosen_places; i++)
+            sum += place_radiance(point, fract(first + float(i) * vec2(0.75487767, 0.56984029)) - 0.5);
+        return sum / float(chosen_places);
+    }
+    ivec2 count = places_of(point);
+    for (int i = 0; i < count.x * count.y; i++)
+        sum += place_radiance(point, (vec2(i % count.x, i / count.x) + 0.5) / vec2(count) - 0.5);
+    return sum / float(count.x * count.y);
+}
+
+vec3 mean_radiance(SurfacePoint point)
+{
+    Corners views = find_corners(0, point.view);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < LIGHT_COUNT; i++) {
+        vec3 irradiance = surface_irradiance(point, i);
+        if (irradiance != vec3(0.0))
+            sum += irradiance * mean_brdf(find_corners(0, surface_light(point, i)), views);
+    }
+    return sum;
+}
+
+vec4 radiance(SurfacePoint point)
+{
+    float fade = fade_at(footprint_width(point));
+    if (STOCHASTIC)
+        fade = happens(point.chance, fade) ? 1.0 : 0.0;
+    vec3 sum = vec3(0.0);
+    if (fade > 0.0)
+        sum += fade * mean_radiance(point);
+    if (fade < 1.0)
+        sum += (1.0 - fade) * yarn_radiance(point);
     return vec4(sum * WOVEN_PI, 1.0);
 }

@@ -9,17 +9,22 @@ uniform vec2 texel_count;   // texels (cells of a weave) of the material
 uniform float level_choice; // automatic below -999
 uniform float level_bias;
 uniform bool level_nearest;
-uniform highp sampler2D front_depth;      // of the layer in front, where BEHIND
+uniform highp sampler2D front_depth; // of the layer in front, where BEHIND
 
 layout(location = 0) out vec4 rotation; // unit quaternion: the axes of the surface in the world
 layout(location = 1) out vec4 place;    // texture coordinates, level, distance along the view; negative: mirrored
+layout(location = 2) out vec4 sides;    // of the whole pixel, texels: across, up; 0 where the level does not follow from them
 
-// The larger of the two sides of the pixel in texture space, as OpenGL chooses its mip level.
-float footprint_level(vec2 coordinate)
+// The sides of the pixel in texture space, in texels.
+vec4 footprint_of(vec2 coordinate)
 {
-    vec2 across = dFdx(coordinate) * texel_count;
-    vec2 up = dFdy(coordinate) * texel_count;
-    return 0.5 * log2(max(max(dot(across, across), dot(up, up)), 1e-20)) + level_bias;
+    return vec4(dFdx(coordinate) * texel_count, dFdy(coordinate) * texel_count);
+}
+
+// The larger of the two, as OpenGL chooses its mip level.
+float footprint_level(vec4 footprint)
+{
+    return 0.5 * log2(max(max(dot(footprint.xy, footprint.xy), dot(footprint.zw, footprint.zw)), 1e-20)) + level_bias;
 }
 
 // Divides by the largest of the four components (Shepperd 1978). Columns: the axes.
@@ -50,12 +55,16 @@ void main()
     vec3 n = normalize(world_normal);
     vec3 t = normalize(world_tangent.xyz - n * dot(n, world_tangent.xyz));
     vec2 coordinate = mesh_coordinate * repeat;
-    float level = level_choice < -999.0 ? footprint_level(coordinate) : level_choice;
+    bool automatic = level_choice < -999.0;
+    sides = footprint_of(coordinate);
+    float level = automatic ? footprint_level(sides) : level_choice;
+    sides *= automatic && !level_nearest ? 1.0 : 0.0;
     // The back of the cloth is the same material, mirrored in u so that its frame stays right-handed.
     if (!gl_FrontFacing) {
         n = -n;
         t = -t;
         coordinate.x = -coordinate.x;
+        sides.xz = -sides.xz;
     }
     rotation = quaternion_of(t, cross(n, t), n);
     place = vec4(coordinate, level_nearest ? floor(level + 0.5) : level, world_tangent.w / gl_FragCoord.w);

@@ -4,11 +4,19 @@
 // lights, 2 of views (player/draw/probe.h).
 uniform sampler2D surface_rotation;
 uniform sampler2D surface_place;
+uniform sampler2D surface_sides;
 uniform vec3 ray_right, ray_up, ray_forward; // the ray through a pixel: x right + y up + forward
 uniform vec2 pane_origin;
 uniform vec3 eye;
-uniform mat4 shadow_of_world;
-uniform highp sampler2DShadow shadow_map; // of the first light
+uniform mat4 shadow_of_world[SHADOW_LAYERS];
+uniform highp sampler2DArrayShadow shadow_map; // of the first light, then of directions of the environment
+uniform float shadow_texel;                    // of the map, in the world, where a layer uses all of it
+uniform float shadow_share[SHADOW_LAYERS];     // of its side that a layer uses
+uniform vec3 fill_direction[SHADOW_LAYERS - 1];
+uniform int shadow_taps; // 1 or 4
+uniform int key_count;   // lights that cast a shadow: 0 or the first
+uniform int scene_count; // the first of them; the others are the environment
+uniform int fill_count;  // 0: the environment casts no shadows
 uniform int light_count;
 uniform vec3 light_direction[MAX_LIGHTS];  // world, unit, toward the light
 uniform vec3 light_irradiance[MAX_LIGHTS]; // on a surface that faces it, over pi
@@ -23,7 +31,9 @@ struct SurfacePoint {
     vec3 view;       // in these axes
     vec2 coordinate; // texture coordinates of the material, repeated
     float level;     // log2 of the pixel's footprint in texels, may be negative
+    vec4 sides;      // of the whole pixel, texels: across, up; 0: the level does not follow from it
     float key_share; // of the first light that is not in shadow
+    float env_share; // of the environment's light, about
     float chance;    // in [0, 1)
 };
 
@@ -56,7 +66,8 @@ SurfacePoint plotted_point()
     point.view.z = max(point.view.z, 0.0);
     point.coordinate = probe_place.xy;
     point.level = probe_place.z;
-    point.key_share = 1.0;
+    point.sides = vec4(0.0);
+    point.key_share = point.env_share = 1.0;
     point.chance = 0.0;
     return point;
 }
@@ -69,17 +80,58 @@ bool happens(inout float chance, float share)
     return yes;
 }
 
-// Sixteen comparisons, bilinear by the hardware: a soft edge of about three texels of the map.
-float unshadowed_share(vec3 position)
+// A place is looked up a little before its surface: by the reach of the comparisons in texels of the map, or its own
+// facets, which the interpolated normal smooths over, would shade it.
+vec3 place_in_shadow(vec3 position, vec3 normal, int layer)
 {
-    vec3 at = (shadow_of_world * vec4(position, 1.0)).xyz;
-    vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
-    float sum = 0.0;
-    for (int i = 0; i < 4; i++) {
-        vec2 shift = (vec2(float(i % 2), float(i / 2)) - 0.5) * 1.5 * texel;
-        sum += textureLod(shadow_map, vec3(at.xy + shift, at.z), 0.0);
+    return (shadow_of_world[layer] * vec4(position + 2.5 * shadow_texel / shadow_share[layer] * normal, 1.0)).xyz;
+}
+
+bool is_in_map(vec3 at)
+{
+    return all(lessThan(abs(at.xy - 0.5), vec2(0.499)));
+}
+
+// Four or sixteen comparisons, bilinear by the hardware: an edge of one texel of the map or of about three. Software
+// rasterisers pass over a loop that no pixel takes, not over a branch.
+float unshadowed_share(vec3 position, vec3 normal, int layer)
+{
+    vec3 at = place_in_shadow(position, normal, layer);
+    int count = is_in_map(at) ? shadow_taps : 0;
+    float texel = shadow_taps > 1 ? 1.5 / float(textureSize(shadow_map, 0).x) : 0.0;
+    float seen = float(shadow_taps - count);
+    for (int i = 0; i < count; i++) {
+        vec2 shift = (vec2(float(i % 2), float(i / 2)) - 0.5) * texel;
+        seen += texture(shadow_map, vec4(at.xy * shadow_share[layer] + shift, float(layer), at.z));
     }
-    return 0.25 * sum;
+    return seen / float(shadow_taps);
+}
+
+// What is seen of a few directions of the environment, those counting more that the surface faces.
+float fill_share(vec3 position, vec3 normal)
+{
+    float seen = 1e-3, all_of_it = 1e-3;
+    for (int i = 0; i < fill_count; i++) {
+        float cosine = max(dot(fill_direction[i], normal), 0.0);
+        vec3 at = place_in_shadow(position, normal, i + 1);
+        int count = is_in_map(at) ? 1 : 0;
+        float share = float(1 - count);
+        for (int tap = 0; tap < count; tap++)
+            share = texture(shadow_map, vec4(at.xy * shadow_share[i + 1], float(i + 1), at.z));
+        all_of_it += cosine;
+        seen += cosine * share;
+    }
+    return seen / all_of_it;
+}
+
+void find_shadows(vec3 position, inout SurfacePoint point)
+{
+    point.key_share = point.env_share = 1.0;
+    if (!SHADOWS)
+        return;
+    if (key_count > 0)
+        point.key_share = unshadowed_share(position, point.axes[2], 0);
+    point.env_share = fill_share(position, point.axes[2]);
 }
 
 SurfacePoint surface_point()
@@ -96,7 +148,8 @@ SurfacePoint surface_point()
     point.view = above_horizon(-normalize(ray) * point.axes);
     point.coordinate = place.xy;
     point.level = place.z;
-    point.key_share = SHADOWS ? unshadowed_share(eye + abs(place.w) * ray) : 1.0;
+    point.sides = textureLod(surface_sides, pixel, 0.0);
+    find_shadows(eye + abs(place.w) * ray, point);
     point.chance = STOCHASTIC ? pixel_chance() : 0.0;
     return point;
 }
@@ -112,11 +165,16 @@ vec3 surface_light(SurfacePoint point, int light)
     return world_light(light) * point.axes;
 }
 
+float unshaded_share(SurfacePoint point, int light)
+{
+    return light < key_count ? point.key_share : light >= scene_count ? point.env_share : 1.0;
+}
+
 // Over pi, with the cosine; 0 below the horizon of the surface.
 vec3 surface_irradiance(SurfacePoint point, int light)
 {
     if (PLOT != 0)
         return vec3(1.0); // without the cosine: BRDF x pi
     float cosine = max(dot(light_direction[light], point.axes[2]), 0.0);
-    return light_irradiance[light] * (light == 0 ? cosine * point.key_share : cosine);
+    return light_irradiance[light] * cosine * unshaded_share(point, light);
 }

@@ -1,0 +1,344 @@
+/* The light that a picture begins in: computed environments, shadows without acne, the ground. */
+#include "base/numeric/statistics.h"
+#include "player/draw/lighting.h"
+#include "player/scene/surroundings.h"
+#include "stage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { WIDTH = 240, HEIGHT = 160, PIXELS = WIDTH * HEIGHT };
+
+/* ---- Maps ---- */
+
+static weft_image map_of(const char *name)
+{
+    weft_error error = {0};
+    weft_image map;
+    expect_ok(weft_surroundings_map(name, &map, &error), &error);
+    return map;
+}
+
+static double green_at(const weft_image *map, double theta_deg, double phi_deg)
+{
+    int row = (int)(theta_deg / 180 * map->height), column = (int)((0.75 - phi_deg / 360) * map->width);
+    column = (column % map->width + map->width) % map->width;
+    return (double)map->pixels[3 * (row * map->width + column) + 1];
+}
+
+/* Over pi, on level ground: the mean of cos theta over bands of equal solid angle. */
+static double irradiance_up(const weft_image *map)
+{
+    double sum = 0;
+    for (int row = 0; row < map->height / 2; row++) {
+        double top = WEFT_PI * row / map->height, bottom = WEFT_PI * (row + 1) / map->height, mean = 0;
+        for (int x = 0; x < map->width; x++)
+            mean += (double)map->pixels[3 * (row * map->width + x) + 1] / map->width;
+        sum += mean * (pow(sin(bottom), 2) - pow(sin(top), 2));
+    }
+    return sum;
+}
+
+/* Moon and Spencer: three times as bright above as at the horizon; irradiance 7/9 pi of the zenith's radiance. */
+static void the_overcast_sky_is_three_times_as_bright_above(void **state)
+{
+    (void)state;
+    weft_image map = map_of("overcast");
+    assert_float_equal(green_at(&map, 1, 0) / green_at(&map, 89, 0), 3, 0.15);
+    assert_float_equal(irradiance_up(&map) / green_at(&map, 1, 0), 7.0 / 9, 0.02);
+    assert_float_equal(green_at(&map, 60, 10), green_at(&map, 60, 200), 1e-6);
+    weft_image_free(&map);
+}
+
+/* Brightest round the sun, as bright on either side of it, darkest about 90 degrees from it, brighter at the horizon.
+ */
+static void the_clear_sky_is_bright_round_its_sun(void **state)
+{
+    (void)state;
+    weft_scene scene = weft_scene_default();
+    weft_image map = map_of("sky");
+    weft_surroundings_light("sky", &scene);
+    double theta = weft_deg_of_rad(scene.light[0].direction.theta_rad),
+           phi = weft_deg_of_rad(scene.light[0].direction.phi_rad);
+    double beside = green_at(&map, theta, phi + 30), across = green_at(&map, 90 - theta, phi + 180);
+    assert_true(green_at(&map, theta, phi) > 2 * beside && beside > 1.5 * across);
+    assert_float_equal(green_at(&map, theta, phi - 30) / beside, 1, 0.05);
+    assert_true(green_at(&map, 88, phi + 180) > 1.5 * across);
+    weft_image_free(&map);
+}
+
+static void only_the_overcast_sky_has_no_key_light(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_image map;
+    for (int i = 0; weft_surroundings_words[i]; i++) {
+        weft_scene scene = weft_scene_default();
+        weft_surroundings_light(weft_surroundings_words[i], &scene);
+        assert_true(scene.environment && weft_surroundings_are(weft_surroundings_words[i]));
+        assert_int_equal(scene.light_count, i == 1 ? 0 : 1);
+    }
+    assert_false(weft_surroundings_are("studio.hdr"));
+    assert_int_equal(weft_surroundings_map("beach", &map, &error), WEFT_BAD_USAGE);
+}
+
+/* ---- Lights of a frame ---- */
+
+static void the_key_light_fills_its_disc_and_starts_in_the_middle(void **state)
+{
+    (void)state;
+    enum { FRAMES = 200 };
+    weft_scene scene = weft_scene_default();
+    scene.key_size_rad = weft_rad_of_deg(9);
+    weft_vec3 middle = weft_direction_of_angles(scene.light[0].direction), sum = weft_vec3_of(0, 0, 0);
+    double widest = 0, square = 0;
+    for (int i = 0; i < FRAMES; i++) {
+        weft_lighting lighting = weft_lighting_of(&scene, NULL, i);
+        const float *d = lighting.direction[0];
+        weft_vec3 at = weft_vec3_of((weft_real)d[0], (weft_real)d[1], (weft_real)d[2]);
+        double angle = acos(fmin((double)weft_dot(at, middle), 1));
+        assert_true(i > 0 || angle < 1e-3);
+        widest = fmax(widest, angle);
+        square += angle * angle / FRAMES;
+        sum = weft_add(sum, at);
+    }
+    assert_true(widest < weft_rad_of_deg(9.1) && widest > weft_rad_of_deg(8.5));
+    assert_float_equal(square, pow(weft_rad_of_deg(9), 2) / 2, 0.05 * square); /* of an even disc */
+    assert_true(weft_dot(weft_unit(sum), middle) > cos(weft_rad_of_deg(0.3)));
+}
+
+/* Half of the light comes from one side: so do half of the directions. */
+static void the_fill_comes_from_where_the_environment_is_bright(void **state)
+{
+    (void)state;
+    enum { FRAMES = 128 };
+    weft_error error = {0};
+    weft_environment *environment = calloc(1, sizeof *environment);
+    weft_scene scene = weft_scene_default();
+    weft_image map;
+    expect_ok(weft_image_create(64, 32, &map, &error), &error);
+    for (int i = 0; i < 64 * 32; i++) {
+        int x = i % 64, y = i / 64;
+        for (int c = 0; c < 3; c++)
+            map.pixels[3 * i + c] = y >= 16 ? 0.3f : x < 32 ? 3 : 1; /* below the horizon; x < 0; x > 0 */
+    }
+    expect_ok(weft_environment_of_image(&map, WEFT_ENVIRONMENT_SMOOTH_REGIONS, environment, &error), &error);
+    scene.environment = true;
+    double left = 0, all = 0;
+    for (int i = 0; i < FRAMES; i++) {
+        weft_lighting lighting = weft_lighting_of(&scene, environment, i);
+        assert_int_equal(lighting.fill_count, WEFT_FILL_DIRECTIONS);
+        for (int k = 0; k < lighting.fill_count; k++, all++) {
+            assert_true(lighting.fill[k].z > 0);
+            left += lighting.fill[k].x < 0;
+        }
+    }
+    assert_float_equal(left / all, 0.75, 0.08);
+    weft_image_free(&map);
+    free(environment);
+}
+
+/* ---- Pictures ---- */
+
+static void show(weft_player *player, const char *mesh_name)
+{
+    weft_error error = {0};
+    weft_mesh mesh;
+    weft_material material;
+    expect_ok(weft_mesh_open(mesh_name, &mesh, &error), &error);
+    expect_ok(weft_player_set_mesh(player, &mesh, &error), &error);
+    weft_mesh_free(&mesh);
+    /* One smooth texel: what changes from pixel to pixel is shading. */
+    expect_ok(weft_material_create(1, 1, 0, 0, 0, true, &material, &error), &error);
+    weft_frame frame = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
+    weft_frame_encode(&frame, material.level[0].frame);
+    for (int c = 0; c < 3; c++)
+        material.level[0].diffuse[c] = weft_half_of_float(0.4f);
+    material.texel_pitch_mm = 1;
+    expect_ok(weft_player_set_material(player, &material, &error), &error);
+    weft_material_free(&material);
+}
+
+/* No part of a ball hides another from a light that it faces. */
+static void a_ball_casts_no_shadow_on_its_lit_side(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    long lit = 0;
+    double darkest = 1;
+    show(s->player, "sphere");
+    for (int i = 0; i < 24; i++) {
+        weft_surface_sample *at;
+        weft_scene scene = weft_scene_default();
+        scene.shadows = true;
+        scene.orbit.distance = 1.5 + 0.3 * i;
+        scene.light[0].direction = (weft_angles){weft_rad_of_deg(3.7 * i), weft_rad_of_deg(-160 + 13 * i)};
+        expect_ok(weft_player_read_surface(s->player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error),
+                  &error);
+        for (int k = 0; k < PIXELS; k++) {
+            /* At its rim a ball of triangles shows their backs. */
+            if (at[k].covered == 0 || at[k].light[2] < 0.03f || at[k].view[2] < 0.05f)
+                continue;
+            lit++;
+            darkest = fmin(darkest, (double)at[k].key_share);
+        }
+        free(at);
+    }
+    printf("%ld pixels, the least share of the light is %.4f\n", lit, darkest);
+    assert_true(lit > 100000);
+    assert_true(darkest > 0.999);
+}
+
+static float largest_step(const weft_image *image, const weft_surface_sample *at, float quantile, float *value)
+{
+    size_t count = 0;
+    for (int k = 0; k < PIXELS - 1; k++) {
+        if (at[k].covered > 0 && at[k + 1].covered > 0)
+            value[count++] = fabsf(image->pixels[3 * k] - image->pixels[3 * k + 3]);
+    }
+    return weft_quantile_of_floats(value, count, quantile);
+}
+
+/* What shadows change from a pixel to the next, where the ball is lit and not seen from the rim. */
+static float largest_added_step(const weft_image image[2], const weft_surface_sample *at)
+{
+    float largest = 0;
+    for (int k = 0; k < PIXELS - 1; k++) {
+        bool inside = at[k].covered > 0 && at[k + 1].covered > 0 && fminf(at[k].view[2], at[k + 1].view[2]) > 0.05f;
+        float before = image[0].pixels[3 * k] - image[0].pixels[3 * k + 3];
+        float after = image[1].pixels[3 * k] - image[1].pixels[3 * k + 3];
+        largest = inside ? fmaxf(largest, fabsf(after - before)) : largest;
+    }
+    return largest;
+}
+
+/* Shadows of triangles on the cloth that they make up would be its strongest edges. */
+static void smooth_cloth_has_no_stronger_edge_with_shadows_than_without(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    float *value = malloc(PIXELS * sizeof *value);
+    show(s->player, "sphere");
+    for (int i = 0; i < 8; i++) {
+        weft_image image[2];
+        weft_surface_sample *at;
+        weft_scene scene = weft_scene_default();
+        scene.light[0].direction = (weft_angles){weft_rad_of_deg(11 * i), weft_rad_of_deg(-70 + 40 * i)};
+        expect_ok(weft_player_read_surface(s->player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error),
+                  &error);
+        for (int k = 0; k < 2; k++) {
+            scene.shadows = k;
+            expect_ok(weft_player_picture(s->player, &scene, WIDTH, HEIGHT, 1, NULL, &image[k], &error), &error);
+        }
+        float added = largest_added_step(image, at), usual = largest_step(&image[0], at, 0.99f, value);
+        print_message("light %d: shadows add a step of %.5f, 99th percentile of steps %.5f\n", i, (double)added,
+                      (double)usual);
+        assert_true(added < usual);
+        free(at);
+        weft_image_free(&image[0]);
+        weft_image_free(&image[1]);
+    }
+    free(value);
+}
+
+static weft_scene studio(weft_player *player, const char *name, int regions)
+{
+    weft_error error = {0};
+    weft_image map = map_of(name);
+    weft_scene scene = weft_scene_default();
+    expect_ok(weft_player_set_environment(player, &map, regions, &error), &error);
+    weft_image_free(&map);
+    weft_surroundings_light(name, &scene);
+    scene.shadows = scene.ground = true;
+    return scene;
+}
+
+static weft_image picture_of(weft_player *player, const weft_scene *scene)
+{
+    weft_error error = {0};
+    weft_image image;
+    expect_ok(weft_player_picture(player, scene, WIDTH, HEIGHT, 1, NULL, &image, &error), &error);
+    return image;
+}
+
+static void cloth_stands_on_a_ground_that_takes_its_shadow(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_surface_sample *at;
+    float *share = malloc(PIXELS * sizeof *share);
+    for (int i = 0; weft_surroundings_words[i]; i++) {
+        show(s->player, "drape");
+        weft_scene scene = studio(s->player, weft_surroundings_words[i], WEFT_ENVIRONMENT_SMOOTH_REGIONS);
+        weft_image image = picture_of(s->player, &scene);
+        expect_ok(weft_player_read_surface(s->player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error),
+                  &error);
+        scene.shadows = false;
+        weft_image without = picture_of(s->player, &scene);
+        scene.exposure = 3;
+        weft_image brighter = picture_of(s->player, &scene);
+        size_t count = 0;
+        for (int k = 0; k < PIXELS; k++) {
+            if (at[k].covered > 0)
+                continue;
+            share[count++] = image.pixels[3 * k + 1] / without.pixels[3 * k + 1];
+            assert_float_equal(brighter.pixels[3 * k + 1], without.pixels[3 * k + 1], 1e-4);
+        }
+        float deepest = weft_quantile_of_floats(share, count, 0.002f),
+              usual = weft_quantile_of_floats(share, count, 0.8f);
+        print_message("%s: %.3f of the light in the deepest shadow on the ground, %.3f far from it\n",
+                      weft_surroundings_words[i], (double)deepest, (double)usual);
+        assert_true(deepest < 0.8 && deepest > 0.02 && usual > 0.98 && usual <= 1.0001f);
+        free(at);
+        weft_image_free(&image);
+        weft_image_free(&without);
+        weft_image_free(&brighter);
+    }
+    free(share);
+}
+
+/* On the screen, of 255: deep in a fold, facing away from every lamp. */
+static void unlit_folds_are_not_black_and_lit_ones_not_white(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_surface_sample *at;
+    for (int i = 0; weft_surroundings_words[i]; i++) {
+        show(s->player, "drape");
+        weft_scene scene = studio(s->player, weft_surroundings_words[i], WEFT_ENVIRONMENT_SMOOTH_REGIONS);
+        scene.tone = WEFT_TONE_SOFT;
+        weft_image image = picture_of(s->player, &scene);
+        expect_ok(weft_player_read_surface(s->player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error),
+                  &error);
+        weft_scene_show(&scene, &image);
+        float darkest = 1, brightest = 0;
+        for (int k = 0; k < PIXELS; k++) {
+            for (int c = 0; at[k].covered > 0 && c < 3; c++) {
+                darkest = fminf(darkest, image.pixels[3 * k + c]);
+                brightest = fmaxf(brightest, image.pixels[3 * k + c]);
+            }
+        }
+        print_message("%s: from %.0f to %.0f of 255\n", weft_surroundings_words[i], 255 * (double)darkest,
+                      255 * (double)brightest);
+        assert_true(darkest > 12.0f / 255 && brightest < 250.0f / 255);
+        free(at);
+        weft_image_free(&image);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_overcast_sky_is_three_times_as_bright_above),
+        cmocka_unit_test(the_clear_sky_is_bright_round_its_sun),
+        cmocka_unit_test(only_the_overcast_sky_has_no_key_light),
+        cmocka_unit_test(the_key_light_fills_its_disc_and_starts_in_the_middle),
+        cmocka_unit_test(the_fill_comes_from_where_the_environment_is_bright),
+        cmocka_unit_test(a_ball_casts_no_shadow_on_its_lit_side),
+        cmocka_unit_test(smooth_cloth_has_no_stronger_edge_with_shadows_than_without),
+        cmocka_unit_test(cloth_stands_on_a_ground_that_takes_its_shadow),
+        cmocka_unit_test(unlit_folds_are_not_black_and_lit_ones_not_white),
+    };
+    return cmocka_run_group_tests(tests, stage_open, stage_close);
+}
