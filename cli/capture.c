@@ -66,18 +66,23 @@ static void say_warning(const weft_common_options *common, const char *warning)
         weft_command_say(common, "%s", warning);
 }
 
+static void say_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
+{
+    weft_command_say(common, "%d photographs: %d views, each with all its lights before the camera moves on",
+                     rehearsal->shot_count, rehearsal->view_count);
+    weft_command_say(common, "%d lights step aside for the camera", rehearsal->driven_aside);
+    weft_command_say(common, "disk: %.2f GB; time: about %.0f s, at the %.1f ms that one photograph took",
+                     (double)rehearsal->bytes * 1e-9, rehearsal->seconds_per_photograph * rehearsal->shot_count,
+                     rehearsal->seconds_per_photograph * 1e3);
+}
+
 static weft_code rehearse(const capture_command *command, weft_virtual_rig *rig, weft_error *error)
 {
-    const weft_common_options *common = &command->common;
     weft_capture_rehearsal rehearsal;
     WEFT_TRY(weft_capture_rehearse(&command->request, &rig->rig, &rehearsal, error));
-    say_warning(common, rig->warning);
-    weft_command_say(common, "%d photographs: %d views, each with all its lights before the camera moves on",
-                     rehearsal.shot_count, rehearsal.view_count);
-    weft_command_say(common, "%d lights step aside for the camera", rehearsal.driven_aside);
-    weft_command_say(common, "disk: %.2f GB; time: about %.0f s, at the %.1f ms that one photograph took",
-                     (double)rehearsal.bytes * 1e-9, rehearsal.seconds_per_photograph * rehearsal.shot_count,
-                     rehearsal.seconds_per_photograph * 1e3);
+    say_warning(&command->common, rig->warning);
+    say_rehearsal(&command->common, &rehearsal);
+    weft_capture_rehearsal_free(&rehearsal);
     return WEFT_OK;
 }
 
