@@ -1,11 +1,15 @@
 #include "capture/capture.h"
 
 #include "base/clock.h"
+#include "capture/kept_file.h"
 #include "capture/photograph_writer.h"
 #include "capture/planned_session.h"
 #include "capture/shooting.h"
 
+#include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/statvfs.h>
 
 /* ---- Before the first photograph ---- */
@@ -67,6 +71,21 @@ typedef struct run {
     int missing, *shot; /* [missing] their numbers in the order of taking */
 } run;
 
+/* The file that the camera made lies beside the photograph that was made of it, under the same name and its own ending.
+ */
+static weft_code keep_original(run *r, int shot, weft_error *error)
+{
+    const weft_rig_camera *camera = &r->capture->rig->camera;
+    char path[PATH_MAX], kept[PATH_MAX + 16];
+    if (!camera->original)
+        return WEFT_OK;
+    const char *original = camera->original(camera->device);
+    weft_session_photograph_path(&r->capture->held.session, shot, path, sizeof path);
+    const char *ending = strrchr(original, '.');
+    snprintf(kept, sizeof kept, "%.*s.original%s", (int)(strrchr(path, '.') - path), path, ending ? ending : "");
+    return weft_keep_file(original, kept, error);
+}
+
 static weft_code take_shots(run *r, weft_error *error)
 {
     weft_capture_summary *summary = &r->capture->summary;
@@ -76,6 +95,7 @@ static weft_code take_shots(run *r, weft_error *error)
         weft_shot_record record;
         uint16_t *samples = weft_photograph_writer_buffer(r->writer);
         WEFT_TRY(weft_shooting_take(&r->shooting, shot, samples, &record, error));
+        WEFT_TRY(keep_original(r, shot, error));
         WEFT_TRY(weft_photograph_writer_submit(r->writer, shot, &record, error));
         summary->taken++;
         weft_progress_report(r->progress, "taking photographs", summary->found + summary->taken, shot_count);

@@ -16,6 +16,8 @@ typedef struct weft_rig_camera {
      * (cameras stamp it into their files). *read_back_s receives the exposure time that the camera reports. */
     weft_code (*expose)(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
                         weft_error *error);
+    /* The file that the last exposure came as, for the session to keep; NULL: there is none. */
+    const char *(*original)(void *device);
 } weft_rig_camera;
 
 /* What it takes a stage to go through poses, from the first to the last. */
