@@ -73,19 +73,27 @@ static weft_code expose(weft_shooting *shooting, int shot, int *number, double e
     return code;
 }
 
+/* What a camera does that has only so many exposure times is another exposure; what it rounds is not. */
+static double exposure_taken(double asked_s, double read_back_s)
+{
+    const double rounding = 0.01;
+    return fabs(read_back_s / asked_s - 1) < rounding ? asked_s : read_back_s;
+}
+
 static weft_code meter_and_expose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
                                   weft_error *error)
 {
-    double exposure_s = predict_exposure(shooting, &shooting->session->shot[shot]);
+    double exposure_s = predict_exposure(shooting, &shooting->session->shot[shot]), before_s = 0;
     int number = 0;
     for (int metered = 0; metered < MAX_METERED; metered++) {
         WEFT_TRY(expose(shooting, shot, &number, exposure_s, samples, read_back_s, error));
+        double taken_s = exposure_taken(exposure_s, *read_back_s);
         double level = weft_meter_read(&shooting->meter, shooting->session, samples);
-        double better_s = weft_exposure_after(exposure_s, level, shooting->limits);
-        shooting->exposure_s = exposure_s;
-        if (better_s == exposure_s)
+        exposure_s = weft_exposure_after(taken_s, level, shooting->limits);
+        shooting->exposure_s = taken_s;
+        if (exposure_s == taken_s || taken_s == before_s)
             break;
-        exposure_s = better_s;
+        before_s = taken_s;
     }
     return WEFT_OK;
 }

@@ -180,7 +180,7 @@ static weft_code capture_with_virtual_rig(capture_command *command, weft_error *
 
 static weft_code capture_with_laboratory(const capture_command *command, weft_error *error)
 {
-    weft_terminal_person person = {&command->common, &stop_asked};
+    weft_terminal_person person = weft_person_of(&command->common, &stop_asked);
     const weft_laboratory_request request = {.rig_file = command->rig_file,
                                              .sample = command->rig.sample,
                                              .person = weft_person_at_terminal(&person),

@@ -2,11 +2,18 @@
 
 #include "base/text/json_text.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+weft_terminal_person weft_person_of(const weft_common_options *common, const volatile sig_atomic_t *stop)
+{
+    const int first_free = 3;
+    return (weft_terminal_person){common, stop, fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, first_free)};
+}
 
 static void say(const weft_terminal_person *person, const char *text)
 {
@@ -28,13 +35,13 @@ static weft_code wait_for_enter(const weft_terminal_person *person, weft_error *
 {
     enum { STEP_MS = 100 };
     for (;;) {
-        struct pollfd input = {STDIN_FILENO, POLLIN, 0};
+        struct pollfd input = {person->input, POLLIN, 0};
         char letter;
         if (*person->stop)
             return weft_fail(error, WEFT_SYSTEM, "stopped while somebody was asked for");
         if (poll(&input, 1, STEP_MS) <= 0)
             continue;
-        if (read(STDIN_FILENO, &letter, 1) != 1)
+        if (read(person->input, &letter, 1) != 1)
             return weft_fail(error, WEFT_SYSTEM, "nobody is there to be asked: the input is at its end");
         if (letter == '\n')
             return WEFT_OK;

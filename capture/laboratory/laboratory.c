@@ -4,6 +4,7 @@
 #include "base/text/json_text.h"
 #include "btf/session/lens.h"
 #include "capture/camera/folder_camera.h"
+#include "capture/camera/tethered_camera.h"
 #include "capture/camera/video_camera.h"
 #include "capture/file_crc.h"
 #include "capture/motion/controller.h"
@@ -26,6 +27,7 @@ struct weft_laboratory {
     weft_stage *stage;
     weft_folder_camera *folder;
     weft_video_camera *video;
+    weft_tethered_camera *tethered;
     weft_rig rig;
 };
 
@@ -212,6 +214,7 @@ void weft_laboratory_close(weft_laboratory *lab)
 {
     weft_folder_camera_free(lab->folder);
     weft_video_camera_free(lab->video);
+    weft_tethered_camera_free(lab->tethered);
     weft_stage_free(lab->stage);
     weft_relay_free(lab->relay);
     weft_controller_free(lab->controller);
@@ -293,15 +296,21 @@ static weft_code connect_video(weft_laboratory *lab, weft_error *error)
     return WEFT_OK;
 }
 
+static weft_code connect_tethered(weft_laboratory *lab, weft_error *error)
+{
+    const weft_tethered_camera_settings settings = {.port = lab->file.camera.device,
+                                                    .timeout_s = lab->file.camera.timeout_s,
+                                                    .format = format_of(lab),
+                                                    .stop = lab->request.stop};
+    WEFT_TRY(weft_tethered_camera_create(&settings, &lab->tethered, error));
+    lab->rig.camera = weft_tethered_camera_for_rig(lab->tethered);
+    return WEFT_OK;
+}
+
 weft_code weft_laboratory_connect(weft_laboratory *lab, weft_error *error)
 {
-    switch (lab->file.camera.backend) {
-    case WEFT_CAMERA_FOLDER:
-        return connect_folder(lab, error);
-    case WEFT_CAMERA_VIDEO:
-        return connect_video(lab, error);
-    case WEFT_CAMERA_GPHOTO2:
-        break;
-    }
-    return weft_fail(error, WEFT_SYSTEM, "this build has no camera of that kind");
+    static weft_code (*const connect[])(weft_laboratory *, weft_error *) = {[WEFT_CAMERA_FOLDER] = connect_folder,
+                                                                            [WEFT_CAMERA_VIDEO] = connect_video,
+                                                                            [WEFT_CAMERA_GPHOTO2] = connect_tethered};
+    return connect[lab->file.camera.backend](lab, error);
 }
