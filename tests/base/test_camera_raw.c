@@ -138,6 +138,7 @@ static void a_raw_file_says_how_long_it_was_exposed(void **state)
     write_dng("picture.dng", 1);
     assert_int_equal(weft_exif_read("picture.dng", &exif, NULL), WEFT_OK);
     assert_float_equal(exif.exposure_s, 0.125, 1e-6);
+    assert_true(exif.is_linear && !exif.is_float);
 }
 
 int main(void)
