@@ -1,11 +1,15 @@
 #include "capture/capture.h"
 
 #include "base/clock.h"
+#include "capture/kept_file.h"
 #include "capture/photograph_writer.h"
 #include "capture/planned_session.h"
 #include "capture/shooting.h"
 
+#include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/statvfs.h>
 
 /* ---- Before the first photograph ---- */
@@ -64,21 +68,34 @@ typedef struct run {
     weft_photograph_writer *writer;
     const volatile sig_atomic_t *stop;
     const weft_progress *progress;
-    bool *missing; /* [shot_count]; the records of the session belong to the writer */
+    int missing, *shot; /* [missing] their numbers in the order of taking */
 } run;
+
+/* The file that the camera made lies beside the photograph that was made of it, under the same name and its own ending.
+ */
+static weft_code keep_original(run *r, int shot, weft_error *error)
+{
+    const weft_rig_camera *camera = &r->capture->rig->camera;
+    char path[PATH_MAX], kept[PATH_MAX + 16];
+    if (!camera->original)
+        return WEFT_OK;
+    const char *original = camera->original(camera->device);
+    weft_session_photograph_path(&r->capture->held.session, shot, path, sizeof path);
+    const char *ending = strrchr(original, '.');
+    snprintf(kept, sizeof kept, "%.*s.original%s", (int)(strrchr(path, '.') - path), path, ending ? ending : "");
+    return weft_keep_file(original, kept, error);
+}
 
 static weft_code take_shots(run *r, weft_error *error)
 {
     weft_capture_summary *summary = &r->capture->summary;
     int shot_count = r->capture->held.session.shot_count;
-    for (int shot = 0; shot < shot_count; shot++) {
-        if (!r->missing[shot])
-            continue;
-        if (r->stop && *r->stop)
-            break;
+    for (int i = 0; i < r->missing && !(r->stop && *r->stop); i++) {
+        int shot = r->shot[i];
         weft_shot_record record;
         uint16_t *samples = weft_photograph_writer_buffer(r->writer);
         WEFT_TRY(weft_shooting_take(&r->shooting, shot, samples, &record, error));
+        WEFT_TRY(keep_original(r, shot, error));
         WEFT_TRY(weft_photograph_writer_submit(r->writer, shot, &record, error));
         summary->taken++;
         weft_progress_report(r->progress, "taking photographs", summary->found + summary->taken, shot_count);
@@ -102,23 +119,35 @@ static weft_code take_and_write(run *r, weft_error *error)
     summary->seconds = weft_now_s() - start_s;
     summary->exposures = r->shooting.exposures;
     summary->timeouts = r->shooting.timeouts;
+    summary->disturbed = r->shooting.disturbed;
     return code;
+}
+
+static weft_code choose_order(run *r, weft_error *error)
+{
+    const weft_session *session = &r->capture->held.session;
+    weft_rig_stage *stage = &r->capture->rig->stage;
+    weft_stage_estimate estimate;
+    r->shot = malloc((size_t)session->shot_count * sizeof *r->shot);
+    if (!r->shot)
+        return weft_fail_memory(error, "plan", (size_t)session->shot_count * sizeof *r->shot);
+    for (int i = 0; i < session->shot_count; i++) {
+        if (!session->record[i].taken)
+            r->shot[r->missing++] = i;
+    }
+    return stage->order ? stage->order(stage->device, session->shot, r->missing, r->shot, &estimate, error) : WEFT_OK;
 }
 
 static weft_code take_missing(run *r, weft_error *error)
 {
     const weft_held_session *held = &r->capture->held;
-    const weft_session *session = &held->session;
-    r->missing = malloc((size_t)session->shot_count * sizeof *r->missing);
-    if (!r->missing)
-        return weft_fail_memory(error, "plan", (size_t)session->shot_count);
-    for (int i = 0; i < session->shot_count; i++)
-        r->missing[i] = !session->record[i].taken;
-    weft_code code = weft_shooting_begin(r->capture->rig, session, held->next_stay, &r->shooting, error);
+    weft_code code = choose_order(r, error);
+    if (code == WEFT_OK)
+        code = weft_shooting_begin(r->capture->rig, &held->session, held->next_stay, &r->shooting, error);
     if (code == WEFT_OK)
         code = take_and_write(r, error);
     weft_shooting_end(&r->shooting);
-    free(r->missing);
+    free(r->shot);
     return code;
 }
 

@@ -18,6 +18,7 @@ typedef struct weft_capture_summary {
     int taken;
     int exposures;  /* including those repeated for a better exposure */
     int timeouts;   /* exposures that the camera did not deliver, repeated */
+    int disturbed;  /* photographs during which the stage did not keep its pose, repeated */
     double seconds; /* of taking photographs */
 } weft_capture_summary;
 
@@ -48,11 +49,16 @@ weft_code weft_capture_take(weft_capture *capture, const volatile sig_atomic_t *
 typedef struct weft_capture_rehearsal {
     int shot_count, view_count, driven_aside; /* lights that step aside for the camera */
     uint64_t bytes;                           /* of disk */
-    double seconds_per_photograph;            /* measured on one photograph */
+    double seconds_per_photograph;            /* as the rig says, or measured on one photograph */
+    weft_stage_estimate stage;                /* all 0 where the stage does not know */
+    int *order;                               /* [shot_count] numbers of the shots as they would be taken, owned */
+    weft_session session;                     /* that would be begun; nothing of it is on disk */
 } weft_capture_rehearsal;
 
-/* Plans, takes one photograph in memory and writes nothing. Errors: those of the plan and of the rig. */
+/* Plans and writes nothing. Takes one photograph in memory, unless the rig says how long one takes. The caller frees
+ * with weft_capture_rehearsal_free. Errors: those of the plan and of the rig. */
 weft_code weft_capture_rehearse(const weft_capture_request *request, weft_rig *rig, weft_capture_rehearsal *rehearsal,
                                 weft_error *error);
+void weft_capture_rehearsal_free(weft_capture_rehearsal *rehearsal);
 
 #endif

@@ -12,7 +12,7 @@ static weft_code describe(const char *folder, const weft_rig *rig, weft_session 
     session->rig = strdup(rig->name);
     session->sample = strdup(rig->sample);
     session->rig_settings = strdup(rig->identity);
-    session->camera = weft_rig_settings_camera(settings);
+    session->camera = rig->calibration;
     session->camera_distance_mm = settings->camera_distance_mm;
     session->light_distance_mm = settings->light_distance_mm;
     session->bits = (int)settings->bits;
@@ -20,6 +20,14 @@ static weft_code describe(const char *folder, const weft_rig *rig, weft_session 
     session->target = weft_target_for_opening(settings->opening_mm);
     if (!session->folder || !session->rig || !session->sample || !session->rig_settings)
         return weft_fail_memory(error, "session", 0);
+    return WEFT_OK;
+}
+
+/* Poses that the stage cannot take up are told before the night, not in it. */
+static weft_code reach_all(const weft_plan *plan, const weft_rig_stage *stage, weft_error *error)
+{
+    for (int i = 0; stage->reach && i < plan->shot_count; i++)
+        WEFT_TRY(stage->reach(stage->device, &plan->shot[i], error));
     return WEFT_OK;
 }
 
@@ -31,6 +39,7 @@ static weft_code adopt_plan(const char *name, const weft_rig *rig, weft_session 
     weft_plan_avoid_camera(&plan, weft_rad_of_deg(rig->settings.camera_half_angle_deg));
     session->shot_count = plan.shot_count;
     session->shot = plan.shot;
+    WEFT_TRY(reach_all(&plan, &rig->stage, error));
     session->record = calloc((size_t)plan.shot_count, sizeof *session->record);
     return session->record ? WEFT_OK : weft_fail_memory(error, "plan", (size_t)plan.shot_count * sizeof(weft_shot));
 }

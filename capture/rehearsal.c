@@ -38,18 +38,52 @@ static weft_code time_photograph(weft_rig *rig, const weft_session *session, uin
     return code;
 }
 
+static weft_code measure_photograph(weft_rig *rig, weft_capture_rehearsal *rehearsal, weft_error *error)
+{
+    const weft_session *session = &rehearsal->session;
+    size_t bytes = (size_t)session->camera.width * (size_t)session->camera.height * 3 * sizeof(uint16_t);
+    uint16_t *samples = malloc(bytes);
+    weft_code code = samples ? time_photograph(rig, session, samples, &rehearsal->seconds_per_photograph, error)
+                             : weft_fail_memory(error, "photograph", bytes);
+    free(samples);
+    return code;
+}
+
+static weft_code choose_order(weft_rig_stage *stage, weft_capture_rehearsal *rehearsal, weft_error *error)
+{
+    int count = rehearsal->shot_count;
+    rehearsal->order = malloc((size_t)count * sizeof *rehearsal->order);
+    if (!rehearsal->order)
+        return weft_fail_memory(error, "plan", (size_t)count * sizeof *rehearsal->order);
+    for (int i = 0; i < count; i++)
+        rehearsal->order[i] = i;
+    return stage->order
+               ? stage->order(stage->device, rehearsal->session.shot, count, rehearsal->order, &rehearsal->stage, error)
+               : WEFT_OK;
+}
+
+static weft_code rehearse(weft_rig *rig, weft_capture_rehearsal *rehearsal, weft_error *error)
+{
+    count_plan(&rehearsal->session, rehearsal);
+    WEFT_TRY(choose_order(&rig->stage, rehearsal, error));
+    rehearsal->seconds_per_photograph = rig->seconds_per_photograph;
+    return rig->seconds_per_photograph > 0 ? WEFT_OK : measure_photograph(rig, rehearsal, error);
+}
+
 weft_code weft_capture_rehearse(const weft_capture_request *request, weft_rig *rig, weft_capture_rehearsal *rehearsal,
                                 weft_error *error)
 {
-    weft_session session;
     *rehearsal = (weft_capture_rehearsal){0};
-    WEFT_TRY(weft_session_of_plan(request->folder, request->plan, rig, &session, error));
-    count_plan(&session, rehearsal);
-    size_t bytes = (size_t)session.camera.width * (size_t)session.camera.height * 3 * sizeof(uint16_t);
-    uint16_t *samples = malloc(bytes);
-    weft_code code = samples ? time_photograph(rig, &session, samples, &rehearsal->seconds_per_photograph, error)
-                             : weft_fail_memory(error, "photograph", bytes);
-    free(samples);
-    weft_session_free(&session);
+    WEFT_TRY(weft_session_of_plan(request->folder, request->plan, rig, &rehearsal->session, error));
+    weft_code code = rehearse(rig, rehearsal, error);
+    if (code != WEFT_OK)
+        weft_capture_rehearsal_free(rehearsal);
     return code;
+}
+
+void weft_capture_rehearsal_free(weft_capture_rehearsal *rehearsal)
+{
+    weft_session_free(&rehearsal->session);
+    free(rehearsal->order);
+    *rehearsal = (weft_capture_rehearsal){0};
 }

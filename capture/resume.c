@@ -31,6 +31,32 @@ static weft_code lock_folder(const char *folder, int *lock, weft_error *error)
     return weft_fail_errno(error, "lock", path);
 }
 
+/* What a process left that died before it renamed it: whoever holds the lock is alone. See base/atomic_file.h for the
+ * names. */
+static bool is_left_over(const char *name)
+{
+    static const char begin[] = ".session.", end[] = ".json";
+    size_t length = strlen(name), first = sizeof begin - 1, last = sizeof end - 1;
+    if (strcmp(name, ".photograph.tif") == 0)
+        return true;
+    if (length <= first + last || strncmp(name, begin, first) != 0 || strcmp(name + length - last, end) != 0)
+        return false;
+    return strspn(name + first, "0123456789") == length - first - last;
+}
+
+static weft_code sweep(const char *folder, weft_error *error)
+{
+    DIR *listing = opendir(folder);
+    if (!listing)
+        return weft_fail_errno(error, "list folder", folder);
+    for (struct dirent *entry; (entry = readdir(listing));) {
+        if (is_left_over(entry->d_name))
+            unlinkat(dirfd(listing), entry->d_name, 0);
+    }
+    closedir(listing);
+    return WEFT_OK;
+}
+
 /* ---- New or known ---- */
 
 /* A folder that holds something no capture has left there is refused: hidden files are locks and temporary files. */
@@ -177,6 +203,7 @@ static weft_code hold(const weft_session *wanted, const weft_progress *progress,
                       weft_error *error)
 {
     WEFT_TRY(lock_folder(wanted->folder, &held->lock, error));
+    WEFT_TRY(sweep(wanted->folder, error));
     WEFT_TRY(create_or_open(wanted, &held->session, error));
     WEFT_TRY(check_same(wanted, &held->session, error));
     held->next_stay = count_stays(&held->session);

@@ -7,6 +7,7 @@
 #ifndef WEFT_CAPTURE_RIG_H
 #define WEFT_CAPTURE_RIG_H
 
+#include "btf/session/session.h"
 #include "capture/settings.h"
 
 typedef struct weft_rig_camera {
@@ -15,17 +16,37 @@ typedef struct weft_rig_camera {
      * (cameras stamp it into their files). *read_back_s receives the exposure time that the camera reports. */
     weft_code (*expose)(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
                         weft_error *error);
+    /* The file that the last exposure came as, for the session to keep; NULL: there is none. */
+    const char *(*original)(void *device);
 } weft_rig_camera;
 
+/* What it takes a stage to go through poses, from the first to the last. */
+typedef struct weft_stage_estimate {
+    double seconds;       /* of moving and settling */
+    double bound_seconds; /* no order of these poses takes less; 0 where none was derived */
+    int moves;            /* of any axis */
+} weft_stage_estimate;
+
+/* Functions that may be NULL say what is then understood. */
 typedef struct weft_rig_stage {
     void *device;
     /* Drives all axes to their references; called once before the first photograph. The session has seen `first_stay`
      * stays of the camera so far, so that this is the number of the next one. */
     weft_code (*home)(void *device, int first_stay, weft_error *error);
-    /* Drives the camera axes. *moved receives whether they turned at all: if so, the photographs that follow belong to
-     * a new stay. The first call after home always moves. */
-    weft_code (*move_camera)(void *device, weft_angles view, bool *moved, weft_error *error);
-    weft_code (*move_light)(void *device, weft_angles light, weft_error *error);
+    /* Takes up the pose of a photograph. *moved receives whether the camera turned against the sample, or may have: if
+     * so, the photographs that follow belong to a new stay. The first call after home always moves. */
+    weft_code (*move)(void *device, weft_angles view, weft_angles light, bool *moved, weft_error *error);
+    /* Whether the axes stand where the last move left them, and have stood there since; NULL: nothing disturbs them. */
+    weft_code (*held)(void *device, bool *held, weft_error *error);
+    /* Stops every axis where it is, whatever has gone wrong before; NULL: nothing moves between the calls. */
+    void (*stop)(void *device);
+    /* Whether the stage can take up the pose of a shot; may send the light to where one of its lamps is. Pure. NULL: it
+     * can take up any. Errors: WEFT_BAD_INPUT naming the axis that cannot. */
+    weft_code (*reach)(void *device, weft_shot *shot, weft_error *error);
+    /* Sorts `count` numbers of shots so that the stage is through with them soon. Moves nothing. NULL: they are taken
+     * in the order of the plan, and nothing is known of the time. Errors: WEFT_SYSTEM. */
+    weft_code (*order)(void *device, const weft_shot *shot, int count, int *numbers, weft_stage_estimate *estimate,
+                       weft_error *error);
 } weft_rig_stage;
 
 typedef struct weft_rig_light {
@@ -39,7 +60,9 @@ typedef struct weft_rig {
     const char *sample;   /* what lies in the opening of the target */
     const char *identity; /* a JSON object with the settings and whatever else the photographs depend on: a session
                              goes on only where all its values are the same */
-    weft_rig_settings settings; /* calibration, set-up and exposure */
+    weft_rig_settings settings;    /* set-up and exposure */
+    weft_camera calibration;       /* of the camera */
+    double seconds_per_photograph; /* beyond moving, as the operator knows it; 0: a rehearsal measures it on one */
     weft_rig_camera camera;
     weft_rig_stage stage;
     weft_rig_light light;

@@ -3,6 +3,17 @@
 /* At most MAX_METERED exposures of a shot, each retried; frames are numbered FRAMES_PER_SHOT x shot + exposure. */
 enum { MAX_METERED = 8, FRAMES_PER_SHOT = 256 };
 
+/* Whatever has failed, nothing moves on and nothing burns on. */
+static weft_code halt(weft_rig *rig, weft_code code)
+{
+    if (code == WEFT_OK)
+        return code;
+    if (rig->stage.stop)
+        rig->stage.stop(rig->stage.device);
+    rig->light.power(rig->light.device, false, NULL);
+    return code;
+}
+
 weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int next_stay, weft_shooting *shooting,
                               weft_error *error)
 {
@@ -13,7 +24,7 @@ weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int ne
                                 .retries = (int)settings->retries,
                                 .stay = -1,
                                 .next_stay = next_stay};
-    return rig->stage.home(rig->stage.device, next_stay, error);
+    return halt(rig, rig->stage.home(rig->stage.device, next_stay, error));
 }
 
 void weft_shooting_end(weft_shooting *shooting)
@@ -25,13 +36,12 @@ static weft_code drive(weft_shooting *shooting, const weft_shot *shot, weft_erro
 {
     weft_rig_stage *stage = &shooting->rig->stage;
     bool moved = false;
-    WEFT_TRY(stage->move_camera(stage->device, shot->view, &moved, error));
-    if (moved) {
-        shooting->stay = shooting->next_stay++;
-        weft_meter_free(&shooting->meter);
-        WEFT_TRY(weft_meter_make(shooting->session, shot->view, &shooting->meter, error));
-    }
-    return stage->move_light(stage->device, shot->light_driven, error);
+    WEFT_TRY(stage->move(stage->device, shot->view, shot->light_driven, &moved, error));
+    if (!moved)
+        return WEFT_OK;
+    shooting->stay = shooting->next_stay++;
+    weft_meter_free(&shooting->meter);
+    return weft_meter_make(shooting->session, shot->view, &shooting->meter, error);
 }
 
 /* The exposure of the last shot, corrected by the change of the light's cosine. */
@@ -63,32 +73,62 @@ static weft_code expose(weft_shooting *shooting, int shot, int *number, double e
     return code;
 }
 
+/* What a camera does that has only so many exposure times is another exposure; what it rounds is not. */
+static double exposure_taken(double asked_s, double read_back_s)
+{
+    const double rounding = 0.01;
+    return fabs(read_back_s / asked_s - 1) < rounding ? asked_s : read_back_s;
+}
+
 static weft_code meter_and_expose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
                                   weft_error *error)
 {
-    double exposure_s = predict_exposure(shooting, &shooting->session->shot[shot]);
+    double exposure_s = predict_exposure(shooting, &shooting->session->shot[shot]), before_s = 0;
     int number = 0;
     for (int metered = 0; metered < MAX_METERED; metered++) {
         WEFT_TRY(expose(shooting, shot, &number, exposure_s, samples, read_back_s, error));
+        double taken_s = exposure_taken(exposure_s, *read_back_s);
         double level = weft_meter_read(&shooting->meter, shooting->session, samples);
-        double better_s = weft_exposure_after(exposure_s, level, shooting->limits);
-        shooting->exposure_s = exposure_s;
-        if (better_s == exposure_s)
+        exposure_s = weft_exposure_after(taken_s, level, shooting->limits);
+        shooting->exposure_s = taken_s;
+        if (exposure_s == taken_s || taken_s == before_s)
             break;
-        exposure_s = better_s;
+        before_s = taken_s;
     }
     return WEFT_OK;
+}
+
+static weft_code take_once(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s, weft_error *error)
+{
+    weft_rig_light *light = &shooting->rig->light;
+    WEFT_TRY(drive(shooting, &shooting->session->shot[shot], error));
+    WEFT_TRY(light->power(light->device, true, error));
+    WEFT_TRY(meter_and_expose(shooting, shot, samples, read_back_s, error));
+    return light->power(light->device, false, error);
+}
+
+static weft_code take_in_pose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
+                              weft_error *error)
+{
+    weft_rig_stage *stage = &shooting->rig->stage;
+    for (int attempt = 0; attempt <= shooting->retries; attempt++) {
+        bool held = true;
+        WEFT_TRY(take_once(shooting, shot, samples, read_back_s, error));
+        if (stage->held)
+            WEFT_TRY(stage->held(stage->device, &held, error));
+        if (held)
+            return WEFT_OK;
+        shooting->disturbed++;
+    }
+    return weft_fail(error, WEFT_SYSTEM, "the stage did not keep its pose during shot %d, %d times", shot,
+                     shooting->retries + 1);
 }
 
 weft_code weft_shooting_take(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
                              weft_error *error)
 {
-    weft_rig_light *light = &shooting->rig->light;
-    WEFT_TRY(drive(shooting, &shooting->session->shot[shot], error));
-    WEFT_TRY(light->power(light->device, true, error));
     double read_back_s = 0;
-    weft_code code = meter_and_expose(shooting, shot, samples, &read_back_s, error);
-    WEFT_TRY(light->power(light->device, false, error));
+    WEFT_TRY(halt(shooting->rig, take_in_pose(shooting, shot, samples, &read_back_s, error)));
     *record = (weft_shot_record){.stay = shooting->stay, .exposure_s = read_back_s};
-    return code;
+    return WEFT_OK;
 }

@@ -1,6 +1,8 @@
 #include "capture/capture.h"
+#include "capture/laboratory/laboratory.h"
 #include "capture/virtual/ground_truth.h"
 #include "cli/arguments.h"
+#include "cli/person.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,11 +20,13 @@ typedef struct capture_command {
 static const weft_option option_table[] = {
     {"output", 'o', "SESSION", "The folder of the session", .is_required = true, .kind = WEFT_OPTION_FOLDER,
      .offset = offsetof(capture_command, request.folder)},
-    {"rig", .argument = "virtual|FILE.json", .help = "The rig, or a file with its settings (default: virtual)",
+    {"rig", .argument = "virtual|RIG.conf|FILE.json",
+     .help = "The virtual rig (default), a rig of yours as its file describes it, or settings of the virtual rig",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig_file)},
-    {"sample", .argument = "CLOTH.wv|.stitch",
-     .help = "What the virtual rig photographs: a weave, flat, or a stitch, which has depth", .is_required = true,
-     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig.sample)},
+    {"sample", .argument = "CLOTH.wv|.stitch|NAME",
+     .help = "What the virtual rig photographs: a weave, flat, or a stitch, which has depth; what you call that which "
+             "lies on a rig of yours",
+     .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig.sample)},
     {"plan", .argument = "ubo81|FILE.csv",
      .help = "Which photographs: all pairs of 81 directions (default), or a table with the columns theta_light_deg, "
              "phi_light_deg, theta_view_deg, phi_view_deg",
@@ -66,18 +70,55 @@ static void say_warning(const weft_common_options *common, const char *warning)
         weft_command_say(common, "%s", warning);
 }
 
-static weft_code rehearse(const capture_command *command, weft_virtual_rig *rig, weft_error *error)
+static void say_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
 {
-    const weft_common_options *common = &command->common;
-    weft_capture_rehearsal rehearsal;
-    WEFT_TRY(weft_capture_rehearse(&command->request, &rig->rig, &rehearsal, error));
-    say_warning(common, rig->warning);
     weft_command_say(common, "%d photographs: %d views, each with all its lights before the camera moves on",
-                     rehearsal.shot_count, rehearsal.view_count);
-    weft_command_say(common, "%d lights step aside for the camera", rehearsal.driven_aside);
+                     rehearsal->shot_count, rehearsal->view_count);
+    weft_command_say(common, "%d lights step aside for the camera", rehearsal->driven_aside);
     weft_command_say(common, "disk: %.2f GB; time: about %.0f s, at the %.1f ms that one photograph took",
-                     (double)rehearsal.bytes * 1e-9, rehearsal.seconds_per_photograph * rehearsal.shot_count,
-                     rehearsal.seconds_per_photograph * 1e3);
+                     (double)rehearsal->bytes * 1e-9, rehearsal->seconds_per_photograph * rehearsal->shot_count,
+                     rehearsal->seconds_per_photograph * 1e3);
+}
+
+/* The views in the order in which the stage takes them. */
+static void say_order(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
+{
+    const weft_shot *shot = rehearsal->session.shot;
+    for (int i = 0, next; i < rehearsal->shot_count; i = next) {
+        weft_angles view = shot[rehearsal->order[i]].view;
+        for (next = i + 1; next < rehearsal->shot_count; next++) {
+            weft_angles other = shot[rehearsal->order[next]].view;
+            if (other.theta_rad != view.theta_rad || other.phi_rad != view.phi_rad)
+                break;
+        }
+        weft_command_say(common, "view %5.1f %5.1f degrees: photographs %d to %d", weft_deg_of_rad(view.theta_rad),
+                         weft_deg_of_rad(view.phi_rad), i + 1, next);
+    }
+}
+
+static void say_stage(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
+{
+    const weft_stage_estimate *stage = &rehearsal->stage;
+    double photographs_s = rehearsal->seconds_per_photograph * rehearsal->shot_count;
+    weft_command_say(common, "%d photographs, %d lights step aside for the camera", rehearsal->shot_count,
+                     rehearsal->driven_aside);
+    weft_command_say(common, "disk: %.2f GB, and what the camera itself writes", (double)rehearsal->bytes * 1e-9);
+    weft_command_say(common, "time: %.2f h for %d moves, %.2f h for photographs of %.2f s", stage->seconds / 3600,
+                     stage->moves, photographs_s / 3600, rehearsal->seconds_per_photograph);
+    if (stage->bound_seconds > 0)
+        weft_command_say(common, "no order of these poses takes less than %.2f h of moves: this one takes %.1f %% more",
+                         stage->bound_seconds / 3600, 100 * (stage->seconds / stage->bound_seconds - 1));
+}
+
+static weft_code rehearse(const capture_command *command, weft_rig *rig, const char *warning, weft_error *error)
+{
+    weft_capture_rehearsal rehearsal;
+    WEFT_TRY(weft_capture_rehearse(&command->request, rig, &rehearsal, error));
+    say_warning(&command->common, warning);
+    if (rig->stage.order)
+        say_order(&command->common, &rehearsal);
+    (rig->stage.order ? say_stage : say_rehearsal)(&command->common, &rehearsal);
+    weft_capture_rehearsal_free(&rehearsal);
     return WEFT_OK;
 }
 
@@ -90,45 +131,76 @@ static void say_summary(const capture_command *command, const weft_capture_summa
         weft_command_say(common, "%d photographs did not match the journal and were taken again", summary->damaged);
     if (summary->timeouts > 0)
         weft_command_say(common, "%d exposures that the camera did not deliver were repeated", summary->timeouts);
+    if (summary->disturbed > 0)
+        weft_command_say(common, "%d photographs during which the stage did not stand still were taken again",
+                         summary->disturbed);
     weft_command_say(common, "%s: %d photographs, of which %d taken now, in %.1f s with %d exposures",
                      command->request.folder, summary->found + summary->taken, summary->taken, summary->seconds,
                      summary->exposures);
 }
 
-/* The photographs, then the truth that they are to be measured against. */
-static weft_code photograph(const capture_command *command, const weft_virtual_rig *rig, weft_capture *capture,
+/* The photographs of any rig; then, of the virtual one, the truth that they are to be measured against. */
+static weft_code photograph(const capture_command *command, const weft_virtual_rig *virtual, weft_capture *capture,
                             const weft_progress *progress, weft_error *error)
 {
     const weft_session *session = &capture->held.session;
-    WEFT_TRY(weft_truth_check_path(&command->truth, session, error));
+    if (virtual)
+        WEFT_TRY(weft_truth_check_path(&command->truth, session, error));
     WEFT_TRY(weft_capture_take(capture, &stop_asked, progress, error));
-    return weft_truth_write(&command->truth, session, rig, progress, error);
+    return virtual ? weft_truth_write(&command->truth, session, virtual, progress, error) : WEFT_OK;
 }
 
-static weft_code take_session(const capture_command *command, weft_virtual_rig *rig, weft_error *error)
+static weft_code take_session(const capture_command *command, weft_rig *rig, const weft_virtual_rig *virtual,
+                              weft_error *error)
 {
     weft_progress progress = weft_command_progress(&command->common);
     weft_capture capture;
     listen_for_stop();
-    WEFT_TRY(weft_capture_begin(&command->request, &rig->rig, &progress, &capture, error));
-    weft_code code = photograph(command, rig, &capture, &progress, error);
+    WEFT_TRY(weft_capture_begin(&command->request, rig, &progress, &capture, error));
+    weft_code code = photograph(command, virtual, &capture, &progress, error);
     weft_capture_end(&capture);
     if (code == WEFT_OK) {
-        say_warning(&command->common, rig->warning);
+        say_warning(&command->common, virtual ? virtual->warning : "");
         say_summary(command, &capture.summary);
     }
     return code;
 }
 
-static weft_code open_rig_and_capture(capture_command *command, weft_error *error)
+static weft_code capture_with_virtual_rig(capture_command *command, weft_error *error)
 {
     weft_virtual_rig rig;
     if (command->rig_file && strcmp(command->rig_file, "virtual") != 0)
         WEFT_TRY(weft_virtual_settings_read(command->rig_file, &command->rig.settings, error));
     WEFT_TRY(weft_virtual_rig_open(&command->rig, &rig, error));
-    weft_code code = command->dry_run ? rehearse(command, &rig, error) : take_session(command, &rig, error);
+    weft_code code = command->dry_run ? rehearse(command, &rig.rig, rig.warning, error)
+                                      : take_session(command, &rig.rig, &rig, error);
     weft_virtual_rig_close(&rig);
     return code;
+}
+
+static weft_code capture_with_laboratory(const capture_command *command, weft_error *error)
+{
+    weft_terminal_person person = weft_person_of(&command->common, &stop_asked);
+    const weft_laboratory_request request = {.rig_file = command->rig_file,
+                                             .sample = command->rig.sample,
+                                             .person = weft_person_at_terminal(&person),
+                                             .stop = &stop_asked};
+    weft_laboratory *laboratory;
+    if (command->truth.path)
+        return weft_fail(error, WEFT_BAD_USAGE, "--truth is of the virtual rig alone");
+    WEFT_TRY(weft_laboratory_open(&request, &laboratory, error));
+    weft_rig *rig = weft_laboratory_rig(laboratory);
+    weft_code code = command->dry_run ? rehearse(command, rig, "", error) : weft_laboratory_connect(laboratory, error);
+    if (code == WEFT_OK && !command->dry_run)
+        code = take_session(command, rig, NULL, error);
+    weft_laboratory_close(laboratory);
+    return code;
+}
+
+static bool is_rig_file(const char *path)
+{
+    const char *ending = path ? strrchr(path, '.') : NULL;
+    return ending && strcmp(ending, ".conf") == 0;
 }
 
 static int run(int argc, char **argv)
@@ -138,7 +210,8 @@ static int run(int argc, char **argv)
                                .truth = {.size = 64, .image_count = WEFT_UBO81_COUNT}};
     weft_arguments_parse(&weft_command_capture, argc, argv, &command);
     weft_error error = {0};
-    weft_code code = open_rig_and_capture(&command, &error);
+    weft_code code = is_rig_file(command.rig_file) ? capture_with_laboratory(&command, &error)
+                                                   : capture_with_virtual_rig(&command, &error);
     return weft_command_exit("capture", &command.common, code, &error);
 }
 
@@ -151,7 +224,7 @@ const weft_command weft_command_capture = {
                      "command again after an "
                      "interruption of any kind, and it goes on where it was.",
     .options = option_table,
-    .needs = "--sample CLOTH.wv or CLOTH.stitch, and -o SESSION",
+    .needs = "--sample with a cloth or a name, and -o SESSION",
     .surplus = "the session is named by -o",
     .run = run,
 };

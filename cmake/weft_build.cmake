@@ -38,13 +38,15 @@ pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
 pkg_check_modules(STB REQUIRED IMPORTED_TARGET stb)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
+pkg_check_modules(CONFUSE REQUIRED IMPORTED_TARGET libconfuse)
+pkg_check_modules(GPHOTO2 REQUIRED IMPORTED_TARGET libgphoto2)
 pkg_check_modules(HIDAPI REQUIRED IMPORTED_TARGET hidapi-hidraw)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-ft cairo-pdf cairo-svg)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 pkg_check_modules(EXIF REQUIRED IMPORTED_TARGET libexif)
 find_package(embree 3 REQUIRED)
 find_package(Ceres REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video aruco)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video videoio aruco)
 
 # ---- Rooms ----
 #

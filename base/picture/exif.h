@@ -14,6 +14,7 @@ extern "C" {
 typedef struct weft_exif {
     int width, height; /* pixels as stored, whatever the orientation */
     bool is_float;     /* half or float samples; else integers */
+    bool is_linear;    /* that, or camera raw; of others nothing is known */
     int bits;          /* of a sample */
     int orientation;   /* how the picture is shown: 1 as stored, 3, 6 or 8 turned; 1 where nothing is said */
     double exposure_s, f_number, iso;

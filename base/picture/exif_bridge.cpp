@@ -3,6 +3,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <initializer_list>
 
@@ -33,6 +34,7 @@ weft_code read_head(const char *path, weft_exif *exif, weft_error *error)
     exif->width = spec.width;
     exif->height = spec.height;
     exif->is_float = spec.format.is_floating_point();
+    exif->is_linear = exif->is_float || strcmp(input->format_name(), "raw") == 0;
     exif->bits = spec.get_int_attribute("oiio:BitsPerSample", (int)(8 * spec.format.size()));
     exif->orientation = spec.get_int_attribute("Orientation", 1);
     exif->exposure_s = number_of(spec, {"ExposureTime"});

@@ -19,14 +19,15 @@ typedef struct weft_image {
 
 typedef enum weft_image_kind {
     WEFT_IMAGE_INTEGER, /* 8 or 16 bit per sample: by custom sRGB */
-    WEFT_IMAGE_FLOAT    /* half or float: by custom linear */
+    WEFT_IMAGE_FLOAT    /* half or float: by custom linear; and camera raw, which is */
 } weft_image_kind;
 
 /* Allocates a black image. Errors: WEFT_SYSTEM. */
 weft_code weft_image_create(int width, int height, weft_image *image, weft_error *error);
 void weft_image_free(weft_image *image);
 
-/* Reads any format OpenImageIO knows; one channel is repeated, alpha is dropped. `kind` may be NULL.
+/* Reads any format OpenImageIO knows; one channel is repeated, alpha is dropped. Camera raw comes as the sensor counted,
+ * from black to white level: linear, without white balance, its colour filters interpolated. `kind` may be NULL.
  * Errors: WEFT_BAD_INPUT for a missing, truncated or unreadable file, or one over 2^28 pixels.
  * Thread-safe. */
 weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error);

@@ -32,9 +32,25 @@ weft_code unreadable(weft_error *error, const char *path, const std::string &why
                      line.empty() ? "damaged, or of no known format" : line.c_str());
 }
 
+/* Camera raw as the sensor counted: no curve, no white balance, no brightness of each picture's own. The shape of the
+ * colour filters is interpolated all the same. */
+OIIO::ImageSpec raw_hints()
+{
+    const float even[4] = {1, 1, 1, 1};
+    OIIO::ImageSpec hints;
+    hints["raw:ColorSpace"] = "raw";
+    hints["raw:auto_bright"] = 0;
+    hints["raw:use_camera_wb"] = 0;
+    hints["raw:use_camera_matrix"] = 0;
+    hints["raw:adjust_maximum_thr"] = 0.0f;
+    hints.attribute("raw:user_mul", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 4), even);
+    return hints;
+}
+
 std::unique_ptr<OIIO::ImageInput> open_input(const char *path, weft_code *code, weft_error *error)
 {
-    auto input = OIIO::ImageInput::open(path);
+    const OIIO::ImageSpec hints = raw_hints();
+    auto input = OIIO::ImageInput::open(path, &hints);
     *code = input ? WEFT_OK : unreadable(error, path, OIIO::geterror());
     return input;
 }
@@ -65,8 +81,9 @@ weft_code read_image(const char *path, weft_image *image, weft_image_kind *kind,
         (long long)spec.width * spec.height > max_pixels)
         return weft_fail(error, WEFT_BAD_INPUT, "image '%s' has an unusable size: %d x %d x %d, %d channels", path,
                          spec.width, spec.height, spec.depth, spec.nchannels);
+    bool linear = spec.format.is_floating_point() || strcmp(input->format_name(), "raw") == 0;
     if (kind)
-        *kind = spec.format.is_floating_point() ? WEFT_IMAGE_FLOAT : WEFT_IMAGE_INTEGER;
+        *kind = linear ? WEFT_IMAGE_FLOAT : WEFT_IMAGE_INTEGER;
     return read_floats(*input, path, image, error);
 }
 

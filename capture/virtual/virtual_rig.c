@@ -38,21 +38,18 @@ static weft_code home(void *device, int first_stay, weft_error *error)
     return WEFT_OK;
 }
 
-static weft_code move_camera(void *device, weft_angles view, bool *moved, weft_error *error)
+static bool stands_at(const virtual_devices *devices, weft_angles view)
 {
-    virtual_devices *devices = device;
-    if (!devices->homed)
-        return weft_fail(error, WEFT_SYSTEM, "virtual stage: the axes are not homed");
-    *moved =
-        !devices->camera_placed || view.theta_rad != devices->view.theta_rad || view.phi_rad != devices->view.phi_rad;
-    if (!*moved)
-        return WEFT_OK;
+    return devices->camera_placed && view.theta_rad == devices->view.theta_rad && view.phi_rad == devices->view.phi_rad;
+}
+
+static void move_camera(virtual_devices *devices, weft_angles view)
+{
     devices->camera_placed = true;
     devices->stay = devices->next_stay++;
     devices->view = view;
     devices->pose = weft_virtual_world_pose(devices->world, view, devices->stay);
     devices->seen_valid = devices->light_placed = false;
-    return WEFT_OK;
 }
 
 /* What the camera sees from where it stands, under a light that stands, too. */
@@ -71,11 +68,14 @@ static weft_code look(virtual_devices *devices, weft_error *error)
 }
 
 /* The view is made here, not when it is photographed: an exposure that fails is repeated, a lack of memory is not. */
-static weft_code move_light(void *device, weft_angles light, weft_error *error)
+static weft_code move(void *device, weft_angles view, weft_angles light, bool *moved, weft_error *error)
 {
     virtual_devices *devices = device;
-    if (!devices->camera_placed)
-        return weft_fail(error, WEFT_SYSTEM, "virtual stage: the light moves before the camera");
+    if (!devices->homed)
+        return weft_fail(error, WEFT_SYSTEM, "virtual stage: the axes are not homed");
+    *moved = !stands_at(devices, view);
+    if (*moved)
+        move_camera(devices, view);
     devices->light = weft_virtual_world_light(devices->world, light, devices->stay);
     WEFT_TRY(look(devices, error));
     devices->light_placed = true;
@@ -173,8 +173,9 @@ static weft_code open_devices(const weft_virtual_request *request, weft_virtual_
                           .sample = weft_virtual_sample_name(&rig->sample),
                           .identity = devices->identity,
                           .settings = request->settings.rig,
+                          .calibration = weft_rig_settings_camera(&request->settings.rig),
                           .camera = {devices, expose},
-                          .stage = {devices, home, move_camera, move_light},
+                          .stage = {.device = devices, .home = home, .move = move},
                           .light = {devices, power_light}};
     return WEFT_OK;
 }

@@ -430,7 +430,7 @@ static weft_code run(work *w, const char *output, weft_error *error)
     if (w->settings->lights)
         WEFT_TRY(weft_listed_check(w->settings->lights, hand->photograph, hand->count, error));
     const weft_exif *common = common_size(hand);
-    hand->tone_found = !w->settings->linear && !common->is_float;
+    hand->tone_found = !w->settings->linear && !common->is_linear;
     hand->tone = hand->tone_found ? weft_tone_srgb() : weft_tone_linear();
     WEFT_TRY(look_at_all(w, "looking for the target", look_for_corners, error));
     WEFT_TRY(check_enough(w, "show the target", error));

@@ -14,8 +14,10 @@ static const char plan[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_vie
 
 /* A rig whose photographs are even, as bright as their exposure is long. */
 typedef struct bench {
-    int homings, first_stay, moves;
-    bool homed, broken, light_on;
+    int homings, first_stay, moves, exposures, stops;
+    int disturbances; /* photographs during which it will be pushed */
+    bool homed, broken, light_on, jammed;
+
     weft_angles view;
 } bench;
 
@@ -31,22 +33,57 @@ static weft_code home(void *device, int first_stay, weft_error *error)
     return WEFT_OK;
 }
 
-static weft_code move_camera(void *device, weft_angles view, bool *moved, weft_error *error)
+static weft_code move(void *device, weft_angles view, weft_angles light, bool *moved, weft_error *error)
 {
-    (void)error;
+    (void)light;
     bench *b = device;
     assert_true(b->homed);
     *moved = view.theta_rad != b->view.theta_rad || view.phi_rad != b->view.phi_rad;
+    if (b->jammed && *moved && b->moves == 1)
+        return weft_fail(error, WEFT_SYSTEM, "bench stage: axis 1 is stuck");
     b->view = view;
     b->moves += *moved;
     return WEFT_OK;
 }
 
-static weft_code move_light(void *device, weft_angles light, weft_error *error)
+static weft_code held(void *device, bool *still, weft_error *error)
 {
-    (void)light;
     (void)error;
-    assert_true(((bench *)device)->homed);
+    bench *b = device;
+    *still = b->disturbances == 0;
+    b->disturbances -= !*still;
+    return WEFT_OK;
+}
+
+static void stop(void *device)
+{
+    ((bench *)device)->stops++;
+}
+
+/* Whoever asks gets the last first. */
+static weft_code backwards(void *device, const weft_shot *shot, int count, int *numbers, weft_stage_estimate *estimate,
+                           weft_error *error)
+{
+    (void)device;
+    (void)shot;
+    (void)error;
+    for (int i = 0; i < count / 2; i++) {
+        int number = numbers[i];
+        numbers[i] = numbers[count - 1 - i];
+        numbers[count - 1 - i] = number;
+    }
+    *estimate = (weft_stage_estimate){.seconds = 100, .bound_seconds = 90, .moves = count - 1};
+    return WEFT_OK;
+}
+
+/* Its lamps stand at full tens of degrees; there is none below 55. */
+static weft_code reach(void *device, weft_shot *shot, weft_error *error)
+{
+    (void)device;
+    double theta_deg = weft_deg_of_rad(shot->light.theta_rad);
+    if (theta_deg > 55)
+        return weft_fail(error, WEFT_BAD_INPUT, "bench stage: no lamp at %.0f degrees", theta_deg);
+    shot->light_driven.theta_rad = weft_rad_of_deg(10 * round(theta_deg / 10));
     return WEFT_OK;
 }
 
@@ -63,6 +100,7 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
     (void)frame;
     (void)error;
     assert_true(((bench *)device)->light_on);
+    ((bench *)device)->exposures++;
     double value = fmin(BLACK + 1e5 * exposure_s, (1 << BITS) - 1);
     for (int i = 0; i < SIZE * SIZE * 3; i++)
         samples[i] = (uint16_t)value;
@@ -77,10 +115,11 @@ static weft_rig rig_of(bench *b)
                     .identity = "{\"lens\":\"75 mm\"}",
                     .settings = weft_rig_settings_default(),
                     .camera = {b, expose},
-                    .stage = {b, home, move_camera, move_light},
+                    .stage = {.device = b, .home = home, .move = move},
                     .light = {b, power}};
     rig.settings.width_px = rig.settings.height_px = SIZE;
     rig.settings.focal_length_px = 440;
+    rig.calibration = weft_rig_settings_camera(&rig.settings);
     return rig;
 }
 
@@ -172,6 +211,94 @@ static void another_rig_does_not_continue_a_session(void **state)
     remove_session();
 }
 
+static void a_photograph_during_which_the_stage_moved_is_taken_again(void **state)
+{
+    (void)state;
+    bench still = {0}, pushed = {.disturbances = 2};
+    weft_rig rig = rig_of(&still);
+    weft_capture_summary summary;
+    assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
+    remove_session();
+    rig = rig_of(&pushed);
+    rig.stage.held = held;
+    assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
+    assert_int_equal(summary.taken, SHOTS);
+    assert_int_equal(summary.disturbed, 2);
+    assert_true(pushed.exposures >= still.exposures + 2);
+    remove_session();
+}
+
+static void a_stage_that_never_keeps_still_ends_the_run(void **state)
+{
+    (void)state;
+    bench b = {.disturbances = 1000};
+    weft_rig rig = rig_of(&b);
+    rig.stage.held = held;
+    rig.stage.stop = stop;
+    weft_capture_summary summary;
+    weft_error error = {0};
+    assert_int_equal(run(&rig, &summary, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "did not keep its pose during shot 0"));
+    assert_int_equal(summary.taken, 0);
+    assert_int_equal(b.stops, 1);
+    remove_session();
+}
+
+static void whatever_fails_the_axes_stop_and_the_light_goes_off(void **state)
+{
+    (void)state;
+    bench b = {.jammed = true};
+    weft_rig rig = rig_of(&b);
+    rig.stage.stop = stop;
+    weft_capture_summary summary;
+    weft_error error = {0};
+    assert_int_equal(run(&rig, &summary, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "axis 1 is stuck"));
+    assert_int_equal(summary.taken, 2);
+    assert_int_equal(b.stops, 1);
+    assert_false(b.light_on);
+    remove_session();
+}
+
+static void the_stage_chooses_the_order_and_knows_how_long_it_takes(void **state)
+{
+    (void)state;
+    bench b = {0};
+    weft_rig rig = rig_of(&b);
+    rig.stage.order = backwards;
+    weft_capture_summary summary;
+    weft_session session;
+    assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
+    assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
+    for (int shot = 0; shot < SHOTS; shot++)
+        assert_int_equal(session.record[shot].stay, 1 - shot / 2);
+    weft_session_free(&session);
+    remove_session();
+    const weft_capture_request request = {"session", "plan.csv"};
+    weft_capture_rehearsal rehearsal;
+    int homings = b.homings;
+    rig.seconds_per_photograph = 2;
+    assert_int_equal(weft_capture_rehearse(&request, &rig, &rehearsal, NULL), WEFT_OK);
+    assert_int_equal(rehearsal.order[0], SHOTS - 1);
+    assert_float_equal(rehearsal.stage.seconds, 100, 0);
+    assert_float_equal(rehearsal.seconds_per_photograph, 2, 0);
+    assert_int_equal(b.homings, homings); /* nothing moved */
+    weft_capture_rehearsal_free(&rehearsal);
+}
+
+static void a_pose_out_of_reach_is_refused_before_anything_is_written(void **state)
+{
+    (void)state;
+    bench b = {0};
+    weft_rig rig = rig_of(&b);
+    rig.stage.reach = reach;
+    weft_capture_summary summary;
+    weft_error error = {0};
+    assert_int_equal(run(&rig, &summary, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "no lamp at 60 degrees"));
+    assert_int_equal(scratch_folder_entries(), 1); /* the plan */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -179,6 +306,11 @@ int main(void)
         cmocka_unit_test(the_stage_is_homed_once_and_told_how_many_stays_there_were),
         cmocka_unit_test(a_stage_that_cannot_be_homed_ends_the_run_with_its_message),
         cmocka_unit_test(another_rig_does_not_continue_a_session),
+        cmocka_unit_test(a_photograph_during_which_the_stage_moved_is_taken_again),
+        cmocka_unit_test(a_stage_that_never_keeps_still_ends_the_run),
+        cmocka_unit_test(whatever_fails_the_axes_stop_and_the_light_goes_off),
+        cmocka_unit_test(the_stage_chooses_the_order_and_knows_how_long_it_takes),
+        cmocka_unit_test(a_pose_out_of_reach_is_refused_before_anything_is_written),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
 }

@@ -71,8 +71,7 @@ static void the_photograph_of_the_cloth_is_as_bright_as_the_truth_says(void **st
     assert_int_equal(rig->stage.home(rig->stage.device, 0, NULL), WEFT_OK);
     for (int i = 0; i < 3; i++) {
         weft_angles view = degrees(cases[i][0], cases[i][1]), light = degrees(cases[i][2], cases[i][3]);
-        rig->stage.move_camera(rig->stage.device, view, &moved, NULL);
-        rig->stage.move_light(rig->stage.device, light, NULL);
+        rig->stage.move(rig->stage.device, view, light, &moved, NULL);
         rig->light.power(rig->light.device, true, NULL);
         assert_int_equal(rig->camera.expose(rig->camera.device, 1, 0.005, samples, &read_back_s, NULL), WEFT_OK);
         weft_pose pose = weft_virtual_world_pose(world, view, i);

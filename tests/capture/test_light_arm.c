@@ -126,8 +126,7 @@ static void photograph(weft_rig *rig, weft_angles view, weft_angles light, uint1
 {
     bool moved;
     double read_back_s;
-    assert_int_equal(rig->stage.move_camera(rig->stage.device, view, &moved, NULL), WEFT_OK);
-    assert_int_equal(rig->stage.move_light(rig->stage.device, light, NULL), WEFT_OK);
+    assert_int_equal(rig->stage.move(rig->stage.device, view, light, &moved, NULL), WEFT_OK);
     assert_int_equal(rig->light.power(rig->light.device, true, NULL), WEFT_OK);
     assert_int_equal(rig->camera.expose(rig->camera.device, 1, exposure_s, samples, &read_back_s, NULL), WEFT_OK);
 }

@@ -148,10 +148,32 @@ static void photographs_that_do_not_match_the_journal_are_taken_again(void **sta
     assert_retaken(change_a_byte);
 }
 
+/* Names as a process leaves them that dies before it renames its file; and names that are somebody else's. */
+static void what_a_dead_process_left_is_swept_away_and_nothing_else(void **state)
+{
+    (void)state;
+    static const char *const left[] = {"session/.session.12345.json", "session/.photograph.tif"};
+    static const char *const others[] = {"session/.session.notes.json", "session/.session.json",
+                                         "session/.session.7.json.bak"};
+    complete_run();
+    for (int i = 0; i < 2; i++)
+        scratch_store(left[i], "{", 1);
+    for (int i = 0; i < 3; i++)
+        scratch_store(others[i], "{", 1);
+    complete_run();
+    for (int i = 0; i < 2; i++)
+        assert_int_not_equal(access(left[i], F_OK), 0);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(remove(others[i]), 0);
+    small_session_assert_whole("session");
+    remove_session();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_session_killed_at_any_moment_loses_and_repeats_nothing),
+        cmocka_unit_test(what_a_dead_process_left_is_swept_away_and_nothing_else),
         cmocka_unit_test(a_run_killed_before_its_first_photograph_starts_again),
         cmocka_unit_test(a_journal_line_cut_in_the_middle_is_written_again),
         cmocka_unit_test(photographs_that_do_not_match_the_journal_are_taken_again),

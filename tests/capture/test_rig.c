@@ -52,8 +52,7 @@ static bool photograph(fixture *f, weft_angles view, weft_angles light, double e
     bool moved;
     double read_back_s;
     weft_rig *rig = &f->virtual.rig;
-    assert_int_equal(rig->stage.move_camera(rig->stage.device, view, &moved, NULL), WEFT_OK);
-    assert_int_equal(rig->stage.move_light(rig->stage.device, light, NULL), WEFT_OK);
+    assert_int_equal(rig->stage.move(rig->stage.device, view, light, &moved, NULL), WEFT_OK);
     assert_int_equal(rig->light.power(rig->light.device, on, NULL), WEFT_OK);
     assert_int_equal(rig->camera.expose(rig->camera.device, 1, exposure_s, f->samples, &read_back_s, NULL), WEFT_OK);
     assert_true(fabs(read_back_s - exposure_s) <= 0.5e-6);

@@ -288,6 +288,7 @@ static void a_rehearsal_counts_and_writes_nothing(void **state)
     assert_int_equal(rehearsal.driven_aside, 5);
     assert_true(rehearsal.bytes >= SMALL_SHOTS * SMALL_SIZE * SMALL_SIZE * 3 * 12 / 8);
     assert_true(rehearsal.seconds_per_photograph > 0);
+    weft_capture_rehearsal_free(&rehearsal);
     assert_int_equal(scratch_folder_entries(), 1); /* plan.csv */
 }
 

@@ -1,6 +1,6 @@
 /* A SpaceMouse through the real libhidapi: reports, a pulled cable, a forbidden node. Runs under umockdev-wrapper. */
 #include "player/window/space_mouse/space_mouse.h"
-#include "tests/player/space_mouse/fake_hid.h"
+#include "tests/support/fake_hid.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,6 +10,21 @@
 #include <unistd.h>
 
 #include <cmocka.h>
+
+/* Multi-axis controller: reports 1 and 2 of three 16-bit axes each, report 3 of two buttons. */
+static const unsigned char descriptor[] = {
+    0x05, 0x01, 0x09, 0x08, 0xa1, 0x01, 0xa1, 0x00, 0x85, 0x01, 0x16, 0xa2, 0xfe, 0x26, 0x5e, 0x01, 0x09, 0x30, 0x09,
+    0x31, 0x09, 0x32, 0x75, 0x10, 0x95, 0x03, 0x81, 0x06, 0xc0, 0xa1, 0x00, 0x85, 0x02, 0x09, 0x33, 0x09, 0x34, 0x09,
+    0x35, 0x75, 0x10, 0x95, 0x03, 0x81, 0x06, 0xc0, 0xa1, 0x02, 0x85, 0x03, 0x05, 0x09, 0x19, 0x01, 0x29, 0x02, 0x75,
+    0x01, 0x95, 0x02, 0x15, 0x00, 0x25, 0x01, 0x81, 0x02, 0x75, 0x0e, 0x95, 0x01, 0x81, 0x03, 0xc0, 0xc0};
+
+static const fake_hid_kind space_mouse = {.vendor = 0x256f,
+                                          .product = 0xc635,
+                                          .maker = "3Dconnexion",
+                                          .name = "SpaceMouse Compact",
+                                          .serial = "",
+                                          .descriptor = descriptor,
+                                          .descriptor_size = sizeof descriptor};
 
 static const unsigned char push_right[] = {1, 0x5e, 0x01, 0, 0, 0, 0}, push_both_buttons[] = {3, 3, 0};
 
@@ -23,7 +38,7 @@ static weft_space_mouse *new_mouse(void)
 
 static void reports_arrive_in_order(void **state)
 {
-    fake_hid *hid = fake_hid_plug(*state, 1);
+    fake_hid *hid = fake_hid_plug(*state, 1, &space_mouse);
     weft_space_mouse *mouse = new_mouse();
     weft_space_motion motion;
     assert_int_equal(weft_space_mouse_poll(mouse, 0, &motion), WEFT_SPACE_MOUSE_DEVICE);
@@ -44,7 +59,7 @@ static void reports_arrive_in_order(void **state)
 
 static void a_pulled_cable_leaves_the_cap_at_rest_and_another_is_found(void **state)
 {
-    fake_hid *hid = fake_hid_plug(*state, 2);
+    fake_hid *hid = fake_hid_plug(*state, 2, &space_mouse);
     weft_space_mouse *mouse = new_mouse();
     weft_space_motion motion;
     assert_int_equal(weft_space_mouse_poll(mouse, 0, &motion), WEFT_SPACE_MOUSE_DEVICE);
@@ -55,7 +70,7 @@ static void a_pulled_cable_leaves_the_cap_at_rest_and_another_is_found(void **st
     assert_int_equal(weft_space_mouse_poll(mouse, 0.2, &motion), WEFT_SPACE_MOUSE_ABSENT);
     assert_float_equal(motion.translation[0], 0, 0);
     assert_int_equal(weft_space_mouse_poll(mouse, 2.5, &motion), WEFT_SPACE_MOUSE_ABSENT);
-    fake_hid *again = fake_hid_plug(*state, 3);
+    fake_hid *again = fake_hid_plug(*state, 3, &space_mouse);
     assert_int_equal(weft_space_mouse_poll(mouse, 5, &motion), WEFT_SPACE_MOUSE_DEVICE);
     fake_hid_push(again, push_right, sizeof push_right);
     weft_space_mouse_poll(mouse, 5.1, &motion);
@@ -81,7 +96,7 @@ static void a_forbidden_device_is_named_with_the_rule_that_mends_it(void **state
 {
     if (geteuid() != 0)
         skip();
-    fake_hid *hid = fake_hid_plug_forbidden(*state, 4);
+    fake_hid *hid = fake_hid_plug_forbidden(*state, 4, &space_mouse);
     weft_space_mouse *mouse = new_mouse();
     weft_space_motion motion;
     open_testbed(*state);

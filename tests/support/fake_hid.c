@@ -1,4 +1,4 @@
-#include "tests/player/space_mouse/fake_hid.h"
+#include "tests/support/fake_hid.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -19,10 +19,11 @@
 
 #include <cmocka.h>
 
-enum { QUEUE = 64, REPORT_SIZE = 64, VENDOR = 0x256f, PRODUCT = 0xc635 };
+enum { QUEUE = 64, REPORT_SIZE = 64 };
 
 struct fake_hid {
     UMockdevTestbed *testbed;
+    const fake_hid_kind *kind;
     UMockdevIoctlBase *handler;
     int number, master, slave;
     pthread_mutex_t mutex;
@@ -31,13 +32,6 @@ struct fake_hid {
     size_t size[QUEUE];
     int first, count;
 };
-
-/* Multi-axis controller: reports 1 and 2 of three 16-bit axes each, report 3 of two buttons. */
-static const unsigned char descriptor[] = {
-    0x05, 0x01, 0x09, 0x08, 0xa1, 0x01, 0xa1, 0x00, 0x85, 0x01, 0x16, 0xa2, 0xfe, 0x26, 0x5e, 0x01, 0x09, 0x30, 0x09,
-    0x31, 0x09, 0x32, 0x75, 0x10, 0x95, 0x03, 0x81, 0x06, 0xc0, 0xa1, 0x00, 0x85, 0x02, 0x09, 0x33, 0x09, 0x34, 0x09,
-    0x35, 0x75, 0x10, 0x95, 0x03, 0x81, 0x06, 0xc0, 0xa1, 0x02, 0x85, 0x03, 0x05, 0x09, 0x19, 0x01, 0x29, 0x02, 0x75,
-    0x01, 0x95, 0x02, 0x15, 0x00, 0x25, 0x01, 0x81, 0x02, 0x75, 0x0e, 0x95, 0x01, 0x81, 0x03, 0xc0, 0xc0};
 
 static gboolean on_read(UMockdevIoctlBase *handler, UMockdevIoctlClient *client, gpointer data)
 {
@@ -69,18 +63,59 @@ static void answer(UMockdevIoctlData *argument, size_t offset, const void *bytes
     g_object_unref(target);
 }
 
+static gboolean on_write(UMockdevIoctlBase *handler, UMockdevIoctlClient *client, gpointer data)
+{
+    (void)handler;
+    fake_hid *hid = data;
+    UMockdevIoctlData *argument = umockdev_ioctl_client_get_arg(client);
+    unsigned char bytes[1 + REPORT_SIZE];
+    size_t size = (size_t)argument->data_len < sizeof bytes ? (size_t)argument->data_len : sizeof bytes;
+    pthread_mutex_lock(&hid->mutex);
+    bool gone = hid->gone;
+    pthread_mutex_unlock(&hid->mutex);
+    memcpy(bytes, argument->data, size);
+    umockdev_ioctl_client_complete(client, gone ? -1 : (glong)size, gone ? ENODEV : 0);
+    if (!gone && hid->kind->written)
+        hid->kind->written(hid->kind->context, hid, bytes, size);
+    return TRUE;
+}
+
+/* HIDIOCSFEATURE and HIDIOCGFEATURE, whose requests hold the size. */
+static bool feature_report(const fake_hid *hid, UMockdevIoctlClient *client, unsigned long request)
+{
+    enum { SET = 6, GET = 7 };
+    bool set = _IOC_TYPE(request) == 'H' && _IOC_NR(request) == SET && hid->kind->set_feature;
+    bool get = _IOC_TYPE(request) == 'H' && _IOC_NR(request) == GET && hid->kind->get_feature;
+    if (!set && !get)
+        return false;
+    size_t size = _IOC_SIZE(request);
+    UMockdevIoctlData *bytes = umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, size, NULL);
+    unsigned char report[1 + REPORT_SIZE] = {0};
+    if (set) {
+        hid->kind->set_feature(hid->kind->context, bytes->data, size);
+    } else {
+        hid->kind->get_feature(hid->kind->context, report, size);
+        umockdev_ioctl_data_update(bytes, 0, report, size);
+    }
+    g_object_unref(bytes);
+    umockdev_ioctl_client_complete(client, (glong)size, 0);
+    return true;
+}
+
 static gboolean on_ioctl(UMockdevIoctlBase *handler, UMockdevIoctlClient *client, gpointer data)
 {
     (void)handler;
-    (void)data;
+    const fake_hid *hid = data;
     unsigned long request = umockdev_ioctl_client_get_request(client);
     UMockdevIoctlData *argument = umockdev_ioctl_client_get_arg(client);
-    const int size = sizeof descriptor;
-    const struct hidraw_devinfo info = {BUS_USB, VENDOR, (short)PRODUCT};
+    const int size = (int)hid->kind->descriptor_size;
+    const struct hidraw_devinfo info = {BUS_USB, (short)hid->kind->vendor, (short)hid->kind->product};
+    if (feature_report(hid, client, request))
+        return TRUE;
     if (request == HIDIOCGRDESCSIZE)
         answer(argument, 0, &size, sizeof size, sizeof size);
     else if (request == HIDIOCGRDESC)
-        answer(argument, 4, descriptor, sizeof descriptor, sizeof(struct hidraw_report_descriptor));
+        answer(argument, 4, hid->kind->descriptor, hid->kind->descriptor_size, sizeof(struct hidraw_report_descriptor));
     else if (request == HIDIOCGRAWINFO)
         answer(argument, 0, &info, sizeof info, sizeof info);
     else
@@ -99,9 +134,10 @@ static void device_path(const fake_hid *hid, int index, char path[256])
     const char *root = "/devices/pci0000:00/usb1/1-";
     int n = hid->number;
     if (index == 0)
-        snprintf(path, 256, "%s%d/1-%d:1.0/0003:%04X:%04X.000%d/hidraw/hidraw%d", root, n, n, VENDOR, PRODUCT, n, n);
+        snprintf(path, 256, "%s%d/1-%d:1.0/0003:%04X:%04X.%04d/hidraw/hidraw%d", root, n, n, hid->kind->vendor,
+                 hid->kind->product, n, n);
     else if (index == 1)
-        snprintf(path, 256, "%s%d/1-%d:1.0/0003:%04X:%04X.000%d", root, n, n, VENDOR, PRODUCT, n);
+        snprintf(path, 256, "%s%d/1-%d:1.0/0003:%04X:%04X.%04d", root, n, n, hid->kind->vendor, hid->kind->product, n);
     else if (index == 2)
         snprintf(path, 256, "%s%d/1-%d:1.0", root, n, n);
     else
@@ -120,23 +156,27 @@ static void add(fake_hid *hid, int index, const char *rest)
 
 static void add_to_system(fake_hid *hid)
 {
-    char text[1024], bytes[2 * sizeof descriptor + 1];
-    for (size_t k = 0; k < sizeof descriptor; k++)
-        sprintf(bytes + 2 * k, "%02X", descriptor[k]);
-    add(hid, 3,
-        "E: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nA: manufacturer=3Dconnexion\\n\nA: product=SpaceMouse Compact\\n\n"
-        "A: bcdDevice=0102\\n\nA: idVendor=256f\\n\nA: idProduct=c635\\n\n");
+    const fake_hid_kind *kind = hid->kind;
+    char text[1536], bytes[2 * 256 + 1] = "";
+    assert_true(kind->descriptor_size <= 256);
+    for (size_t k = 0; k < kind->descriptor_size; k++)
+        sprintf(bytes + 2 * k, "%02X", kind->descriptor[k]);
+    snprintf(text, sizeof text,
+             "E: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nA: manufacturer=%s\\n\nA: product=%s\\n\nA: serial=%s\\n\n"
+             "A: bcdDevice=0102\\n\nA: idVendor=%04x\\n\nA: idProduct=%04x\\n\n",
+             kind->maker, kind->name, kind->serial, kind->vendor, kind->product);
+    add(hid, 3, text);
     add(hid, 2, "E: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber=00\\n\n");
     snprintf(text, sizeof text,
-             "E: DRIVER=hid-generic\nE: HID_ID=0003:0000256F:0000C635\nE: HID_NAME=3Dconnexion SpaceMouse Compact\n"
-             "E: HID_PHYS=usb-0000:00:14.0-1/input0\nE: HID_UNIQ=\nE: SUBSYSTEM=hid\nH: report_descriptor=%s\n",
-             bytes);
+             "E: DRIVER=hid-generic\nE: HID_ID=0003:0000%04X:0000%04X\nE: HID_NAME=%s %s\n"
+             "E: HID_PHYS=usb-0000:00:14.0-1/input0\nE: HID_UNIQ=%s\nE: SUBSYSTEM=hid\nH: report_descriptor=%s\n",
+             kind->vendor, kind->product, kind->maker, kind->name, kind->serial, bytes);
     add(hid, 1, text);
     int n = hid->number;
     snprintf(text, sizeof text,
              "N: hidraw%d\nE: DEVNAME=/dev/hidraw%d\nE: MAJOR=240\nE: MINOR=%d\nE: SUBSYSTEM=hidraw\n"
-             "A: dev=240:%d\\n\nL: device=../../../0003:%04X:%04X.000%d\n",
-             n, n, n, n, VENDOR, PRODUCT, n);
+             "A: dev=240:%d\\n\nL: device=../../../0003:%04X:%04X.%04d\n",
+             n, n, n, n, kind->vendor, kind->product, n);
     add(hid, 0, text);
 }
 
@@ -151,36 +191,38 @@ static void open_terminal(fake_hid *hid, const char *node)
     assert_true(hid->slave >= 0);
 }
 
-static fake_hid *create(UMockdevTestbed *testbed, int number, char node[32])
+static fake_hid *create(UMockdevTestbed *testbed, int number, const fake_hid_kind *kind, char node[32])
 {
     fake_hid *hid = calloc(1, sizeof *hid);
     assert_non_null(hid);
     snprintf(node, 32, "/dev/hidraw%d", number);
     hid->testbed = testbed;
+    hid->kind = kind;
     hid->number = number;
     pthread_mutex_init(&hid->mutex, NULL);
     add_to_system(hid);
     return hid;
 }
 
-fake_hid *fake_hid_plug(UMockdevTestbed *testbed, int number)
+fake_hid *fake_hid_plug(UMockdevTestbed *testbed, int number, const fake_hid_kind *kind)
 {
     char node[32];
     GError *error = NULL;
-    fake_hid *hid = create(testbed, number, node);
+    fake_hid *hid = create(testbed, number, kind, node);
     hid->handler = umockdev_ioctl_base_new();
     g_signal_connect(hid->handler, "handle-ioctl", G_CALLBACK(on_ioctl), hid);
     g_signal_connect(hid->handler, "handle-read", G_CALLBACK(on_read), hid);
+    g_signal_connect(hid->handler, "handle-write", G_CALLBACK(on_write), hid);
     if (!umockdev_testbed_attach_ioctl(testbed, node, hid->handler, &error))
         fail_msg("umockdev: %s", error->message);
     open_terminal(hid, node);
     return hid;
 }
 
-fake_hid *fake_hid_plug_forbidden(UMockdevTestbed *testbed, int number)
+fake_hid *fake_hid_plug_forbidden(UMockdevTestbed *testbed, int number, const fake_hid_kind *kind)
 {
     char node[32];
-    fake_hid *hid = create(testbed, number, node);
+    fake_hid *hid = create(testbed, number, kind, node);
     open_terminal(hid, node);
     assert_int_equal(fchmod(hid->slave, 0600), 0);
     return hid;
@@ -190,6 +232,10 @@ fake_hid *fake_hid_plug_forbidden(UMockdevTestbed *testbed, int number)
 void fake_hid_push(fake_hid *hid, const unsigned char *report, size_t size)
 {
     pthread_mutex_lock(&hid->mutex);
+    if (hid->gone) {
+        pthread_mutex_unlock(&hid->mutex);
+        return;
+    }
     assert_true(hid->count < QUEUE && size <= REPORT_SIZE);
     int last = (hid->first + hid->count++) % QUEUE;
     memcpy(hid->report[last], report, size);

@@ -1,0 +1,157 @@
+#include "capture/camera/folder_camera.h"
+
+#include "base/clock.h"
+#include "base/picture/exif.h"
+
+#include <errno.h>
+#include <fnmatch.h>
+#include <limits.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+static const char name[] = "watched folder";
+
+/* Files come whole, but some programs write them in more than one go: closed is not yet complete. */
+struct weft_folder_camera {
+    weft_folder_camera_settings settings;
+    int watch;
+    char original[PATH_MAX]; /* of the last frame */
+};
+
+/* ---- Events ---- */
+
+/* Calls `visit` for each file that has come; stops where it returns true. */
+typedef bool visitor(void *context, const char *file);
+
+static bool read_events(int watch, visitor *visit, void *context)
+{
+    _Alignas(struct inotify_event) char buffer[16 * (sizeof(struct inotify_event) + NAME_MAX + 1)];
+    ssize_t size;
+    while ((size = read(watch, buffer, sizeof buffer)) > 0) {
+        for (char *at = buffer; at < buffer + size;) {
+            const struct inotify_event *event = (const struct inotify_event *)at;
+            if (event->len > 0 && visit && visit(context, event->name))
+                return true;
+            at += sizeof *event + event->len;
+        }
+    }
+    return false;
+}
+
+/* ---- A frame ---- */
+
+/* What is made of the files that come. */
+typedef struct taking {
+    weft_folder_camera *camera;
+    uint16_t *samples;
+    double exposure_s;
+    weft_code code;
+    weft_error error; /* of the last file that could not be used */
+} taking;
+
+static weft_code take(taking *t, const char *path)
+{
+    const weft_frame_format *format = &t->camera->settings.format;
+    weft_image image;
+    weft_exif exif;
+    WEFT_TRY(weft_exif_read(path, &exif, &t->error));
+    WEFT_TRY(weft_frame_exposure(exif.exposure_s, format, name, &t->exposure_s, &t->error));
+    WEFT_TRY(weft_image_read(path, &image, NULL, &t->error));
+    weft_code code = weft_frame_develop(&image, format, name, t->samples, &t->error);
+    weft_image_free(&image);
+    return code;
+}
+
+static bool try_file(void *context, const char *file)
+{
+    taking *t = context;
+    const weft_folder_camera_settings *settings = &t->camera->settings;
+    char *path = t->camera->original;
+    if (fnmatch(settings->pattern, file, FNM_CASEFOLD | FNM_PERIOD) != 0)
+        return false;
+    snprintf(path, PATH_MAX, "%s/%s", settings->folder, file);
+    t->code = take(t, path);
+    return t->code == WEFT_OK;
+}
+
+static bool stop_asked(const weft_folder_camera *camera)
+{
+    return camera->settings.stop && *camera->settings.stop;
+}
+
+/* Waits in short steps, to hear a stop. */
+static weft_code wait_for_file(taking *t, weft_error *error)
+{
+    enum { STEP_MS = 100 };
+    const weft_folder_camera_settings *settings = &t->camera->settings;
+    double end_s = weft_now_s() + settings->timeout_s;
+    while (weft_now_s() < end_s) {
+        struct pollfd ready = {t->camera->watch, POLLIN, 0};
+        if (stop_asked(t->camera))
+            return weft_fail(error, WEFT_SYSTEM, "%s: stopped while waiting for a photograph", name);
+        if (poll(&ready, 1, STEP_MS) > 0 && read_events(t->camera->watch, try_file, t))
+            return WEFT_OK;
+    }
+    if (t->code == WEFT_OK)
+        return weft_fail(error, WEFT_SYSTEM, "%s: no photograph '%s' came into '%s' within %g s", name,
+                         settings->pattern, settings->folder, settings->timeout_s);
+    return weft_fail(error, WEFT_SYSTEM, "%s: %.300s", name, t->error.message);
+}
+
+static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
+                        weft_error *error)
+{
+    weft_folder_camera *camera = device;
+    const weft_shutter *shutter = &camera->settings.shutter;
+    taking t = {.camera = camera, .samples = samples};
+    (void)frame;
+    read_events(camera->watch, NULL, NULL);
+    if (shutter->release)
+        WEFT_TRY(shutter->release(shutter->context, exposure_s, error));
+    WEFT_TRY(wait_for_file(&t, error));
+    *read_back_s = t.exposure_s;
+    return WEFT_OK;
+}
+
+static const char *original(void *device)
+{
+    return ((weft_folder_camera *)device)->original;
+}
+
+/* ---- The camera ---- */
+
+weft_code weft_folder_camera_create(const weft_folder_camera_settings *settings, weft_folder_camera **result,
+                                    weft_error *error)
+{
+    weft_folder_camera *camera = calloc(1, sizeof *camera);
+    if (!camera)
+        return weft_fail_memory(error, name, sizeof *camera);
+    camera->settings = *settings;
+    camera->watch = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    if (camera->watch < 0 ||
+        inotify_add_watch(camera->watch, settings->folder, IN_CLOSE_WRITE | IN_MOVED_TO | IN_ONLYDIR) < 0) {
+        weft_code code = weft_fail_errno(error, "watch folder", settings->folder);
+        weft_folder_camera_free(camera);
+        return code;
+    }
+    *result = camera;
+    return WEFT_OK;
+}
+
+void weft_folder_camera_free(weft_folder_camera *camera)
+{
+    if (!camera)
+        return;
+    if (camera->watch >= 0)
+        close(camera->watch);
+    free(camera);
+}
+
+weft_rig_camera weft_folder_camera_for_rig(weft_folder_camera *camera)
+{
+    return (weft_rig_camera){.device = camera, .expose = expose, .original = original};
+}

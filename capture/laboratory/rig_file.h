@@ -1,0 +1,66 @@
+/* A rig as its owner describes it: RIG.conf (docs/reference/rig-file.md). */
+#ifndef WEFT_CAPTURE_LABORATORY_RIG_FILE_H
+#define WEFT_CAPTURE_LABORATORY_RIG_FILE_H
+
+#include "capture/axes/axes.h"
+
+#include <stddef.h>
+
+enum { WEFT_RIG_TEXT_SIZE = 256 };
+
+typedef enum weft_stage_backend { WEFT_STAGE_USB, WEFT_STAGE_NONE } weft_stage_backend;
+typedef enum weft_light_backend { WEFT_LIGHT_STAGE, WEFT_LIGHT_RELAY, WEFT_LIGHT_NONE } weft_light_backend;
+typedef enum weft_camera_backend { WEFT_CAMERA_FOLDER, WEFT_CAMERA_VIDEO, WEFT_CAMERA_GPHOTO2 } weft_camera_backend;
+typedef enum weft_camera_trigger { WEFT_TRIGGER_NONE, WEFT_TRIGGER_STAGE, WEFT_TRIGGER_HAND } weft_camera_trigger;
+typedef enum weft_camera_values { WEFT_VALUES_LINEAR, WEFT_VALUES_SRGB } weft_camera_values;
+
+/* A device on USB. */
+typedef struct weft_usb_name {
+    double vendor, product;
+    char serial[WEFT_RIG_TEXT_SIZE]; /* empty: any */
+} weft_usb_name;
+
+typedef struct weft_stage_description {
+    weft_stage_backend backend;
+    weft_usb_name usb;
+    bool one_by_one;
+    double tolerance_deg, timeout_s, retries, replug_s, poll_s;
+} weft_stage_description;
+
+typedef struct weft_light_description {
+    weft_light_backend backend;
+    weft_usb_name usb;
+    char lamps[WEFT_RIG_TEXT_SIZE]; /* table of their directions, beside the rig file; empty: one light */
+    double theta_deg, phi_deg, distance_mm, lamp_tolerance_deg, level, warm_up_s;
+} weft_light_description;
+
+typedef struct weft_camera_description {
+    weft_camera_backend backend;
+    weft_camera_trigger trigger;
+    weft_camera_values values;
+    char device[WEFT_RIG_TEXT_SIZE];  /* folder, video device or port */
+    char pattern[WEFT_RIG_TEXT_SIZE]; /* of file names in the folder */
+    char lens[WEFT_RIG_TEXT_SIZE];    /* its calibration, beside the rig file */
+    double theta_deg, phi_deg, distance_mm, half_angle_deg;
+    double bin, black_level, shortest_exposure_s, longest_exposure_s, retries, timeout_s, seconds_per_photograph,
+        pulse_s;
+} weft_camera_description;
+
+typedef struct weft_rig_file {
+    char path[WEFT_RIG_TEXT_SIZE];
+    char name[WEFT_RIG_TEXT_SIZE];
+    double opening_mm;
+    weft_axes axes;
+    weft_stage_description stage;
+    weft_light_description light;
+    weft_camera_description camera;
+} weft_rig_file;
+
+/* Reads and checks. Not thread-safe. Errors: WEFT_BAD_INPUT "PATH:LINE: ..." for what is no rig file, an unknown or
+ * missing key, or a value out of its bounds; "PATH: ..." for parts that do not go together; WEFT_SYSTEM for memory. */
+weft_code weft_rig_file_read(const char *path, weft_rig_file *rig, weft_error *error);
+
+/* A file that a rig file names, beside it; `path` holds `size` bytes. Errors: WEFT_BAD_INPUT where that is too long. */
+weft_code weft_rig_file_beside(const weft_rig_file *rig, const char *name, char *path, size_t size, weft_error *error);
+
+#endif

@@ -1,0 +1,38 @@
+/* A stage of a laboratory behind the rig's interface: axes that a driver turns, axes that a person turns, and lamps. */
+#ifndef WEFT_CAPTURE_MOTION_STAGE_H
+#define WEFT_CAPTURE_MOTION_STAGE_H
+
+#include "capture/motion/driver.h"
+#include "capture/rig.h"
+
+/* Somebody who does what no motor does. Blocks until it is done. Errors: WEFT_SYSTEM where nobody is there. */
+typedef struct weft_person {
+    void *context;
+    weft_code (*ask)(void *context, const char *text, weft_error *error);
+} weft_person;
+
+/* All borrowed. */
+typedef struct weft_stage_parts {
+    const weft_axes *axes;
+    weft_axis_driver driver; /* of all axes that are not turned by hand; `home` NULL: there are none */
+    weft_lamp_switch lamps;  /* `set` NULL: the light burns anyway */
+    const weft_angles *lamp; /* [lamp_count] directions in the laboratory; 0: one lamp, wherever the axes put it */
+    int lamp_count;
+    double lamp_tolerance_rad; /* by which a lamp may differ from a light of the plan */
+    double level, warm_up_s;   /* of the lamps, from 0 to 1; and how long they take to burn evenly */
+    weft_person person;
+    int retries; /* of a move whose axes lost their references */
+} weft_stage_parts;
+
+typedef struct weft_stage weft_stage;
+
+/* The caller frees with weft_stage_free. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_stage_create(const weft_stage_parts *parts, weft_stage **stage, weft_error *error);
+void weft_stage_free(weft_stage *stage);
+
+/* The ways in. The stage stays the caller's. Poses whose references were lost are taken up again after homing, which
+ * begins a new stay. */
+weft_rig_stage weft_stage_for_rig(weft_stage *stage);
+weft_rig_light weft_stage_light(weft_stage *stage);
+
+#endif

@@ -1,0 +1,294 @@
+/* Cameras of a laboratory: a folder into which another program drops its photographs, and OpenCV's VideoCapture. */
+#include "capture/camera/folder_camera.h"
+#include "capture/camera/video_camera.h"
+#include "tests/support/cmocka_all.h"
+#include "tests/support/scratch_folder.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { WIDTH = 40, HEIGHT = 30, BIN = 2, VALUES = WIDTH * HEIGHT * 3 };
+
+/* A picture twice as large, each of whose blocks has values about a mean that says where it is. */
+static double mean_at(int x, int y, int channel)
+{
+    return (0.4 + 0.01 * x + 0.004 * y) * (channel + 1) / 3;
+}
+
+static void write_picture(const char *path, int width, int height, double exposure_s)
+{
+    weft_image image;
+    assert_int_equal(weft_image_create(width, height, &image, NULL), WEFT_OK);
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < width; x++) {
+            double offset = (x % 2 ? 0.05 : -0.05) * (y % 2 ? 1 : 0.5);
+            for (int k = 0; k < 3; k++)
+                image.pixels[3 * (y * width + x) + k] = (float)(mean_at(x / BIN, y / BIN, k) + offset);
+        }
+    }
+    const weft_camera_notes notes = {.make = "M",
+                                     .model = "N",
+                                     .date = "2026:01:01 00:00:00",
+                                     .orientation = 1,
+                                     .exposure_s = exposure_s,
+                                     .f_number = 8,
+                                     .iso = 100,
+                                     .focal_length_mm = 100};
+    assert_int_equal(weft_snapshot_write(path, &image, &notes, NULL), WEFT_OK);
+    weft_image_free(&image);
+}
+
+static void assert_values(const uint16_t *samples, double tolerance)
+{
+    for (int i = 0; i < VALUES; i++) {
+        double wanted = mean_at(i / 3 % WIDTH, i / 3 / WIDTH, i % 3);
+        assert_float_equal(samples[i] / 65535.0, wanted, tolerance);
+    }
+}
+
+static void rest_ms(long ms)
+{
+    const struct timespec pause = {ms / 1000, ms % 1000 * 1000000};
+    nanosleep(&pause, NULL);
+}
+
+/* ---- A folder ---- */
+
+/* What the other program does once the shutter is released. */
+typedef struct other_program {
+    void (*work)(void);
+    pthread_t thread;
+    bool running;
+    int releases;
+    double exposure_s;
+} other_program;
+
+static void *run_program(void *context)
+{
+    ((other_program *)context)->work();
+    return NULL;
+}
+
+static weft_code release(void *context, double exposure_s, weft_error *error)
+{
+    other_program *program = context;
+    (void)error;
+    program->releases++;
+    program->exposure_s = exposure_s;
+    program->running = true;
+    return pthread_create(&program->thread, NULL, run_program, program) == 0 ? WEFT_OK : WEFT_SYSTEM;
+}
+
+static weft_code take(void (*work)(void), double fixed_s, double timeout_s, uint16_t *samples, double *read_back_s,
+                      char *original, weft_error *error)
+{
+    other_program program = {.work = work};
+    const weft_folder_camera_settings settings = {
+        .folder = "incoming",
+        .pattern = "*.tif",
+        .timeout_s = timeout_s,
+        .format = {.bin = BIN, .width = WIDTH, .height = HEIGHT, .exposure_s = fixed_s},
+        .shutter = {&program, release}};
+    weft_folder_camera *camera;
+    assert_int_equal(weft_folder_camera_create(&settings, &camera, NULL), WEFT_OK);
+    weft_rig_camera rig = weft_folder_camera_for_rig(camera);
+    /* Came before the release: none of this exposure's. */
+    write_picture("before.tif", WIDTH * BIN, HEIGHT * BIN, 7);
+    assert_int_equal(rename("before.tif", "incoming/before.tif"), 0);
+    weft_code code = rig.expose(rig.device, 0, 0.25, samples, read_back_s, error);
+    if (program.running)
+        pthread_join(program.thread, NULL);
+    assert_int_equal(program.releases, 1);
+    assert_float_equal(program.exposure_s, 0.25, 0);
+    if (original)
+        snprintf(original, 64, "%s", rig.original(rig.device));
+    weft_folder_camera_free(camera);
+    return code;
+}
+
+static void drop_whole(void)
+{
+    write_picture("incoming/IMG_1.TIF", WIDTH * BIN, HEIGHT * BIN, 0.125);
+}
+
+static void the_next_file_is_the_frame_and_says_its_exposure(void **state)
+{
+    (void)state;
+    uint16_t samples[VALUES];
+    double read_back_s;
+    char original[64];
+    weft_error error = {0};
+    if (take(drop_whole, 0, 10, samples, &read_back_s, original, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    assert_values(samples, 1e-4);
+    assert_float_equal(read_back_s, 0.125, 1e-6);
+    assert_string_equal(original, "incoming/IMG_1.TIF");
+    assert_int_equal(access(original, F_OK), 0);
+}
+
+/* In pieces, closed in between, with other files about: as programs do over a slow cable. */
+static void drop_in_pieces(void)
+{
+    size_t size;
+    write_picture("whole.tif", WIDTH * BIN, HEIGHT * BIN, 0.125);
+    unsigned char *bytes = scratch_load("whole.tif", &size);
+    scratch_store("incoming/IMG_2.xmp", "metadata", 8);
+    scratch_store("incoming/.hidden.tif", "x", 1);
+    for (int piece = 1; piece <= 4; piece++) {
+        FILE *file = fopen("incoming/IMG_2.tif", piece == 1 ? "wb" : "ab");
+        size_t from = size * (size_t)(piece - 1) / 4, to = size * (size_t)piece / 4;
+        fwrite(bytes + from, 1, to - from, file);
+        fclose(file);
+        rest_ms(60);
+    }
+    free(bytes);
+}
+
+static void a_file_is_waited_for_until_it_is_whole(void **state)
+{
+    (void)state;
+    uint16_t samples[VALUES];
+    double read_back_s;
+    char original[64];
+    weft_error error = {0};
+    if (take(drop_in_pieces, 0, 20, samples, &read_back_s, original, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    assert_values(samples, 1e-4);
+    assert_string_equal(original, "incoming/IMG_2.tif");
+}
+
+static void move_in(void)
+{
+    write_picture("elsewhere.tif", WIDTH * BIN, HEIGHT * BIN, 0);
+    rename("elsewhere.tif", "incoming/IMG_3.tif");
+}
+
+static void drop_nothing(void)
+{
+}
+
+static void drop_half(void)
+{
+    size_t size;
+    write_picture("whole.tif", WIDTH * BIN, HEIGHT * BIN, 0.125);
+    unsigned char *bytes = scratch_load("whole.tif", &size);
+    scratch_store("incoming/half.tif", bytes, size / 2);
+    free(bytes);
+}
+
+static void drop_other_size(void)
+{
+    write_picture("incoming/other.tif", WIDTH, HEIGHT, 0.125);
+}
+
+static void what_cannot_be_a_frame_is_named_when_the_time_is_up(void **state)
+{
+    (void)state;
+    uint16_t samples[VALUES];
+    double read_back_s;
+    weft_error error = {0};
+    assert_int_equal(take(drop_nothing, 0, 0.3, samples, &read_back_s, NULL, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "no photograph '*.tif' came into 'incoming' within 0.3 s"));
+    assert_int_equal(take(drop_half, 0, 0.5, samples, &read_back_s, NULL, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "half.tif"));
+    assert_int_equal(take(drop_other_size, 0, 0.5, samples, &read_back_s, NULL, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "40 x 30 pixels, not 2 times 40 x 30"));
+    /* No exposure in the file: only one that was set by hand will do. */
+    assert_int_equal(take(move_in, 0, 0.5, samples, &read_back_s, NULL, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "does not say how long it was exposed"));
+    assert_int_equal(take(move_in, 0.5, 10, samples, &read_back_s, NULL, &error), WEFT_OK);
+    assert_float_equal(read_back_s, 0.5, 0);
+}
+
+static void a_folder_that_is_not_there_is_named(void **state)
+{
+    (void)state;
+    const weft_folder_camera_settings settings = {.folder = "nowhere", .pattern = "*"};
+    weft_folder_camera *camera;
+    weft_error error = {0};
+    assert_int_equal(weft_folder_camera_create(&settings, &camera, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "'nowhere'"));
+}
+
+/* ---- A video ---- */
+
+static void frames_of_a_series_come_in_order_until_it_ends(void **state)
+{
+    (void)state;
+    enum { FRAMES = 3 };
+    for (int i = 0; i < FRAMES; i++) {
+        char path[32];
+        weft_image image;
+        snprintf(path, sizeof path, "frame_%02d.png", i);
+        assert_int_equal(weft_image_create(WIDTH, HEIGHT, &image, NULL), WEFT_OK);
+        for (int k = 0; k < VALUES; k++)
+            image.pixels[k] = (float)(40 * (i + 1) + 30 * (k % 3)) / 255;
+        assert_int_equal(weft_image_write(path, &image, NULL, NULL), WEFT_OK);
+        weft_image_free(&image);
+    }
+    for (int srgb = 0; srgb < 2; srgb++) {
+        const weft_video_camera_settings settings = {
+            .device = "frame_%02d.png",
+            .format = {.bin = 1, .width = WIDTH, .height = HEIGHT, .srgb = srgb, .exposure_s = 0.02}};
+        weft_video_camera *camera;
+        weft_error error = {0};
+        if (weft_video_camera_create(&settings, &camera, &error) != WEFT_OK)
+            fail_msg("%s", error.message);
+        weft_rig_camera rig = weft_video_camera_for_rig(camera);
+        for (int i = 0; i < FRAMES; i++) {
+            uint16_t samples[VALUES];
+            double read_back_s;
+            if (rig.expose(rig.device, 0, 0.02, samples, &read_back_s, &error) != WEFT_OK)
+                fail_msg("%s", error.message);
+            assert_float_equal(read_back_s, 0.02, 0);
+            for (int k = 0; k < VALUES; k++) {
+                double encoded = (40 * (i + 1) + 30 * (k % 3)) / 255.0;
+                double linear = encoded > 0.04045 ? pow((encoded + 0.055) / 1.055, 2.4) : encoded / 12.92;
+                assert_float_equal(samples[k] / 65535.0, srgb ? linear : encoded, 1e-4);
+            }
+        }
+        uint16_t samples[VALUES];
+        double read_back_s;
+        assert_int_equal(rig.expose(rig.device, 0, 0.02, samples, &read_back_s, &error), WEFT_SYSTEM);
+        assert_non_null(strstr(error.message, "delivers no frame"));
+        weft_video_camera_free(camera);
+    }
+}
+
+static void a_camera_that_is_not_there_is_named(void **state)
+{
+    (void)state;
+    static const char *const devices[] = {"97", "no-such.avi"};
+    for (int i = 0; i < 2; i++) {
+        const weft_video_camera_settings settings = {.device = devices[i]};
+        weft_video_camera *camera;
+        weft_error error = {0};
+        assert_int_equal(weft_video_camera_create(&settings, &camera, &error), WEFT_SYSTEM);
+        assert_non_null(strstr(error.message, devices[i]));
+    }
+}
+
+static int enter(void **state)
+{
+    scratch_folder_enter(state);
+    return mkdir("incoming", 0777);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_next_file_is_the_frame_and_says_its_exposure),
+        cmocka_unit_test(a_file_is_waited_for_until_it_is_whole),
+        cmocka_unit_test(what_cannot_be_a_frame_is_named_when_the_time_is_up),
+        cmocka_unit_test(a_folder_that_is_not_there_is_named),
+        cmocka_unit_test(frames_of_a_series_come_in_order_until_it_ends),
+        cmocka_unit_test(a_camera_that_is_not_there_is_named),
+    };
+    return cmocka_run_group_tests(tests, enter, scratch_folder_leave);
+}
