@@ -86,7 +86,8 @@ weft_code weft_dataset_fingerprint_compare(weft_dataset *dataset, const char *me
         WEFT_TRY(weft_json_parse(metadata, strlen(metadata), 0, "metadata", &object, error));
     json_t *origin = json_object_get(object, "dataset");
     if (json_object_get(object, "tile")) {
-        snprintf(warning, WEFT_MESSAGE_SIZE, "the material was cut to tile: its texels lie elsewhere than those of '%s'",
+        snprintf(warning, WEFT_MESSAGE_SIZE,
+                 "the material was cut to tile: its texels lie elsewhere than those of '%s'",
                  weft_dataset_path(dataset));
         origin = NULL;
     }
