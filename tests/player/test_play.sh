@@ -19,14 +19,15 @@ cd play
 open_window cloth.weft --environment none --raw cloth.btf.h5 --weave "$weaves/cotton_twill.wv" --size 320x240
 
 next=none
-shoot() { # WHAT: takes a screenshot that must differ from the one before
-    sleep 0.4
+shoot() { # WHAT: takes a screenshot that must differ from the one before, within ten seconds
     last=$next
-    save_picture || { echo "no screenshot after: $1"; exit 1; }
-    if [ "$shots" -gt 1 ] && cmp -s "$last" "$next"; then
-        echo "nothing changed: $1"
-        exit 1
-    fi
+    for _ in $(seq 20); do
+        sleep 0.4
+        save_picture || { echo "no screenshot after: $1"; exit 1; }
+        cmp -s "$last" "$next" || return 0
+    done
+    echo "nothing changed: $1"
+    exit 1
 }
 
 drag() { # BUTTON DX DY
