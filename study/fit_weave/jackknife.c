@@ -66,6 +66,7 @@ static void free_sums(cluster_sums *sums)
     free(sums->white);
 }
 
+/* To be freed also where it fails. */
 static weft_code allocate_sums(int cluster_count, int kept, cluster_sums *sums, weft_error *error)
 {
     size_t clusters = (size_t)cluster_count, k = (size_t)kept;
@@ -73,7 +74,6 @@ static weft_code allocate_sums(int cluster_count, int kept, cluster_sums *sums, 
                            calloc(k + 1, sizeof(double))};
     if (sums->square && sums->gradient && sums->white)
         return WEFT_OK;
-    free_sums(sums);
     return weft_fail_memory(error, "standard errors", clusters * k * k * sizeof(double));
 }
 

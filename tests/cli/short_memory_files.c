@@ -23,7 +23,9 @@ static uint64_t hash_file(const char *path)
     char *line = NULL;
     size_t capacity = 0;
     for (ssize_t size; (size = getline(&line, &capacity, file)) > 0;) {
-        for (ssize_t i = 0; i < size && !tells_time(line, (size_t)size); i++)
+        if (tells_time(line, (size_t)size))
+            continue;
+        for (ssize_t i = 0; i < size; i++)
             hash = (hash ^ (unsigned char)line[i]) * 0x100000001b3;
     }
     free(line);
