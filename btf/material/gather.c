@@ -107,7 +107,7 @@ static weft_code copy_basis(const weft_table_basis *from, const size_t *place, s
 static weft_code gather_level(const weft_material *from, const weft_texel_mix *mix, int k, weft_material *to,
                               weft_error *error)
 {
-    size_t texels = texels_of(to, k), *place = malloc(texels * sizeof *place);
+    size_t texels = texels_of(to, k), *place = calloc(texels, sizeof *place);
     if (!place)
         return weft_fail_memory(error, "places of texels", texels * sizeof *place);
     find_places(from, to, k, mix, place);

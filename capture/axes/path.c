@@ -143,7 +143,7 @@ static void measure(const plan *p, weft_axes_path *path)
 
 static weft_code order(plan *p, weft_axes_path *path, weft_error *error)
 {
-    int *ordered = malloc((size_t)p->count * sizeof *ordered);
+    int *ordered = calloc((size_t)p->count, sizeof *ordered);
     if (!ordered)
         return weft_fail_memory(error, "order of the poses", (size_t)p->count * sizeof *ordered);
     weft_code code = find_stays(p, error);

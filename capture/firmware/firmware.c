@@ -137,6 +137,10 @@ static int32_t homing_speed(const weft_firmware *f, int axis)
 static void home_axis(weft_firmware *f, uint32_t now_ms)
 {
     int axis = next_to_home(f);
+    if (axis < 0) {
+        rest_all(f, WEFT_STATE_IDLE);
+        return;
+    }
     weft_homing_phase phase = f->axis[axis].phase;
     bool closed = f->hardware.at_reference(f->hardware.context, axis);
     if (closed && phase == WEFT_HOMING_TOUCH) {

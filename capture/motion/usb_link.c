@@ -48,14 +48,15 @@ static bool is_answer(weft_usb_link *link, const weft_stage_request *request, co
 /* Reads until the answer comes or the time is up. */
 static weft_link_outcome listen(weft_usb_link *link, const weft_stage_request *request, weft_stage_reply *reply)
 {
-    double end_s = weft_now_s() + link->timeout_s;
-    for (double left_s = link->timeout_s; left_s > 0; left_s = end_s - weft_now_s()) {
+    double left_s = link->timeout_s, end_s = weft_now_s() + left_s;
+    while (left_s > 0) {
         uint8_t report[WEFT_REPORT_SIZE];
         int size = hid_read_timeout(link->handle, report, sizeof report, (int)(left_s * 1000) + 1);
         if (size < 0)
             return WEFT_LINK_GONE;
         if (size > 0 && is_answer(link, request, report, size, reply))
             return WEFT_LINK_ANSWERED;
+        left_s = end_s - weft_now_s();
     }
     link->lost++;
     return WEFT_LINK_SILENT;

@@ -72,8 +72,8 @@ weft_code weft_cheapest_path(const float *cost, int rows, int columns, int low, 
                              double *total, weft_error *error)
 {
     size_t cells = (size_t)rows * (size_t)columns;
-    double *best = malloc(cells * sizeof *best);
-    int *trial = malloc((size_t)rows * sizeof *trial);
+    double *best = calloc(cells, sizeof *best);
+    int *trial = calloc((size_t)rows, sizeof *trial);
     if (!best || !trial) {
         free(best);
         free(trial);
