@@ -10,7 +10,7 @@ demo: program
 	scripts/demo.sh $(build)/cli/weft demo-out
 
 test: build
-	OMP_WAIT_POLICY=passive ctest --test-dir $(build) --output-on-failure -j $(shell nproc)
+	OMP_WAIT_POLICY=passive ctest --test-dir $(build) --output-on-failure -j $(shell expr $$(nproc) + 1)
 
 build: program
 	cmake --build --preset release
