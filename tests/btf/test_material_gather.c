@@ -122,6 +122,34 @@ static void layers_are_mixed_and_all_else_is_the_heaviest(void **state)
     weft_material_free(&material);
 }
 
+static void a_ceiling_is_the_largest_of_what_is_mixed(void **state)
+{
+    (void)state;
+    const weft_layers shape = {.layer_count = 4,
+                               .view_count = 1,
+                               .image_count = 1,
+                               .light_side = 4,
+                               .view_side = 4,
+                               .light_smoothness = 1,
+                               .view_smoothness = 1,
+                               .least_cosine = 1};
+    weft_error error = {0};
+    weft_material material;
+    expect_ok(weft_material_create(24, 8, 0, 0, 0, 0, &material, &error), &error);
+    expect_ok(weft_layers_create(&shape, 24, 8, 1, &material.layers, &error), &error);
+    material.has_layers = true;
+    memcpy(material.layers->level[0].ceiling, (uint8_t[]){50, 90, 70}, 3);
+    for (int i = 0; i < 6; i++) {
+        int a = i % 3, b = (i % 3 + 1 + i / 3) % 3;
+        weft_texel_mix mix = {{{8 * a, 0, 0.75f}, {8 * b + 3, 5, 0.25f}}};
+        weft_material one = gathered(&material, 1, 1, &mix);
+        const uint8_t *ceiling = material.layers->level[0].ceiling;
+        assert_int_equal(one.layers->level[0].ceiling[0], ceiling[a] > ceiling[b] ? ceiling[a] : ceiling[b]);
+        weft_material_free(&one);
+    }
+    weft_material_free(&material);
+}
+
 static void levels_of_layers_are_means_of_what_they_cover(void **state)
 {
     (void)state;
@@ -161,6 +189,7 @@ int main(void)
         cmocka_unit_test(texels_in_their_order_are_the_same_file),
         cmocka_unit_test(texels_and_levels_are_moved_alike),
         cmocka_unit_test(layers_are_mixed_and_all_else_is_the_heaviest),
+        cmocka_unit_test(a_ceiling_is_the_largest_of_what_is_mixed),
         cmocka_unit_test(levels_of_layers_are_means_of_what_they_cover),
         cmocka_unit_test(more_texels_than_there_were_are_refused),
     };
