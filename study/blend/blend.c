@@ -90,26 +90,43 @@ static weft_code describe(const weft_blend_report *report, weft_material *tile, 
     return weft_material_put_metadata(tile, "tile", done, error);
 }
 
-static weft_code measure(const weft_blend_pictures *pictures, const weft_texel_mix *mix, const weft_material *tile,
+/* Under directions by which the cut was not chosen. */
+static weft_code measure(const weft_material *material, const weft_texel_mix *mix, const weft_material *tile,
                          weft_blend_report *report, weft_error *error)
 {
-    weft_blend_pictures tiled;
-    WEFT_TRY(weft_seam_measure(pictures, pictures, NULL, &report->before, error));
-    WEFT_TRY(weft_blend_pictures_make(tile, &tiled, error));
-    weft_code code = weft_seam_measure(pictures, &tiled, mix, &report->after, error);
+    weft_blend_pictures whole = {0}, tiled = {0};
+    weft_code code = weft_blend_pictures_make(material, WEFT_BLEND_JUDGES, &whole, error);
+    if (code == WEFT_OK)
+        code = weft_blend_pictures_make(tile, WEFT_BLEND_JUDGES, &tiled, error);
+    if (code == WEFT_OK)
+        code = weft_seam_measure(&whole, &whole, NULL, &report->before, error);
+    if (code == WEFT_OK)
+        code = weft_seam_measure(&whole, &tiled, mix, &report->after, error);
     weft_blend_pictures_free(&tiled);
+    weft_blend_pictures_free(&whole);
     return code;
 }
 
-static weft_code make_tile(const weft_material *material, const weft_blend_pictures *pictures,
-                           const weft_texel_mix *mix, weft_material *tile, weft_blend_report *report, weft_error *error)
+static weft_code make_tile(const weft_material *material, const weft_texel_mix *mix, weft_material *tile,
+                           weft_blend_report *report, weft_error *error)
 {
     WEFT_TRY(weft_material_gather(material, report->width, report->height, mix, tile, error));
-    weft_code code = measure(pictures, mix, tile, report, error);
+    weft_code code = measure(material, mix, tile, report, error);
     if (code == WEFT_OK)
         code = describe(report, tile, error);
     if (code != WEFT_OK)
         weft_material_free(tile);
+    return code;
+}
+
+/* The pictures are the larger part of the memory: they are gone before the tile is made. */
+static weft_code choose_mix(const weft_material *material, weft_blend_report *report, weft_texel_mix **mix,
+                            weft_error *error)
+{
+    weft_blend_pictures pictures;
+    WEFT_TRY(weft_blend_pictures_make(material, WEFT_BLEND_CHOOSES, &pictures, error));
+    weft_code code = find_mix(&pictures, report, mix, error);
+    weft_blend_pictures_free(&pictures);
     return code;
 }
 
@@ -122,13 +139,10 @@ weft_code weft_blend(const weft_material *material, weft_material *tile, weft_bl
         return weft_fail(error, WEFT_BAD_INPUT,
                          "the material has %d x %d texels; at least %d x %d are needed to cut it", level->width,
                          level->height, WEFT_CUT_LEAST_SIDE, WEFT_CUT_LEAST_SIDE);
-    weft_blend_pictures pictures;
-    WEFT_TRY(weft_blend_pictures_make(material, &pictures, error));
     weft_texel_mix *mix = NULL;
-    weft_code code = find_mix(&pictures, report, &mix, error);
+    weft_code code = choose_mix(material, report, &mix, error);
     if (code == WEFT_OK)
-        code = make_tile(material, &pictures, mix, tile, report, error);
+        code = make_tile(material, mix, tile, report, error);
     free(mix);
-    weft_blend_pictures_free(&pictures);
     return code;
 }

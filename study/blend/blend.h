@@ -7,7 +7,8 @@
 #include "btf/material/material.h"
 
 /* Pairs of neighbouring texels of which the material knows nothing as neighbours: at the seam. How much they differ, as
- * the root mean square over eight pairs of light and view, is held against all pairs of neighbours in the material. */
+ * the root mean square over eight pairs of light and view, is held against all pairs of neighbours in the material. The
+ * cut was chosen by eight other pairs of directions. */
 typedef struct weft_seam {
     long pair_count;
     double above_99th;      /* share of them above the 99th percentile of the material: 0.01 where none can be seen */

@@ -27,16 +27,19 @@ static weft_vec3 within(const weft_cone *cone, double share, double turn_deg)
     return weft_unit(d);
 }
 
-static weft_code choose_pairs(const weft_material *material, pair pairs[WEFT_BLEND_PAIRS], weft_error *error)
+static weft_code choose_pairs(const weft_material *material, weft_blend_pairs which, pair pairs[WEFT_BLEND_PAIRS],
+                              weft_error *error)
 {
     bool known;
     weft_measured measured;
     WEFT_TRY(weft_measured_parse(material->metadata, &known, &measured, error));
     weft_cone everywhere = {weft_vec3_of(0, 0, 1), weft_rad_of_deg(75)};
     const weft_cone *view = known ? &measured.view : &everywhere, *light = known ? &measured.light : &everywhere;
+    /* The second set lies between the directions of the first, in azimuth and in slant. */
+    double between = which == WEFT_BLEND_JUDGES ? 0.5 : 0, slant = which == WEFT_BLEND_JUDGES ? 0.2 : 0;
     for (int i = 0; i < WEFT_BLEND_PAIRS; i++)
-        pairs[i] = (pair){within(light, i % 2 ? 0.8 : 0.4, 360.0 * i / WEFT_BLEND_PAIRS),
-                          within(view, i < 4 ? 0 : 0.6, 360.0 * 3 * i / WEFT_BLEND_PAIRS)};
+        pairs[i] = (pair){within(light, (i % 2 ? 0.8 : 0.4) - slant, 360.0 * (i + between) / WEFT_BLEND_PAIRS),
+                          within(view, (i < 4 ? 0 : 0.6) + slant, 360.0 * 3 * (i + between) / WEFT_BLEND_PAIRS)};
     return WEFT_OK;
 }
 
@@ -50,10 +53,10 @@ typedef struct evaluation {
     float factor[WEFT_BLEND_PAIRS][3 * WEFT_LAYERS_MAX];
 } evaluation;
 
-static weft_code prepare(const weft_material *material, evaluation *e, weft_error *error)
+static weft_code prepare(const weft_material *material, weft_blend_pairs which, evaluation *e, weft_error *error)
 {
     *e = (evaluation){.material = material};
-    WEFT_TRY(choose_pairs(material, e->pairs, error));
+    WEFT_TRY(choose_pairs(material, which, e->pairs, error));
     WEFT_TRY(weft_table_directions_create(material, &e->directions, error));
     if (!material->layers)
         return WEFT_OK;
@@ -85,11 +88,12 @@ static void evaluate_texel(const evaluation *e, int x, int y, float value[WEFT_B
     }
 }
 
-weft_code weft_blend_pictures_make(const weft_material *material, weft_blend_pictures *pictures, weft_error *error)
+weft_code weft_blend_pictures_make(const weft_material *material, weft_blend_pairs which, weft_blend_pictures *pictures,
+                                   weft_error *error)
 {
     WEFT_TRY(weft_blend_pictures_create(material->level[0].width, material->level[0].height, pictures, error));
     evaluation e;
-    weft_code code = prepare(material, &e, error);
+    weft_code code = prepare(material, which, &e, error);
     if (code == WEFT_OK) {
 #pragma omp parallel for schedule(dynamic, 4)
         for (int y = 0; y < pictures->height; y++)

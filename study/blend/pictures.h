@@ -12,10 +12,14 @@ typedef struct weft_blend_pictures {
     float *value; /* [height][width][WEFT_BLEND_VALUES] square roots of reflectance, and opacity */
 } weft_blend_pictures;
 
+/* Which pairs of light and view: those by which a cut is chosen, or others between them, by which it is judged. */
+typedef enum weft_blend_pairs { WEFT_BLEND_CHOOSES, WEFT_BLEND_JUDGES } weft_blend_pairs;
+
 /* Evaluates level 0 under pairs of light and view spread over the cones that were measured, by layers where there are
  * any. A square root is about as bright as it looks. Errors: WEFT_BAD_INPUT for tables that cannot be triangulated,
  * WEFT_SYSTEM. */
-weft_code weft_blend_pictures_make(const weft_material *material, weft_blend_pictures *pictures, weft_error *error);
+weft_code weft_blend_pictures_make(const weft_material *material, weft_blend_pairs which, weft_blend_pictures *pictures,
+                                   weft_error *error);
 void weft_blend_pictures_free(weft_blend_pictures *pictures);
 
 /* The same with x and y exchanged. Errors: WEFT_SYSTEM. */

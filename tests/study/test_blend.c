@@ -224,6 +224,29 @@ static void a_material_without_any_pattern_is_no_trouble(void **state)
     weft_material_free(&material);
 }
 
+/* A glossy material, which every direction shows otherwise: no picture that judges is one that chose. */
+static void a_cut_is_judged_by_directions_that_did_not_choose_it(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_material material;
+    weft_blend_pictures chooses, judges;
+    expect_ok(weft_material_create(16, 16, 1, 0, 0, 0, &material, &error), &error);
+    for (int i = 0; i < 3 * 16 * 16; i++) {
+        const double lobe[4] = {-0.9, -0.8, 1, 5};
+        for (int c = 0; c < 4; c++)
+            material.level[0].lobe[4 * i + c] = weft_half_of_float((float)lobe[c]);
+    }
+    expect_ok(weft_blend_pictures_make(&material, WEFT_BLEND_CHOOSES, &chooses, &error), &error);
+    expect_ok(weft_blend_pictures_make(&material, WEFT_BLEND_JUDGES, &judges, &error), &error);
+    for (int i = 0; i < WEFT_BLEND_PAIRS; i++)
+        for (int j = 0; j < WEFT_BLEND_PAIRS; j++)
+            assert_true(fabsf(chooses.value[4 * i] - judges.value[4 * j]) > 1e-4f);
+    weft_blend_pictures_free(&judges);
+    weft_blend_pictures_free(&chooses);
+    weft_material_free(&material);
+}
+
 static void the_metadata_say_what_was_done(void **state)
 {
     (void)state;
@@ -258,6 +281,7 @@ int main(void)
         cmocka_unit_test(levels_follow_their_texels),
         cmocka_unit_test(what_tiles_is_left_as_it_is),
         cmocka_unit_test(a_material_without_any_pattern_is_no_trouble),
+        cmocka_unit_test(a_cut_is_judged_by_directions_that_did_not_choose_it),
         cmocka_unit_test(the_metadata_say_what_was_done),
         cmocka_unit_test(a_material_too_small_to_cut_is_refused),
     };
