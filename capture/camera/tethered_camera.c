@@ -271,6 +271,8 @@ static weft_code begin(weft_tethered_camera *c, weft_error *error)
     if (!c->context)
         return weft_fail_memory(error, name, 0);
     int result = open_camera(c);
+    if (result == GP_ERROR_MODEL_NOT_FOUND)
+        return weft_fail(error, WEFT_SYSTEM, "%s: none is connected that libgphoto2 knows", name);
     return result >= GP_OK ? WEFT_OK : fail_with(result, "open it", error);
 }
 

@@ -48,3 +48,15 @@ write_plan() {
         done
     done
 }
+
+# The dataset knit.btf.h5 of 8 x 8 texels, 7 views and 7 lights; needs $assets.
+simulate_knit() {
+    awk 'BEGIN {
+        print "theta_deg,phi_deg"
+        print "0,0"
+        for (i = 0; i < 6; i++)
+            print 40 "," 60 * i + 7
+    }' >directions.csv
+    expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --size 8x8 --noise 10 --bounces 0 \
+        --resolution 20 --directions directions.csv
+}

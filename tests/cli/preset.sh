@@ -9,14 +9,7 @@ scratch=$(mktemp -d "$PWD/preset-XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-awk 'BEGIN {
-    print "theta_deg,phi_deg"
-    print "0,0"
-    for (i = 0; i < 6; i++)
-        print 40 "," 60 * i + 7
-}' >directions.csv
-expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --size 8x8 --noise 10 --bounces 0 \
-    --resolution 20 --directions directions.csv
+simulate_knit
 # A preset says before the work what it will cost, and keeps to it.
 expect_ok compress knit.btf.h5 -o knit.weft --preset balanced --json
 cp out.log events.log

@@ -9,14 +9,7 @@ scratch=$(mktemp -d "$PWD/tradeoff-XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-awk 'BEGIN {
-    print "theta_deg,phi_deg"
-    print "0,0"
-    for (i = 0; i < 6; i++)
-        print 40 "," 60 * i + 7
-}' >directions.csv
-expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --size 8x8 --noise 10 --bounces 0 \
-    --resolution 20 --directions directions.csv
+simulate_knit
 cp knit.btf.h5 before.btf.h5
 
 # Frames of so many models would take long: the page says that it has none.

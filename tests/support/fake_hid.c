@@ -27,11 +27,35 @@ struct fake_hid {
     UMockdevIoctlBase *handler;
     int number, master, slave;
     pthread_mutex_t mutex;
+    pthread_cond_t rest; /* nothing of the kind is running */
     bool gone;
+    int running; /* functions of the kind */
+    fake_hid *next;
     unsigned char report[QUEUE][REPORT_SIZE];
     size_t size[QUEUE];
     int first, count;
 };
+
+/* The testbed may call a handler late: what it was given stays until the process ends. */
+static fake_hid *freed;
+
+/* False where the device is unplugged; else what belongs to its kind stays until `leave`. */
+static bool enter(fake_hid *hid)
+{
+    pthread_mutex_lock(&hid->mutex);
+    bool plugged = !hid->gone;
+    hid->running += plugged;
+    pthread_mutex_unlock(&hid->mutex);
+    return plugged;
+}
+
+static void leave(fake_hid *hid)
+{
+    pthread_mutex_lock(&hid->mutex);
+    if (--hid->running == 0)
+        pthread_cond_broadcast(&hid->rest);
+    pthread_mutex_unlock(&hid->mutex);
+}
 
 static gboolean on_read(UMockdevIoctlBase *handler, UMockdevIoctlClient *client, gpointer data)
 {
@@ -70,13 +94,13 @@ static gboolean on_write(UMockdevIoctlBase *handler, UMockdevIoctlClient *client
     UMockdevIoctlData *argument = umockdev_ioctl_client_get_arg(client);
     unsigned char bytes[1 + REPORT_SIZE];
     size_t size = (size_t)argument->data_len < sizeof bytes ? (size_t)argument->data_len : sizeof bytes;
-    pthread_mutex_lock(&hid->mutex);
-    bool gone = hid->gone;
-    pthread_mutex_unlock(&hid->mutex);
+    bool plugged = enter(hid);
     memcpy(bytes, argument->data, size);
-    umockdev_ioctl_client_complete(client, gone ? -1 : (glong)size, gone ? ENODEV : 0);
-    if (!gone && hid->kind->written)
+    umockdev_ioctl_client_complete(client, plugged ? (glong)size : -1, plugged ? 0 : ENODEV);
+    if (plugged && hid->kind->written)
         hid->kind->written(hid->kind->context, hid, bytes, size);
+    if (plugged)
+        leave(hid);
     return TRUE;
 }
 
@@ -102,10 +126,8 @@ static bool feature_report(const fake_hid *hid, UMockdevIoctlClient *client, uns
     return true;
 }
 
-static gboolean on_ioctl(UMockdevIoctlBase *handler, UMockdevIoctlClient *client, gpointer data)
+static gboolean describe_itself(const fake_hid *hid, UMockdevIoctlClient *client)
 {
-    (void)handler;
-    const fake_hid *hid = data;
     unsigned long request = umockdev_ioctl_client_get_request(client);
     UMockdevIoctlData *argument = umockdev_ioctl_client_get_arg(client);
     const int size = (int)hid->kind->descriptor_size;
@@ -122,6 +144,19 @@ static gboolean on_ioctl(UMockdevIoctlBase *handler, UMockdevIoctlClient *client
         return FALSE;
     umockdev_ioctl_client_complete(client, 0, 0);
     return TRUE;
+}
+
+static gboolean on_ioctl(UMockdevIoctlBase *handler, UMockdevIoctlClient *client, gpointer data)
+{
+    (void)handler;
+    fake_hid *hid = data;
+    if (!enter(hid)) {
+        umockdev_ioctl_client_complete(client, -1, ENODEV);
+        return TRUE;
+    }
+    gboolean answered = describe_itself(hid, client);
+    leave(hid);
+    return answered;
 }
 
 /* ---- Its place in the system ---- */
@@ -200,6 +235,7 @@ static fake_hid *create(UMockdevTestbed *testbed, int number, const fake_hid_kin
     hid->kind = kind;
     hid->number = number;
     pthread_mutex_init(&hid->mutex, NULL);
+    pthread_cond_init(&hid->rest, NULL);
     add_to_system(hid);
     return hid;
 }
@@ -267,7 +303,11 @@ void fake_hid_unplug(fake_hid *hid)
 /* The terminal stays open: the testbed never forgets its number and would trip over it. */
 void fake_hid_free(fake_hid *hid)
 {
+    pthread_mutex_lock(&hid->mutex);
+    while (hid->running > 0)
+        pthread_cond_wait(&hid->rest, &hid->mutex);
+    pthread_mutex_unlock(&hid->mutex);
     g_clear_object(&hid->handler);
-    pthread_mutex_destroy(&hid->mutex);
-    free(hid);
+    hid->next = freed;
+    freed = hid;
 }
