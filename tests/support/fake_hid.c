@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <hidapi.h>
 #include <linux/hidraw.h>
 #include <linux/input.h>
 #include <poll.h>
@@ -35,6 +36,21 @@ struct fake_hid {
     size_t size[QUEUE];
     int first, count;
 };
+
+/* A kernel opens a node before its device goes, or after. umockdev ends the process that opens it in between, so the
+ * linker takes hid_open_path() through here. */
+static pthread_mutex_t system_mutex = PTHREAD_MUTEX_INITIALIZER;
+
+hid_device *__real_hid_open_path(const char *path);
+hid_device *__wrap_hid_open_path(const char *path);
+
+hid_device *__wrap_hid_open_path(const char *path)
+{
+    pthread_mutex_lock(&system_mutex);
+    hid_device *device = __real_hid_open_path(path);
+    pthread_mutex_unlock(&system_mutex);
+    return device;
+}
 
 /* The testbed may call a handler late: what it was given stays until the process ends. */
 static fake_hid *freed;
@@ -244,6 +260,7 @@ fake_hid *fake_hid_plug(UMockdevTestbed *testbed, int number, const fake_hid_kin
 {
     char node[32];
     GError *error = NULL;
+    pthread_mutex_lock(&system_mutex);
     fake_hid *hid = create(testbed, number, kind, node);
     hid->handler = umockdev_ioctl_base_new();
     g_signal_connect(hid->handler, "handle-ioctl", G_CALLBACK(on_ioctl), hid);
@@ -252,6 +269,7 @@ fake_hid *fake_hid_plug(UMockdevTestbed *testbed, int number, const fake_hid_kin
     if (!umockdev_testbed_attach_ioctl(testbed, node, hid->handler, &error))
         fail_msg("umockdev: %s", error->message);
     open_terminal(hid, node);
+    pthread_mutex_unlock(&system_mutex);
     return hid;
 }
 
@@ -291,6 +309,7 @@ void fake_hid_unplug(fake_hid *hid)
     dup2(nothing, hid->master);
     close(nothing);
     pthread_mutex_unlock(&hid->mutex);
+    pthread_mutex_lock(&system_mutex);
     for (int index = 0; index < PATH_COUNT; index++) {
         char path[256], full[300];
         device_path(hid, index, path);
@@ -298,6 +317,7 @@ void fake_hid_unplug(fake_hid *hid)
         umockdev_testbed_uevent(hid->testbed, full, "remove");
         umockdev_testbed_remove_device(hid->testbed, full);
     }
+    pthread_mutex_unlock(&system_mutex);
 }
 
 /* The terminal stays open: the testbed never forgets its number and would trip over it. */
