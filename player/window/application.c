@@ -279,7 +279,8 @@ static void grant_wishes(weft_application *a)
         i->wants_reload = false;
         weft_application_open(a, NULL);
     }
-    if (i->wants_screenshot) {
+    /* Before the first frame there is nothing to save: the wish waits. */
+    if (i->wants_screenshot && a->canvas.frame_count > 0) {
         i->wants_screenshot = false;
         weft_application_save_picture(a);
     }
