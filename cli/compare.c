@@ -10,7 +10,7 @@ typedef struct compare_command {
     weft_compare_options options;
 } compare_command;
 
-enum { MAX_PATHS = 65536 };
+enum { MAX_PATHS = 65536, SMALLEST_PICTURE = 32, LARGEST_PICTURE = 4096 };
 
 static const weft_option option_table[] = {
     {.argument = "NAME.btf.h5",
@@ -36,6 +36,9 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(compare_command, options.truth)},
     {"paths", .argument = "N", .help = "With --truth: paths of light for each pixel (default: 64)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compare_command, options.truth_paths), .low = 4, .high = MAX_PATHS},
+    {"size", .argument = "N", .help = "Pixels along each side of the pictures of scenes (default: 400)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compare_command, options.picture_side), .low = SMALLEST_PICTURE,
+     .high = LARGEST_PICTURE},
     {0},
 };
 

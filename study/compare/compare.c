@@ -93,11 +93,17 @@ static weft_code measure_means(const weft_compare_options *options, const compar
     return code;
 }
 
+static int picture_side(const weft_compare_options *options)
+{
+    return options->picture_side > 0 ? options->picture_side : WEFT_COMPARE_PICTURE_SIDE;
+}
+
 static weft_code draw_scenes(const weft_compare_options *options, const compared_files *files,
                              const weft_progress *progress, weft_comparison *comparison, weft_error *error)
 {
     const weft_compared_weave *weave = &files->weave;
-    weft_scenes_request request = {.dataset = files->dataset, .material = &files->material, .bard = options->bard};
+    weft_scenes_request request = {
+        .dataset = files->dataset, .material = &files->material, .bard = options->bard, .side = picture_side(options)};
     if (options->weave && weave->is_threads)
         request.threads = &weave->threads.cloth;
     else if (options->weave)
@@ -122,7 +128,12 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
     if (layout->image_count > 1 && layout->image_count < WEFT_LEAVE_ONE_OUT_LIMIT)
         WEFT_TRY(weft_leave_one_out_measure(files->dataset, progress, &comparison->left_out, error));
     WEFT_TRY(draw_scenes(options, files, progress, comparison, error));
-    const weft_traced_request truth = {files->dataset, &files->material, options->truth, options->truth_paths, 1};
+    const weft_traced_request truth = {.dataset = files->dataset,
+                                       .material = &files->material,
+                                       .stitch = options->truth,
+                                       .side = picture_side(options),
+                                       .paths = options->truth_paths,
+                                       .seed = 1};
     return options->truth ? weft_traced_truth_measure(&truth, progress, &comparison->truth, error) : WEFT_OK;
 }
 

@@ -19,9 +19,12 @@ typedef struct weft_compare_options {
     const char *bard;        /* NAME.bard.h5 as `weft bard` writes it, or NULL */
     const char *truth;       /* FILE.stitch from which the dataset was simulated, or NULL */
     int truth_paths;         /* of a pixel */
+    int picture_side;        /* of the scenes, pixels; 0 = WEFT_COMPARE_PICTURE_SIDE */
     double tiles_u, tiles_v; /* of the weave for one material; 0 = as many as the virtual rig would lay out */
     const char *folder;      /* for the page and its pictures */
 } weft_compare_options;
+
+enum { WEFT_COMPARE_PICTURE_SIDE = 400 };
 
 /* A dataset of fewer images than these is also fitted with each of them left out. */
 enum { WEFT_LEAVE_ONE_OUT_LIMIT = 30 };

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { PICTURE_SIZE = 400, PICTURE_SAMPLES = 3, PLANE_REPEATS = 1 };
+enum { PICTURE_SAMPLES = 3, PLANE_REPEATS = 1 };
 
 typedef struct setting {
     const char *mesh, *caption;
@@ -41,9 +41,9 @@ static weft_scene scene_of(const setting *s, weft_mode mode)
     return scene;
 }
 
-static weft_code draw(weft_player *player, const weft_scene *scene, weft_image *picture, weft_error *error)
+static weft_code draw(weft_player *player, const weft_scene *scene, int side, weft_image *picture, weft_error *error)
 {
-    return weft_player_picture(player, scene, PICTURE_SIZE, PICTURE_SIZE, PICTURE_SAMPLES, NULL, picture, error);
+    return weft_player_picture(player, scene, side, side, PICTURE_SAMPLES, NULL, picture, error);
 }
 
 static weft_code set_mesh(weft_player *player, const char *name, weft_error *error)
@@ -78,10 +78,10 @@ static weft_code draw_scene(weft_player *player, int index, weft_scenes *scenes,
         if (!scenes->has[mode])
             continue;
         weft_scene scene = scene_of(&settings[index], (weft_mode)mode);
-        WEFT_TRY(draw(player, &scene, &pictures->picture[mode], error));
+        WEFT_TRY(draw(player, &scene, scenes->width, &pictures->picture[mode], error));
         if (index == 0)
             WEFT_TRY(
-                weft_frame_time_measure(player, &scene, PICTURE_SIZE, PICTURE_SIZE, &scenes->frame_ms[mode], error));
+                weft_frame_time_measure(player, &scene, scenes->width, scenes->height, &scenes->frame_ms[mode], error));
     }
     return WEFT_OK;
 }
@@ -92,7 +92,7 @@ static weft_code measure_scene(weft_player *player, int index, weft_scenes *scen
     weft_scene_pictures *pictures = &scenes->scene[index];
     weft_scene scene = scene_of(&settings[index], WEFT_MODE_RAW);
     weft_surface_sample *surface;
-    WEFT_TRY(weft_player_read_surface(player, &scene, WEFT_MODE_RAW, PICTURE_SIZE, PICTURE_SIZE, &surface, error));
+    WEFT_TRY(weft_player_read_surface(player, &scene, WEFT_MODE_RAW, scenes->width, scenes->height, &surface, error));
     weft_code code = WEFT_OK;
     for (int model = 0; model < WEFT_SCENE_MODELS && code == WEFT_OK; model++) {
         if (scenes->has[model] && model != WEFT_MODE_RAW)
@@ -116,7 +116,7 @@ static weft_code draw_bard(weft_player *player, const char *path, const weft_pro
         weft_scene scene = scene_of(&settings[i], WEFT_MODE_RAW);
         code = set_mesh(player, settings[i].mesh, error);
         if (code == WEFT_OK)
-            code = draw(player, &scene, &scenes->scene[i].picture[WEFT_SCENE_BARD], error);
+            code = draw(player, &scene, scenes->width, &scenes->scene[i].picture[WEFT_SCENE_BARD], error);
     }
     scenes->has[WEFT_SCENE_BARD] = code == WEFT_OK;
     return code;
@@ -125,7 +125,7 @@ static weft_code draw_bard(weft_player *player, const char *path, const weft_pro
 static weft_code draw_all(weft_player *player, const weft_scenes_request *request, const weft_progress *progress,
                           weft_scenes *scenes, weft_error *error)
 {
-    scenes->width = scenes->height = PICTURE_SIZE;
+    scenes->width = scenes->height = request->side;
     scenes->near_lights = weft_dataset_get_layout(request->dataset)->distance == WEFT_NEAR;
     snprintf(scenes->renderer, sizeof scenes->renderer, "%s", weft_gl_renderer());
     WEFT_TRY(set_models(player, request, progress, scenes, error));

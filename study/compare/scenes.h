@@ -43,6 +43,7 @@ typedef struct weft_scenes_request {
     const weft_weave_layout *layout; /* of the weave on the material */
     const weft_microcylinder_cloth *threads;
     const char *bard; /* a dataset as `weft bard` writes it */
+    int side;         /* of the pictures, pixels */
 } weft_scenes_request;
 
 /* Draws without a window. Having no OpenGL is not an error. Errors: WEFT_BAD_INPUT from reading a dataset;

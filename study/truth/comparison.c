@@ -14,7 +14,7 @@
 /* Triangles of the whole drape that are traced; about 120 bytes each. */
 static const double most_triangles = 12e6;
 
-enum { PICTURE_SIZE = 400, PICTURE_SAMPLES = 3, DEFAULT_BOUNCES = 3, MAX_BOUNCES = 256, COARSEST_CELLS = 4 };
+enum { PICTURE_SAMPLES = 3, DEFAULT_BOUNCES = 3, MAX_BOUNCES = 256, COARSEST_CELLS = 4 };
 
 /* Light of this inclination crosses the cloth from top to bottom within the reach of the cloth near by. */
 static const double reach_deg = 75;
@@ -43,6 +43,7 @@ typedef struct truth_stage {
     weft_mesh drape;
     weft_draped_cloth *cloth;
     double mm_per_unit;
+    int side; /* of the pictures, pixels */
     weft_headless *headless;
     weft_player *player;
 } truth_stage;
@@ -160,8 +161,7 @@ static weft_code draw(truth_stage *stage, const weft_scene *scene, weft_mode mod
 {
     weft_scene alone = *scene;
     alone.pane[0] = mode;
-    return weft_player_picture(stage->player, &alone, PICTURE_SIZE, PICTURE_SIZE, PICTURE_SAMPLES, NULL, picture,
-                               error);
+    return weft_player_picture(stage->player, &alone, stage->side, stage->side, PICTURE_SAMPLES, NULL, picture, error);
 }
 
 /* What the player shows behind the cloth: a picture of a triangle without area. */
@@ -200,7 +200,7 @@ static weft_code trace(truth_stage *stage, const weft_traced_request *request, c
 {
     weft_image background = {0};
     weft_traced traced;
-    const weft_trace_options options = {PICTURE_SIZE,   PICTURE_SIZE,    request->paths,
+    const weft_trace_options options = {stage->side,    stage->side,     request->paths,
                                         truth->bounces, truth->reach_mm, request->seed};
     WEFT_TRY(draw_background(stage, scene, &background, error));
     weft_code code = weft_trace(stage->cloth, &stage->drape, stage->mm_per_unit, scene, &options, &background, progress,
@@ -215,8 +215,7 @@ static weft_code trace(truth_stage *stage, const weft_traced_request *request, c
 static weft_code measure(truth_stage *stage, const weft_scene *scene, weft_truth_scene *result, weft_error *error)
 {
     weft_surface_sample *surface;
-    WEFT_TRY(
-        weft_player_read_surface(stage->player, scene, WEFT_MODE_RAW, PICTURE_SIZE, PICTURE_SIZE, &surface, error));
+    WEFT_TRY(weft_player_read_surface(stage->player, scene, WEFT_MODE_RAW, stage->side, stage->side, &surface, error));
     weft_code code = WEFT_OK;
     for (int i = 0; i < WEFT_TRUTH_LIGHTS * WEFT_TRUTH_TRACED && code == WEFT_OK; i++) {
         weft_truth_pictures *under = &result->under[i / WEFT_TRUTH_TRACED];
@@ -242,8 +241,8 @@ static weft_code make_scene(truth_stage *stage, const weft_traced_request *reque
 weft_code weft_traced_truth_measure(const weft_traced_request *request, const weft_progress *progress,
                                     weft_traced_truth *truth, weft_error *error)
 {
-    *truth = (weft_traced_truth){.width = PICTURE_SIZE, .height = PICTURE_SIZE};
-    truth_stage stage = {0};
+    *truth = (weft_traced_truth){.width = request->side, .height = request->side};
+    truth_stage stage = {.side = request->side};
     weft_error absence = {0};
     if (weft_headless_create(WEFT_GL_CORE, &stage.headless, &absence) != WEFT_OK) {
         snprintf(truth->why_not, sizeof truth->why_not, "%s", absence.message);

@@ -58,6 +58,7 @@ typedef struct weft_traced_request {
     weft_dataset *dataset;
     const weft_material *material;
     const char *stitch; /* its file */
+    int side;           /* of the pictures, pixels */
     int paths;          /* of a pixel */
     uint64_t seed;
 } weft_traced_request;

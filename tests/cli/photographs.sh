@@ -25,7 +25,7 @@ refused() {
     [ ! -e refused.btf.h5 ] || fail "a dataset was left behind"
 }
 
-"$weft" hand checker --opening 40 -o free --photographs 12 --rubbish 4 --width 1000 --truth-size 32 -q
+"$weft" hand checker --opening 40 -o free --photographs 10 --rubbish 4 --width 900 --truth-size 32 -q
 echo nothing >free/broken.jpg
 "$weft" photographs free -o free.btf.h5 --opening 40 --size 32x32 --report report >said 2>/dev/null
 "$python" "$here/photographs.py" free || fail "set free is wrong"
@@ -48,7 +48,7 @@ grep -q "dome.lp:4," said || fail "another row is doubted: $(cat said)"
 "$weft" photographs pin -o pin.btf.h5 --opening 40 --size 32x32 --balls 0 -q 2>/dev/null
 "$python" "$here/photographs.py" pin || fail "set pin is wrong"
 
-"$weft" hand checker --opening 40 -o linear --photographs 7 --format exr --width 900 --truth-size 32 -q
+"$weft" hand checker --opening 40 -o linear --photographs 6 --format exr --width 800 --truth-size 32 -q
 "$weft" photographs linear -o linear.btf.h5 --opening 40 --size 32x32 -q 2>/dev/null
 "$python" "$here/photographs.py" linear || fail "set linear is wrong"
 

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { WIDTH = 5, HEIGHT = 4 };
+enum { WIDTH = 5, HEIGHT = 4, SIDE = 120 /* of the pictures */ };
 
 static weft_rgb glossy(int x, int y, weft_vec3 light, weft_vec3 view)
 {
@@ -196,6 +196,7 @@ static void the_page_compares_every_model_that_is_given(void **state)
                                           .material = "compare.weft",
                                           .weave = WEFT_ASSETS "/weaves/cotton_denim.wv",
                                           .bard = "compare.btf.h5",
+                                          .picture_side = SIDE,
                                           .folder = "compare-report"};
     weft_comparison comparison;
     weft_error error = {0};
@@ -211,6 +212,7 @@ static void the_page_compares_every_model_that_is_given(void **state)
     assert_true(comparison.model[2].texture.all.relative_rmse == 0);
     assert_float_equal(comparison.model[2].mean.relative_rmse, 0, 1e-6);
     if (comparison.scenes.drawn) {
+        assert_int_equal(comparison.scenes.scene[0].picture[WEFT_MODE_RAW].width, SIDE);
         assert_true(comparison.scenes.scene[0].error[WEFT_SCENE_BARD].relative_rmse == 0);
         assert_true(comparison.scenes.scene[0].error[WEFT_MODE_ANALYTIC].relative_rmse > 0.1);
     }
@@ -239,6 +241,7 @@ static void microcylinder_cloth_is_compared_as_it_is(void **state)
     weft_compare_options options = {.dataset = "compare.btf.h5",
                                     .material = "compare.weft",
                                     .weave = WEFT_ASSETS "/microcylinder/shot.mc",
+                                    .picture_side = SIDE,
                                     .folder = "compare-report"};
     expect_ok(weft_microcylinder_read(options.weave, NULL, 0, &description, &error), &error);
     threads = weft_microcylinder_prepare(&description.cloth);
@@ -328,8 +331,13 @@ static void a_material_of_another_size_is_refused(void **state)
     assert_int_not_equal(access("no-report/index.html", F_OK), 0);
 }
 
-int main(void)
+/* --drawn: those whose scenes are looked at, too. */
+int main(int argc, char **argv)
 {
+    const struct CMUnitTest drawn[] = {
+        cmocka_unit_test(the_page_compares_every_model_that_is_given),
+        cmocka_unit_test(microcylinder_cloth_is_compared_as_it_is),
+    };
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_tells_the_errors_that_the_functions_have),
         cmocka_unit_test(the_page_compares_every_model_that_is_given),
@@ -339,5 +347,7 @@ int main(void)
         cmocka_unit_test(a_matt_plane_is_predicted_from_the_other_photographs),
         cmocka_unit_test(a_material_of_another_size_is_refused),
     };
+    if (argc > 1 && strcmp(argv[1], "--drawn") == 0)
+        return cmocka_run_group_tests(drawn, NULL, NULL);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -326,7 +326,8 @@ static void the_drape_is_drawn_in_every_scene_and_measured(void **state)
     options.lobe_count = 1;
     expect_ok(weft_dataset_open("weave.btf.h5", &dataset, &error), &error);
     expect_ok(weft_compress(dataset, &options, NULL, &material, NULL, &error), &error);
-    weft_traced_request request = {dataset, &material, "weave.stitch", 2, 1};
+    weft_traced_request request = {
+        .dataset = dataset, .material = &material, .stitch = "weave.stitch", .side = 240, .paths = 2, .seed = 1};
     expect_ok(weft_traced_truth_measure(&request, NULL, &truth, &error), &error);
     bool drawn = truth.drawn;
     if (drawn) {
@@ -338,6 +339,7 @@ static void the_drape_is_drawn_in_every_scene_and_measured(void **state)
         weft_traced_truth_free(&truth);
         request.stitch = "other.stitch";
         request.paths = 1;
+        request.side = 16;
         expect_ok(weft_traced_truth_measure(&request, NULL, &truth, &error), &error);
         assert_non_null(strstr(truth.warning, "'Plain weave', the truth is traced from 'Other weave'"));
         weft_traced_truth_free(&truth);
