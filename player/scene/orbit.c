@@ -45,6 +45,11 @@ double weft_orbit_slope(void)
     return tan(field_of_view_rad / 2);
 }
 
+double weft_orbit_whole(void)
+{
+    return 1 / sin(field_of_view_rad / 2);
+}
+
 /* Half the picture's width and height at unit distance. */
 static void half_sizes(double aspect, double *x, double *y)
 {

@@ -19,6 +19,9 @@ typedef struct weft_orbit_axes {
 /* Half of the smaller side of the picture at unit distance. */
 double weft_orbit_slope(void);
 
+/* The distance at which the bounding sphere just touches the smaller sides of the picture. */
+double weft_orbit_whole(void);
+
 weft_orbit_axes weft_orbit_axes_of(const weft_orbit *orbit);
 
 /* What moves a camera, within its limits: elevation up to 89.9 degrees either way, distance 1.05 to 60, pans up to 4.

@@ -36,6 +36,8 @@ static bool is_on_picture(const weft_application *a, double x)
 static void on_press(void *context, int button, bool pressed, int modifiers, double x, double y)
 {
     weft_application *a = context;
+    if (pressed)
+        weft_history_note(&a->history, &a->interaction.scene, &a->weave);
     if (!pressed || is_on_picture(a, x))
         weft_interaction_press(&a->interaction, button, pressed, modifiers, picture_x(a, x), y);
 }
@@ -59,6 +61,8 @@ static void on_key(void *context, int key, int action, int modifiers)
 {
     weft_application *a = context;
     weft_interaction *i = &a->interaction;
+    if (action == GLFW_PRESS && !(modifiers & GLFW_MOD_CONTROL))
+        weft_history_note(&a->history, &i->scene, &a->weave);
     if (action == GLFW_RELEASE)
         weft_keys_release(i, key);
     else if (!weft_ui_wants_keyboard())
@@ -132,6 +136,7 @@ void weft_application_free(weft_application *a)
         weft_ui_free();
     }
     weft_weave_edit_free(&a->weave);
+    weft_history_free(&a->history);
     weft_player_free(a->player);
     weft_window_free(a->window);
     free(a);
@@ -268,6 +273,32 @@ static weft_code advance(weft_application *a, weft_error *error)
 
 /* ---- Wishes ---- */
 
+static void take_back(weft_application *a)
+{
+    weft_interaction *i = &a->interaction;
+    bool weave_changed, is_undo = i->wants_undo;
+    weft_error error = {0};
+    i->wants_undo = i->wants_redo = false;
+    bool found = (is_undo ? weft_history_undo : weft_history_redo)(&a->history, &i->scene, &a->weave, &weave_changed);
+    i->changed |= found;
+    if (weave_changed && weft_weave_edit_ask(&a->weave, &error) != WEFT_OK)
+        weft_application_tell(a, true, error.message);
+    else if (!found)
+        weft_application_tell(a, false, is_undo ? "nothing to undo" : "nothing to do again");
+}
+
+/* A weave is not lost by one key. */
+static void quit(weft_application *a)
+{
+    if (a->weave.is_unsaved && !a->has_warned) {
+        a->has_warned = true;
+        a->interaction.wants_quit = false;
+        weft_application_tell(a, true, "no file has the weave as it is: save it in the panel, or quit once more");
+    } else {
+        weft_window_close(a->window);
+    }
+}
+
 static void grant_wishes(weft_application *a)
 {
     weft_interaction *i = &a->interaction;
@@ -285,8 +316,10 @@ static void grant_wishes(weft_application *a)
         weft_application_save_picture(a);
     }
     weft_window_set_full_screen(a->window, i->full_screen);
+    if (i->wants_undo || i->wants_redo)
+        take_back(a);
     if (i->wants_quit)
-        weft_window_close(a->window);
+        quit(a);
 }
 
 static void turn_by_itself(weft_application *a)

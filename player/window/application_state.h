@@ -6,6 +6,7 @@
 #include "player/draw/probe.h"
 #include "player/gl/context.h"
 #include "player/window/application.h"
+#include "player/window/history.h"
 #include "player/window/interaction.h"
 #include "player/window/space_mouse/space_mouse.h"
 #include "player/window/watch.h"
@@ -35,6 +36,8 @@ struct weft_application {
     weft_texel texel; /* of it, where that is compressed */
     weft_probe_plots plots;
     weft_weave_edit weave; /* what the sliders change */
+    weft_history history;  /* of lights, weave, and what is shown */
+    bool has_warned;       /* that quitting would lose a weave */
     int noise_seed;        /* of the noise that was on last; 0: none yet */
     double progress;
     weft_error failure;                 /* of reading, last */

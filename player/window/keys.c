@@ -213,6 +213,14 @@ static void turn_by_itself(weft_interaction *i)
     snprintf(i->said, sizeof i->said, "turn by itself: %s", i->turns ? "on" : "off");
 }
 
+static void see_all(weft_interaction *i)
+{
+    weft_orbit *orbit = &i->scene.orbit;
+    *orbit = (weft_orbit){orbit->azimuth_rad, orbit->elevation_rad, weft_orbit_whole(), 0, 0};
+    snprintf(i->said, sizeof i->said, "all of it");
+    i->changed = true;
+}
+
 static void look_from_start(weft_interaction *i)
 {
     i->scene.orbit = i->start.orbit;
@@ -265,6 +273,16 @@ static void want_screenshot(weft_interaction *i)
 static void want_reload(weft_interaction *i)
 {
     i->wants_reload = true;
+}
+
+static void want_undo(weft_interaction *i)
+{
+    i->wants_undo = true;
+}
+
+static void want_redo(weft_interaction *i)
+{
+    i->wants_redo = true;
 }
 
 static void toggle_full_screen(weft_interaction *i)
@@ -331,6 +349,7 @@ static const weft_key keys[] = {
     {NULL, NULL, GLFW_KEY_KP_SUBTRACT, .repeats = true, .press = go_farther},
     {"L", "plain drags and arrows move the light", GLFW_KEY_L, .press = hold_light},
     {"A", "turn by itself", GLFW_KEY_A, .press = turn_by_itself},
+    {"F", "all of it in the picture", GLFW_KEY_F, .press = see_all},
     {"Home", "camera as at the start", GLFW_KEY_HOME, .press = look_from_start},
     {"0", "lights and exposure as at the start", GLFW_KEY_0, .press = light_from_start},
     {"[", "darker", GLFW_KEY_LEFT_BRACKET, .repeats = true, .press = darken},
@@ -343,6 +362,8 @@ static const weft_key keys[] = {
     {.name = "Window"},
     {"F12, Ctrl + S", "save the picture", GLFW_KEY_F12, .press = want_screenshot},
     {NULL, NULL, GLFW_KEY_S, .with_control = true, .press = want_screenshot},
+    {"Ctrl + Z", "undo: light, weave, what is shown", GLFW_KEY_Z, .with_control = true, .press = want_undo},
+    {"Ctrl + Y", "do it again", GLFW_KEY_Y, .with_control = true, .press = want_redo},
     {"R", "read the files again", GLFW_KEY_R, .press = want_reload},
     {"F11", "full screen", GLFW_KEY_F11, .press = toggle_full_screen},
     {"Tab", "panel", GLFW_KEY_TAB, .press = toggle_panel},

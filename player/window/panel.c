@@ -328,7 +328,7 @@ static void title(const weft_application *a)
 {
     char text[96];
     weft_ui_heading(a->title);
-    snprintf(text, sizeof text, "%.1f ms a frame, %.0f frames/s", a->frame_ms,
+    snprintf(text, sizeof text, "%.1f ms a frame, %.0f frames/s   H: all keys", a->frame_ms,
              a->frame_ms > 0 ? 1000 / a->frame_ms : 0);
     weft_ui_dim_text(text);
     weft_ui_gap();

@@ -28,7 +28,9 @@ weft_code weft_weave_edit_follow(weft_weave_edit *edit, const weft_player *playe
     long revision = weft_player_weave_revision(player);
     if (edit->revision == revision)
         return WEFT_OK;
+    int reads = edit->reads;
     weft_weave_edit_free(edit);
+    edit->reads = reads + 1;
     edit->revision = revision;
     edit->alike = true;
     if (!path)
@@ -62,7 +64,7 @@ void weft_weave_edit_set(weft_weave_edit *edit, const weft_weave_parameter_range
         if (is_edited(edit, i))
             *value_in(&edit->weave.yarn[i], range) = (weft_real)value;
     }
-    edit->is_changed = true;
+    edit->is_changed = edit->is_unsaved = true;
 }
 
 void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks)
@@ -73,7 +75,7 @@ void weft_weave_edit_set_colours(weft_weave_edit *edit, weft_rgb kd, weft_rgb ks
             edit->weave.yarn[i].ks = ks;
         }
     }
-    edit->is_changed = true;
+    edit->is_changed = edit->is_unsaved = true;
 }
 
 void weft_weave_edit_set_noise(weft_weave_edit *edit, double fineness, double period, const double amplitude_deg[4])
@@ -82,7 +84,7 @@ void weft_weave_edit_set_noise(weft_weave_edit *edit, double fineness, double pe
     edit->weave.period = (weft_real)period;
     for (int i = 0; i < 4; i++)
         edit->weave.inclination_noise_deg[i] = (weft_real)amplitude_deg[i];
-    edit->is_changed = true;
+    edit->is_changed = edit->is_unsaved = true;
 }
 
 weft_code weft_weave_edit_ask(weft_weave_edit *edit, weft_error *error)
@@ -116,5 +118,7 @@ weft_code weft_weave_edit_save(weft_weave_edit *edit, char path[32], weft_error 
     do
         snprintf(path, 32, "weft-%03d.wv", number++);
     while (access(path, F_OK) == 0 && number < 1000);
-    return weft_weave_write(path, &edit->weave, "Edited in weft play.", error);
+    WEFT_TRY(weft_weave_write(path, &edit->weave, "Edited in weft play.", error));
+    edit->is_unsaved = false;
+    return WEFT_OK;
 }

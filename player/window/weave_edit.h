@@ -9,7 +9,9 @@ typedef struct weft_weave_edit {
     weft_weave weave;          /* no yarns: there is none to edit */
     int yarn;                  /* index of the one that is edited */
     bool alike;                /* with it all that had the same segment */
+    int reads;                 /* how many files have been read: which of them `weave` is of */
     bool is_changed;           /* not as its file has it */
+    bool is_unsaved;           /* no file has it */
     long revision;             /* weft_player_weave_revision of the weave */
     bool is_pending;           /* what follows from the last change is not shown yet, or not to its last digits */
     weft_weave_worker *worker; /* of the weave; NULL: none */

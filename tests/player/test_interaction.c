@@ -112,6 +112,34 @@ static void keys_toggle_and_undo_themselves(void **state)
     assert_false(i.shows_help);
 }
 
+/* The bounding sphere has radius 1: seen from d, its rim is asin(1 / d) from its centre. */
+static void all_of_a_mesh_is_seen_from_where_the_camera_is(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_orbit_turn(&i.scene.orbit, 1, 0.2);
+    weft_orbit before = i.scene.orbit;
+    weft_orbit_pan(&i.scene.orbit, 0.5, -2);
+    weft_orbit_zoom(&i.scene.orbit, 0.1);
+    weft_keys_press(&i, GLFW_KEY_F, 0, false);
+    assert_float_equal(tan(asin(1 / i.scene.orbit.distance)), weft_orbit_slope(), 1e-12);
+    assert_true(i.scene.orbit.pan_right == 0 && i.scene.orbit.pan_up == 0);
+    assert_true(i.scene.orbit.azimuth_rad == before.azimuth_rad && i.scene.orbit.elevation_rad == before.elevation_rad);
+    assert_true(i.changed);
+}
+
+static void control_and_a_letter_undo_and_redo_where_the_letter_alone_does_not(void **state)
+{
+    (void)state;
+    weft_interaction i = fresh();
+    weft_keys_press(&i, GLFW_KEY_Z, 0, false);
+    assert_false(i.wants_undo);
+    weft_keys_press(&i, GLFW_KEY_Z, GLFW_MOD_CONTROL, false);
+    assert_true(i.wants_undo && !i.wants_redo);
+    weft_keys_press(&i, GLFW_KEY_Y, GLFW_MOD_CONTROL, false);
+    assert_true(i.wants_redo);
+}
+
 static void other_keys_are_wishes_for_the_caller(void **state)
 {
     (void)state;
@@ -333,6 +361,8 @@ int main(void)
         cmocka_unit_test(camera_and_light_stop_at_their_ends),
         cmocka_unit_test(mode_keys_show_what_is_there_and_ignore_what_is_not),
         cmocka_unit_test(keys_toggle_and_undo_themselves),
+        cmocka_unit_test(all_of_a_mesh_is_seen_from_where_the_camera_is),
+        cmocka_unit_test(control_and_a_letter_undo_and_redo_where_the_letter_alone_does_not),
         cmocka_unit_test(other_keys_are_wishes_for_the_caller),
         cmocka_unit_test(space_flips_between_the_last_two_modes),
         cmocka_unit_test(the_divider_of_a_wipe_follows_the_pointer_and_stays_in_the_picture),

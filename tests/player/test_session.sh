@@ -116,6 +116,10 @@ click 25 650
 shoot_when is_not "$edited" # the noise is on
 click 25 650
 shoot_when is "$edited"
+xdotool key ctrl+z # the noise goes on again
+shoot_when is_not "$edited"
+xdotool key ctrl+y
+shoot_when is "$edited"
 click 60 678
 for _ in $(seq 100); do
     [ -s weft-001.wv ] && break
