@@ -310,8 +310,8 @@ static void grant_wishes(weft_application *a)
         i->wants_reload = false;
         weft_application_open(a, NULL);
     }
-    /* Before the first frame there is nothing to save: the wish waits. */
-    if (i->wants_screenshot && a->canvas.frame_count > 0) {
+    /* Before the first frame there is nothing to save, and what was done before the wish is to be seen. */
+    if (i->wants_screenshot && a->canvas.frame_count > 0 && !weft_ui_is_behind()) {
         i->wants_screenshot = false;
         weft_application_save_picture(a);
     }
@@ -388,7 +388,7 @@ static bool has_something(const weft_application *a)
 
 static double wait_s(const weft_application *a)
 {
-    bool is_drawing = (has_something(a) && !is_finished(a)) || a->interaction.changed;
+    bool is_drawing = (has_something(a) && !is_finished(a)) || a->interaction.changed || weft_ui_is_behind();
     return is_drawing ? 0 : a->progress >= 0 || a->weave.is_pending ? poll_of_loading_s : poll_s;
 }
 

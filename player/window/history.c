@@ -33,22 +33,28 @@ static weft_history_state state_of(const weft_scene *scene, const weft_weave_edi
     return state;
 }
 
+/* Bytes, padding included: a difference there alone would only be one state more. */
+static bool is_same(const void *a, const void *b, size_t size)
+{
+    return memcmp(a, b, size) == 0;
+}
+
 static bool is_same_scene(const weft_scene *a, const weft_scene *b)
 {
     weft_scene turned = *a;
     turned.orbit = b->orbit;
-    return memcmp(&turned, b, sizeof turned) == 0;
+    return is_same(&turned, b, sizeof turned);
 }
 
 static bool is_same_weave(const weft_history_state *state, const weft_weave_edit *edit)
 {
     const weft_weave *weave = &edit->weave;
-    bool same_yarns = state->yarn_count == weave->yarn_count &&
-                      (state->yarn_count == 0 ||
-                       memcmp(state->yarn, weave->yarn, sizeof *state->yarn * (size_t)state->yarn_count) == 0);
+    bool same_yarns =
+        state->yarn_count == weave->yarn_count &&
+        (state->yarn_count == 0 || is_same(state->yarn, weave->yarn, sizeof *state->yarn * (size_t)state->yarn_count));
     return state->weave_reads == edit->reads && same_yarns && state->fineness == weave->fineness &&
            state->period == weave->period &&
-           memcmp(state->inclination_noise_deg, weave->inclination_noise_deg, sizeof state->inclination_noise_deg) == 0;
+           is_same(state->inclination_noise_deg, weave->inclination_noise_deg, sizeof state->inclination_noise_deg);
 }
 
 static bool is_now(const weft_history *history, const weft_scene *scene, const weft_weave_edit *edit)

@@ -2,12 +2,15 @@
 
 #include "base/picture/font_file.h"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <imgui/backends/imgui_impl_glfw.h>
 #include <imgui/backends/imgui_impl_opengl3.h>
 #include <imgui/imgui.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <deque>
 
 namespace
 {
@@ -133,6 +136,73 @@ void put_column(const weft_ui_entry *line, size_t count, float name_width)
 const ImGuiWindowFlags fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                                ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse;
 
+/* ---- The mouse ----
+ *
+ * This Dear ImGui asks once a frame where the mouse is by then. Where a frame is slow, a click would be taken for one
+ * at the place to which the pointer has gone on since. So what the mouse did waits here, and a frame sees one press or
+ * release of it. */
+
+struct mouse_event {
+    ImVec2 at;
+    int button; /* or none: it was moved */
+    bool pressed;
+};
+
+const int none = -1;
+std::deque<mouse_event> waiting;
+mouse_event last_event{};
+bool is_down[ImGuiMouseButton_COUNT];
+GLFWcursorposfun move_before;
+GLFWmousebuttonfun button_before;
+
+void on_move(GLFWwindow *window, double x, double y)
+{
+    if (move_before)
+        move_before(window, x, y);
+    last_event = {ImVec2((float)x, (float)y), none, false};
+    if (!waiting.empty() && waiting.back().button == none)
+        waiting.pop_back();
+    waiting.push_back(last_event);
+}
+
+void on_button(GLFWwindow *window, int button, int action, int modifiers)
+{
+    if (button_before)
+        button_before(window, button, action, modifiers);
+    if (button < ImGuiMouseButton_COUNT)
+        waiting.push_back({last_event.at, button, action == GLFW_PRESS});
+}
+
+void listen_to_mouse(GLFWwindow *window)
+{
+    move_before = glfwSetCursorPosCallback(window, on_move);
+    button_before = glfwSetMouseButtonCallback(window, on_button);
+}
+
+/* Up to the next press or release; where a widget was dragged to is seen before it is let go. */
+void hear_mouse()
+{
+    static ImVec2 at(-1, -1);
+    bool was_moved = false, was_button = false;
+    while (!waiting.empty() && !was_button) {
+        const mouse_event event = waiting.front();
+        const bool is_release = event.button != none && !event.pressed;
+        if (is_release && was_moved)
+            break;
+        waiting.pop_front();
+        at = event.at;
+        was_button = event.button != none;
+        was_moved = !was_button;
+        if (was_button)
+            is_down[event.button] = event.pressed;
+    }
+    ImGuiIO &io = ImGui::GetIO();
+    bool is_outside = io.MousePos.x < -1e6f;
+    if (!is_outside && at.x >= 0)
+        io.MousePos = at;
+    std::copy(std::begin(is_down), std::end(is_down), io.MouseDown);
+}
+
 } // namespace
 
 weft_code weft_ui_create(void *glfw_window, double scale, weft_error *error)
@@ -142,8 +212,10 @@ try {
     ImGui::GetIO().IniFilename = nullptr;
     set_style();
     load_font();
-    if (ImGui_ImplGlfw_InitForOpenGL((GLFWwindow *)glfw_window, true) && ImGui_ImplOpenGL3_Init("#version 330 core"))
+    if (ImGui_ImplGlfw_InitForOpenGL((GLFWwindow *)glfw_window, true) && ImGui_ImplOpenGL3_Init("#version 330 core")) {
+        listen_to_mouse((GLFWwindow *)glfw_window);
         return WEFT_OK;
+    }
     return weft_fail(error, WEFT_SYSTEM, "cannot draw the user interface with this OpenGL");
 } catch (...) {
     return weft_fail(error, WEFT_SYSTEM, "cannot make the user interface");
@@ -162,7 +234,13 @@ void weft_ui_begin(void)
 {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    hear_mouse();
     ImGui::NewFrame();
+}
+
+bool weft_ui_is_behind(void)
+{
+    return !waiting.empty();
 }
 
 void weft_ui_end(void)

@@ -19,10 +19,13 @@ extern "C" {
 weft_code weft_ui_create(void *glfw_window, double scale, weft_error *error);
 void weft_ui_free(void);
 
+/* Widgets see one press or release of the mouse a frame, where it was then. */
 void weft_ui_begin(void);
 /* Draws the widgets into framebuffer 0. */
 void weft_ui_end(void);
 
+/* Whether they have not seen yet all that the mouse did. */
+bool weft_ui_is_behind(void);
 /* Whether a widget is held, or one that floats over the picture is open; whether the keys are a widget's. */
 bool weft_ui_holds_mouse(void);
 bool weft_ui_wants_keyboard(void);

@@ -42,6 +42,12 @@ mean() { # PICTURE WIDTHxHEIGHT+X+Y: of the grey values, in thousandths
 }
 
 # Conditions.
+seen_before=none
+is_as_before() {
+    last_seen=$seen_before
+    seen_before=$next
+    cmp -s "$last_seen" "$next"
+}
 is() { cmp -s "$1" "$next"; }
 is_not() { ! cmp -s "$1" "$next"; }
 is_of_size() { [ "$(identify -format '%wx%h' "$next")" = "$1" ]; }
@@ -53,14 +59,14 @@ tells_an_error() {
         -opaque '#db784d' -format '%[fx:round(100000*mean)]' info:)" -gt 50 ]
 }
 
-# The widgets look at the mouse once a frame: what it does is slower than that.
+# As fast as no hand is: nothing of it may be lost.
 drag() { # BUTTON X Y DX DY: from a point of the window
-    xdotool mousemove --window "$window" "$2" "$3" sleep 0.25 mousedown "$1" sleep 0.25
-    xdotool mousemove_relative -- "$4" "$5" sleep 0.25 mouseup "$1" sleep 0.25
+    xdotool mousemove --window "$window" "$2" "$3" mousedown "$1"
+    xdotool mousemove_relative -- "$4" "$5" mouseup "$1"
 }
 
 click() { # X Y: of the window
-    xdotool mousemove --window "$window" "$1" "$2" sleep 0.25 mousedown 1 sleep 0.25 mouseup 1 sleep 0.25
+    xdotool mousemove --window "$window" "$1" "$2" click 1
 }
 
 shoot_when is_of_size 450x720
@@ -110,7 +116,7 @@ drag 1 200 340 60 0
 shoot_when is_not "$analytic"
 import -window root edited.png
 sleep 1 # the exact scale follows
-save_picture || fail "no picture $next"
+shoot_when is_as_before
 edited=$next
 click 25 650
 shoot_when is_not "$edited" # the noise is on
