@@ -30,11 +30,16 @@ static int ring_of(weft_vec3 direction)
     return weft_ubo81_ring(weft_angles_of_direction(direction).theta_rad);
 }
 
+double weft_certificate_scale_of_rings(const weft_certificate *c, double value, int light_ring, int view_ring)
+{
+    return c->mean * spread_of(c, value) * c->view[view_ring] * c->light[light_ring];
+}
+
 double weft_certificate_scale(const weft_certificate *c, double value, weft_vec3 light, weft_vec3 view)
 {
     if (!(light.z > 0 && view.z > 0))
         return 0;
-    return c->mean * spread_of(c, value) * c->view[ring_of(view)] * c->light[ring_of(light)];
+    return weft_certificate_scale_of_rings(c, value, ring_of(light), ring_of(view));
 }
 
 static int level_index(const weft_certificate *c, double level)

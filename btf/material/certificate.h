@@ -46,6 +46,10 @@ double weft_certificate_half_width(const weft_certificate *certificate, double l
 /* The same without q: what residuals are divided by. Pure. */
 double weft_certificate_scale(const weft_certificate *certificate, double value, weft_vec3 light, weft_vec3 view);
 
+/* The same for directions of these rings. Pure. */
+double weft_certificate_scale_of_rings(const weft_certificate *certificate, double value, int light_ring,
+                                       int view_ring);
+
 /* Parts as shares of the half width: sampling = 1 - fitted, at least 0; model^2 = fitted^2 - storage^2 -
  * registration^2, at least 0. */
 typedef struct weft_certificate_parts {

@@ -56,16 +56,9 @@ static void find_spread(const weft_residuals *held, float *scratch, weft_certifi
         find_knot(held->value[0], held->count[0], knot, scratch, c);
 }
 
-/* A direction of a ring. */
-static weft_vec3 on_ring(int ring)
-{
-    return weft_direction_of_angles((weft_angles){weft_rad_of_deg(15 * ring), 0});
-}
-
 static double score_of(const weft_certificate *c, const weft_residual *residual, double error)
 {
-    return error /
-           weft_certificate_scale(c, (double)residual->prediction, on_ring(residual->light), on_ring(residual->view));
+    return error / weft_certificate_scale_of_rings(c, (double)residual->prediction, residual->light, residual->view);
 }
 
 typedef enum ring_kind { OF_VIEW, OF_LIGHT } ring_kind;

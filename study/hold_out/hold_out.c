@@ -121,11 +121,13 @@ static weft_code ask_material(const weft_trial *trial, const weft_material *mate
 /* The material is another one afterwards. */
 static weft_code ask(const weft_trial *trial, weft_material *material, answers *said, weft_error *error)
 {
-    weft_asked_samples moved_fitted = {0};
+    weft_trial held_alone = *trial;
+    weft_asked_samples none = {0};
+    held_alone.fitted_count = 0;
     WEFT_TRY(ask_material(trial, material, &said->material, &said->fitted, error));
     weft_material_move_by_steps(material);
-    weft_code code = ask_material(trial, material, &said->moved, &moved_fitted, error);
-    weft_asked_samples_free(&moved_fitted);
+    weft_code code = ask_material(&held_alone, material, &said->moved, &none, error);
+    weft_asked_samples_free(&none);
     return code == WEFT_OK ? weft_trial_ask_photographs(trial, &said->photographs, error) : code;
 }
 
