@@ -13,23 +13,6 @@ size_t weft_conformal_rank(size_t count, double level)
     return rank > (double)count ? 0 : (size_t)rank;
 }
 
-static int compare_numbers(const void *left, const void *right)
-{
-    double a = *(const double *)left, b = *(const double *)right;
-    return (a > b) - (a < b);
-}
-
-double weft_conformal_quantile(double *score, size_t count, double level)
-{
-    size_t rank = weft_conformal_rank(count, level);
-    if (rank == 0)
-        return INFINITY;
-    qsort(score, count, sizeof *score, compare_numbers);
-    return score[rank - 1];
-}
-
-/* ---- Groups ---- */
-
 static int compare_scores(const void *left, const void *right)
 {
     const weft_grouped_score *a = left, *b = right;

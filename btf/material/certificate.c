@@ -35,13 +35,6 @@ double weft_certificate_scale_of_rings(const weft_certificate *c, double value, 
     return c->mean * spread_of(c, value) * c->view[view_ring] * c->light[light_ring];
 }
 
-double weft_certificate_scale(const weft_certificate *c, double value, weft_vec3 light, weft_vec3 view)
-{
-    if (!(light.z > 0 && view.z > 0))
-        return 0;
-    return weft_certificate_scale_of_rings(c, value, ring_of(light), ring_of(view));
-}
-
 static int level_index(const weft_certificate *c, double level)
 {
     return weft_smaller(level > 0 ? (int)fmin(level, WEFT_MATERIAL_MAX_LEVELS) : 0, c->level_count - 1);
@@ -50,7 +43,10 @@ static int level_index(const weft_certificate *c, double level)
 double weft_certificate_half_width(const weft_certificate *c, double level, double value, weft_vec3 light,
                                    weft_vec3 view)
 {
-    return c->level[level_index(c, level)].quantile * weft_certificate_scale(c, value, light, view);
+    if (!(light.z > 0 && view.z > 0))
+        return 0;
+    return c->level[level_index(c, level)].quantile *
+           weft_certificate_scale_of_rings(c, value, ring_of(light), ring_of(view));
 }
 
 weft_certificate_parts weft_certificate_parts_of(const weft_certificate *c, int level, int ring)

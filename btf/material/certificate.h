@@ -43,10 +43,7 @@ typedef struct weft_certificate {
 double weft_certificate_half_width(const weft_certificate *certificate, double level, double value, weft_vec3 light,
                                    weft_vec3 view);
 
-/* The same without q: what residuals are divided by. Pure. */
-double weft_certificate_scale(const weft_certificate *certificate, double value, weft_vec3 light, weft_vec3 view);
-
-/* The same for directions of these rings. Pure. */
+/* The same without q, for directions of these rings: what residuals are divided by. Pure. */
 double weft_certificate_scale_of_rings(const weft_certificate *certificate, double value, int light_ring,
                                        int view_ring);
 
