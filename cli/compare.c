@@ -128,6 +128,26 @@ static weft_code say_held_out(const weft_common_options *common, const weft_comp
     return code;
 }
 
+/* How many samples of this dataset lie in their interval; of those that were fitted more do. */
+static void say_coverage(const weft_common_options *common, const weft_comparison *comparison)
+{
+    const weft_coverage *coverage = &comparison->model[0].texture.coverage;
+    if (coverage->all.count == 0)
+        return;
+    weft_command_say(common,
+                     "certificate: %.2f %% of the samples lie in their interval of %g %%; mean width %.3f of the mean "
+                     "sample, %.3f if all were alike",
+                     100 * coverage->all.covered, 100 * comparison->held_out.certificate.probability,
+                     coverage->all.width, coverage->even_width);
+    char event[256];
+    snprintf(event, sizeof event,
+             "{\"event\":\"coverage\",\"values\":%ld,\"covered\":%.6g,\"width\":%.6g,\"even_width\":%.6g,"
+             "\"dark\":%.6g,\"bright\":%.6g}",
+             coverage->all.count, coverage->all.covered, coverage->all.width, coverage->even_width,
+             coverage->dark.covered, coverage->bright.covered);
+    weft_command_event(common, event);
+}
+
 static void say_numbers(const compare_command *command, const weft_comparison *comparison)
 {
     const weft_common_options *common = &command->common;
@@ -139,6 +159,7 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
                   &comparison->model[i].texture.all);
         say_error(common, comparison->model[i].name, "mean BRDF", &comparison->model[i].mean);
     }
+    say_coverage(common, comparison);
     weft_command_say(common, "size: %.0f bytes, 1:%.1f of the half floats", comparison->material_bytes,
                      comparison->half_float_bytes / comparison->material_bytes);
     if (comparison->left_out.count > 0)

@@ -234,6 +234,15 @@ static void say_target(const compress_command *command, const weft_compress_repo
                          100 * command->options.target_error, report->missed_texel_count, report->texel_count);
 }
 
+static void say_certificate(const weft_common_options *common, const weft_certificate *certificate)
+{
+    char line[WEFT_HOLD_OUT_LINE];
+    weft_certificate_describe(certificate, line);
+    weft_command_say(common, "  certificate: %s;", line);
+    weft_certificate_row(certificate, 2, line);
+    weft_command_say(common, "    where %.3g is said, view and light at 30 degrees: %s", certificate->mean, line);
+}
+
 /* An event of what is in the metadata, too. */
 static weft_code say_hold_out(const weft_common_options *common, const weft_hold_out *result, weft_error *error)
 {
@@ -242,6 +251,8 @@ static weft_code say_hold_out(const weft_common_options *common, const weft_hold
     weft_command_say(common, "%s", line);
     weft_hold_out_explain(result, line);
     weft_command_say(common, "  %s", line);
+    if (result->has_certificate)
+        say_certificate(common, &result->certificate);
     if (!common->json)
         return WEFT_OK;
     json_t *object = weft_hold_out_to_json(result);

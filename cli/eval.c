@@ -47,6 +47,10 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_NOISE, .offset = offsetof(eval_command, noise_seed)},
     {"lobes", .help = "Evaluate the lobes of a .weft that has layers, too", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(eval_command, options.lobes)},
+    {"interval",
+     .help = "Of a .weft with a certificate: add the ends of its interval of 95 %, r_low, r_high, ...; "
+             "needs u and v",
+     .kind = WEFT_OPTION_FLAG, .offset = offsetof(eval_command, options.interval)},
     {"as-printed", .help = "Weigh the threads of a .mc as its article prints it, not by area", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(eval_command, options.as_printed)},
     {"set", 's', "NAME=R[,G,B]", "Value of a $NAME in a weave or .mc; may be repeated", .read = add_parameter},

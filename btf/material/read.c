@@ -1,4 +1,5 @@
 #include "base/atomic_file.h"
+#include "btf/material/certificate.h"
 #include "btf/material/compact.h"
 #include "btf/material/table.h"
 
@@ -45,10 +46,13 @@ static weft_code read_metadata(const weft_file_image *file, const weft_section *
     errno = 0;
     json_t *object = json_loadb(text, section->decoded_size, 0, &where);
     bool valid = json_is_object(object) && strlen(text) == section->decoded_size;
+    const json_t *certified = json_object_get(object, "certificate");
+    weft_certificate certificate;
+    const char *fault = !valid ? "no JSON object" : certified ? weft_certificate_unpack(certified, &certificate) : NULL;
     json_decref(object);
     if (!valid && errno == ENOMEM)
         return weft_fail_memory(error, "metadata", section->decoded_size);
-    return valid ? WEFT_OK : weft_fail_section(file, section, error, "no JSON object");
+    return fault ? weft_fail_section(file, section, error, fault) : WEFT_OK;
 }
 
 static weft_code read_directions(const weft_file_image *file, const weft_section *section, int count,

@@ -152,31 +152,72 @@ void weft_probe_plots_free(weft_probe_plots *plots)
     *plots = (weft_probe_plots){0};
 }
 
-static weft_code draw_disc(const weft_probe_plots *plots, weft_player *p, const weft_scene *scene,
-                           const weft_probe *probe, int plot, weft_error *error)
+/* Pixels of a plot that are drawn, and where the plot begins. */
+typedef struct plot_window {
+    int left, width, height; /* pixels */
+    double origin_x, origin_y, size;
+} plot_window;
+
+static weft_code draw_plot(weft_player *p, const weft_scene *scene, const weft_probe *probe, int plot,
+                           const plot_window *window, weft_error *error)
 {
     GLuint program;
     weft_scene alone = *scene;
     alone.environment = alone.shadows = alone.show_level = alone.show_extrapolation = false;
     alone.light_count = 1;
     alone.filter = WEFT_FILTER_EXACT;
-    const weft_pane pane = {probe->mode, (plot - 1) * plots->size, plots->size, plots->size, {.frame = 0}};
+    const weft_pane pane = {probe->mode, window->left, window->width, window->height, {.frame = 0}};
     weft_program_kind kind = weft_player_kind(p, &alone, &pane);
     kind.plot = plot;
     WEFT_TRY(weft_programs_find(&p->programs, &kind, &program, error));
     glViewport(pane.left, 0, pane.width, pane.height);
     glUseProgram(program);
     weft_player_bind_mode(p, &alone, probe->mode, program);
-    weft_gl_set_vec2(program, "pane_origin", pane.left, 0);
+    weft_gl_set_vec2(program, "pane_origin", window->origin_x, window->origin_y);
     weft_gl_set_vec3(program, "probe_light", probe->light.x, probe->light.y, probe->light.z);
     weft_gl_set_vec3(program, "probe_view", probe->view.x, probe->view.y, probe->view.z);
     weft_gl_set_vec3(program, "probe_place", probe->u, probe->v, probe->level);
-    weft_gl_set_float(program, "plot_size", plots->size);
+    weft_gl_set_float(program, "plot_size", window->size);
     weft_gl_set_float(program, "exposure", scene->exposure);
     weft_gl_set_int(program, "show_level", 0);
     weft_gl_set_int(program, "show_extrapolation", 0);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     return WEFT_OK;
+}
+
+static weft_code draw_disc(const weft_probe_plots *plots, weft_player *p, const weft_scene *scene,
+                           const weft_probe *probe, int plot, weft_error *error)
+{
+    int left = (plot - 1) * plots->size;
+    const plot_window window = {left, plots->size, plots->size, left, 0, plots->size};
+    return draw_plot(p, scene, probe, plot, &window, error);
+}
+
+/* A disc of one pixel across, moved so that the light of the probe falls on the centre of the pixel that is drawn: it
+ * lies at x, y times sqrt(1 - z) / sin theta, from -1 to 1. */
+static plot_window window_at_light(const weft_probe *probe)
+{
+    double x = (double)probe->light.x, y = (double)probe->light.y, across = hypot(x, y);
+    double scale = across > 0 ? sqrt(fmax(0, 1 - (double)probe->light.z)) / across : 0;
+    return (plot_window){0, 1, 1, 0.5 - (1 + scale * x) / 2, 0.5 - (1 + scale * y) / 2, 1};
+}
+
+weft_code weft_probe_value(weft_probe_plots *plots, weft_player *p, const weft_scene *scene, const weft_probe *probe,
+                           double value[3], weft_error *error)
+{
+    const plot_window window = window_at_light(probe);
+    weft_scene unexposed = *scene;
+    float pixel[4];
+    unexposed.exposure = 1;
+    glDisable(GL_BLEND);
+    glDisable(GL_DEPTH_TEST);
+    glBindVertexArray(plots->vertex_array);
+    glBindFramebuffer(GL_FRAMEBUFFER, plots->buffer);
+    WEFT_TRY(draw_plot(p, &unexposed, probe, 1, &window, error));
+    read_pixel(plots->buffer, GL_COLOR_ATTACHMENT0, 0, 0, pixel);
+    for (int c = 0; c < 3; c++)
+        value[c] = (double)pixel[c];
+    return weft_gl_check("evaluating a texel", error);
 }
 
 weft_code weft_probe_plots_draw(weft_probe_plots *plots, weft_player *p, const weft_scene *scene,

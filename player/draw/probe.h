@@ -37,4 +37,10 @@ void weft_probe_plots_free(weft_probe_plots *plots);
 weft_code weft_probe_plots_draw(weft_probe_plots *plots, weft_player *player, const weft_scene *scene,
                                 const weft_probe *probe, weft_error *error);
 
+/* BRDF x pi of the probe's own place, light and view, as the discs have it there but exactly, without exposure: value
+ * [3]. Overwrites what was drawn into the discs. Framebuffer and viewport in use are the caller's to restore. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_probe_value(weft_probe_plots *plots, weft_player *player, const weft_scene *scene,
+                           const weft_probe *probe, double value[3], weft_error *error);
+
 #endif

@@ -332,6 +332,34 @@ static void turn_by_itself(weft_application *a)
 
 /* ---- The loop ---- */
 
+/* The certificate is of all layers or, where there are none, of all lobes with their tables. */
+static bool is_as_certified(const weft_application *a)
+{
+    const weft_scene *scene = &a->interaction.scene;
+    int layers = weft_player_layer_count(a->player);
+    bool is_whole = scene->view_table && scene->light_table && scene->table_bits == 8;
+    for (int lobe = 0; lobe < WEFT_SCENE_MAX_LOBES; lobe++)
+        is_whole = is_whole && scene->lobe[lobe];
+    return a->probe.mode == WEFT_MODE_COMPRESSED && (layers > 0 ? scene->layers >= layers : is_whole);
+}
+
+/* What the material says of the texel under the pointer, and how sure it is of that. */
+static weft_code evaluate_probe(weft_application *a, weft_error *error)
+{
+    const weft_certificate *certificate = weft_scene_loader_certificate(a->loader);
+    const weft_probe *p = &a->probe;
+    WEFT_TRY(weft_probe_value(&a->plots, a->player, &a->interaction.scene, p, a->reflectance, error));
+    a->half_width_probability = certificate && is_as_certified(a) ? certificate->probability : 0;
+    for (int c = 0; c < 3; c++) {
+        a->reflectance[c] *= fmax(0, (double)p->light.z);
+        a->half_width[c] =
+            a->half_width_probability > 0
+                ? weft_certificate_half_width(certificate, p->level, a->reflectance[c], p->light, p->view)
+                : 0;
+    }
+    return WEFT_OK;
+}
+
 /* While the picture moves the numbers would be of one frame's choices. */
 static weft_code probe(weft_application *a, weft_error *error)
 {
@@ -346,6 +374,7 @@ static weft_code probe(weft_application *a, weft_error *error)
     if (probe.mode == WEFT_MODE_COMPRESSED)
         WEFT_TRY(weft_texel_read(a->player, probe.texel_level, probe.texel_x, probe.texel_y, probe.light, probe.view,
                                  &a->texel, error));
+    WEFT_TRY(evaluate_probe(a, error));
     return weft_probe_plots_draw(&a->plots, a->player, &i->scene, &a->probe, error);
 }
 

@@ -31,9 +31,12 @@ struct weft_application {
     double moved_s, stepped_s; /* when the picture changed last, and when the last frame began */
     double total_ms;
     long frame_count;
-    bool rests;       /* the mean of the frames so far is of a picture that no longer changes */
-    weft_probe probe; /* of the pixel of the mesh that the pointer was over last */
-    weft_texel texel; /* of it, where that is compressed */
+    bool rests;            /* the mean of the frames so far is of a picture that no longer changes */
+    weft_probe probe;      /* of the pixel of the mesh that the pointer was over last */
+    weft_texel texel;      /* of it, where that is compressed */
+    double reflectance[3]; /* BRDF x pi x cosine of the light, there, and half of the interval about it: */
+    double half_width[3];  /* 0 where the material does not say, or what is shown is not what it says it of */
+    double half_width_probability;
     weft_probe_plots plots;
     weft_weave_edit weave; /* what the sliders change */
     weft_history history;  /* of lights, weave, and what is shown */

@@ -12,6 +12,20 @@ static double inclination_deg(weft_vec3 direction)
     return weft_deg_of_rad(acos(weft_clamp((double)direction.z, -1, 1)));
 }
 
+/* Reflectance times cosine, and below it half the width of the interval about each channel. */
+static void reflectance_rows(const weft_application *a)
+{
+    const double *r = a->reflectance, *half = a->half_width;
+    char text[96], name[32];
+    snprintf(text, sizeof text, "%.3f  %.3f  %.3f", r[0], r[1], r[2]);
+    weft_ui_value("Reflected", text);
+    if (!(a->half_width_probability > 0))
+        return;
+    snprintf(name, sizeof name, "%g %%", 100 * a->half_width_probability);
+    snprintf(text, sizeof text, "\xc2\xb1%.3f \xc2\xb1%.3f \xc2\xb1%.3f", half[0], half[1], half[2]);
+    weft_ui_value(name, text);
+}
+
 static void place_rows(const weft_probe *probe)
 {
     char text[96];
@@ -135,6 +149,7 @@ void weft_panel_show_probe(const weft_application *a)
         return;
     }
     place_rows(&a->probe);
+    reflectance_rows(a);
     discs(a);
     if (a->probe.mode != WEFT_MODE_COMPRESSED)
         return;

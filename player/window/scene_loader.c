@@ -201,6 +201,12 @@ double weft_scene_loader_progress(weft_scene_loader *l)
     return weft_loader_progress(l->loader);
 }
 
+const weft_certificate *weft_scene_loader_certificate(const weft_scene_loader *l)
+{
+    bool is_shown = l->stage.player && weft_player_has(l->stage.player, WEFT_MODE_COMPRESSED);
+    return is_shown && l->stage.is_certified ? &l->stage.certificate : NULL;
+}
+
 /* ---- Files that replace others ---- */
 
 /* What the player shows is what the settings name. */

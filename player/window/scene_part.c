@@ -21,6 +21,8 @@ typedef struct part {
     double width_mm, tiles[2];
     bool knows_measured;
     weft_measured measured; /* of a material or a dataset */
+    bool is_certified;
+    weft_certificate certificate; /* of a material */
     weft_woven woven;
     char note[WEFT_MESSAGE_SIZE];
     /* One of these */
@@ -52,6 +54,7 @@ static weft_code read_material(part *p, weft_error *error)
     WEFT_TRY(weft_material_read(p->path, &p->material, error));
     p->width_mm = p->material.level[0].width * p->material.texel_pitch_mm;
     WEFT_TRY(weft_measured_parse(p->material.metadata, &p->knows_measured, &p->measured, error));
+    WEFT_TRY(weft_certificate_read(p->material.metadata, &p->is_certified, &p->certificate, error));
     free(p->stage->metadata);
     p->stage->metadata = p->material.metadata;
     p->material.metadata = NULL;
@@ -224,6 +227,10 @@ static weft_code show_part(void *data, weft_error *error)
     p->path = NULL;
     stage->width_mm[p->slot] = p->width_mm;
     note_measured(p);
+    if (p->slot == WEFT_SLOT_MATERIAL) {
+        stage->is_certified = p->is_certified;
+        stage->certificate = p->certificate;
+    }
     stage->slot = p->slot;
     stage->by_user = p->by_user;
     memcpy(stage->note, p->note, sizeof stage->note);

@@ -26,8 +26,9 @@ static void weigh(const weft_compare_options *options, const weft_dataset_layout
 
 /* ---- Sample by sample ---- */
 
-static weft_code measure_texture(weft_dataset *dataset, weft_predictor *predictor, const char *name,
-                                 const weft_progress *progress, weft_comparison *comparison, weft_error *error)
+static weft_code measure_texture(weft_dataset *dataset, weft_predictor *predictor, const weft_certificate *certificate,
+                                 const char *name, const weft_progress *progress, weft_comparison *comparison,
+                                 weft_error *error)
 {
     int image[WEFT_REPRESENTATIVE_COUNT];
     int image_count = weft_representative_images(weft_dataset_get_layout(dataset), image);
@@ -35,7 +36,8 @@ static weft_code measure_texture(weft_dataset *dataset, weft_predictor *predicto
     char step[64];
     snprintf(step, sizeof step, "measuring: %s", name);
     *model = (weft_compared_model){.name = name};
-    WEFT_TRY(weft_measurement_make(dataset, predictor, step, image, image_count, progress, &model->texture, error));
+    WEFT_TRY(weft_measurement_make(dataset, predictor, certificate, step, image, image_count, progress, &model->texture,
+                                   error));
     comparison->model_count++;
     return WEFT_OK;
 }
@@ -45,7 +47,9 @@ static weft_code measure_material(const compared_files *files, const weft_progre
 {
     weft_predictor *predictor;
     WEFT_TRY(weft_predictor_of_material(weft_dataset_get_layout(files->dataset), &files->material, &predictor, error));
-    weft_code code = measure_texture(files->dataset, predictor, "compressed", progress, comparison, error);
+    bool certified = comparison->has_held_out && comparison->held_out.has_certificate;
+    weft_code code = measure_texture(files->dataset, predictor, certified ? &comparison->held_out.certificate : NULL,
+                                     "compressed", progress, comparison, error);
     weft_predictor_free(predictor);
     return code;
 }
@@ -59,7 +63,7 @@ static weft_code measure_weave(const compared_files *files, const weft_progress 
         WEFT_TRY(weft_predictor_of_threads(files->dataset, &weave->threads.cloth, &predictor, error));
     else
         WEFT_TRY(weft_predictor_of_weave(files->dataset, &weave->weave, &comparison->weave_layout, &predictor, error));
-    weft_code code = measure_texture(files->dataset, predictor, "analytic", progress, comparison, error);
+    weft_code code = measure_texture(files->dataset, predictor, NULL, "analytic", progress, comparison, error);
     weft_predictor_free(predictor);
     return code;
 }
@@ -69,7 +73,7 @@ static weft_code measure_bard(const compared_files *files, const char *path, con
 {
     weft_predictor *predictor;
     WEFT_TRY(weft_predictor_of_dataset(files->dataset, path, &predictor, error));
-    weft_code code = measure_texture(files->dataset, predictor, "BARD", progress, comparison, error);
+    weft_code code = measure_texture(files->dataset, predictor, NULL, "BARD", progress, comparison, error);
     weft_predictor_free(predictor);
     return code;
 }

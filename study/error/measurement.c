@@ -17,7 +17,8 @@ typedef struct measuring {
     weft_dataset *dataset;
     const weft_dataset_layout *layout;
     weft_predictor *predictor;
-    int *every_image; /* [image_count] 0, 1, 2, ... */
+    const weft_certificate *certificate; /* or NULL */
+    int *every_image;                    /* [image_count] 0, 1, 2, ... */
     weft_measurement *measurement;
     int band_height, band_y;         /* the rows held now */
     weft_half *samples;              /* [band_height][width][image_count][3] */
@@ -26,6 +27,7 @@ typedef struct measuring {
     size_t value_count;              /* texel_count * image_count * 3 until the empty slots are dropped */
     weft_compared *value;            /* [value_count] */
     uint8_t *view_ring, *light_ring; /* [value_count] of ubo81 */
+    float *half_width;               /* [value_count] of the certificate; NULL without */
 } measuring;
 
 static void count_masks(const measuring *pass, int rows)
@@ -54,6 +56,13 @@ static weft_rgb sample_at(const measuring *pass, int x, int y, int image)
                       (double)weft_float_of_half(half[2])};
 }
 
+/* In the quantity of the dataset. */
+static double half_width_of(const measuring *pass, double prediction, weft_vec3 light, weft_vec3 view)
+{
+    double missing = pass->layout->values == WEFT_REFLECTANCE ? (double)light.z : 1;
+    return weft_certificate_half_width(pass->certificate, 0, missing * prediction, light, view) / missing;
+}
+
 /* The three channels of a sample into the slots from `slot` on; they are untouched where it does not count. */
 static void measure_sample(const measuring *pass, int image, int x, int y, weft_rgb p, size_t slot)
 {
@@ -70,6 +79,8 @@ static void measure_sample(const measuring *pass, int image, int x, int y, weft_
         pass->value[slot + c] = (weft_compared){.sample = (float)sample[c], .prediction = (float)prediction[c]};
         pass->view_ring[slot + c] = view_ring;
         pass->light_ring[slot + c] = light_ring;
+        if (pass->certificate)
+            pass->half_width[slot + c] = (float)half_width_of(pass, prediction[c], light, view);
     }
 }
 
@@ -118,6 +129,8 @@ static void drop_empty_slots(measuring *pass)
             continue;
         pass->value[kept] = pass->value[i];
         pass->view_ring[kept] = pass->view_ring[i];
+        if (pass->certificate)
+            pass->half_width[kept] = pass->half_width[i];
         pass->light_ring[kept++] = pass->light_ring[i];
     }
     pass->value_count = kept;
@@ -135,6 +148,18 @@ static weft_code summarise(const measuring *pass, weft_error *error)
             weft_error_summary_of_group(value, pass->light_ring, count, ring, &measurement->by_light[ring], error));
     }
     return WEFT_OK;
+}
+
+static weft_code measure_coverage(const measuring *pass, weft_error *error)
+{
+    weft_covered *covered = malloc((pass->value_count + 1) * sizeof *covered);
+    if (!covered)
+        return weft_fail_memory(error, "samples", pass->value_count * sizeof *covered);
+    for (size_t i = 0; i < pass->value_count; i++)
+        covered[i] = (weft_covered){pass->value[i], pass->half_width[i], pass->view_ring[i], pass->light_ring[i]};
+    weft_code code = weft_coverage_of(covered, pass->value_count, &pass->measurement->coverage, error);
+    free(covered);
+    return code;
 }
 
 static weft_code create_pairs(measuring *pass, const int *image, int image_count, weft_error *error)
@@ -170,6 +195,9 @@ static weft_code allocate(measuring *pass, weft_error *error)
     pass->view_ring = malloc(pass->value_count);
     pass->light_ring = calloc(pass->value_count, 1);
     pass->every_image = malloc((size_t)layout->image_count * sizeof *pass->every_image);
+    pass->half_width = pass->certificate ? malloc(pass->value_count * sizeof *pass->half_width) : NULL;
+    if (pass->certificate && !pass->half_width)
+        return weft_fail_memory(error, "intervals", pass->value_count * sizeof *pass->half_width);
     if (!pass->samples || !pass->mask || !pass->value || !pass->view_ring || !pass->light_ring || !pass->every_image)
         return weft_fail_memory(error, "samples", pass->value_count * (sizeof *pass->value + 2) + 7 * band);
     memset(pass->view_ring, no_ring, pass->value_count);
@@ -178,14 +206,15 @@ static weft_code allocate(measuring *pass, weft_error *error)
     return WEFT_OK;
 }
 
-weft_code weft_measurement_make(weft_dataset *dataset, weft_predictor *predictor, const char *what, const int *image,
-                                int image_count, const weft_progress *progress, weft_measurement *measurement,
-                                weft_error *error)
+weft_code weft_measurement_make(weft_dataset *dataset, weft_predictor *predictor, const weft_certificate *certificate,
+                                const char *what, const int *image, int image_count, const weft_progress *progress,
+                                weft_measurement *measurement, weft_error *error)
 {
     *measurement = (weft_measurement){0};
     measuring pass = {.dataset = dataset,
                       .layout = weft_dataset_get_layout(dataset),
                       .predictor = predictor,
+                      .certificate = certificate,
                       .measurement = measurement};
     weft_code code = create_pairs(&pass, image, image_count, error);
     if (code == WEFT_OK)
@@ -196,6 +225,9 @@ weft_code weft_measurement_make(weft_dataset *dataset, weft_predictor *predictor
         drop_empty_slots(&pass);
         code = summarise(&pass, error);
     }
+    if (code == WEFT_OK && certificate)
+        code = measure_coverage(&pass, error);
+    free(pass.half_width);
     free(pass.samples);
     free(pass.mask);
     free(pass.value);

@@ -1,5 +1,8 @@
 #include "study/hold_out/hold_out.h"
 
+#include "study/hold_out/certify.h"
+#include "study/hold_out/misplaced.h"
+#include "study/hold_out/rounding.h"
 #include "study/hold_out/trial.h"
 
 #include <malloc.h>
@@ -12,6 +15,11 @@ enum { SIDE = 12, LAYERS_SIDE = 24, BLOCK_SIDE = 64 };
 
 /* Of the excerpt, at most. */
 static const long most_samples = 1L << 22;
+
+/* Of all splits, that a certificate is made of: more change no quantile that is stored with three digits. */
+static const size_t most_residuals = 1 << 20;
+
+static const double certified = 0.95;
 
 /* ---- Errors ---- */
 
@@ -71,6 +79,8 @@ typedef struct measuring {
     means_taken material_taken, photographs_taken;
     int fitted_taken;
     int measured_count; /* of the splits: the first ones */
+    double spacing;     /* of the texels of the excerpt, in texels of the dataset */
+    weft_residuals held_residuals, fitted_residuals;
     weft_hold_out *result;
 } measuring;
 
@@ -87,6 +97,7 @@ static weft_code fit_without(const measuring *work, const uint8_t *held, weft_ma
 /* What one split says. */
 typedef struct answers {
     weft_asked_samples material, fitted, photographs;
+    weft_asked_samples moved; /* the material, its stored numbers moved by a step each */
 } answers;
 
 static void free_answers(answers *said)
@@ -94,14 +105,29 @@ static void free_answers(answers *said)
     weft_asked_samples_free(&said->material);
     weft_asked_samples_free(&said->fitted);
     weft_asked_samples_free(&said->photographs);
+    weft_asked_samples_free(&said->moved);
 }
 
-static weft_code ask(const weft_trial *trial, const weft_material *material, answers *said, weft_error *error)
+static weft_code ask_material(const weft_trial *trial, const weft_material *material, weft_asked_samples *held,
+                              weft_asked_samples *fitted, weft_error *error)
 {
     weft_predictor *predictor;
     WEFT_TRY(weft_predictor_of_material(&trial->excerpt->layout, material, &predictor, error));
-    weft_code code = weft_trial_ask(trial, predictor, &said->material, &said->fitted, error);
+    weft_code code = weft_trial_ask(trial, predictor, held, fitted, error);
     weft_predictor_free(predictor);
+    return code;
+}
+
+/* The material is another one afterwards. */
+static weft_code ask(const weft_trial *trial, weft_material *material, answers *said, weft_error *error)
+{
+    weft_trial held_alone = *trial;
+    weft_asked_samples none = {0};
+    held_alone.fitted_count = 0;
+    WEFT_TRY(ask_material(trial, material, &said->material, &said->fitted, error));
+    weft_material_move_by_steps(material);
+    weft_code code = ask_material(&held_alone, material, &said->moved, &none, error);
+    weft_asked_samples_free(&none);
     return code == WEFT_OK ? weft_trial_ask_photographs(trial, &said->photographs, error) : code;
 }
 
@@ -116,6 +142,15 @@ static weft_code take_answers(measuring *work, const answers *said, weft_error *
     take_errors(&photographs, &work->photographs_taken, &work->result->photographs);
     take_into_mean(&fitted, &work->fitted_taken, &work->result->fitted);
     return WEFT_OK;
+}
+
+static weft_code take_residuals(measuring *work, int split, const answers *said, weft_error *error)
+{
+    uint32_t first_image = (uint32_t)split * (uint32_t)work->splits.image_count;
+    size_t most = most_residuals / (size_t)work->measured_count;
+    WEFT_TRY(weft_residuals_add(&work->held_residuals, &work->excerpt, &said->material, &said->moved, first_image, most,
+                                error));
+    return weft_residuals_add(&work->fitted_residuals, &work->excerpt, &said->fitted, NULL, first_image, most, error);
 }
 
 static weft_code measure_split(measuring *work, int split, weft_error *error)
@@ -133,6 +168,8 @@ static weft_code measure_split(measuring *work, int split, weft_error *error)
         code = ask(&trial, &material, &said, error);
     if (code == WEFT_OK)
         code = take_answers(work, &said, error);
+    if (code == WEFT_OK)
+        code = take_residuals(work, split, &said, error);
     free_answers(&said);
     weft_trial_free(&trial);
     weft_material_free(&material);
@@ -160,14 +197,40 @@ static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error
     weft_dataset_layout others = *layout;
     int lobes;
     others.image_count = fewest_kept(&work->splits);
+    work->spacing = 1;
     if (weft_compress_plan(&others, &work->options, &lobes) == WEFT_COMPRESS_SPARSE)
         return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &work->excerpt, error);
     weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
     int side = work->options.layer_count > 0 ? LAYERS_SIDE : SIDE;
     while (side > 1 && (long)side * side * layout->image_count > most_samples)
         side--;
-    return weft_excerpt_read(dataset, kind, side, &work->excerpt, error);
+    WEFT_TRY(weft_excerpt_read(dataset, kind, side, &work->excerpt, error));
+    work->spacing = sqrt((double)layout->width * layout->height /
+                         ((double)work->excerpt.layout.width * work->excerpt.layout.height));
+    return WEFT_OK;
 }
+
+/* ---- The certificate ---- */
+
+/* Views and lights of the splits; images where each has directions of its own. */
+static int held_directions(const measuring *work)
+{
+    const weft_splits *splits = &work->splits;
+    bool is_grid = splits->kind == WEFT_SPLIT_DIRECTIONS;
+    return is_grid ? work->measured_count * (splits->view_held_count + splits->light_held_count)
+                   : work->result->certificate.image_count;
+}
+
+static weft_code certify(weft_dataset *dataset, measuring *work, weft_error *error)
+{
+    weft_hold_out *result = work->result;
+    WEFT_TRY(weft_certify(&work->held_residuals, &work->fitted_residuals, certified, work->spacing,
+                          &result->certificate, &result->has_certificate, error));
+    result->certificate.direction_count = held_directions(work);
+    return result->has_certificate ? weft_certify_registration(dataset, &result->certificate, error) : WEFT_OK;
+}
+
+/* ---- The whole ---- */
 
 static void describe(const weft_dataset_layout *layout, measuring *work)
 {
@@ -204,7 +267,7 @@ static weft_code measure_splits(weft_dataset *dataset, measuring *work, const we
     weft_progress_report(progress, step, work->measured_count, work->measured_count);
     if (work->result->material.all.count == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "every sample that was held out is masked");
-    return WEFT_OK;
+    return certify(dataset, work, error);
 }
 
 weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_options *options, int split_count,
@@ -222,6 +285,8 @@ weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_optio
     work.measured_count = each || split_count > work.splits.count ? work.splits.count : split_count;
     if (code == WEFT_OK)
         code = measure_splits(dataset, &work, progress, error);
+    weft_residuals_free(&work.held_residuals);
+    weft_residuals_free(&work.fitted_residuals);
     weft_excerpt_free(&work.excerpt);
     weft_splits_free(&work.splits);
     /* What is free is given back to the system, so that the fit of the whole has room. */

@@ -4,6 +4,7 @@
 
 #include "base/numeric/error_summary.h"
 #include "base/progress.h"
+#include "btf/material/certificate.h"
 #include "compress/compress.h"
 #include "study/hold_out/split.h"
 
@@ -25,6 +26,8 @@ typedef struct weft_hold_out {
     weft_hold_out_error photographs; /* interpolated between those that were not held out */
     weft_error_summary fitted;       /* of the same fits where they were fitted: on what the next split holds out, which
                                         lies in the same rings. Zero where there is no next one */
+    bool has_certificate;            /* not where all that is predicted is black */
+    weft_certificate certificate;    /* an interval for any pixel, at 0.95 */
 } weft_hold_out;
 
 /* Fits some texels with `options` to the images that a split leaves, for each of up to `split_count` splits, and

@@ -1,6 +1,7 @@
 #include "study/hold_out/record.h"
 
 #include "base/text/json_text.h"
+#include "btf/direction/direction.h"
 #include "btf/material/metadata.h"
 
 #include <math.h>
@@ -54,17 +55,27 @@ json_t *weft_hold_out_to_json(const weft_hold_out *r)
 
 weft_code weft_hold_out_store(const weft_hold_out *result, weft_material *material, weft_error *error)
 {
-    return weft_material_put_metadata(material, "held_out", weft_hold_out_to_json(result), error);
+    WEFT_TRY(weft_material_put_metadata(material, "held_out", weft_hold_out_to_json(result), error));
+    if (!result->has_certificate)
+        return WEFT_OK;
+    return weft_material_put_metadata(material, "certificate", weft_certificate_pack(&result->certificate), error);
+}
+
+/* Takes the object. */
+static size_t bytes_of(json_t *object)
+{
+    size_t size = object ? json_dumpb(object, NULL, 0, JSON_COMPACT) : 0;
+    json_decref(object);
+    return size;
 }
 
 weft_code weft_hold_out_bytes(const weft_hold_out *result, uint64_t *bytes, weft_error *error)
 {
-    static const char name[] = ",\"held_out\":";
-    json_t *object = weft_hold_out_to_json(result);
-    size_t size = object ? json_dumpb(object, NULL, 0, JSON_COMPACT) : 0;
-    json_decref(object);
-    *bytes = size + sizeof name;
-    return size > 0 ? WEFT_OK : weft_fail_memory(error, "metadata of the material", 0);
+    static const char names[] = ",\"held_out\":,\"certificate\":";
+    size_t size = bytes_of(weft_hold_out_to_json(result)),
+           certificate = result->has_certificate ? bytes_of(weft_certificate_pack(&result->certificate)) : 1;
+    *bytes = size + certificate + sizeof names;
+    return size > 0 && certificate > 0 ? WEFT_OK : weft_fail_memory(error, "metadata of the material", 0);
 }
 
 /* ---- From JSON ---- */
@@ -128,6 +139,8 @@ weft_code weft_hold_out_read(const char *metadata, bool *found, weft_hold_out *r
     *found = own && read_object(own, result);
     is_short = is_short || (own && !*found && errno == ENOMEM);
     json_decref(object);
+    if (*found)
+        return weft_certificate_read(metadata, &result->has_certificate, &result->certificate, error);
     return is_short ? weft_fail_memory(error, "metadata of the material", strlen(metadata)) : WEFT_OK;
 }
 
@@ -168,6 +181,35 @@ static void explain_directions(const weft_hold_out *r, char line[WEFT_HOLD_OUT_L
         APPEND(line, ", of the lights %.3f", r->material.light.relative_rmse);
     if (r->material.both.count > 0)
         APPEND(line, ", of both %.3f", r->material.both.relative_rmse);
+}
+
+void weft_certificate_describe(const weft_certificate *c, char line[WEFT_HOLD_OUT_LINE])
+{
+    line[0] = 0;
+    APPEND(line, "%g %% of the pixels of ", 100 * c->probability);
+    if (!c->over_images)
+        APPEND(line, "images like the %d that were held out: too few to say so of others (it takes 19)",
+               c->image_count);
+    else
+        APPEND(line, "images not seen, as of the %d that were held out%s", c->image_count,
+               c->image_count == c->direction_count ? "" : " with their views and lights");
+}
+
+void weft_certificate_row(const weft_certificate *c, int ring, char line[WEFT_HOLD_OUT_LINE])
+{
+    const weft_vec3 light = weft_direction_of_angles((weft_angles){weft_rad_of_deg(30), 0}),
+                    view = weft_direction_of_angles((weft_angles){weft_rad_of_deg(15 * ring), 0});
+    double half_width = weft_certificate_half_width(c, 0, c->mean, light, view);
+    weft_certificate_parts parts = weft_certificate_parts_of(c, 0, ring);
+    line[0] = 0;
+    APPEND(line, "+-%.3g (%.0f %%): sampling %.0f %%, model %.0f %%, storage %.1f %%, ", half_width,
+           100 * half_width / c->mean, 100 * parts.sampling, 100 * parts.model, 100 * parts.storage);
+    if (c->has_registration)
+        APPEND(line, "registration %.1f %%", 100 * parts.registration);
+    else
+        APPEND(line, "registration not known");
+    if (c->view_images[ring] == 0)
+        APPEND(line, "; as of the nearest ring with images held out");
 }
 
 void weft_hold_out_explain(const weft_hold_out *r, char line[WEFT_HOLD_OUT_LINE])

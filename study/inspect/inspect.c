@@ -111,6 +111,20 @@ static json_t *describe_error(const weft_material *material, const weft_hold_out
     return described;
 }
 
+/* Half the width of the interval of level 0 by ring of the view. */
+static json_t *describe_certificate(const weft_certificate *certificate)
+{
+    char line[WEFT_HOLD_OUT_LINE], name[32];
+    weft_certificate_describe(certificate, line);
+    json_t *described = json_pack("{s:s, s:f}", "holds_for", line, "at_mean_value", certificate->mean);
+    for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
+        snprintf(name, sizeof name, "view_%d_deg", 15 * ring);
+        weft_certificate_row(certificate, ring, line);
+        weft_json_put(&described, name, json_string(line));
+    }
+    return described;
+}
+
 static json_t *describe_layers(const weft_layers *layers)
 {
     return json_pack("{s:i, s:s, s:i, s:i}", "count", layers->layer_count, "maps_over",
@@ -130,6 +144,8 @@ static json_t *describe_material(const char *path, const weft_material *material
                   "texels", material->level[0].width, material->level[0].height, "lobes", material->lobe_count,
                   "views_in_table", material->view_count, "lights_in_table", material->light_count, "texel_pitch_mm",
                   material->texel_pitch_mm, "levels", levels, "metadata", metadata);
+    if (held_out && held_out->has_certificate)
+        weft_json_put(&described, "certificate", describe_certificate(&held_out->certificate));
     if (material->layers)
         weft_json_put(&described, "layers", describe_layers(material->layers));
     return described;

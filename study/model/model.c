@@ -1,6 +1,7 @@
 #include "study/model/model.h"
 
 #include "btf/file_kind.h"
+#include "btf/material/certificate.h"
 #include "reflectance/lafortune/lafortune.h"
 #include "reflectance/layers/layers.h"
 #include "reflectance/microcylinder/file.h"
@@ -14,7 +15,9 @@ struct weft_model {
     uint64_t noise_seed;
     weft_material material;
     weft_table_directions directions; /* of the material */
-    weft_layer_maps maps;             /* of its layers; empty without, or where its lobes are asked for */
+    bool has_interval;
+    weft_certificate certificate; /* of the material, where intervals are asked for */
+    weft_layer_maps maps;         /* of its layers; empty without, or where its lobes are asked for */
     weft_dataset *dataset;
     weft_raw_btf *raw;
     weft_weave weave;
@@ -24,10 +27,26 @@ struct weft_model {
 
 /* ---- Opening ---- */
 
+/* Of the lobes beside layers nothing is certified. */
+static weft_code open_certificate(weft_model *model, const char *path, const weft_model_options *options,
+                                  weft_error *error)
+{
+    if (options->lobes && model->material.layers)
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "the certificate of '%s' is of its layers, not of the lobes beside them", path);
+    WEFT_TRY(weft_certificate_read(model->material.metadata, &model->has_interval, &model->certificate, error));
+    return model->has_interval
+               ? WEFT_OK
+               : weft_fail(error, WEFT_BAD_INPUT,
+                           "'%s' has no certificate: weft compress makes one unless --hold-out is off", path);
+}
+
 static weft_code open_material(weft_model *model, const char *path, const weft_model_options *options,
                                weft_error *error)
 {
     WEFT_TRY(weft_material_read(path, &model->material, error));
+    if (options->interval)
+        WEFT_TRY(open_certificate(model, path, options, error));
     if (model->material.layers && !options->lobes)
         WEFT_TRY(weft_layer_maps_create(model->material.layers, &model->maps, error));
     return weft_table_directions_create(&model->material, &model->directions, error);
@@ -61,7 +80,9 @@ weft_code weft_model_open(const char *path, const weft_model_options *options, w
     model->noise_seed = options->noise_seed;
     model->weighting = options->as_printed ? WEFT_CLOTH_AS_PRINTED : WEFT_CLOTH_BY_AREA;
     weft_code code = weft_file_kind_of(path, &model->kind, error);
-    if (code == WEFT_OK && model->kind == WEFT_FILE_SESSION)
+    if (code == WEFT_OK && options->interval && model->kind != WEFT_FILE_MATERIAL)
+        code = weft_fail(error, WEFT_BAD_INPUT, "'%s': only a .weft has a certificate", path);
+    else if (code == WEFT_OK && model->kind == WEFT_FILE_SESSION)
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder, not a model (.weft, .btf.h5, .wv or .mc)", path);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_STITCH)
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is a stitch, not a model; weft simulate makes a .btf.h5 of it",
@@ -215,4 +236,22 @@ weft_code weft_model_brdf(weft_model *model, const weft_query *query, weft_rgb *
     else
         return weft_raw_btf_mean(model->raw, query->light, query->view, brdf, error);
     return WEFT_OK;
+}
+
+/* The certificate is of reflectance times cosine: BRDF x pi x l_z. */
+weft_rgb weft_model_half_width(const weft_model *model, const weft_query *query, const weft_rgb *brdf)
+{
+    double factor = WEFT_PI * (double)query->light.z;
+    const double value[3] = {(double)brdf->r, (double)brdf->g, (double)brdf->b};
+    double half[3] = {0};
+    for (int c = 0; c < 3 && factor > 0; c++)
+        half[c] = weft_certificate_half_width(&model->certificate, (double)query->level, factor * value[c],
+                                              query->light, query->view) /
+                  factor;
+    return (weft_rgb){half[0], half[1], half[2]};
+}
+
+bool weft_model_has_interval(const weft_model *model)
+{
+    return model->has_interval;
 }

@@ -14,6 +14,7 @@ typedef struct weft_model_options {
     uint64_t noise_seed;             /* of a weave; 0 = without its noise */
     const weft_parameter *parameter; /* [parameter_count] for the $names of a weave or cloth */
     int parameter_count;
+    bool interval;   /* with the interval of the certificate; a material that has one, evaluated as it is certified */
     bool lobes;      /* of a material that has layers, too: its lobes */
     bool as_printed; /* weights of a microcylinder cloth: of the article, not by area */
 } weft_model_options;
@@ -35,10 +36,18 @@ typedef struct weft_query {
  * WEFT_BAD_INPUT for a level that is negative, or not 0 in a model without levels; reading a dataset may fail. */
 weft_code weft_model_brdf(weft_model *model, const weft_query *query, weft_rgb *brdf, weft_error *error);
 
+/* Half the width of the interval about what weft_model_brdf said, 1/sr, where the options ask for it; 0 below the
+ * horizon. Pure. */
+weft_rgb weft_model_half_width(const weft_model *model, const weft_query *query, const weft_rgb *brdf);
+
+/* Whether the options asked for intervals. Pure. */
+bool weft_model_has_interval(const weft_model *model);
+
 /* Evaluates the rows of a table with the columns lx, ly, lz, vx, vy, vz and maybe u and v, level; others are kept.
  * Writes the same rows with r, g, b
- * (%.9g) appended. Directions are normalised. Errors: WEFT_BAD_INPUT "FILE:LINE: ..."; WEFT_SYSTEM where `output`
- * cannot be written. */
+ * (%.9g) appended and, with intervals, their ends r_low, r_high, ..., of which the lower are at least 0. Directions are
+ * normalised. Errors: WEFT_BAD_INPUT "FILE:LINE: ...", and where intervals are asked for without u and v: they are of
+ * places; WEFT_SYSTEM where `output` cannot be written. */
 weft_code weft_model_evaluate_table(weft_model *model, const weft_csv *table, const weft_progress *progress,
                                     FILE *output, weft_error *error);
 

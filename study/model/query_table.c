@@ -1,5 +1,6 @@
 #include "study/model/model.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { LX, LY, LZ, VX, VY, VZ, U, V, LEVEL, QUANTITY_COUNT };
@@ -41,7 +42,20 @@ static void write_row(const weft_csv *table, int row, const weft_rgb *brdf, FILE
 {
     for (int i = 0; i < table->column_count; i++)
         fprintf(output, "%s,", weft_csv_text(table, row, i));
-    fprintf(output, "%.9g,%.9g,%.9g\n", brdf->r, brdf->g, brdf->b);
+    fprintf(output, "%.9g,%.9g,%.9g", brdf->r, brdf->g, brdf->b);
+}
+
+static void write_interval(double value, double half_width, FILE *output)
+{
+    fprintf(output, ",%.9g,%.9g", fmax(0, value - half_width), value + half_width);
+}
+
+static void write_intervals(const weft_model *model, const weft_query *query, const weft_rgb *brdf, FILE *output)
+{
+    weft_rgb half = weft_model_half_width(model, query, brdf);
+    write_interval((double)brdf->r, (double)half.r, output);
+    write_interval((double)brdf->g, (double)half.g, output);
+    write_interval((double)brdf->b, (double)half.b, output);
 }
 
 static weft_code evaluate_row(weft_model *model, const weft_csv *table, int row, const int column[QUANTITY_COUNT],
@@ -55,6 +69,9 @@ static weft_code evaluate_row(weft_model *model, const weft_csv *table, int row,
     if (code != WEFT_OK)
         return weft_fail(error, code, "%s:%d: %s", table->path, table->line[row], cause.message);
     write_row(table, row, &brdf, output);
+    if (weft_model_has_interval(model))
+        write_intervals(model, &query, &brdf, output);
+    fputc('\n', output);
     return WEFT_OK;
 }
 
@@ -63,9 +80,12 @@ weft_code weft_model_evaluate_table(weft_model *model, const weft_csv *table, co
 {
     int column[QUANTITY_COUNT];
     WEFT_TRY(find_columns(table, column, error));
+    if (weft_model_has_interval(model) && column[U] < 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has no columns u and v: intervals are of places, not of means",
+                         table->path);
     for (int i = 0; i < table->column_count; i++)
         fprintf(output, "%s,", table->column[i]);
-    fputs("r,g,b\n", output);
+    fputs(weft_model_has_interval(model) ? "r,g,b,r_low,r_high,g_low,g_high,b_low,b_high\n" : "r,g,b\n", output);
     for (int row = 0; row < table->row_count; row++) {
         WEFT_TRY(evaluate_row(model, table, row, column, output, error));
         weft_progress_report(progress, "evaluating", row + 1, table->row_count);

@@ -2,6 +2,8 @@
 
 #include "base/numeric/statistics.h"
 #include "compress/compress.h"
+#include "study/error/coverage.h"
+#include "study/hold_out/certify.h"
 #include "study/tradeoff/held_pictures.h"
 #include "study/tradeoff/variant.h"
 
@@ -12,6 +14,8 @@
 
 enum { MOST_SPLITS = 4 /* of a handful of images, each held out in turn */ };
 
+static const size_t enough_residuals = 1 << 20;
+static const double certified = 0.95;
 static const double highlight_share = 0.95, shadow_share = 0.2, grazing_cosine = 0.6088; /* of 52.5 degrees */
 
 struct weft_held_bench {
@@ -241,12 +245,56 @@ static weft_code append(weft_asked_samples *all, weft_asked_samples *more, weft_
     all->value = value ? value : all->value;
     uint32_t *sample = realloc(all->sample, (count + 1) * sizeof *sample);
     all->sample = sample ? sample : all->sample;
-    if (!value || !sample)
+    uint8_t *group = realloc(all->group, count + 1);
+    all->group = group ? group : all->group;
+    if (!value || !sample || !group)
         return weft_fail_memory(error, "samples", count * (sizeof *value + sizeof *sample));
     memcpy(value + all->count, more->value, more->count * sizeof *value);
     memcpy(sample + all->count, more->sample, more->count * sizeof *sample);
+    if (more->count > 0)
+        memcpy(group + all->count, more->group, more->count);
     all->count = count;
     return WEFT_OK;
+}
+
+/* ---- The interval ---- */
+
+static weft_code cover(const weft_certificate *certificate, const weft_residuals *held, double *width,
+                       weft_error *error)
+{
+    weft_covered *covered = malloc((held->count[0] + 1) * sizeof *covered);
+    if (!covered)
+        return weft_fail_memory(error, "samples", held->count[0] * sizeof *covered);
+    for (size_t i = 0; i < held->count[0]; i++) {
+        const weft_residual *r = &held->value[0][i];
+        double scale = weft_certificate_scale_of_rings(certificate, (double)r->prediction, r->light, r->view);
+        covered[i] = (weft_covered){{r->prediction + r->error, r->prediction},
+                                    (float)(certificate->level[0].quantile * scale),
+                                    r->view,
+                                    r->light};
+    }
+    weft_coverage coverage;
+    weft_code code = weft_coverage_of(covered, held->count[0], &coverage, error);
+    free(covered);
+    *width = code == WEFT_OK ? coverage.all.width : 0;
+    return code;
+}
+
+/* Its width on the samples that it was found from. */
+static weft_code find_interval(const weft_held_bench *bench, const weft_asked_samples *held, double *width,
+                               weft_error *error)
+{
+    weft_residuals residuals = {0}, none = {0};
+    weft_certificate certificate;
+    bool found = false;
+    *width = 0;
+    weft_code code = weft_residuals_add(&residuals, &bench->excerpt, held, NULL, 0, enough_residuals, error);
+    if (code == WEFT_OK)
+        code = weft_certify(&residuals, &none, certified, 1, &certificate, &found, error);
+    if (code == WEFT_OK && found)
+        code = cover(&certificate, &residuals, width, error);
+    weft_residuals_free(&residuals);
+    return code;
 }
 
 /* What is said of the images of one split, and of all splits before it. */
@@ -325,7 +373,7 @@ static weft_code measure_splits(weft_held_bench *bench, const weft_priced_model 
     WEFT_TRY(summarise(bench, &all->fitted, measured->fitted, error));
     if (measured->held[WEFT_SAMPLES_ALL].count == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "every sample that was held out is masked");
-    return WEFT_OK;
+    return find_interval(bench, &all->held, &measured->interval_width, error);
 }
 
 weft_code weft_held_bench_measure(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,

@@ -24,6 +24,8 @@ const char *weft_sample_kind_name(weft_sample_kind kind);
 
 typedef struct weft_held_error {
     weft_error_summary held[WEFT_SAMPLE_KINDS], fitted[WEFT_SAMPLE_KINDS];
+    double interval_width;        /* mean width of the interval of 95 % (study/hold_out/certify.h) that these samples
+                                     give, in units of the mean sample; 0 where all is black */
     int picture_count;            /* of held-out images whose texels are neighbours */
     weft_picture_quality quality; /* the mean over these, each shown as its photograph needs */
     double fit_s;

@@ -131,6 +131,7 @@ static void put_errors(weft_page *page, const weft_held_error *m)
     const weft_error_summary *all = &m->held[WEFT_SAMPLES_ALL];
     put_number(page, "<b>%.4f</b>", all->relative_rmse, true);
     put_number(page, "%.4f", m->fitted[WEFT_SAMPLES_ALL].relative_rmse, m->fitted[WEFT_SAMPLES_ALL].count > 0);
+    put_number(page, "%.3f", m->interval_width, m->interval_width > 0);
     put_number(page, "%.1f %%", 100 * all->median_relative, true);
     put_number(page, "%.1f %%", 100 * all->percentile80_relative, true);
     for (int kind = WEFT_SAMPLES_GRAZING; kind < WEFT_SAMPLE_KINDS; kind++)
@@ -162,10 +163,10 @@ static void put_row(weft_page *page, const weft_tradeoff_row *row, int number)
 static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
 {
     fputs("<h2 id=\"prices\">Prices</h2>\n<table class=\"long\">\n", page->html);
-    weft_page_columns(page,
-                      "|:model|:weft compress|photographs|bytes|bits a texel|fit, s|evaluations/s|ms a frame|reads a "
-                      "pixel|bytes a pixel|error, not fitted|fitted|median|80th percentile|grazing|highlights|"
-                      "shadows|PSNR dB|SSIM|FLIP");
+    weft_page_columns(
+        page, "|:model|:weft compress|photographs|bytes|bits a texel|fit, s|evaluations/s|ms a frame|reads a "
+              "pixel|bytes a pixel|error, not fitted|fitted|95 % interval|median|80th percentile|grazing|highlights|"
+              "shadows|PSNR dB|SSIM|FLIP");
     for (int i = 0; i < tradeoff->row_count; i++)
         put_row(page, &tradeoff->row[i], i + 1);
     fputs(
@@ -176,7 +177,8 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
         "texels that the hardware interpolates, for a pixel under one light. Grazing: view or light 52.5\u00b0 or more "
         "from the normal; highlights: the brightest twentieth of each texel; shadows: its darkest fifth, whose error "
         "is relative to what little light there is. All of these, and PSNR, SSIM and FLIP of pictures, are of "
-        "photographs that were not fitted; a texel is a pixel of these pictures.</p>\n",
+        "photographs that were not fitted; a texel is a pixel of these pictures. 95 % interval: the mean width "
+        "of an interval that held so many of these samples, in units of the mean sample.</p>\n",
         page->html);
 }
 

@@ -45,6 +45,7 @@ json_t *weft_tradeoff_row_to_json(const weft_tradeoff_row *row)
         weft_json_put(&object, "frame_ms", json_real(price->frame_ms));
     weft_json_put(&object, "not_fitted", json_of_errors(m->held));
     weft_json_put(&object, "fitted", json_of_errors(m->fitted));
+    weft_json_put(&object, "interval_width", json_real(m->interval_width));
     if (m->picture_count > 0)
         weft_json_put(&object, "pictures_not_fitted",
                       json_pack("{s:i, s:f, s:f, s:f}", "pictures", m->picture_count, "psnr_db", m->quality.psnr_db,
@@ -81,7 +82,7 @@ static void print_row(const weft_tradeoff_row *row, FILE *table)
         const weft_error_summary *e = i < WEFT_SAMPLE_KINDS ? &m->held[i] : &m->fitted[i - WEFT_SAMPLE_KINDS];
         fprintf(table, ",%.5g,%.5g,%.5g", e->relative_rmse, e->median_relative, e->percentile80_relative);
     }
-    fprintf(table, ",%.5g,%.5g,%.5g\n", m->quality.psnr_db, m->quality.ssim, m->quality.flip);
+    fprintf(table, ",%.5g,%.5g,%.5g,%.5g\n", m->quality.psnr_db, m->quality.ssim, m->quality.flip, m->interval_width);
 }
 
 static void print_table(const weft_tradeoff *tradeoff, FILE *table)
@@ -94,7 +95,7 @@ static void print_table(const weft_tradeoff *tradeoff, FILE *table)
         const char *kind = weft_sample_kind_name((weft_sample_kind)(i % WEFT_SAMPLE_KINDS));
         fprintf(table, ",%s_%s_relative_rmse,%s_%s_median,%s_%s_percentile80", of, kind, of, kind, of, kind);
     }
-    fputs(",psnr_db,ssim,flip\n", table);
+    fputs(",psnr_db,ssim,flip,interval_width\n", table);
     for (int i = 0; i < tradeoff->row_count; i++)
         print_row(&tradeoff->row[i], table);
 }

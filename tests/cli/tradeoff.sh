@@ -38,6 +38,7 @@ assert float(raw["bytes"]) == 8 * 8 * 49 * 6 and raw["photographs"] == "49", raw
 assert 500 < float(diffuse["bytes"]) < 20000 and diffuse["options"] == "--lobes 0 --table off", diffuse
 for row in rows:
     assert 0 < float(row["not_fitted_all_relative_rmse"]) < 2 and 0 <= float(row["flip"]) < 1, row
+    assert 0.1 < float(row["interval_width"]) < 6, row
     assert row["frame_ms"] == "" and float(row["evaluations_a_second"]) > 0, row
 best = [row for row in rows if "best" in row["presets"]]
 least = min(float(row["not_fitted_all_relative_rmse"]) for row in rows if row["options"])

@@ -123,6 +123,11 @@ static void both_plots_pass_through_the_value_of_the_pixel(void **state)
             assert_float_equal(plotted(pixels, 0, 1, probe.light), expected, 2e-3 * expected);
             assert_float_equal(plotted(pixels, 1, 1, probe.view), expected, 2e-3 * expected);
             assert_float_equal(pixels[3], 0, 0); /* nothing in the corner */
+            double value[3];
+            expect_ok(weft_probe_value(&plots, s->player, &d.scene, &probe, value, &error), &error);
+            for (int c = 0; c < 3; c++)
+                assert_float_equal(value[c], probe.radiance[c] / d.scene.exposure / (double)probe.light.z,
+                                   1e-4 * fabs(value[c]));
             compared++;
         }
     }

@@ -163,6 +163,47 @@ static void print_directions(weft_page *page, const weft_dataset_layout *layout,
     fputs("</table>\n", page->html);
 }
 
+static void print_covered(weft_page *page, const char *name, const weft_coverage_share *share, const char *says)
+{
+    if (share->count > 0)
+        fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.1f %%</td><td>%.3f</td><td>%s</td></tr>\n", name,
+                share->count, 100 * share->covered, share->width, says);
+}
+
+/* What the material says of its error, and whether the samples of the dataset keep to it. */
+static void print_certificate(weft_page *page, const weft_comparison *comparison)
+{
+    const weft_coverage *coverage = &comparison->model[0].texture.coverage;
+    const weft_certificate *certificate = &comparison->held_out.certificate;
+    char line[WEFT_HOLD_OUT_LINE], name[64];
+    if (coverage->all.count == 0)
+        return;
+    weft_certificate_describe(certificate, line);
+    fputs("<h2 id=\"certificate\">Certificate</h2>\n<p class=\"note\">The interval about a pixel holds for ",
+          page->html);
+    weft_page_text(page, line);
+    fprintf(
+        page->html,
+        ". How many samples of this dataset lie in theirs; where they were fitted, more do than it promises. Widths "
+        "are means, in units of the mean sample; %.3f if all intervals were alike and held as many. On the right: "
+        "half the width where %.3g is said, under light at 30\u00b0, and the shares of its parts.</p>\n<table>",
+        coverage->even_width, certificate->mean);
+    weft_page_columns(page, "|values|in their interval|width|");
+    print_covered(page, "all", &coverage->all, "");
+    print_covered(page, "darkest fifth that is said", &coverage->dark, "");
+    print_covered(page, "brightest fifth that is said", &coverage->bright, "");
+    for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
+        snprintf(name, sizeof name, "view about %d\u00b0", 15 * ring);
+        weft_certificate_row(certificate, ring, line);
+        print_covered(page, name, &coverage->by_view[ring], line);
+    }
+    for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
+        snprintf(name, sizeof name, "light about %d\u00b0", 15 * ring);
+        print_covered(page, name, &coverage->by_light[ring], "");
+    }
+    fputs("</table>\n", page->html);
+}
+
 static void print_sizes(weft_page *page, const weft_comparison *comparison)
 {
     fputs("<h2>Size</h2>\n<table>\n", page->html);
@@ -241,6 +282,7 @@ weft_code weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, 
 {
     print_levels(page, material);
     print_directions(page, layout, &comparison->model[0].texture);
+    print_certificate(page, comparison);
     print_sizes(page, comparison);
     WEFT_TRY(print_fit(page, material, error));
     print_times(page, &comparison->scenes);

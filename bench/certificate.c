@@ -1,0 +1,148 @@
+/* Whether the certificate of a material covers what it says, on directions that neither the fit nor the certificate
+ * has seen: `bench_certificate NAME.btf.h5 lobes|layers`. A further split of the dataset is left out of both; of fewer
+ * than 24 images each in turn. Prints one row of comma-separated values a level. */
+#include "study/error/coverage.h"
+#include "study/hold_out/hold_out.h"
+#include "study/hold_out/residuals.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SIDE = 32, TEST_SPLIT = 2, SHOWN_LEVELS = 3 };
+
+typedef struct testing {
+    const char *name, *model;
+    weft_compress_options options;
+    weft_excerpt excerpt;
+    weft_splits splits;
+    size_t count[SHOWN_LEVELS];
+    weft_covered *covered[SHOWN_LEVELS];
+} testing;
+
+static weft_code put_level(testing *t, const weft_residuals *residuals, int level, const weft_certificate *certificate,
+                           weft_error *error)
+{
+    size_t count = residuals->count[level];
+    weft_covered *grown = realloc(t->covered[level], (t->count[level] + count + 1) * sizeof *grown);
+    if (!grown)
+        return weft_fail_memory(error, "samples", count * sizeof *grown);
+    t->covered[level] = grown;
+    for (size_t i = 0; i < count; i++) {
+        const weft_residual *r = &residuals->value[level][i];
+        weft_vec3 light = weft_direction_of_angles((weft_angles){weft_rad_of_deg(15 * r->light), 0}),
+                  view = weft_direction_of_angles((weft_angles){weft_rad_of_deg(15 * r->view), 0});
+        double half_width = weft_certificate_half_width(certificate, level, (double)r->prediction, light, view);
+        grown[t->count[level]++] =
+            (weft_covered){{r->prediction + r->error, r->prediction}, (float)half_width, r->view, r->light};
+    }
+    return WEFT_OK;
+}
+
+static weft_code ask(testing *t, const uint8_t *held, const weft_material *material,
+                     const weft_certificate *certificate, weft_error *error)
+{
+    weft_trial trial = {0};
+    weft_predictor *predictor = NULL;
+    weft_asked_samples asked = {0}, none = {0};
+    weft_residuals residuals = {0};
+    weft_code code = weft_trial_create(&t->excerpt, held, held, &trial, error);
+    if (code == WEFT_OK)
+        code = weft_predictor_of_material(&t->excerpt.layout, material, &predictor, error);
+    if (code == WEFT_OK)
+        code = weft_trial_ask(&trial, predictor, &asked, &none, error);
+    if (code == WEFT_OK)
+        code = weft_residuals_add(&residuals, &t->excerpt, &asked, NULL, 0, 1 << 22, error);
+    for (int level = 0; code == WEFT_OK && level < SHOWN_LEVELS && level < residuals.level_count; level++)
+        code = put_level(t, &residuals, level, certificate, error);
+    weft_residuals_free(&residuals);
+    weft_asked_samples_free(&asked);
+    weft_asked_samples_free(&none);
+    weft_predictor_free(predictor);
+    weft_trial_free(&trial);
+    return code;
+}
+
+/* Fit and certificate of what is left. */
+static weft_code test_split(testing *t, int split, weft_error *error)
+{
+    const uint8_t *held = weft_splits_held(&t->splits, split);
+    weft_dataset *others;
+    weft_hold_out result;
+    weft_material material = {0};
+    WEFT_TRY(weft_excerpt_write(&t->excerpt, held, "bench-certificate.btf.h5", &others, error));
+    weft_compress_options options = weft_compress_settle(&t->options, others);
+    weft_code code = weft_hold_out_measure(others, &options, 1, "bench-certificate-split.btf.h5", NULL, &result, error);
+    if (code == WEFT_OK)
+        code = weft_compress(others, &options, NULL, &material, NULL, error);
+    if (code == WEFT_OK)
+        code = ask(t, held, &material, &result.certificate, error);
+    weft_material_free(&material);
+    weft_dataset_close(others);
+    return code;
+}
+
+static void say_shares(const weft_coverage_share share[WEFT_RING_COUNT])
+{
+    for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
+        if (share[ring].count > 0)
+            printf(",%.1f", 100 * share[ring].covered);
+        else
+            printf(",");
+    }
+}
+
+static weft_code say(const testing *t, weft_error *error)
+{
+    for (int level = 0; level < SHOWN_LEVELS && t->count[level] > 0; level++) {
+        weft_coverage coverage;
+        WEFT_TRY(weft_coverage_of(t->covered[level], t->count[level], &coverage, error));
+        printf("%s,%s,%d,%ld,%.2f,%.1f,%.1f,%.3f,%.3f", t->name, t->model, level, coverage.all.count,
+               100 * coverage.all.covered, 100 * coverage.dark.covered, 100 * coverage.bright.covered,
+               coverage.all.width, coverage.even_width);
+        say_shares(coverage.by_view);
+        say_shares(coverage.by_light);
+        printf("\n");
+    }
+    return WEFT_OK;
+}
+
+static weft_code test(testing *t, weft_error *error)
+{
+    weft_dataset *dataset;
+    WEFT_TRY(weft_dataset_open(t->name, &dataset, error));
+    weft_code code = weft_splits_create(weft_dataset_get_layout(dataset), 0, TEST_SPLIT + 1, &t->splits, error);
+    if (code == WEFT_OK)
+        code = weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, SIDE, &t->excerpt, error);
+    weft_dataset_close(dataset);
+    bool each = t->splits.kind == WEFT_SPLIT_EACH;
+    int first = each ? 0 : TEST_SPLIT;
+    for (int split = first; code == WEFT_OK && split < t->splits.count; split++)
+        code = test_split(t, split, error);
+    return code == WEFT_OK ? say(t, error) : code;
+}
+
+int main(int argc, char **argv)
+{
+    bool is_layers = argc == 3 && strcmp(argv[2], "layers") == 0;
+    if (argc != 3 || (!is_layers && strcmp(argv[2], "lobes") != 0)) {
+        fprintf(stderr, "usage: bench_certificate NAME.btf.h5 lobes|layers\n");
+        return 2;
+    }
+    testing t = {.name = argv[1], .model = argv[2], .options = weft_compress_default_options()};
+    weft_error error = {0};
+    if (is_layers) {
+        t.options.layer_count = 16;
+        t.options.lobe_count = 0;
+        t.options.table = false;
+    }
+    weft_code code = test(&t, &error);
+    if (code != WEFT_OK)
+        fprintf(stderr, "%s\n", error.message);
+    for (int level = 0; level < SHOWN_LEVELS; level++)
+        free(t.covered[level]);
+    weft_excerpt_free(&t.excerpt);
+    weft_splits_free(&t.splits);
+    return (int)code;
+}

@@ -1,0 +1,63 @@
+#include "study/hold_out/rounding.h"
+
+#include <stddef.h>
+
+/* +1 or -1. */
+static int next_sign(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return *state >> 63 ? 1 : -1;
+}
+
+static int held(int value, int least, int most)
+{
+    return value < least ? least : value > most ? most : value;
+}
+
+/* The next finite half float of the same sign. */
+static void move_halves(weft_half *half, size_t count, uint64_t *state)
+{
+    for (size_t i = 0; i < count; i++) {
+        int magnitude = half[i] & 0x7fff, sign = half[i] & 0x8000;
+        if (magnitude > 0)
+            half[i] = (weft_half)(sign | held(magnitude + next_sign(state), 1, 0x7bff));
+    }
+}
+
+static void move_bytes(uint8_t *code, size_t count, uint64_t *state)
+{
+    for (size_t i = 0; i < count; i++)
+        code[i] = (uint8_t)held(code[i] + next_sign(state), 0, 255);
+}
+
+static void move_frames(int16_t *number, size_t count, uint64_t *state)
+{
+    for (size_t i = 0; i < count; i++)
+        number[i] = (int16_t)(number[i] == 0 ? 0 : held(number[i] + next_sign(state), -32767, 32767));
+}
+
+static void move_layers(weft_layers *layers, size_t texels, uint64_t *state)
+{
+    size_t series = (size_t)layers->layer_count;
+    int8_t *coefficient = layers->level[0].coefficient;
+    for (size_t i = 0; i < texels * series; i++)
+        coefficient[i] =
+            (int8_t)held(coefficient[i] + next_sign(state), -WEFT_LAYERS_LARGEST_CODE, WEFT_LAYERS_LARGEST_CODE);
+    move_halves(layers->value, 3 * (size_t)layers->image_count * series, state);
+}
+
+void weft_material_move_by_steps(weft_material *material)
+{
+    weft_material_level *level = &material->level[0];
+    size_t texels = (size_t)level->width * (size_t)level->height;
+    uint64_t state = 1;
+    move_frames(level->frame, 3 * texels, &state);
+    move_halves(level->diffuse, 4 * texels, &state);
+    move_halves(level->lobe, 12 * (size_t)material->lobe_count * texels, &state);
+    if (level->table)
+        move_bytes(level->table, 4 * (size_t)material->view_count * texels, &state);
+    if (level->light_table)
+        move_bytes(level->light_table, 4 * (size_t)material->light_count * texels, &state);
+    if (material->layers)
+        move_layers(material->layers, texels, &state);
+}
