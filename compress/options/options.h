@@ -49,8 +49,8 @@ typedef struct weft_compress_options {
     weft_log log;                /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 
-/* Automatic layers, or 2 lobes and table where there are none, levels, fitted frames, N <= 8192, nothing held out, a quarter of the memory,
- * no checkpoint. */
+/* Automatic layers, or 2 lobes and table where there are none; levels, fitted frames, N <= 8192, nothing held out, a
+ * quarter of the memory, no checkpoint. */
 weft_compress_options weft_compress_default_options(void);
 
 /* Images that are not held out. Pure. */
