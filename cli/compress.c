@@ -76,16 +76,18 @@ static const weft_option option_table[] = {
      .offset = offsetof(compress_command, input)},
     {"output", 'o', "NAME.weft", "The material to write", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(compress_command, output)},
-    {"lobes", .argument = "0..3", .help = "Lafortune lobes a texel and channel, at most (default: 2)",
+    {"lobes", .argument = "0..3",
+     .help = "Lafortune lobes a texel and channel, at most, instead of layers (default: 2 where there are no layers)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, lobes), .low = 0, .high = WEFT_MATERIAL_MAX_LOBES},
-    {"table", .argument = "on|off", .help = "View table T, where the samples can carry it (default: on)",
+    {"table", .argument = "on|off",
+     .help = "View table T beside the lobes, where the samples can carry it (default: on, without layers)",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, table), .words = switch_words},
     {"layers", .argument = "K",
      .help =
-         "Add K linear layers, 4 to 64, a multiple of 4: K bytes a texel and tables that all texels share. They come "
-         "nearer to the photographs than lobes do, most of all between them. Without --lobes and --table the lobes "
-         "beside them are a diffuse term (default: 0; where photographs are no grid of views and lights, without "
-         "--lobes and --table, as many as they carry)",
+         "K linear layers, 4 to 64, a multiple of 4: K bytes a texel and tables that all texels share; 0: none. "
+         "Without --lobes and --table there is a diffuse term beside them, for players without layers (default: 8 for "
+         "fewer than 20 images, 16 for fewer than 100, else 32; 0 for fewer than 20 near images, and where an option "
+         "asks for lobes or tables)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(compress_command, layers), .low = 0, .high = WEFT_LAYERS_MAX},
     {"light-table", .argument = "on|off",
      .help = "Light table S beside T, as large and several times the time; where lights repeat (default: off)",
@@ -185,20 +187,29 @@ static void say_idle(const weft_common_options *common, const weft_compress_opti
         weft_command_say(common, "with %s --max-exponent changes nothing", why);
 }
 
+static bool has_layers_alone(const weft_compress_options *options)
+{
+    return options->layer_count > 0 && options->lobe_count == 0;
+}
+
 static void say_model(const compress_command *command, const weft_compress_options *options,
                       const weft_dataset *dataset, const weft_compress_report *report)
 {
     const weft_common_options *common = &command->common;
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     const char *table = report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "";
-    weft_command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height,
-                     layout->image_count, report->lobe_count, table,
-                     report->light_count > 0 ? " and a light table" : "");
+    if (has_layers_alone(options))
+        weft_command_say(common, "%d x %d texels, %d images, %d layers", layout->width, layout->height,
+                         layout->image_count, options->layer_count);
+    else
+        weft_command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height,
+                         layout->image_count, report->lobe_count, table,
+                         report->light_count > 0 ? " and a light table" : "");
     if (options->table_components > 0 && report->table_components == 0)
         weft_command_say(common, "these images carry no tables: --tables changes nothing");
     if (options->light_table && report->light_count == 0)
         weft_command_say(common, "these images carry no light table: --light-table changes nothing");
-    if (options->layer_count > 0 && options->lobe_count == 0)
+    if (has_layers_alone(options))
         say_idle(common, options, "layers instead of lobes");
     else if (report->model == WEFT_COMPRESS_SPARSE)
         say_idle(common, options, "so few images");
@@ -216,9 +227,10 @@ static void say_model(const compress_command *command, const weft_compress_optio
     weft_command_say(common, "masked: %.2f %% of the samples; %ld of %ld texels without any",
                      100.0 * (double)report->masked_count / (double)report->sample_count, report->empty_texel_count,
                      report->texel_count);
-    weft_command_say(common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
-                     100.0 * (double)report->turned_frame_count / (double)report->texel_count,
-                     100.0 * (double)report->second_start_count / (double)report->texel_count);
+    if (!has_layers_alone(options))
+        weft_command_say(common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
+                         100.0 * (double)report->turned_frame_count / (double)report->texel_count,
+                         100.0 * (double)report->second_start_count / (double)report->texel_count);
     if (report->held_texel_count > 0)
         weft_command_say(common, "held to %d times their brightest sample: %ld of %ld texels", WEFT_BRIGHTEST_MULTIPLE,
                          report->held_texel_count, report->texel_count);
@@ -304,7 +316,8 @@ static void say_layers(const weft_common_options *common, const weft_compress_op
                      "PSNR %.2f dB",
                      layers->fitted.median_relative, layers->fitted.percentile80_relative, layers->fitted.relative_rmse,
                      layers->fitted.psnr_db);
-    weft_command_say(common, "the lobes beside them, for players without layers:");
+    weft_command_say(common, "the %s beside them, for players without layers:",
+                     has_layers_alone(options) ? "diffuse term" : "lobes");
 }
 
 static void say_sizes(const compress_command *command, const weft_dataset_layout *layout,
@@ -469,13 +482,14 @@ static int run(int argc, char **argv)
 
 const weft_command weft_command_compress = {
     .name = "compress",
-    .summary = "fit lobes and a view table to a dataset",
+    .summary = "fit a small model of reflectance to a dataset",
     .usage = "NAME.btf.h5 -o NAME.weft",
-    .documentation = "Example: weft compress cloth.btf.h5 -o cloth.weft --lobes 2\n\n"
-                     "Fits Lafortune lobes with a view table to every texel of every mip level of a "
-                     "dataset, and measures what the result leaves: of the samples that it was fitted to, and of "
-                     "directions that it was not. With too few images for that, "
-                     "fits what they can carry and says so.\n\n"
+    .documentation = "Example: weft compress cloth.btf.h5 -o cloth.weft\n\n"
+                     "Fits a small model to every texel of every mip level of a dataset: linear layers, whose tables "
+                     "all texels share, or with --lobes 2 Lafortune lobes with a view table, which need no table "
+                     "of their neighbours, can be edited and reach beyond what was photographed. It measures what the "
+                     "result leaves: of the samples that it was fitted to, and of directions that it was not. With too "
+                     "few images for that, fits what they can carry and says so.\n\n"
                      "Samples are read in blocks while the blocks before are fitted. What is done is "
                      "kept in NAME.weft.partial: killed, the same command goes on where it stopped and "
                      "ends with the same bytes. Where the memory does not suffice it says how much "

@@ -70,6 +70,16 @@ static weft_code check(void *values, weft_error *error)
     return WEFT_OK;
 }
 
+/* Whether something of lobes or tables is asked for that layers do not have. */
+static bool asks_of_lobes(const weft_scene *scene)
+{
+    const weft_scene usual = weft_scene_default();
+    bool some_off = !scene->view_table || !scene->light_table;
+    for (int i = 0; i < WEFT_SCENE_MAX_LOBES; i++)
+        some_off |= !scene->lobe[i];
+    return some_off || scene->table_bits != usual.table_bits;
+}
+
 /* Chooses what the command line left open, and says what that was. A linear picture keeps its numbers. */
 static weft_code look(const render_command *command, weft_player *player, weft_scene *scene, weft_error *error)
 {
@@ -84,6 +94,9 @@ static weft_code look(const render_command *command, weft_player *player, weft_s
     WEFT_TRY(weft_describe_unmeasured(request, player, scene, text, error));
     if (text[0])
         weft_command_say(common, "%s", text);
+    if (weft_player_layer_count(player) > 0 && scene->layers >= WEFT_LAYERS_GROUP && asks_of_lobes(scene))
+        weft_command_say(common, "the material is drawn by its layers: --lobes-on, --tables and --table-bits change "
+                                 "nothing without --layers 0");
     return WEFT_OK;
 }
 

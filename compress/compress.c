@@ -26,24 +26,38 @@
 /* Of fewer near images the sparse model, whose texels see highlights for each other, predicts more than layers do. */
 enum { SAMPLES_PER_PARAMETER = 4, LEAST_NEAR_IMAGES = 20 };
 
-/* What predicts as well as more do (docs/notes/layers.md). */
+/* What predicts as well as more do, or nearly (docs/notes/layers.md). */
 static int layers_for(int images)
 {
     return images < 20 ? 8 : images < 100 ? 16 : 32;
+}
+
+/* Whether the options name what only lobes have. */
+static bool ask_for_lobes(const weft_compress_options *options)
+{
+    return options->target_error > 0 || options->budget_bytes > 0 || options->light_table ||
+           options->table_components > 0;
+}
+
+/* Frames and exponents of lobes ask for them, too, but where images are scattered they are idle beside layers. */
+static bool shape_lobes(const weft_compress_options *options)
+{
+    const weft_compress_options usual = weft_compress_default_options();
+    return options->frames != usual.frames || options->max_exponent < usual.max_exponent ||
+           options->max_exponent > usual.max_exponent;
 }
 
 weft_compress_options weft_compress_settle(const weft_compress_options *options, const weft_dataset *dataset)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     weft_compress_options settled = *options;
-    bool chosen = options->target_error > 0 || options->budget_bytes > 0;
-    bool tables = options->light_table || options->table_components > 0;
     if (options->layer_count != WEFT_LAYERS_AUTOMATIC)
         return settled;
     settled.layer_count = 0;
     int images = weft_compress_options_count_images(options, layout);
     bool shared = layout->distance == WEFT_NEAR && images < LEAST_NEAR_IMAGES;
-    if (chosen || tables || shared || !weft_images_are_scattered(layout, options->held_out))
+    bool is_grid = !weft_images_are_scattered(layout, options->held_out);
+    if (shared || ask_for_lobes(options) || (is_grid && shape_lobes(options)))
         return settled;
     settled.layer_count = layers_for(images);
     settled.lobe_count = 0;

@@ -36,10 +36,11 @@ typedef struct weft_compress_report {
     double starved_seconds;   /* that the fit waited for it */
 } weft_compress_report;
 
-/* The options with WEFT_LAYERS_AUTOMATIC decided: where images are scattered (compress/layers/layers_fit.h) and nothing
- * is asked for that only lobes and tables can give, there are 8 layers for fewer than 20 images, 16 for fewer than 100,
- * else 32, and a diffuse term beside them; none for fewer than 20 near images, which are fitted by the sparse model.
- * weft_compress decides so by itself. Pure. */
+/* The options with WEFT_LAYERS_AUTOMATIC decided: where nothing is asked for that only lobes and tables can give, there
+ * are 8 layers for fewer than 20 images, 16 for fewer than 100, else 32, and a diffuse term beside them; none for fewer
+ * than 20 near images, which are fitted by the sparse model. Frames and exponents other than the usual ask for lobes
+ * where images are no list (weft_images_are_scattered, compress/layers/layers_fit.h). weft_compress decides so by
+ * itself. Pure. */
 weft_compress_options weft_compress_settle(const weft_compress_options *options, const weft_dataset *dataset);
 
 /* The model that weft_compress fits to a dataset with this layout, and how many lobes. Pure. */

@@ -84,13 +84,14 @@ drape="--exposure 1.1 --camera -75,24,3.5"
 }
 convert plain.png noisy.png shot.png satin.png +append -strip -define png:compression-level=9 "$images/player-cloths.png"
 
-# What errors count for: raw, even weights, weights of a screen.
-"$weft" compress "$demo/gabardine.btf.h5" -o even.weft --quiet
+# What errors of lobes count for: raw, even weights, weights of a screen.
+"$weft" compress "$demo/gabardine.btf.h5" --lobes 2 -o even.weft --quiet
+"$weft" compress "$demo/gabardine.btf.h5" --lobes 2 --weights screen -o screen.weft --quiet
 for pane in raw even screen; do
     case $pane in
     raw) files="$gabardine --mode raw" ;;
     even) files="even.weft" ;;
-    screen) files="$demo/gabardine.weft" ;;
+    screen) files="screen.weft" ;;
     esac
     # shellcheck disable=SC2086 # a list of options
     "$weft" render $files --environment none --size 480x420 -o weights-$pane.png --quiet

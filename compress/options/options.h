@@ -25,7 +25,7 @@ typedef enum weft_frame_choice {
     WEFT_FRAMES_FITTED   /* the better of the two, or turned from there, where that helps */
 } weft_frame_choice;
 
-/* Layers instead of lobes where images are scattered, none where they are a grid (compress/compress.h). */
+/* Layers instead of lobes, unless something is asked for that only lobes have (compress/compress.h). */
 enum { WEFT_LAYERS_AUTOMATIC = -1 };
 
 typedef struct weft_compress_options {
@@ -49,8 +49,8 @@ typedef struct weft_compress_options {
     weft_log log;                /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 
-/* 2 lobes and table or automatic layers, levels, fitted frames, N <= 8192, nothing held out, a quarter of the memory,
- * no checkpoint. */
+/* Automatic layers, or 2 lobes and table where there are none; levels, fitted frames, N <= 8192, nothing held out, a
+ * quarter of the memory, no checkpoint. */
 weft_compress_options weft_compress_default_options(void);
 
 /* Images that are not held out. Pure. */

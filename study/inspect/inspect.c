@@ -86,6 +86,10 @@ static json_t *describe_level(const weft_material *material, int k)
                   "relative_rmse", e->relative_rmse, "psnr_db", isfinite(e->psnr_db) ? e->psnr_db : 0);
     put_basis(&described, "components_of_T", level->table_basis);
     put_basis(&described, "components_of_S", level->light_table_basis);
+    if (material->layers)
+        weft_json_put(
+            &described, "errors_of",
+            json_string(material->lobe_count > 0 ? "lobes beside the layers" : "diffuse term beside the layers"));
     if (material->has_models)
         weft_json_put(&described, "texels_by_model", describe_models(material, k));
     return described;

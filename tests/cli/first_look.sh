@@ -82,4 +82,11 @@ expect_setting wide.png mesh drape
 expect_setting wide.png azimuth_deg -70
 value=$(bright wide.png)
 [ "$value" -gt 100 ] && [ "$value" -lt 255 ] || fail "the bright one is $value bright"
+# What is asked of lobes where layers draw is said to be idle, and whose errors the levels have.
+expect_ok render dark.weft --lobes-on none --size 60x40 --samples 1 -o idle.png
+grep -q "drawn by its layers: --lobes-on" out.log || fail "nobody says that --lobes-on changes nothing beside layers"
+expect_ok render dark.weft --layers 0 --lobes-on none --size 60x40 --samples 1 -o lobes.png
+grep -q "drawn by its layers" out.log && fail "lobes that are drawn are said to be idle"
+expect_ok info dark.weft
+grep -q "errors_of: diffuse term beside the layers" out.log || fail "info does not say whose errors the levels of a layered material have"
 echo "first_look.sh: $passed checks"

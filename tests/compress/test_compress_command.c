@@ -58,11 +58,12 @@ static void the_error_where_it_was_not_fitted_is_said_and_kept(void **state)
     (void)state;
     weft_material material;
     char said[8192];
-    expect_weft("compress command.btf.h5 -o held.weft", 0, "on directions that were not fitted: relative RMSE 0.");
+    expect_weft("compress command.btf.h5 -o held.weft --lobes 2", 0,
+                "on directions that were not fitted: relative RMSE 0.");
     assert_int_equal(weft_material_read("held.weft", &material, NULL), WEFT_OK);
     assert_non_null(strstr(material.metadata, "\"held_out\":{"));
     weft_material_free(&material);
-    assert_int_equal(run_weft("", "compress command.btf.h5 -o held.weft --hold-out 2 --json", said), 0);
+    assert_int_equal(run_weft("", "compress command.btf.h5 -o held.weft --lobes 2 --hold-out 2 --json", said), 0);
     assert_non_null(strstr(said, "{\"event\":\"held_out\""));
     assert_non_null(strstr(said, "\"splits\":2"));
     assert_int_equal(run_weft("", "info held.weft", said), 0);
@@ -75,10 +76,10 @@ static void the_fit_itself_has_all_images_with_or_without(void **state)
 {
     (void)state;
     weft_material with, without;
-    expect_weft("compress command.btf.h5 -o with.weft --hold-out 1", 0, "not fitted");
+    expect_weft("compress command.btf.h5 -o with.weft --lobes 2 --hold-out 1", 0, "not fitted");
     assert_int_equal(weft_material_read("with.weft", &with, NULL), WEFT_OK);
     char said[8192];
-    assert_int_equal(run_weft("", "compress command.btf.h5 -o without.weft --hold-out off", said), 0);
+    assert_int_equal(run_weft("", "compress command.btf.h5 -o without.weft --lobes 2 --hold-out off", said), 0);
     assert_null(strstr(said, "not fitted"));
     assert_int_equal(weft_material_read("without.weft", &without, NULL), WEFT_OK);
     assert_null(strstr(without.metadata, "held_out"));
@@ -94,8 +95,8 @@ static void weights_are_kept_with_the_material(void **state)
 {
     (void)state;
     weft_material even, screen;
-    expect_weft("compress command.btf.h5 -o even.weft --weights even", 0, "fitted in");
-    expect_weft("compress command.btf.h5 -o screen.weft --weights screen", 0, "fitted in");
+    expect_weft("compress command.btf.h5 -o even.weft --lobes 2 --weights even", 0, "fitted in");
+    expect_weft("compress command.btf.h5 -o screen.weft --lobes 2 --weights screen", 0, "fitted in");
     assert_int_equal(weft_material_read("even.weft", &even, NULL), WEFT_OK);
     assert_int_equal(weft_material_read("screen.weft", &screen, NULL), WEFT_OK);
     assert_null(strstr(even.metadata, "\"weights\""));
@@ -182,6 +183,45 @@ static void options_that_change_nothing_are_named(void **state)
     assert_null(strstr(said, "changes nothing"));
 }
 
+/* How many layers and lobes a material has that is made of `views` views of `lights` lights each. */
+static void expect_model(int views, int lights, const char *options, int layers, int lobes)
+{
+    char arguments[256];
+    weft_material material;
+    write_few_images(views, lights);
+    snprintf(arguments, sizeof arguments, "compress few.btf.h5 -o few.weft --hold-out off --levels off --quiet %s",
+             options);
+    expect_weft(arguments, 0, "");
+    assert_int_equal(weft_material_read("few.weft", &material, NULL), WEFT_OK);
+    int found = material.layers ? material.layers->layer_count : 0;
+    if (found != layers || material.lobe_count != lobes)
+        fail_msg("%d x %d images, '%s': %d layers, %d lobes", views, lights, options, found, material.lobe_count);
+    weft_material_free(&material);
+}
+
+static void layers_are_the_default_and_their_number_is_that_of_the_photographs(void **state)
+{
+    (void)state;
+    expect_model(1, 19, "", 8, 0);
+    expect_model(1, 20, "", 16, 0);
+    expect_model(8, 12, "", 16, 0);
+    expect_model(5, 20, "", 32, 0);
+    expect_model(50, 2, "", 32, 0);
+    expect_model(4, 12, "--weights screen --frames on", 16, 0);
+}
+
+static void what_only_lobes_have_asks_for_lobes(void **state)
+{
+    (void)state;
+    static const char *const options[] = {"--lobes 2",      "--table on",       "--layers 0",
+                                          "--frames off",   "--max-exponent 9", "--light-table on",
+                                          "--tables pca:2", "--error 50",       "--budget 1"};
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++)
+        expect_model(4, 12, options[i], 0, 2);
+    expect_model(4, 12, "--layers 4", 4, 0);
+    expect_model(4, 12, "--layers 4 --lobes 1", 4, 1);
+}
+
 static void bad_input_is_1_and_leaves_nothing(void **state)
 {
     (void)state;
@@ -203,9 +243,9 @@ static void a_full_disk_is_3_and_leaves_nothing(void **state)
     (void)state;
     char said[8192];
     unlink("full.weft");
-    assert_int_equal(run_weft("ulimit -f 1; trap '' XFSZ;", "compress command.btf.h5 -o full.weft", said), 3);
+    assert_int_equal(run_weft("ulimit -f 1; trap '' XFSZ;", "compress command.btf.h5 -o full.weft --lobes 2", said), 3);
     assert_int_not_equal(access("full.weft", F_OK), 0);
-    expect_weft("compress command.btf.h5 -o nowhere/full.weft", 3, "nowhere");
+    expect_weft("compress command.btf.h5 -o nowhere/full.weft --lobes 2", 3, "nowhere");
 }
 
 int main(void)
@@ -219,6 +259,8 @@ int main(void)
         cmocka_unit_test(a_budget_is_kept_and_reported_in_a_picture),
         cmocka_unit_test(wrong_usage_is_2),
         cmocka_unit_test(options_that_change_nothing_are_named),
+        cmocka_unit_test(layers_are_the_default_and_their_number_is_that_of_the_photographs),
+        cmocka_unit_test(what_only_lobes_have_asks_for_lobes),
         cmocka_unit_test(bad_input_is_1_and_leaves_nothing),
         cmocka_unit_test(a_full_disk_is_3_and_leaves_nothing),
     };

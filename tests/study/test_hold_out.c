@@ -388,6 +388,7 @@ static void what_is_held_out_does_not_leak(void **state)
     spoilt_factor = 20;
     fixture_far_dataset(path, 2, 1, 6, spoilt_diffuse, 0);
     weft_compress_options options = weft_compress_default_options();
+    options.layer_count = 0;
     options.light_table = true;
     weft_hold_out result = measure(&options, 1);
     assert_int_equal(result.kind, WEFT_SPLIT_DIRECTIONS);
@@ -448,6 +449,7 @@ static void the_error_of_a_diffuse_term_is_that_computed_by_hand(void **state)
     weft_splits splits = split(&layout, 0, 3);
     fixture_far_dataset(path, 3, 2, 6, curved, 0);
     weft_compress_options options = weft_compress_default_options();
+    options.layer_count = 0;
     options.lobe_count = 0;
     options.table = false;
     weft_hold_out one = measure(&options, 1), two = measure(&options, 2);

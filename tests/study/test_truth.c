@@ -322,6 +322,7 @@ static void the_drape_is_drawn_in_every_scene_and_measured(void **state)
     weft_dataset *dataset;
     weft_material material;
     weft_compress_options options = weft_compress_default_options();
+    options.layer_count = 0;
     weft_error error = {0};
     options.lobe_count = 1;
     expect_ok(weft_dataset_open("weave.btf.h5", &dataset, &error), &error);

@@ -111,10 +111,16 @@ void weft_page_models(weft_page *page, const weft_comparison *comparison)
 
 static void print_levels(weft_page *page, const weft_material *material)
 {
-    fputs("<h2>Error of the material on the samples it was fitted to, level by level</h2>\n<p class=\"note\">Measured "
-          "over all valid samples when the "
-          "file was written, decoded as a player sees it; percentiles to 2 % of their "
-          "value.</p>\n<table>",
+    const char *which = !material->layers          ? "material"
+                        : material->lobe_count > 0 ? "lobes beside the layers"
+                                                   : "diffuse term beside the layers";
+    fprintf(page->html, "<h2>Error of the %s on the samples it was fitted to, level by level</h2>\n", which);
+    if (material->layers)
+        fputs("<p class=\"note\">This is what players without layers show. The errors of the layers stand above and "
+              "below.</p>\n",
+              page->html);
+    fputs("<p class=\"note\">Measured over all valid samples when the file was written, decoded as a player sees it; "
+          "percentiles to 2 % of their value.</p>\n<table>",
           page->html);
     weft_page_columns(page, "texels|median relative|80th percentile|RMSE|relative RMSE|PSNR");
     for (int i = 0; i < material->level_count; i++) {
@@ -218,6 +224,28 @@ static void print_sizes(weft_page *page, const weft_comparison *comparison)
     fputs("</table>\n", page->html);
 }
 
+/* One line for a number or text, one for each member of an object. */
+static weft_code print_fit_value(weft_page *page, const char *name, json_t *value, weft_error *error)
+{
+    char title[128];
+    const char *member;
+    json_t *inner;
+    if (json_is_object(value)) {
+        json_object_foreach (value, member, inner) {
+            snprintf(title, sizeof title, "%s: %s", name, member);
+            WEFT_TRY(print_fit_value(page, title, inner, error));
+        }
+        return WEFT_OK;
+    }
+    const char *bare = json_string_value(value);
+    char *text = bare ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(4));
+    if (!bare && !text)
+        return weft_fail_memory(error, name, 0);
+    weft_page_fact(page, name, "%s", bare ? bare : text);
+    free(text);
+    return WEFT_OK;
+}
+
 /* What the material says of its fit. */
 static weft_code print_fit(weft_page *page, const weft_material *material, weft_error *error)
 {
@@ -231,15 +259,8 @@ static weft_code print_fit(weft_page *page, const weft_material *material, weft_
     weft_page_fact(page, "lobes", "%d", material->lobe_count);
     weft_page_fact(page, "views in the table", "%d", material->view_count);
     json_object_foreach (json_object_get(metadata, "fit"), name, value) {
-        if (strcmp(name, "lobes") == 0)
-            continue;
-        const char *bare = json_string_value(value);
-        char *text = bare ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(4));
-        if (!bare && !text)
-            code = weft_fail_memory(error, name, 0);
-        else
-            weft_page_fact(page, name, "%s", bare ? bare : text);
-        free(text);
+        if (code == WEFT_OK && strcmp(name, "lobes") != 0)
+            code = print_fit_value(page, name, value, error);
     }
     fputs("</table>\n", page->html);
     json_decref(metadata);
