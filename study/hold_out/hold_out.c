@@ -8,10 +8,10 @@
 #include <string.h>
 
 /* Layers learn from 512 texels, which are to be there. */
-enum { SIDE = 12, LAYERS_SIDE = 24, BLOCK_SIDE = 64 };
+enum { SIDE = 12, LAYERS_SIDE = 24, HEIGHTS_SIDE = 48, BLOCK_SIDE = 64 };
 
-/* Of the excerpt, at most. */
-static const long most_samples = 1L << 22;
+/* Of the excerpt, at most; of one with heights, whose texels see each other. */
+static const long most_samples = 1L << 22, most_samples_with_heights = 1L << 23;
 
 /* ---- Errors ---- */
 
@@ -65,11 +65,16 @@ typedef struct measuring {
     weft_compress_options options; /* of the fits without some images */
     const char *scratch_path;
     weft_excerpt excerpt;
+    weft_predicted_window window;
+    weft_dataset_heights surface; /* that layers may be seen through; else none */
+    double size_mm[2];            /* of the dataset */
     weft_splits splits;
     weft_compress_model whole_model; /* that all images carry, and its lobes */
     int whole_lobes;
-    means_taken material_taken, photographs_taken;
-    int fitted_taken;
+    weft_hold_out_error flat; /* of the material without heights, where it has been asked with them */
+    weft_error_summary flat_fitted;
+    means_taken material_taken, flat_taken, photographs_taken;
+    int fitted_taken, flat_fitted_taken;
     int measured_count; /* of the splits: the first ones */
     weft_hold_out *result;
 } measuring;
@@ -87,6 +92,7 @@ static weft_code fit_without(const measuring *work, const uint8_t *held, weft_ma
 /* What one split says. */
 typedef struct answers {
     weft_asked_samples material, fitted, photographs;
+    weft_asked_samples flat, flat_fitted; /* without heights, where `material` is with them */
 } answers;
 
 static void free_answers(answers *said)
@@ -94,15 +100,86 @@ static void free_answers(answers *said)
     weft_asked_samples_free(&said->material);
     weft_asked_samples_free(&said->fitted);
     weft_asked_samples_free(&said->photographs);
+    weft_asked_samples_free(&said->flat);
+    weft_asked_samples_free(&said->flat_fitted);
 }
 
-static weft_code ask(const weft_trial *trial, const weft_material *material, answers *said, weft_error *error)
+static weft_code ask_material(const measuring *work, const weft_trial *trial, const weft_material *material,
+                              weft_asked_samples *held, weft_asked_samples *fitted, weft_error *error)
 {
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_material(&trial->excerpt->layout, material, &predictor, error));
-    weft_code code = weft_trial_ask(trial, predictor, &said->material, &said->fitted, error);
+    WEFT_TRY(weft_predictor_of_window(&trial->excerpt->layout, &work->window, material, &predictor, error));
+    weft_code code = weft_trial_ask(trial, predictor, held, fitted, error);
     weft_predictor_free(predictor);
-    return code == WEFT_OK ? weft_trial_ask_photographs(trial, &said->photographs, error) : code;
+    return code;
+}
+
+static weft_code give_heights(const measuring *work, weft_material *material, weft_error *error)
+{
+    const weft_dataset_heights *surface = &work->surface;
+    weft_material_heights *heights;
+    WEFT_TRY(weft_material_heights_create(surface->value, surface->width, surface->height, surface->level_count,
+                                          work->size_mm, &heights, error));
+    weft_material_take_heights(material, heights);
+    return WEFT_OK;
+}
+
+static weft_code ask(const measuring *work, const weft_trial *trial, weft_material *material, answers *said,
+                     weft_error *error)
+{
+    if (work->surface.value && material->layers) {
+        WEFT_TRY(ask_material(work, trial, material, &said->flat, &said->flat_fitted, error));
+        WEFT_TRY(give_heights(work, material, error));
+    }
+    WEFT_TRY(ask_material(work, trial, material, &said->material, &said->fitted, error));
+    return weft_trial_ask_photographs(trial, &said->photographs, error);
+}
+
+/* Relative RMSE with and without heights where both are known; `with` says of fewer samples, in the same order. */
+static void compare_with_flat(const weft_asked_samples *with, const weft_asked_samples *flat, double error_of[2])
+{
+    double square[2] = {0}, energy = 1e-30;
+    for (size_t i = 0, at = 0; i < with->count; i++, at++) {
+        while (flat->sample[at] != with->sample[i])
+            at++;
+        double sample = (double)with->value[i].sample,
+               apart[2] = {(double)with->value[i].prediction - sample, (double)flat->value[at].prediction - sample};
+        square[0] += apart[0] * apart[0];
+        square[1] += apart[1] * apart[1];
+        energy += sample * sample;
+    }
+    error_of[0] = sqrt(square[0] / energy);
+    error_of[1] = sqrt(square[1] / energy);
+}
+
+static weft_code take_flat(measuring *work, const answers *said, weft_error *error)
+{
+    weft_hold_out_error flat;
+    weft_error_summary fitted;
+    double error_of[2];
+    if (!said->flat.value)
+        return WEFT_OK;
+    WEFT_TRY(summarise(&said->flat, &flat, error));
+    WEFT_TRY(weft_error_summary_of(said->flat_fitted.value, said->flat_fitted.count, &fitted, error));
+    take_errors(&flat, &work->flat_taken, &work->flat);
+    take_into_mean(&fitted, &work->flat_fitted_taken, &work->flat_fitted);
+    compare_with_flat(&said->material, &said->flat, error_of);
+    work->result->heights.asked = true;
+    work->result->heights.with += error_of[0] / work->measured_count;
+    work->result->heights.without += error_of[1] / work->measured_count;
+    return WEFT_OK;
+}
+
+/* What is said of the material is what is played of it. */
+static void decide_on_heights(measuring *work)
+{
+    weft_hold_out_heights *heights = &work->result->heights;
+    heights->used = heights->asked && work->result->material.all.count > 0 &&
+                    heights->with <= WEFT_HOLD_OUT_HEIGHTS_GAIN * heights->without;
+    if (!heights->asked || heights->used)
+        return;
+    work->result->material = work->flat;
+    work->result->fitted = work->flat_fitted;
 }
 
 static weft_code take_answers(measuring *work, const answers *said, weft_error *error)
@@ -115,7 +192,7 @@ static weft_code take_answers(measuring *work, const answers *said, weft_error *
     take_errors(&material, &work->material_taken, &work->result->material);
     take_errors(&photographs, &work->photographs_taken, &work->result->photographs);
     take_into_mean(&fitted, &work->fitted_taken, &work->result->fitted);
-    return WEFT_OK;
+    return take_flat(work, said, error);
 }
 
 static weft_code measure_split(measuring *work, int split, weft_error *error)
@@ -130,7 +207,7 @@ static weft_code measure_split(measuring *work, int split, weft_error *error)
     answers said = {0};
     weft_code code = weft_trial_create(&work->excerpt, held, next, &trial, error);
     if (code == WEFT_OK)
-        code = ask(&trial, &material, &said, error);
+        code = ask(work, &trial, &material, &said, error);
     if (code == WEFT_OK)
         code = take_answers(work, &said, error);
     free_answers(&said);
@@ -154,6 +231,15 @@ static int fewest_kept(const weft_splits *splits)
     return fewest;
 }
 
+/* What a view sees of a surface lies in other texels than its own. */
+static weft_code read_with_heights(weft_dataset *dataset, measuring *work, weft_error *error)
+{
+    int side = HEIGHTS_SIDE;
+    while (side > 1 && (long)side * side * work->splits.image_count > most_samples_with_heights)
+        side--;
+    return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, side, &work->excerpt, error);
+}
+
 static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
@@ -162,6 +248,8 @@ static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error
     others.image_count = fewest_kept(&work->splits);
     if (weft_compress_plan(&others, &work->options, &lobes) == WEFT_COMPRESS_SPARSE)
         return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &work->excerpt, error);
+    if (work->surface.value)
+        return read_with_heights(dataset, work, error);
     weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
     int side = work->options.layer_count > 0 ? LAYERS_SIDE : SIDE;
     while (side > 1 && (long)side * side * layout->image_count > most_samples)
@@ -195,12 +283,14 @@ static weft_code measure_splits(weft_dataset *dataset, measuring *work, const we
     WEFT_TRY(read_excerpt(dataset, work, error));
     WEFT_TRY(
         weft_compress_share_budget(layout, &work->excerpt.layout, work->given, &work->options.budget_bytes, error));
+    work->window = (weft_predicted_window){work->excerpt.first_x, work->excerpt.first_y, layout->width, layout->height};
     describe(layout, work);
     work->whole_model = weft_compress_plan(layout, &work->options, &work->whole_lobes);
     for (int s = 0; s < work->measured_count; s++) {
         weft_progress_report(progress, step, s, work->measured_count);
         WEFT_TRY(measure_split(work, s, error));
     }
+    decide_on_heights(work);
     weft_progress_report(progress, step, work->measured_count, work->measured_count);
     if (work->result->material.all.count == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "every sample that was held out is masked");
@@ -212,7 +302,7 @@ weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_optio
                                 weft_error *error)
 {
     measuring work = {.given = options, .options = *options, .scratch_path = scratch_path, .result = result};
-    work.options.levels = false;
+    work.options.levels = work.options.heights = false;
     work.options.held_out = NULL;
     work.options.checkpoint_path = NULL;
     /* The one after the last is that of the fitted images. */
@@ -220,8 +310,12 @@ weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_optio
     weft_code code = weft_splits_create(weft_dataset_get_layout(dataset), 0, most, &work.splits, error);
     bool each = work.splits.kind == WEFT_SPLIT_EACH;
     work.measured_count = each || split_count > work.splits.count ? work.splits.count : split_count;
+    if (code == WEFT_OK && options->heights && options->layer_count > 0)
+        code = weft_dataset_read_surface(dataset, &work.surface, error);
+    weft_dataset_size_mm(weft_dataset_get_layout(dataset), work.size_mm);
     if (code == WEFT_OK)
         code = measure_splits(dataset, &work, progress, error);
+    weft_dataset_heights_free(&work.surface);
     weft_excerpt_free(&work.excerpt);
     weft_splits_free(&work.splits);
     /* What is free is given back to the system, so that the fit of the whole has room. */

@@ -111,6 +111,12 @@ static json_t *describe_error(const weft_material *material, const weft_hold_out
     return described;
 }
 
+static json_t *describe_heights(const weft_material_heights *heights)
+{
+    return json_pack("{s:[f,f], s:[i,i], s:i}", "range_mm", (double)heights->low_mm, (double)heights->high_mm, "places",
+                     heights->width, heights->height, "levels", heights->level_count);
+}
+
 static json_t *describe_layers(const weft_layers *layers)
 {
     return json_pack("{s:i, s:s, s:i, s:i}", "count", layers->layer_count, "maps_over",
@@ -132,6 +138,8 @@ static json_t *describe_material(const char *path, const weft_material *material
                   material->texel_pitch_mm, "levels", levels, "metadata", metadata);
     if (material->layers)
         weft_json_put(&described, "layers", describe_layers(material->layers));
+    if (material->heights)
+        weft_json_put(&described, "heights", describe_heights(material->heights));
     return described;
 }
 

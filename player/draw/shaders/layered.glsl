@@ -1,12 +1,16 @@
 // The compressed material: linear layers. Coefficients are interpolated by the hardware between texels, the maps of the
-// factors between directions, and both are multiplied once a pixel and light. C twin: weft_layers_sample.
+// factors between directions, and both are multiplied once a pixel and light. C twin: weft_layers_sample_through.
 // Constants defined by player/draw/programs.c: LAYER_GROUPS, four layers each; HALF_VECTOR, whether the maps are over it;
-// OPACITY, whether there is any below 1.
+// OPACITY, whether there is any below 1; RELIEF, whether it is all seen through heights (reflectance/relief/relief.glsl):
+// then from the stored views around, each at a place of its own.
 uniform sampler2DArray layer_coefficient; // of a group in each layer, all levels side by side; -1 .. 1
 uniform sampler2D layer_ceiling;          // codes, all levels side by side
 // Factors of a group: x: light nodes, for red, green and blue in turn; y: light nodes, group after group; z: view nodes,
 // row after row.
 uniform highp sampler3D layer_map;
+uniform highp sampler3D layer_map_of_view; // the same of every stored view by itself
+uniform sampler2D layer_view;              // of every stored view: direction, entry in the table of views
+uniform float layer_view_count;
 uniform int layer_groups; // that are evaluated
 uniform vec2 layer_sides; // nodes along a side, of lights and of views
 uniform vec2 layer_step, ceiling_step; // 1 / size of the textures
@@ -32,13 +36,25 @@ float ceiling_at(int level, vec2 coordinate)
     return exp2((255.0 * textureLod(layer_ceiling, place * ceiling_step, 0.0).r - 192.0) / 8.0);
 }
 
+// Where a light is in the maps, in nodes.
+vec2 inner_node(vec3 light, vec3 half_vector)
+{
+    vec2 place = HALF_VECTOR ? place_of_half_vector(half_vector) : place_of_direction(light);
+    return place * (layer_sides.x - 1.0) + 0.5;
+}
+
+vec2 map_place(vec2 inner, int group, int colour)
+{
+    vec2 node = inner + vec2(float(colour), float(group)) * layer_sides.x;
+    return node / (layer_sides.x * vec2(3.0, float(LAYER_GROUPS)));
+}
+
 // Reflectance times cosine, for directions above the horizon. STOCHASTIC takes one of the two rows of view nodes.
 vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view, inout float chance)
 {
     vec3 half_vector = half_vector_of(light, view);
-    vec2 inner = (HALF_VECTOR ? place_of_half_vector(half_vector) : place_of_direction(light));
+    vec2 inner = inner_node(light, half_vector);
     vec2 outer = place_of_direction(view) * (layer_sides.y - 1.0);
-    inner = inner * (layer_sides.x - 1.0) + 0.5;
     float row = min(floor(outer.y), layer_sides.y - 2.0), share = outer.y - row;
     float rows = 1.0 / layer_sides.y;
     if (STOCHASTIC)
@@ -49,13 +65,27 @@ vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view, inout f
         if (i >= layer_groups)
             break;
         for (int c = 0; c < 3; c++) {
-            vec2 node = inner + vec2(float(c), float(i)) * layer_sides.x;
-            vec2 place = node / (layer_sides.x * vec2(3.0, float(LAYER_GROUPS)));
+            vec2 place = map_place(inner, i, c);
             vec4 factor = textureLod(layer_map, vec3(place, low), 0.0);
             if (!STOCHASTIC)
                 factor = mix(factor, textureLod(layer_map, vec3(place, high), 0.0), share);
             sum[c] += dot(coefficient[i], factor);
         }
+    }
+    return HALF_VECTOR ? sum / max(dot(light, half_vector), 0.0625) : sum;
+}
+
+// The same as stored view `number` has it.
+vec3 layers_value_of_view(vec4 coefficient[LAYER_GROUPS], vec3 light, int number, vec3 view)
+{
+    vec3 half_vector = half_vector_of(light, view), sum = vec3(0.0);
+    vec2 inner = inner_node(light, half_vector);
+    float slice = (float(number) + 0.5) / layer_view_count;
+    for (int i = 0; i < LAYER_GROUPS; i++) {
+        if (i >= layer_groups)
+            break;
+        for (int c = 0; c < 3; c++)
+            sum[c] += dot(coefficient[i], textureLod(layer_map_of_view, vec3(map_place(inner, i, c), slice), 0.0));
     }
     return HALF_VECTOR ? sum / max(dot(light, half_vector), 0.0625) : sum;
 }
@@ -74,35 +104,84 @@ float opacity_of_level(int level, vec2 coordinate, Entries views)
     return mix(top, bottom, share.y);
 }
 
+// Of `point` at a place; `number`: as that stored view saw it from its direction `view`, -1: as seen from there.
+vec4 radiance_at(SurfacePoint point, vec2 coordinate, int number, vec3 view, Entries views, int fine, float share)
+{
+    vec4 coefficient[LAYER_GROUPS];
+    for (int i = 0; i < LAYER_GROUPS; i++)
+        coefficient[i] = vec4(0.0);
+    add_coefficients(fine, coordinate, 1.0 - share, coefficient);
+    if (share > 0.0)
+        add_coefficients(fine + 1, coordinate, share, coefficient);
+    float ceiling = ceiling_at(fine, coordinate);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < LIGHT_COUNT; i++) {
+        vec3 irradiance = surface_irradiance(point, i), light = surface_light(point, i);
+        if (irradiance == vec3(0.0) || light.z <= 0.0 || view.z <= 0.0)
+            continue;
+        vec3 most = vec3(ceiling * min(1.0, light.z / least_cosine));
+        vec3 value = RELIEF && number >= 0 ? layers_value_of_view(coefficient, light, number, view)
+                                           : layers_value(coefficient, light, view, point.chance);
+        sum += irradiance / light.z * clamp(value, vec3(0.0), most);
+    }
+    if (!OPACITY)
+        return vec4(sum, 1.0);
+    float opacity = opacity_of_level(fine, coordinate, views);
+    if (share > 0.0)
+        opacity = mix(opacity, opacity_of_level(fine + 1, coordinate, views), share);
+    return vec4(sum, opacity);
+}
+
+vec4 radiance_of_tap(SurfacePoint point, int number, vec2 coordinate, int fine, float share)
+{
+    vec4 view = texelFetch(layer_view, ivec2(number, 0), 0);
+    Entries views;
+    if (OPACITY)
+        views = table_entries(Corners(ivec3(int(view.w)), vec3(1.0, 0.0, 0.0)), table_columns);
+    return radiance_at(point, coordinate, number, view.xyz, views, fine, share);
+}
+
+vec4 radiance_through_heights(SurfacePoint point, int fine, float share)
+{
+    Corners corners = find_corners(2, point.view);
+    ReliefTap tap[3];
+    relief_taps(1.0, point.coordinate, point.view, corners.label, corners.weight, tap);
+    if (STOCHASTIC) {
+        float rest = tap[1].weight + tap[2].weight;
+        int chosen = happens(point.chance, tap[0].weight) ? 0
+                     : happens(point.chance, rest > 0.0 ? tap[1].weight / rest : 1.0) ? 1 : 2;
+        return radiance_of_tap(point, corners.label[chosen], tap[chosen].coordinate, fine, share);
+    }
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 3; i++) {
+        if (tap[i].weight > 0.0)
+            sum += tap[i].weight * radiance_of_tap(point, corners.label[i], tap[i].coordinate, fine, share);
+    }
+    return sum;
+}
+
+vec4 radiance_without_heights(SurfacePoint point, int fine, float share)
+{
+    Entries views;
+    if (OPACITY)
+        views = table_entries(find_corners(0, point.view), table_columns);
+    return radiance_at(point, point.coordinate, -1, point.view, views, fine, share);
+}
+
 vec4 radiance(SurfacePoint point)
 {
     float level = clamp(point.level, 0.0, float(level_count - 1));
     int fine = int(level);
-    float share = level - float(fine);
+    float share = level - float(fine), through = RELIEF ? clamp(relief_levels - level, 0.0, 1.0) : 0.0;
     if (STOCHASTIC) {
         fine = happens(point.chance, share) ? fine + 1 : fine;
         share = 0.0;
+        through = happens(point.chance, through) ? 1.0 : 0.0;
     }
-    vec4 coefficient[LAYER_GROUPS];
-    for (int i = 0; i < LAYER_GROUPS; i++)
-        coefficient[i] = vec4(0.0);
-    add_coefficients(fine, point.coordinate, 1.0 - share, coefficient);
-    if (share > 0.0)
-        add_coefficients(fine + 1, point.coordinate, share, coefficient);
-    float ceiling = ceiling_at(fine, point.coordinate);
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < LIGHT_COUNT; i++) {
-        vec3 irradiance = surface_irradiance(point, i), light = surface_light(point, i);
-        if (irradiance == vec3(0.0) || light.z <= 0.0 || point.view.z <= 0.0)
-            continue;
-        vec3 most = vec3(ceiling * min(1.0, light.z / least_cosine));
-        sum += irradiance / light.z * clamp(layers_value(coefficient, light, point.view, point.chance), vec3(0.0), most);
-    }
-    if (!OPACITY)
-        return vec4(sum, 1.0);
-    Entries views = table_entries(find_corners(0, point.view), table_columns);
-    float opacity = opacity_of_level(fine, point.coordinate, views);
-    if (share > 0.0)
-        opacity = mix(opacity, opacity_of_level(fine + 1, point.coordinate, views), share);
-    return vec4(sum, opacity);
+    vec4 sum = vec4(0.0);
+    if (through < 1.0)
+        sum += (1.0 - through) * radiance_without_heights(point, fine, share);
+    if (through > 0.0)
+        sum += through * radiance_through_heights(point, fine, share);
+    return sum;
 }
