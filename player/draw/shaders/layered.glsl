@@ -176,12 +176,12 @@ vec4 radiance(SurfacePoint point)
     if (STOCHASTIC) {
         fine = happens(point.chance, share) ? fine + 1 : fine;
         share = 0.0;
-        through = happens(point.chance, through) ? 1.0 : 0.0;
+        through = RELIEF && happens(point.chance, through) ? 1.0 : 0.0;
     }
     vec4 sum = vec4(0.0);
     if (through < 1.0)
         sum += (1.0 - through) * radiance_without_heights(point, fine, share);
-    if (through > 0.0)
+    if (RELIEF && through > 0.0)
         sum += through * radiance_through_heights(point, fine, share);
     return sum;
 }
