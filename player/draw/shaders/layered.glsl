@@ -104,8 +104,10 @@ float opacity_of_level(int level, vec2 coordinate, Entries views)
     return mix(top, bottom, share.y);
 }
 
-// Of `point` at a place; `number`: as that stored view saw it from its direction `view`, -1: as seen from there.
-vec4 radiance_at(SurfacePoint point, vec2 coordinate, int number, vec3 view, Entries views, int fine, float share)
+// Of `point` at a place, as seen from there; where `stored`, which is a constant, as that stored view saw it from its
+// direction `view`.
+vec4 radiance_at(SurfacePoint point, vec2 coordinate, bool stored, int number, vec3 view, Entries views, int fine,
+                 float share)
 {
     vec4 coefficient[LAYER_GROUPS];
     for (int i = 0; i < LAYER_GROUPS; i++)
@@ -114,14 +116,16 @@ vec4 radiance_at(SurfacePoint point, vec2 coordinate, int number, vec3 view, Ent
     if (share > 0.0)
         add_coefficients(fine + 1, coordinate, share, coefficient);
     float ceiling = ceiling_at(fine, coordinate);
-    vec3 sum = vec3(0.0);
+    vec3 sum = vec3(0.0), value;
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i), light = surface_light(point, i);
         if (irradiance == vec3(0.0) || light.z <= 0.0 || view.z <= 0.0)
             continue;
         vec3 most = vec3(ceiling * min(1.0, light.z / least_cosine));
-        vec3 value = RELIEF && number >= 0 ? layers_value_of_view(coefficient, light, number, view)
-                                           : layers_value(coefficient, light, view, point.chance);
+        if (stored)
+            value = layers_value_of_view(coefficient, light, number, view);
+        else
+            value = layers_value(coefficient, light, view, point.chance);
         sum += irradiance / light.z * clamp(value, vec3(0.0), most);
     }
     if (!OPACITY)
@@ -138,7 +142,15 @@ vec4 radiance_of_tap(SurfacePoint point, int number, vec2 coordinate, int fine, 
     Entries views;
     if (OPACITY)
         views = table_entries(Corners(ivec3(int(view.w)), vec3(1.0, 0.0, 0.0)), table_columns);
-    return radiance_at(point, coordinate, number, view.xyz, views, fine, share);
+    return radiance_at(point, coordinate, true, number, view.xyz, views, fine, share);
+}
+
+int chosen_tap(ReliefTap tap[3], inout float chance)
+{
+    float rest = tap[1].weight + tap[2].weight;
+    bool first = happens(chance, tap[0].weight);
+    bool second = happens(chance, rest > 0.0 ? tap[1].weight / rest : 1.0);
+    return first ? 0 : second ? 1 : 2;
 }
 
 vec4 radiance_through_heights(SurfacePoint point, int fine, float share)
@@ -147,16 +159,12 @@ vec4 radiance_through_heights(SurfacePoint point, int fine, float share)
     ReliefTap tap[3];
     relief_taps(1.0, point.coordinate, point.view, corners.label, corners.weight, tap);
     if (STOCHASTIC) {
-        float rest = tap[1].weight + tap[2].weight;
-        int chosen = happens(point.chance, tap[0].weight) ? 0
-                     : happens(point.chance, rest > 0.0 ? tap[1].weight / rest : 1.0) ? 1 : 2;
+        int chosen = chosen_tap(tap, point.chance);
         return radiance_of_tap(point, corners.label[chosen], tap[chosen].coordinate, fine, share);
     }
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < 3; i++) {
-        if (tap[i].weight > 0.0)
-            sum += tap[i].weight * radiance_of_tap(point, corners.label[i], tap[i].coordinate, fine, share);
-    }
+    for (int i = 0; i < 3; i++)
+        sum += tap[i].weight * radiance_of_tap(point, corners.label[i], tap[i].coordinate, fine, share);
     return sum;
 }
 
@@ -165,9 +173,10 @@ vec4 radiance_without_heights(SurfacePoint point, int fine, float share)
     Entries views;
     if (OPACITY)
         views = table_entries(find_corners(0, point.view), table_columns);
-    return radiance_at(point, point.coordinate, -1, point.view, views, fine, share);
+    return radiance_at(point, point.coordinate, false, -1, point.view, views, fine, share);
 }
 
+// Loops of one round or none, since software rasterisers pass over a loop that no pixel takes, not over a branch.
 vec4 radiance(SurfacePoint point)
 {
     float level = clamp(point.level, 0.0, float(level_count - 1));
@@ -178,10 +187,13 @@ vec4 radiance(SurfacePoint point)
         share = 0.0;
         through = RELIEF && happens(point.chance, through) ? 1.0 : 0.0;
     }
+    if (!RELIEF)
+        return radiance_without_heights(point, fine, share);
     vec4 sum = vec4(0.0);
-    if (through < 1.0)
-        sum += (1.0 - through) * radiance_without_heights(point, fine, share);
-    if (RELIEF && through > 0.0)
+    int rounds = through > 0.0 ? 1 : 0, rounds_without = through < 1.0 ? 1 : 0;
+    for (int i = 0; i < rounds; i++)
         sum += through * radiance_through_heights(point, fine, share);
+    for (int i = 0; i < rounds_without; i++)
+        sum += (1.0 - through) * radiance_without_heights(point, fine, share);
     return sum;
 }
