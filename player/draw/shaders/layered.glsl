@@ -104,11 +104,12 @@ float opacity_of_level(int level, vec2 coordinate, Entries views)
     return mix(top, bottom, share.y);
 }
 
-// Of `point` at a place, as seen from there; where `stored`, which is a constant, as that stored view saw it from its
-// direction `view`.
-vec4 radiance_at(SurfacePoint point, vec2 coordinate, bool stored, int number, vec3 view, Entries views, int fine,
-                 float share)
+// Of `point` at a place: as stored view `number` saw it from its direction `view`, or with -1 as seen from there.
+// Loops of one round or none, here and below, since software rasterisers pass over a loop that no pixel takes, not over a
+// branch.
+vec4 radiance_at(SurfacePoint point, vec2 coordinate, int number, vec3 view, Entries views, int fine, float share)
 {
+    int of_view = RELIEF && number >= 0 ? 1 : 0;
     vec4 coefficient[LAYER_GROUPS];
     for (int i = 0; i < LAYER_GROUPS; i++)
         coefficient[i] = vec4(0.0);
@@ -116,15 +117,15 @@ vec4 radiance_at(SurfacePoint point, vec2 coordinate, bool stored, int number, v
     if (share > 0.0)
         add_coefficients(fine + 1, coordinate, share, coefficient);
     float ceiling = ceiling_at(fine, coordinate);
-    vec3 sum = vec3(0.0), value;
+    vec3 sum = vec3(0.0), value = vec3(0.0);
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i), light = surface_light(point, i);
         if (irradiance == vec3(0.0) || light.z <= 0.0 || view.z <= 0.0)
             continue;
         vec3 most = vec3(ceiling * min(1.0, light.z / least_cosine));
-        if (stored)
+        for (int k = 0; k < of_view; k++)
             value = layers_value_of_view(coefficient, light, number, view);
-        else
+        for (int k = of_view; k < 1; k++)
             value = layers_value(coefficient, light, view, point.chance);
         sum += irradiance / light.z * clamp(value, vec3(0.0), most);
     }
@@ -142,7 +143,7 @@ vec4 radiance_of_tap(SurfacePoint point, int number, vec2 coordinate, int fine, 
     Entries views;
     if (OPACITY)
         views = table_entries(Corners(ivec3(int(view.w)), vec3(1.0, 0.0, 0.0)), table_columns);
-    return radiance_at(point, coordinate, true, number, view.xyz, views, fine, share);
+    return radiance_at(point, coordinate, number, view.xyz, views, fine, share);
 }
 
 int chosen_tap(ReliefTap tap[3], inout float chance)
@@ -158,10 +159,6 @@ vec4 radiance_through_heights(SurfacePoint point, int fine, float share)
     Corners corners = find_corners(2, point.view);
     ReliefTap tap[3];
     relief_taps(1.0, point.coordinate, point.view, corners.label, corners.weight, tap);
-    if (STOCHASTIC) {
-        int chosen = chosen_tap(tap, point.chance);
-        return radiance_of_tap(point, corners.label[chosen], tap[chosen].coordinate, fine, share);
-    }
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 3; i++)
         sum += tap[i].weight * radiance_of_tap(point, corners.label[i], tap[i].coordinate, fine, share);
@@ -173,10 +170,35 @@ vec4 radiance_without_heights(SurfacePoint point, int fine, float share)
     Entries views;
     if (OPACITY)
         views = table_entries(find_corners(0, point.view), table_columns);
-    return radiance_at(point, point.coordinate, false, -1, point.view, views, fine, share);
+    return radiance_at(point, point.coordinate, -1, point.view, views, fine, share);
 }
 
-// Loops of one round or none, since software rasterisers pass over a loop that no pixel takes, not over a branch.
+// One level and one view, stored or not, by chance.
+vec4 chosen_radiance(SurfacePoint point, float through, int fine)
+{
+    Corners views;
+    int number = -1, rounds = happens(point.chance, through) ? 1 : 0;
+    vec2 coordinate = point.coordinate;
+    vec3 view = point.view;
+    for (int i = 0; i < rounds; i++) {
+        Corners corners = find_corners(2, point.view);
+        ReliefTap tap[3];
+        relief_taps(1.0, point.coordinate, point.view, corners.label, corners.weight, tap);
+        int chosen = chosen_tap(tap, point.chance);
+        number = corners.label[chosen];
+        coordinate = tap[chosen].coordinate;
+        vec4 stored = texelFetch(layer_view, ivec2(number, 0), 0);
+        view = stored.xyz;
+        views = Corners(ivec3(int(stored.w)), vec3(1.0, 0.0, 0.0));
+    }
+    for (int i = rounds; OPACITY && i < 1; i++)
+        views = find_corners(0, point.view);
+    Entries entries;
+    if (OPACITY)
+        entries = table_entries(views, table_columns);
+    return radiance_at(point, coordinate, number, view, entries, fine, 0.0);
+}
+
 vec4 radiance(SurfacePoint point)
 {
     float level = clamp(point.level, 0.0, float(level_count - 1));
@@ -185,7 +207,8 @@ vec4 radiance(SurfacePoint point)
     if (STOCHASTIC) {
         fine = happens(point.chance, share) ? fine + 1 : fine;
         share = 0.0;
-        through = RELIEF && happens(point.chance, through) ? 1.0 : 0.0;
+        if (RELIEF)
+            return chosen_radiance(point, through, fine);
     }
     if (!RELIEF)
         return radiance_without_heights(point, fine, share);
