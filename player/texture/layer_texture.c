@@ -104,9 +104,23 @@ static weft_code upload_solid(const weft_layer_texture *t, int depth, const weft
     return weft_gl_check("uploading the maps of layers", error);
 }
 
+/* Between which nothing is interpolated. */
+static weft_code upload_slices(const weft_layer_texture *t, int count, const weft_half *texel, GLuint *texture,
+                               weft_error *error)
+{
+    const weft_texture_format half = {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+    WEFT_TRY(
+        weft_gl_texture(half, COLOURS * t->light_side, t->group_count * t->light_side, count, texel, texture, error));
+    filter_linearly(GL_TEXTURE_2D_ARRAY);
+    return WEFT_OK;
+}
+
+typedef weft_code upload_texels(const weft_layer_texture *t, int count, const weft_half *texel, GLuint *texture,
+                                weft_error *error);
+
 /* Of `views` nodes or stored views. */
 static weft_code upload_map(const weft_layer_texture *t, const weft_layers *layers, const float *node, int views,
-                            GLuint *texture, weft_error *error)
+                            upload_texels *upload, GLuint *texture, weft_error *error)
 {
     size_t lights = (size_t)layers->light_side * (size_t)layers->light_side;
     size_t bytes = lights * (size_t)views * COLOURS * (size_t)layers->layer_count * sizeof(weft_half);
@@ -114,7 +128,7 @@ static weft_code upload_map(const weft_layer_texture *t, const weft_layers *laye
     if (!texel)
         return weft_fail_memory(error, "maps of layers", bytes);
     arrange(layers, node, (size_t)views, texel);
-    weft_code code = upload_solid(t, views, texel, texture, error);
+    weft_code code = upload(t, views, texel, texture, error);
     free(texel);
     return code;
 }
@@ -142,7 +156,7 @@ static weft_code upload_maps_of_views(const weft_layers *layers, const int *entr
 {
     t->view_count = layers->view_count;
     WEFT_TRY(weft_layer_maps_keep_views(maps, error));
-    WEFT_TRY(upload_map(t, layers, maps->node_of_view, layers->view_count, &t->map_of_view, error));
+    WEFT_TRY(upload_map(t, layers, maps->node_of_view, layers->view_count, upload_slices, &t->map_of_view, error));
     return upload_views(layers, entry_of_view, t, error);
 }
 
@@ -151,7 +165,8 @@ static weft_code upload_maps(const weft_layers *layers, const int *entry_of_view
 {
     weft_layer_maps maps;
     WEFT_TRY(weft_layer_maps_create(layers, &maps, error));
-    weft_code code = upload_map(t, layers, maps.node, layers->view_side * layers->view_side, &t->map, error);
+    weft_code code =
+        upload_map(t, layers, maps.node, layers->view_side * layers->view_side, upload_solid, &t->map, error);
     if (code == WEFT_OK && entry_of_view)
         code = upload_maps_of_views(layers, entry_of_view, &maps, t, error);
     weft_layer_maps_free(&maps);
@@ -210,9 +225,8 @@ void weft_layer_texture_bind(const weft_layer_texture *t, GLuint program, int un
     weft_gl_bind(program, "layer_ceiling", unit + 1, GL_TEXTURE_2D, t->ceiling);
     weft_gl_bind(program, "layer_map", unit + 2, GL_TEXTURE_3D, t->map);
     if (t->view_count > 0) {
-        weft_gl_bind(program, "layer_map_of_view", unit + 3, GL_TEXTURE_3D, t->map_of_view);
+        weft_gl_bind(program, "layer_map_of_view", unit + 3, GL_TEXTURE_2D_ARRAY, t->map_of_view);
         weft_gl_bind(program, "layer_view", view_unit, GL_TEXTURE_2D, t->view);
-        weft_gl_set_float(program, "layer_view_count", t->view_count);
     }
     set_areas(&t->layout, program, "layer_area", "layer_step");
     set_areas(&t->ceiling_layout, program, "ceiling_area", "ceiling_step");

@@ -8,9 +8,8 @@ uniform sampler2D layer_ceiling;          // codes, all levels side by side
 // Factors of a group: x: light nodes, for red, green and blue in turn; y: light nodes, group after group; z: view nodes,
 // row after row.
 uniform highp sampler3D layer_map;
-uniform highp sampler3D layer_map_of_view; // the same of every stored view by itself
+uniform highp sampler2DArray layer_map_of_view; // the same of every stored view by itself
 uniform sampler2D layer_view;              // of every stored view: direction, entry in the table of views
-uniform float layer_view_count;
 uniform int layer_groups; // that are evaluated
 uniform vec2 layer_sides; // nodes along a side, of lights and of views
 uniform vec2 layer_step, ceiling_step; // 1 / size of the textures
@@ -80,12 +79,11 @@ vec3 layers_value_of_view(vec4 coefficient[LAYER_GROUPS], vec3 light, int number
 {
     vec3 half_vector = half_vector_of(light, view), sum = vec3(0.0);
     vec2 inner = inner_node(light, half_vector);
-    float slice = (float(number) + 0.5) / layer_view_count;
     for (int i = 0; i < LAYER_GROUPS; i++) {
         if (i >= layer_groups)
             break;
         for (int c = 0; c < 3; c++)
-            sum[c] += dot(coefficient[i], textureLod(layer_map_of_view, vec3(map_place(inner, i, c), slice), 0.0));
+            sum[c] += dot(coefficient[i], textureLod(layer_map_of_view, vec3(map_place(inner, i, c), float(number)), 0.0));
     }
     return HALF_VECTOR ? sum / max(dot(light, half_vector), 0.0625) : sum;
 }
