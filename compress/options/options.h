@@ -50,8 +50,8 @@ typedef struct weft_compress_options {
     weft_log log;                /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 
-/* 2 lobes and table or automatic layers, levels, heights, fitted frames, N <= 8192, nothing held out, a quarter of the memory,
- * no checkpoint. */
+/* 2 lobes and table or automatic layers, levels, heights, fitted frames, N <= 8192, nothing held out, a quarter of the
+ * memory, no checkpoint. */
 weft_compress_options weft_compress_default_options(void);
 
 /* Images that are not held out. Pure. */
