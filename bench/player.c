@@ -141,6 +141,12 @@ static void time_mode(weft_player *player, weft_mode mode, weft_canvas *canvas)
         scene.filter = (weft_filter)f;
         snprintf(what, sizeof what, "%s, %s", weft_mode_name(mode), filter[f]);
         time_scene(player, scene, what, canvas);
+        if (mode == WEFT_MODE_ANALYTIC || !weft_player_relief_mm(player, NULL))
+            continue;
+        scene.relief = false;
+        snprintf(what, sizeof what, "%s, %s, no heights", weft_mode_name(mode), filter[f]);
+        time_scene(player, scene, what, canvas);
+        scene.relief = true;
     }
     scene.shadows = true;
     snprintf(what, sizeof what, "%s, shadows", weft_mode_name(mode));

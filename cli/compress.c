@@ -103,6 +103,10 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, options.weights), .words = weight_words},
     {"levels", .argument = "on|off", .help = "Mip levels (default: on)", .kind = WEFT_OPTION_SWITCH,
      .offset = offsetof(compress_command, options.levels)},
+    {"heights", .argument = "on|off",
+     .help = "With layers: see them through the heights that `weft relief` found, where held-out photographs say that "
+             "this helps (default: on)",
+     .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.heights)},
     {"frames", .argument = "on|off|given",
      .help = "Turn the frame of each texel where that helps, from that of the surface and from the one that the "
              "dataset gives; given: as the dataset says; off: the frame of the surface everywhere, fastest (default: "
@@ -375,6 +379,8 @@ static weft_code measure_hold_out(const compress_command *command, weft_dataset 
         *result = (weft_hold_out){0};
         return WEFT_OK;
     }
+    if (code == WEFT_OK && result->heights.asked)
+        options->heights = result->heights.used;
     if (code == WEFT_OK)
         code = weft_hold_out_bytes(result, &options->added_bytes, &own);
     if (code != WEFT_OK)

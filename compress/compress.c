@@ -301,6 +301,26 @@ static weft_code fit_layers(fitting *work, weft_material *material, weft_compres
                : WEFT_OK;
 }
 
+/* Those of the dataset, for the layers. */
+static weft_code take_heights(fitting *work, weft_material *material, weft_error *error)
+{
+    weft_dataset_heights surface;
+    double size_mm[2];
+    if (!material->layers || !work->options->heights)
+        return WEFT_OK;
+    weft_material_heights *heights = NULL;
+    WEFT_TRY(weft_dataset_read_surface(work->dataset, &surface, error));
+    weft_dataset_size_mm(weft_dataset_get_layout(work->dataset), size_mm);
+    weft_code code = WEFT_OK;
+    if (surface.value)
+        code = weft_material_heights_create(surface.value, surface.width, surface.height, surface.level_count, size_mm,
+                                            &heights, error);
+    weft_dataset_heights_free(&surface);
+    if (heights)
+        weft_material_take_heights(material, heights);
+    return code;
+}
+
 static weft_code fit_material(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
@@ -313,6 +333,7 @@ static weft_code fit_material(fitting *work, weft_material *material, weft_compr
     if (work->counts.empty == work->counts.texels && !work->options->held_out)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(work->dataset));
     WEFT_TRY(fit_layers(work, material, report, error));
+    WEFT_TRY(take_heights(work, material, error));
     report->texel_count = work->counts.texels;
     report->empty_texel_count = work->counts.empty;
     report->turned_frame_count = work->counts.turned;

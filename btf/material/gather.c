@@ -216,6 +216,63 @@ static weft_code gather_layers(const weft_layers *from, const weft_texel_mix *mi
     return WEFT_OK;
 }
 
+/* ---- Heights ---- */
+
+/* Places along a side of a texel. */
+static int places_of(int places, int texels)
+{
+    int whole = (int)lround((double)places / texels);
+    return whole > 1 ? whole : 1;
+}
+
+/* Place `i` of `count` of texel `at`, of the heights of a material of `texels`. */
+static int place_in(int at, int i, int count, int texels, int places)
+{
+    return (int)(((long)at * count + i) * places / ((long)texels * count));
+}
+
+static float mixed_height(const weft_material *from, const weft_texel_mix *at, int i, int j, int across, int down)
+{
+    const weft_material_heights *heights = from->heights;
+    float sum = 0;
+    for (int p = 0; p < WEFT_MIX_TEXELS; p++) {
+        if (!(at->part[p].weight > 0))
+            continue;
+        int x = place_in(at->part[p].x, i, across, from->level[0].width, heights->width);
+        int y = place_in(at->part[p].y, j, down, from->level[0].height, heights->height);
+        sum += at->part[p].weight * weft_material_height_mm(heights, x, y);
+    }
+    return sum;
+}
+
+/* A texel takes its heights with it. A plane stays one. */
+static weft_code gather_heights(const weft_material *from, const weft_texel_mix *mix, weft_material *to,
+                                weft_error *error)
+{
+    const weft_material_heights *heights = from->heights;
+    int columns = to->level[0].width, rows = to->level[0].height;
+    bool is_plane = heights->width == 1 && heights->height == 1;
+    int across = places_of(heights->width, from->level[0].width),
+        down = places_of(heights->height, from->level[0].height);
+    int width = is_plane ? 1 : columns * across, height = is_plane ? 1 : rows * down;
+    const double size_mm[2] = {heights->size_mm[0] * columns / from->level[0].width,
+                               heights->size_mm[1] * rows / from->level[0].height};
+    weft_material_heights *result;
+    float *value = malloc((size_t)width * (size_t)height * sizeof *value);
+    if (!value)
+        return weft_fail_memory(error, "heights", (size_t)width * (size_t)height * sizeof *value);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            value[(size_t)y * (size_t)width + (size_t)x] =
+                mixed_height(from, &mix[(size_t)(y / down) * (size_t)columns + (size_t)(x / across)], x % across,
+                             y % down, across, down);
+    weft_code code = weft_material_heights_create(value, width, height, heights->level_count, size_mm, &result, error);
+    free(value);
+    if (code == WEFT_OK)
+        weft_material_take_heights(to, result);
+    return code;
+}
+
 /* ---- The material ---- */
 
 static weft_code allocate_like(const weft_material *from, int width, int height, weft_material *to, weft_error *error)
@@ -255,6 +312,8 @@ weft_code weft_material_gather(const weft_material *from, int width, int height,
         code = gather_level(from, mix, k, result, error);
     if (code == WEFT_OK && from->layers)
         code = gather_layers(from->layers, mix, result, error);
+    if (code == WEFT_OK && from->heights)
+        code = gather_heights(from, mix, result, error);
     if (code != WEFT_OK)
         weft_material_free(result);
     return code;

@@ -140,6 +140,13 @@ static void free_level(weft_material_level *level)
     weft_table_basis_free(level->light_table_basis);
 }
 
+void weft_material_take_heights(weft_material *material, weft_material_heights *heights)
+{
+    weft_material_heights_free(material->heights);
+    material->heights = heights;
+    material->has_heights = heights != NULL;
+}
+
 void weft_material_drop_finest(weft_material *material)
 {
     if (material->level_count < 2)
@@ -149,6 +156,8 @@ void weft_material_drop_finest(weft_material *material)
     material->texel_pitch_mm *= 2;
     if (material->layers)
         weft_layers_drop_finest(material->layers);
+    if (material->heights && --material->heights->level_count == 0)
+        weft_material_take_heights(material, NULL);
 }
 
 void weft_material_free(weft_material *material)
@@ -156,6 +165,7 @@ void weft_material_free(weft_material *material)
     for (int k = 0; k < material->level_count; k++)
         free_level(&material->level[k]);
     weft_layers_free(material->layers);
+    weft_material_heights_free(material->heights);
     free(material->view);
     free(material->light);
     free(material->metadata);

@@ -188,6 +188,18 @@ static weft_code add_layers(file_image *file, const weft_material *material, wef
     return code;
 }
 
+static weft_code add_heights(file_image *file, const weft_material *material, weft_error *error)
+{
+    size_t size = weft_material_heights_size(material->heights);
+    uint8_t *bytes = malloc(size);
+    if (!bytes)
+        return weft_fail_memory(error, "heights", size);
+    weft_material_heights_write(material->heights, bytes);
+    weft_code code = add_section(file, WEFT_SECTION_HGHT, 0, bytes, size, error);
+    free(bytes);
+    return code;
+}
+
 static weft_code add_level_section(file_image *file, const weft_material *material, weft_section_kind kind, int k,
                                    weft_error *error)
 {
@@ -212,6 +224,8 @@ static weft_code add_level_section(file_image *file, const weft_material *materi
         return add_opacity(file, material, k, error);
     case WEFT_SECTION_LAYR:
         return add_layers(file, material, error);
+    case WEFT_SECTION_HGHT:
+        return add_heights(file, material, error);
     default:
         return add_texels(file, material, kind, k, error);
     }
@@ -297,7 +311,8 @@ static uint64_t bytes_by_texels(const weft_material *material, const weft_sectio
         uint64_t shared = weft_table_basis_size(basis->component_count, basis->direction_count, 0);
         return section->stored_size - section->stored_size * shared / basis->size;
     }
-    bool is_texels = kind == WEFT_SECTION_ALPH || weft_section_texels(material, kind, (int)section->level);
+    bool is_texels = kind == WEFT_SECTION_ALPH || kind == WEFT_SECTION_HGHT ||
+                     weft_section_texels(material, kind, (int)section->level);
     return is_texels ? section->stored_size : 0;
 }
 

@@ -8,6 +8,7 @@ weft_compress_options weft_compress_default_options(void)
                                    .layer_count = WEFT_LAYERS_AUTOMATIC,
                                    .table = true,
                                    .levels = true,
+                                   .heights = true,
                                    .frames = WEFT_FRAMES_FITTED,
                                    .max_exponent = 8192};
 }

@@ -40,6 +40,7 @@ typedef struct weft_compress_options {
     uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
     uint64_t added_bytes;  /* of a file in the budget: metadata that the caller adds to the material afterwards */
     int layer_count;       /* linear layers beside the lobes: 4..64, a multiple of 4; 0: none; WEFT_LAYERS_AUTOMATIC */
+    bool heights;          /* layers are seen through those of the dataset, where it has some (`weft relief`) */
     int table_components;  /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
@@ -49,8 +50,8 @@ typedef struct weft_compress_options {
     weft_log log;                /* hears of checkpoints that are used or discarded */
 } weft_compress_options;
 
-/* Automatic layers, or 2 lobes and table where there are none; levels, fitted frames, N <= 8192, nothing held out, a
- * quarter of the memory, no checkpoint. */
+/* Automatic layers, or 2 lobes and table where there are none; levels, heights, fitted frames, N <= 8192, nothing held
+ * out, a quarter of the memory, no checkpoint. */
 weft_compress_options weft_compress_default_options(void);
 
 /* Images that are not held out. Pure. */

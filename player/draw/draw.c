@@ -125,7 +125,7 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
     kind.noise = pane->mode == WEFT_MODE_ANALYTIC && scene->noise_seed != 0 && p->weave.has_noise;
     if (pane->mode == WEFT_MODE_RAW) {
         kind.opacity = !p->raw.opaque;
-        kind.relief = scene->relief && weft_raw_texture_has_relief(&p->raw);
+        kind.relief = scene->relief && p->raw.relief.height;
     }
     if (pane->mode == WEFT_MODE_COMPRESSED) {
         kind.lobe_count = p->material.lobe_count;
@@ -135,6 +135,7 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         kind.layer_groups = scene->layers > 0 ? p->material.layers.group_count : 0;
         kind.half_vector = p->material.layers.half_vector;
         kind.opacity = kind.layer_groups > 0 && !p->material.opaque;
+        kind.relief = kind.layer_groups > 0 && scene->relief && p->material.relief.height;
     }
     return kind;
 }

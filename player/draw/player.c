@@ -331,10 +331,13 @@ size_t weft_player_bytes(const weft_player *p, weft_mode mode)
 
 bool weft_player_relief_mm(const weft_player *p, double *range_mm)
 {
-    bool found = p->has[WEFT_MODE_RAW] && weft_raw_texture_has_relief(&p->raw);
-    for (int i = 0; found && range_mm && i < 2; i++)
-        range_mm[i] = p->raw.relief_range_mm[i];
-    return found;
+    const weft_relief_texture *relief = p->has[WEFT_MODE_RAW] && p->raw.relief.height ? &p->raw.relief
+                                        : p->has[WEFT_MODE_COMPRESSED] && p->material.relief.height
+                                            ? &p->material.relief
+                                            : NULL;
+    for (int i = 0; relief && range_mm && i < 2; i++)
+        range_mm[i] = relief->range_mm[i];
+    return relief != NULL;
 }
 
 const char *weft_player_raw_format(const weft_player *p)

@@ -94,7 +94,8 @@ weft_code weft_player_draw(weft_player *player, const weft_scene *scene, int wid
 weft_code weft_player_picture(weft_player *player, const weft_scene *scene, int width, int height, int samples,
                               const weft_progress *progress, weft_image *image, weft_error *error);
 
-/* Whether the dataset has heights (`weft relief`), and from where to where they lie; range_mm [2] may be NULL. */
+/* Whether the dataset or the material has heights (`weft relief`), and from where to where they lie; range_mm [2] may
+ * be NULL. */
 bool weft_player_relief_mm(const weft_player *player, double *range_mm);
 
 /* ---- What the shaders saw, for the evaluators in C ---- */

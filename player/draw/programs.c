@@ -51,15 +51,9 @@ static weft_code build(const weft_program_kind *kind, GLuint *program, weft_erro
                                       weft_glsl_compressed,
                                       weft_glsl_shade_frag,
                                       NULL};
-    const char *const layered[] = {constants,
-                                   weft_glsl_rotation,
-                                   weft_glsl_surface,
-                                   weft_glsl_directions,
-                                   weft_glsl_tables,
-                                   weft_glsl_layers,
-                                   weft_glsl_layered,
-                                   weft_glsl_shade_frag,
-                                   NULL};
+    const char *const layered[] = {
+        constants,        weft_glsl_rotation, weft_glsl_surface, weft_glsl_directions, weft_glsl_tables,
+        weft_glsl_layers, weft_glsl_relief,   weft_glsl_layered, weft_glsl_shade_frag, NULL};
     const char *const analytic[] = {constants,
                                     weft_glsl_rotation,
                                     weft_glsl_surface,

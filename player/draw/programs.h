@@ -13,7 +13,7 @@ typedef struct weft_program_kind {
     bool stochastic, shadows, one_light;
     int plot;     /* 0: of the picture; 1, 2: of lights, of views (player/draw/probe.h) */
     bool opacity; /* raw and layers: some is below 1 */
-    bool relief;  /* raw: through the heights */
+    bool relief;  /* raw and layers: through the heights */
     bool threads; /* analytic: microcylinders, else a weave */
     bool noise;   /* analytic: that of the weave */
     /* Of the compressed material: */

@@ -128,14 +128,14 @@ static weft_code begin(weft_dataset *dataset, const weft_raw_images *images, con
                        const weft_raw_sink *sink, weft_error *error)
 {
     weft_direction_map map = {0};
-    weft_raw_relief relief = {0};
+    weft_relief_map relief = {0};
     weft_code code = weft_raw_images_map(images, weft_dataset_get_layout(dataset), &map, error);
     if (code == WEFT_OK)
         code = weft_raw_relief_make(dataset, images, &relief, error);
     if (code == WEFT_OK)
         code = sink->begin(sink->context, plan, &map, &relief, error);
     weft_direction_map_free(&map);
-    weft_raw_relief_free(&relief);
+    weft_relief_map_free(&relief);
     return code;
 }
 

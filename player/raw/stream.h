@@ -13,7 +13,7 @@
 typedef struct weft_raw_sink {
     void *context;
     weft_code (*begin)(void *context, const weft_raw_plan *plan, weft_direction_map *directions,
-                       weft_raw_relief *relief, weft_error *error);
+                       weft_relief_map *relief, weft_error *error);
     weft_raw_take *strip;
     weft_code (*end)(void *context, bool opaque, weft_error *error);
 } weft_raw_sink;

@@ -39,57 +39,12 @@ static weft_code make_part(weft_raw_texture *t, int part, weft_error *error)
     return WEFT_OK;
 }
 
-/* Filtered and repeated, as the material is. */
-static weft_code make_map(weft_texture_format format, int width, int height, int layers, const void *data,
-                          GLuint *texture, weft_error *error)
-{
-    GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    weft_code code = weft_gl_texture(format, width, height, layers, data, texture, error);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    WEFT_TRY(code);
-    glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTexParameteri(target, GL_TEXTURE_WRAP_S, GL_REPEAT);
-    glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_REPEAT);
-    return WEFT_OK;
-}
-
-static weft_code upload_heights(const weft_raw_relief *relief, GLuint *texture, weft_error *error)
-{
-    const weft_texture_format half = {GL_R16F, GL_RED, GL_FLOAT};
-    size_t places = (size_t)relief->width * (size_t)relief->height;
-    float *share = malloc(places * sizeof *share);
-    if (!share)
-        return weft_fail_memory(error, "heights", places * sizeof *share);
-    for (size_t i = 0; i < places; i++)
-        share[i] = (float)relief->share[i] / 65535;
-    weft_code code = make_map(half, relief->width, relief->height, 0, share, texture, error);
-    free(share);
-    return code;
-}
-
-static weft_code make_relief(const weft_raw_relief *relief, weft_raw_texture *t, weft_error *error)
-{
-    const weft_texture_format byte = {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, pair = {GL_RG32F, GL_RG, GL_FLOAT};
-    if (relief->width == 0)
-        return WEFT_OK;
-    for (int i = 0; i < 2; i++) {
-        t->relief_range_mm[i] = relief->range_mm[i];
-        t->relief_size_mm[i] = relief->size_mm[i];
-    }
-    t->relief_levels = relief->level_count;
-    WEFT_TRY(upload_heights(relief, &t->height, error));
-    WEFT_TRY(make_map(byte, relief->width, relief->height, relief->view_count, relief->seen, &t->seen, error));
-    return weft_gl_texture(pair, relief->view_count, 1, 0, relief->slope, &t->slope, error);
-}
-
 weft_code weft_raw_texture_begin(const weft_raw_plan *plan, const weft_direction_map *directions,
-                                 const weft_raw_relief *relief, weft_raw_texture *t, weft_error *error)
+                                 const weft_relief_map *relief, weft_raw_texture *t, weft_error *error)
 {
     *t = (weft_raw_texture){.plan = *plan};
     WEFT_TRY(weft_direction_texture_upload(directions, &t->directions, error));
-    WEFT_TRY(make_relief(relief, t, error));
+    WEFT_TRY(weft_relief_texture_upload(relief, &t->relief, error));
     for (int part = 0; part < WEFT_RAW_PARTS; part++)
         WEFT_TRY(make_part(t, part, error));
     return WEFT_OK;
@@ -115,7 +70,7 @@ weft_code weft_raw_texture_put(const weft_raw_texture *t, const weft_raw_strip *
 /* ---- At once ---- */
 
 static weft_code begin(void *context, const weft_raw_plan *plan, weft_direction_map *directions,
-                       weft_raw_relief *relief, weft_error *error)
+                       weft_relief_map *relief, weft_error *error)
 {
     return weft_raw_texture_begin(plan, directions, relief, context, error);
 }
@@ -147,7 +102,7 @@ void weft_raw_texture_free(weft_raw_texture *t)
 {
     glDeleteTextures(WEFT_RAW_PARTS, t->part);
     weft_direction_texture_free(&t->directions);
-    glDeleteTextures(3, (const GLuint[]){t->height, t->seen, t->slope});
+    weft_relief_texture_free(&t->relief);
     *t = (weft_raw_texture){0};
 }
 
@@ -164,21 +119,6 @@ static void set_tiles(const weft_raw_texture *t, int part, GLuint program, const
     weft_gl_set_vec2(program, size, (double)width * tiles->columns, t->plan.layout.height);
 }
 
-bool weft_raw_texture_has_relief(const weft_raw_texture *t)
-{
-    return t->height != 0;
-}
-
-static void bind_relief(const weft_raw_texture *t, GLuint program)
-{
-    weft_gl_bind(program, "relief_height", 4, GL_TEXTURE_2D, t->height);
-    weft_gl_bind(program, "relief_seen", 5, GL_TEXTURE_2D_ARRAY, t->seen);
-    weft_gl_bind(program, "relief_slope", 6, GL_TEXTURE_2D, t->slope);
-    weft_gl_set_vec2(program, "relief_range", t->relief_range_mm[0], t->relief_range_mm[1]);
-    weft_gl_set_vec2(program, "relief_size", t->relief_size_mm[0], t->relief_size_mm[1]);
-    weft_gl_set_float(program, "relief_levels", t->relief_levels);
-}
-
 void weft_raw_texture_bind(const weft_raw_texture *t, GLuint program)
 {
     float area[WEFT_MIP_LEVELS][4];
@@ -192,7 +132,6 @@ void weft_raw_texture_bind(const weft_raw_texture *t, GLuint program)
     weft_gl_set_int(program, "opaque", t->opaque);
     set_tiles(t, WEFT_RAW_SAMPLES, program, "raw_tiles", "raw_atlas_size");
     set_tiles(t, opacity, program, "opacity_tiles", "opacity_atlas_size");
-    if (weft_raw_texture_has_relief(t))
-        bind_relief(t, program);
+    weft_relief_texture_bind(&t->relief, program, 4);
     glUniform4fv(glGetUniformLocation(program, "level_area"), t->plan.layout.level_count, area[0]);
 }

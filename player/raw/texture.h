@@ -4,6 +4,7 @@
 
 #include "player/raw/stream.h"
 #include "player/texture/direction_texture.h"
+#include "player/texture/relief_texture.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -16,9 +17,7 @@ typedef struct weft_raw_texture {
     weft_raw_plan plan;
     GLuint part[WEFT_RAW_PARTS];
     weft_direction_texture directions; /* set 0: views; the label of a view is the set of its lights */
-    GLuint height, seen, slope;        /* of the relief; 0: there is none */
-    double relief_range_mm[2], relief_size_mm[2];
-    int relief_levels;
+    weft_relief_texture relief;
     bool opaque; /* no texel has an opacity below 1 */
 } weft_raw_texture;
 
@@ -28,7 +27,7 @@ weft_raw_limits weft_raw_texture_limits(weft_raw_format format);
 /* What the sink of weft_raw_stream calls: makes the textures, then fills them strip by strip. `opaque` is the caller's
  * to set at the end. Errors: WEFT_SYSTEM. The caller frees with weft_raw_texture_free, also on failure. */
 weft_code weft_raw_texture_begin(const weft_raw_plan *plan, const weft_direction_map *directions,
-                                 const weft_raw_relief *relief, weft_raw_texture *texture, weft_error *error);
+                                 const weft_relief_map *relief, weft_raw_texture *texture, weft_error *error);
 weft_code weft_raw_texture_put(const weft_raw_texture *texture, const weft_raw_strip *strip, weft_error *error);
 
 /* The whole dataset at once. Errors: those of weft_raw_stream. The caller frees with weft_raw_texture_free, also on
@@ -39,9 +38,6 @@ void weft_raw_texture_free(weft_raw_texture *texture);
 
 /* Of graphics memory, without the directions. */
 size_t weft_raw_texture_bytes(const weft_raw_texture *texture);
-
-/* Whether there is a relief to look through. Pure. */
-bool weft_raw_texture_has_relief(const weft_raw_texture *texture);
 
 /* Sets the uniforms of raw.glsl; `program` is in use. */
 void weft_raw_texture_bind(const weft_raw_texture *texture, GLuint program);

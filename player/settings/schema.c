@@ -159,7 +159,8 @@ static const weft_setting schema[] = {
             CHOICE(raw_format, raw_format_words)),
     SETTING("model.relief",
             OPTION("relief", "on|off", EVALUATION,
-                   "See the dataset through the heights that `weft relief` found (default: on, where it has some)"),
+                   "See the dataset, and the layers of a material, through the heights that `weft relief` found "
+                   "(default: on, where there are some)"),
             SWITCH(scene.relief)),
     SETTING("model.layers",
             OPTION("layers", "N", EVALUATION,

@@ -65,11 +65,11 @@ static weft_code upload_ceilings(const weft_layers *layers, weft_layer_texture *
 
 /* ---- Maps ---- */
 
-/* Nodes [view node][light node][layer][3] become the texture of layered.glsl, for coefficients of 1 that stand for the
+/* Nodes [views][light node][layer][3] become the texture of layered.glsl, for coefficients of 1 that stand for the
  * largest code. */
-static void arrange(const weft_layers *layers, const float *node, weft_half *texel)
+static void arrange(const weft_layers *layers, const float *node, size_t views, weft_half *texel)
 {
-    size_t side = (size_t)layers->light_side, views = (size_t)layers->view_side * (size_t)layers->view_side;
+    size_t side = (size_t)layers->light_side;
     size_t count = (size_t)layers->layer_count, groups = count / WEFT_LAYERS_GROUP;
     for (size_t view = 0; view < views; view++)
         for (size_t at = 0; at < side * side; at++)
@@ -82,17 +82,19 @@ static void arrange(const weft_layers *layers, const float *node, weft_half *tex
             }
 }
 
-static weft_code upload_texels_of_map(const weft_layer_texture *t, const weft_half *texel, weft_error *error)
+static weft_code upload_solid(const weft_layer_texture *t, int depth, const weft_half *texel, GLuint *texture,
+                              weft_error *error)
 {
     GLint largest = 0;
-    int width = COLOURS * t->light_side, height = t->group_count * t->light_side, depth = t->view_side * t->view_side;
+    int width = COLOURS * t->light_side, height = t->group_count * t->light_side;
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
     if (width > largest || height > largest || depth > largest)
         return weft_fail(
             error, WEFT_SYSTEM,
             "this graphics driver holds solid textures up to %d texels a side; the layers need %d x %d x %d", largest,
             width, height, depth);
-    glBindTexture(GL_TEXTURE_3D, t->map);
+    glGenTextures(1, texture);
+    glBindTexture(GL_TEXTURE_3D, *texture);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, width, height, depth, 0, GL_RGBA, GL_HALF_FLOAT, texel);
     filter_linearly(GL_TEXTURE_3D);
     glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -102,27 +104,79 @@ static weft_code upload_texels_of_map(const weft_layer_texture *t, const weft_ha
     return weft_gl_check("uploading the maps of layers", error);
 }
 
-static weft_code upload_maps(const weft_layers *layers, weft_layer_texture *t, weft_error *error)
+/* Between which nothing is interpolated. */
+static weft_code upload_slices(const weft_layer_texture *t, int count, const weft_half *texel, GLuint *texture,
+                               weft_error *error)
+{
+    const weft_texture_format half = {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+    WEFT_TRY(
+        weft_gl_texture(half, COLOURS * t->light_side, t->group_count * t->light_side, count, texel, texture, error));
+    filter_linearly(GL_TEXTURE_2D_ARRAY);
+    return WEFT_OK;
+}
+
+typedef weft_code upload_texels(const weft_layer_texture *t, int count, const weft_half *texel, GLuint *texture,
+                                weft_error *error);
+
+/* Of `views` nodes or stored views. */
+static weft_code upload_map(const weft_layer_texture *t, const weft_layers *layers, const float *node, int views,
+                            upload_texels *upload, GLuint *texture, weft_error *error)
+{
+    size_t lights = (size_t)layers->light_side * (size_t)layers->light_side;
+    size_t bytes = lights * (size_t)views * COLOURS * (size_t)layers->layer_count * sizeof(weft_half);
+    weft_half *texel = malloc(bytes);
+    if (!texel)
+        return weft_fail_memory(error, "maps of layers", bytes);
+    arrange(layers, node, (size_t)views, texel);
+    weft_code code = upload(t, views, texel, texture, error);
+    free(texel);
+    return code;
+}
+
+/* Directions, and the entry of each in the table of views. */
+static weft_code upload_views(const weft_layers *layers, const int *entry_of_view, weft_layer_texture *t,
+                              weft_error *error)
+{
+    const weft_texture_format four = {GL_RGBA32F, GL_RGBA, GL_FLOAT};
+    size_t views = (size_t)layers->view_count;
+    float(*texel)[4] = malloc(views * sizeof *texel);
+    if (!texel)
+        return weft_fail_memory(error, "views of layers", views * sizeof *texel);
+    for (size_t i = 0; i < views; i++) {
+        memcpy(texel[i], layers->view + 3 * i, 3 * sizeof(float));
+        texel[i][3] = (float)entry_of_view[i];
+    }
+    weft_code code = weft_gl_texture(four, layers->view_count, 1, 0, texel, &t->view, error);
+    free(texel);
+    return code;
+}
+
+static weft_code upload_maps_of_views(const weft_layers *layers, const int *entry_of_view, weft_layer_maps *maps,
+                                      weft_layer_texture *t, weft_error *error)
+{
+    t->view_count = layers->view_count;
+    WEFT_TRY(weft_layer_maps_keep_views(maps, error));
+    WEFT_TRY(upload_map(t, layers, maps->node_of_view, layers->view_count, upload_slices, &t->map_of_view, error));
+    return upload_views(layers, entry_of_view, t, error);
+}
+
+static weft_code upload_maps(const weft_layers *layers, const int *entry_of_view, weft_layer_texture *t,
+                             weft_error *error)
 {
     weft_layer_maps maps;
-    size_t lights = (size_t)layers->light_side * (size_t)layers->light_side;
-    size_t nodes = lights * (size_t)layers->view_side * (size_t)layers->view_side;
     WEFT_TRY(weft_layer_maps_create(layers, &maps, error));
-    weft_half *texel = malloc(nodes * COLOURS * (size_t)layers->layer_count * sizeof *texel);
-    weft_code code = texel ? WEFT_OK : weft_fail_memory(error, "maps of layers", nodes * sizeof *texel);
-    if (code == WEFT_OK) {
-        arrange(layers, maps.node, texel);
-        glGenTextures(1, &t->map);
-        code = upload_texels_of_map(t, texel, error);
-    }
-    free(texel);
+    weft_code code =
+        upload_map(t, layers, maps.node, layers->view_side * layers->view_side, upload_solid, &t->map, error);
+    if (code == WEFT_OK && entry_of_view)
+        code = upload_maps_of_views(layers, entry_of_view, &maps, t, error);
     weft_layer_maps_free(&maps);
     return code;
 }
 
 /* ---- The whole ---- */
 
-weft_code weft_layer_texture_upload(const weft_layers *layers, weft_layer_texture *t, weft_error *error)
+weft_code weft_layer_texture_upload(const weft_layers *layers, const int *entry_of_view, weft_layer_texture *t,
+                                    weft_error *error)
 {
     const weft_layers_level *finest = &layers->level[0];
     int columns = (finest->width + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
@@ -136,14 +190,14 @@ weft_code weft_layer_texture_upload(const weft_layers *layers, weft_layer_textur
                               .least_cosine = layers->least_cosine};
     WEFT_TRY(upload_coefficients(layers, t, error));
     WEFT_TRY(upload_ceilings(layers, t, error));
-    return upload_maps(layers, t, error);
+    return upload_maps(layers, entry_of_view, t, error);
 }
 
 void weft_layer_texture_free(weft_layer_texture *t)
 {
     glDeleteTextures(1, &t->coefficient);
     glDeleteTextures(1, &t->ceiling);
-    glDeleteTextures(1, &t->map);
+    glDeleteTextures(3, (const GLuint[]){t->map, t->map_of_view, t->view});
     *t = (weft_layer_texture){0};
 }
 
@@ -151,7 +205,7 @@ size_t weft_layer_texture_bytes(const weft_layer_texture *t, size_t *shared)
 {
     size_t texels = (size_t)t->layout.width * (size_t)t->layout.height, groups = (size_t)t->group_count;
     size_t lights = (size_t)t->light_side * (size_t)t->light_side;
-    size_t nodes = lights * (size_t)t->view_side * (size_t)t->view_side;
+    size_t nodes = lights * ((size_t)t->view_side * (size_t)t->view_side + (size_t)t->view_count);
     *shared = nodes * groups * COLOURS * WEFT_LAYERS_GROUP * sizeof(weft_half);
     return *shared + texels * groups * WEFT_LAYERS_GROUP +
            (size_t)t->ceiling_layout.width * (size_t)t->ceiling_layout.height;
@@ -165,11 +219,15 @@ static void set_areas(const weft_mip_layout *layout, GLuint program, const char 
     weft_gl_set_vec2(program, step, 1.0 / layout->width, 1.0 / layout->height);
 }
 
-void weft_layer_texture_bind(const weft_layer_texture *t, GLuint program, int unit, int count)
+void weft_layer_texture_bind(const weft_layer_texture *t, GLuint program, int unit, int view_unit, int count)
 {
     weft_gl_bind(program, "layer_coefficient", unit, GL_TEXTURE_2D_ARRAY, t->coefficient);
     weft_gl_bind(program, "layer_ceiling", unit + 1, GL_TEXTURE_2D, t->ceiling);
     weft_gl_bind(program, "layer_map", unit + 2, GL_TEXTURE_3D, t->map);
+    if (t->view_count > 0) {
+        weft_gl_bind(program, "layer_map_of_view", unit + 3, GL_TEXTURE_2D_ARRAY, t->map_of_view);
+        weft_gl_bind(program, "layer_view", view_unit, GL_TEXTURE_2D, t->view);
+    }
     set_areas(&t->layout, program, "layer_area", "layer_step");
     set_areas(&t->ceiling_layout, program, "ceiling_area", "ceiling_step");
     weft_gl_set_int(program, "layer_groups", (count + WEFT_LAYERS_GROUP - 1) / WEFT_LAYERS_GROUP);

@@ -12,22 +12,27 @@
 /* All zero without layers. Coefficients are signed bytes and the maps half floats, both filtered by the hardware. */
 typedef struct weft_layer_texture {
     GLuint coefficient, ceiling, map;
+    GLuint map_of_view, view; /* the maps of the stored views by themselves, and their directions; 0 unless they are
+                                 looked through heights from */
+    int view_count;
     weft_mip_layout layout, ceiling_layout;
     int group_count, light_side, view_side;
     bool half_vector;
     float least_cosine;
 } weft_layer_texture;
 
-/* Uploads what `layers` hold. Errors: WEFT_SYSTEM where the driver's textures are too small, and for memory. The caller
- * frees with weft_layer_texture_free, also on failure. */
-weft_code weft_layer_texture_upload(const weft_layers *layers, weft_layer_texture *texture, weft_error *error);
+/* Uploads what `layers` hold, and with `entry_of_view` [view_count] what is needed to look from their views: the entry
+ * of each in the table of views (NULL: not needed). Errors: WEFT_SYSTEM where the driver's textures are too small, and
+ * for memory. The caller frees with weft_layer_texture_free, also on failure. */
+weft_code weft_layer_texture_upload(const weft_layers *layers, const int *entry_of_view, weft_layer_texture *texture,
+                                    weft_error *error);
 void weft_layer_texture_free(weft_layer_texture *texture);
 
 /* Of graphics memory; *shared receives what does not grow with the number of texels. */
 size_t weft_layer_texture_bytes(const weft_layer_texture *texture, size_t *shared);
 
-/* Sets the uniforms of layered.glsl to evaluate the first `count` layers, from texture unit `unit` on; `program` is in
- * use. */
-void weft_layer_texture_bind(const weft_layer_texture *texture, GLuint program, int unit, int count);
+/* Sets the uniforms of layered.glsl to evaluate the first `count` layers, from texture unit `unit` on (four of them),
+ * and on `view_unit`; `program` is in use. */
+void weft_layer_texture_bind(const weft_layer_texture *texture, GLuint program, int unit, int view_unit, int count);
 
 #endif

@@ -1,5 +1,7 @@
 #include "player/texture/material_texture.h"
 
+#include "reflectance/relief/material_relief.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -115,12 +117,54 @@ static weft_code add_directions(weft_direction_map *map, const weft_vec3 *direct
     return weft_direction_map_add(map, count > 0 ? direction : &zenith, NULL, count > 0 ? count : 1, error);
 }
 
-static weft_code upload_directions(const weft_material *material, weft_material_texture *t, weft_error *error)
+/* ---- Heights ---- */
+
+/* The nearest of the table. */
+static int entry_of_view(const weft_material *material, weft_vec3 view)
+{
+    int nearest = 0;
+    for (int i = 1; i < material->view_count; i++) {
+        if (weft_dot(material->view[i], view) > weft_dot(material->view[nearest], view))
+            nearest = i;
+    }
+    return nearest;
+}
+
+static weft_code find_entries(const weft_material *material, const weft_material_relief *relief, int **entry,
+                              weft_error *error)
+{
+    int views = relief->relief.view_count;
+    if (views == 0)
+        return WEFT_OK;
+    *entry = malloc((size_t)views * sizeof **entry);
+    for (int i = 0; *entry && i < views; i++)
+        (*entry)[i] = entry_of_view(material, relief->view[i]);
+    return *entry ? WEFT_OK : weft_fail_memory(error, "views", (size_t)views * sizeof **entry);
+}
+
+static weft_code upload_relief(const weft_material_relief *relief, weft_material_texture *t, weft_error *error)
+{
+    weft_relief_map map;
+    if (relief->relief.view_count == 0)
+        return WEFT_OK;
+    WEFT_TRY(weft_relief_map_make(&relief->relief.field, relief->view, relief->relief.view_count, relief->level_count,
+                                  &map, error));
+    weft_code code = weft_relief_texture_upload(&map, &t->relief, error);
+    weft_relief_map_free(&map);
+    return code;
+}
+
+/* ---- The whole ---- */
+
+static weft_code upload_directions(const weft_material *material, const weft_material_relief *relief,
+                                   weft_material_texture *t, weft_error *error)
 {
     weft_direction_map map = {0};
     weft_code code = add_directions(&map, material->view, material->view_count, error);
     if (code == WEFT_OK)
         code = add_directions(&map, material->light, material->light_count, error);
+    if (code == WEFT_OK && relief->relief.view_count > 0)
+        code = add_directions(&map, relief->view, relief->relief.view_count, error);
     if (code == WEFT_OK)
         code = weft_direction_texture_upload(&map, &t->directions, error);
     weft_direction_map_free(&map);
@@ -137,9 +181,19 @@ weft_code weft_material_texture_upload(const weft_material *material, weft_mater
     WEFT_TRY(upload_texels(material, t, error));
     WEFT_TRY(upload_table(material, &t->layout, false, &t->table, error));
     WEFT_TRY(upload_table(material, &t->layout, true, &t->light_table, error));
-    if (material->layers)
-        WEFT_TRY(weft_layer_texture_upload(material->layers, &t->layers, error));
-    return upload_directions(material, t, error);
+    weft_material_relief relief;
+    int *entry = NULL;
+    WEFT_TRY(weft_material_relief_create(material, &relief, error));
+    weft_code code = find_entries(material, &relief, &entry, error);
+    if (code == WEFT_OK && material->layers)
+        code = weft_layer_texture_upload(material->layers, entry, &t->layers, error);
+    if (code == WEFT_OK)
+        code = upload_relief(&relief, t, error);
+    if (code == WEFT_OK)
+        code = upload_directions(material, &relief, t, error);
+    weft_material_relief_free(&relief);
+    free(entry);
+    return code;
 }
 
 void weft_material_texture_free(weft_material_texture *t)
@@ -149,6 +203,7 @@ void weft_material_texture_free(weft_material_texture *t)
     glDeleteTextures(1, &t->light_table.name);
     weft_direction_texture_free(&t->directions);
     weft_layer_texture_free(&t->layers);
+    weft_relief_texture_free(&t->relief);
     *t = (weft_material_texture){0};
 }
 
@@ -157,13 +212,16 @@ size_t weft_material_texture_bytes(const weft_material_texture *t)
     size_t texels = (size_t)t->layout.width * (size_t)t->layout.height;
     size_t layers = 1 + (3 * (size_t)t->lobe_count + 1) / 2;
     size_t shared, of_layers = weft_layer_texture_bytes(&t->layers, &shared);
-    return of_layers + texels * (16 * layers + 4 * (size_t)(t->table.count + t->light_table.count));
+    return of_layers + t->relief.bytes + texels * (16 * layers + 4 * (size_t)(t->table.count + t->light_table.count));
 }
 
 void weft_material_texture_bind(const weft_material_texture *t, GLuint program, int layer_count)
 {
-    if (t->layers.group_count > 0 && layer_count > 0)
-        weft_layer_texture_bind(&t->layers, program, 5, layer_count);
+    if (t->layers.group_count > 0 && layer_count > 0) {
+        /* Unit 2 is that of a light table, which lobes alone have. */
+        weft_layer_texture_bind(&t->layers, program, 5, 2, layer_count);
+        weft_relief_texture_bind(&t->relief, program, 9);
+    }
     weft_gl_bind(program, "material_texel", 0, GL_TEXTURE_2D_ARRAY, t->texel);
     weft_gl_bind(program, "material_table", 1, GL_TEXTURE_2D_ARRAY, t->table.name);
     weft_gl_bind(program, "material_light_table", 2, GL_TEXTURE_2D_ARRAY, t->light_table.name);

@@ -6,6 +6,7 @@
 #include "player/texture/direction_texture.h"
 #include "player/texture/layer_texture.h"
 #include "player/texture/mip_layout.h"
+#include "player/texture/relief_texture.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -24,9 +25,10 @@ typedef struct weft_table_texture {
 typedef struct weft_material_texture {
     GLuint texel;
     weft_table_texture table, light_table;
-    weft_direction_texture directions; /* set 0: views, set 1: lights */
+    weft_direction_texture directions; /* set 0: views, set 1: lights, set 2: stored views that it is looked at from */
     weft_mip_layout layout;
     weft_layer_texture layers;
+    weft_relief_texture relief; /* of the layers */
     int lobe_count;
     bool opaque;
 } weft_material_texture;

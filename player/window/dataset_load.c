@@ -37,7 +37,7 @@ typedef struct beginning {
     weft_dataset_load *load;
     weft_raw_plan plan;
     weft_direction_map directions;
-    weft_raw_relief relief;
+    weft_relief_map relief;
 } beginning;
 
 typedef struct row {
@@ -55,7 +55,7 @@ static void release_beginning(void *data)
 {
     beginning *b = data;
     weft_direction_map_free(&b->directions);
-    weft_raw_relief_free(&b->relief);
+    weft_relief_map_free(&b->relief);
     free(b);
 }
 
@@ -88,7 +88,7 @@ static void release_end(void *data)
 /* ---- The sink of the stream ---- */
 
 static weft_code begin(void *context, const weft_raw_plan *plan, weft_direction_map *directions,
-                       weft_raw_relief *relief, weft_error *error)
+                       weft_relief_map *relief, weft_error *error)
 {
     weft_dataset_load *load = context;
     beginning *b = malloc(sizeof *b);
@@ -96,7 +96,7 @@ static weft_code begin(void *context, const weft_raw_plan *plan, weft_direction_
         return weft_fail_memory(error, "load", sizeof *b);
     *b = (beginning){load, *plan, *directions, *relief};
     *directions = (weft_direction_map){0};
-    *relief = (weft_raw_relief){0};
+    *relief = (weft_relief_map){0};
     return weft_load_post(load->background, (weft_load_piece){run_beginning, release_beginning, b, 0}, error);
 }
 

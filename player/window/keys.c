@@ -133,7 +133,7 @@ static void toggle_relief(weft_interaction *i)
     if (i->has_relief)
         toggle(i, &i->scene.relief, "through the heights");
     else
-        snprintf(i->said, sizeof i->said, "no heights: weft relief finds those of a dataset");
+        snprintf(i->said, sizeof i->said, "no heights: weft relief finds those of a dataset, weft compress keeps them");
 }
 
 static void toggle_environment(weft_interaction *i)
@@ -337,7 +337,7 @@ static const weft_key keys[] = {
     {"N", "mip level in false colour", GLFW_KEY_N, .press = toggle_levels},
     {"T", "tint where nothing was measured", GLFW_KEY_T, .press = toggle_extrapolation},
     {"M", "mip levels: trilinear, nearest, none", GLFW_KEY_M, .press = next_level_choice},
-    {"Z", "raw through its heights", GLFW_KEY_Z, .press = toggle_relief},
+    {"Z", "raw and layers through heights", GLFW_KEY_Z, .press = toggle_relief},
     {.name = "Camera and light"},
     {"arrows", "turn", GLFW_KEY_LEFT, .repeats = true, .press = turn_left},
     {NULL, NULL, GLFW_KEY_RIGHT, .repeats = true, .press = turn_right},

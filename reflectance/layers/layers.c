@@ -15,6 +15,14 @@ static weft_square_cell light_cell(const weft_layers *layers, weft_vec3 light, w
     return weft_square_cell_at(place, layers->light_side);
 }
 
+/* A map over half vectors holds B_k (l . h). */
+static weft_real divisor_of(const weft_layers *layers, weft_vec3 light, weft_vec3 half_vector)
+{
+    if (layers->kind == WEFT_LAYERS_OF_LIGHT)
+        return 1;
+    return fmax(weft_dot(light, half_vector), (weft_real)WEFT_LEAST_INCIDENCE);
+}
+
 void weft_layer_factors(const weft_layer_maps *maps, weft_vec3 light, weft_vec3 view, float *factor)
 {
     const weft_layers *layers = maps->layers;
@@ -25,9 +33,7 @@ void weft_layer_factors(const weft_layer_maps *maps, weft_vec3 light, weft_vec3 
     weft_vec3 half_vector = weft_half_vector(light, view);
     weft_square_cell outer = weft_square_cell_at(weft_place_of_direction(view), layers->view_side),
                      inner = light_cell(layers, light, half_vector);
-    weft_real divisor = 1;
-    if (layers->kind == WEFT_LAYERS_OF_HALF_VECTOR)
-        divisor = fmax(weft_dot(light, half_vector), (weft_real)WEFT_LEAST_INCIDENCE);
+    weft_real divisor = divisor_of(layers, light, half_vector);
     size_t light_nodes = (size_t)layers->light_side * (size_t)layers->light_side;
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) {
@@ -36,6 +42,25 @@ void weft_layer_factors(const weft_layer_maps *maps, weft_vec3 light, weft_vec3 
             for (size_t k = 0; k < series; k++)
                 factor[k] += weight * node[k];
         }
+}
+
+void weft_layer_factors_of_view(const weft_layer_maps *maps, weft_vec3 light, int view, float *factor)
+{
+    const weft_layers *layers = maps->layers;
+    size_t series = 3 * (size_t)layers->layer_count, nodes = (size_t)layers->light_side * (size_t)layers->light_side;
+    memset(factor, 0, series * sizeof *factor);
+    if (!(light.z > 0))
+        return;
+    const float *xyz = layers->view + 3 * (size_t)view;
+    weft_vec3 half_vector = weft_half_vector(light, weft_vec3_of(xyz[0], xyz[1], xyz[2]));
+    weft_square_cell inner = light_cell(layers, light, half_vector);
+    weft_real divisor = divisor_of(layers, light, half_vector);
+    for (int j = 0; j < 4; j++) {
+        const float *node = maps->node_of_view + ((size_t)view * nodes + (size_t)inner.index[j]) * series;
+        float weight = (float)(inner.weight[j] / divisor);
+        for (size_t k = 0; k < series; k++)
+            factor[k] += weight * node[k];
+    }
 }
 
 /* ---- Texels ---- */
@@ -115,4 +140,38 @@ weft_rgb weft_layers_sample(const weft_layers *layers, int count, const float *f
     if (share > 0)
         add_level(&layers->level[fine + 1], count, u, v, share, coefficient);
     return held(layers, combine(count, coefficient, factor), ceiling, light_z);
+}
+
+/* ---- Through heights ---- */
+
+static weft_rgb sum_of(weft_rgb sum, weft_real weight, weft_rgb value)
+{
+    return (weft_rgb){sum.r + weight * value.r, sum.g + weight * value.g, sum.b + weight * value.b};
+}
+
+weft_rgb weft_layers_sample_through(const weft_layer_maps *maps, const weft_material_relief *relief, int count,
+                                    weft_real level, weft_real u, weft_real v, weft_vec3 light, weft_vec3 view)
+{
+    weft_rgb sum = {0};
+    float factor[3 * WEFT_LAYERS_MAX];
+    weft_real share = weft_material_relief_share(relief, level);
+    if (!(light.z > 0 && view.z > 0 && isfinite(u) && isfinite(v)))
+        return sum;
+    if (share < 1) {
+        weft_layer_factors(maps, light, view, factor);
+        sum = sum_of(sum, 1 - share, weft_layers_sample(maps->layers, count, factor, level, u, v, light.z));
+    }
+    if (!(share > 0))
+        return sum;
+    int index[3];
+    weft_relief_tap tap[3];
+    weft_material_relief_taps(relief, u, v, view, index, tap);
+    for (int i = 0; i < 3; i++) {
+        if (!(tap[i].weight > 0))
+            continue;
+        weft_layer_factors_of_view(maps, light, index[i], factor);
+        sum = sum_of(sum, share * tap[i].weight,
+                     weft_layers_sample(maps->layers, count, factor, level, tap[i].u, tap[i].v, light.z));
+    }
+    return sum;
 }

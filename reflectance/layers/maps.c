@@ -130,8 +130,19 @@ weft_code weft_layer_maps_create(const weft_layers *layers, weft_layer_maps *map
     return code;
 }
 
+weft_code weft_layer_maps_keep_views(weft_layer_maps *maps, weft_error *error)
+{
+    const weft_layers *layers = maps->layers;
+    size_t row = (size_t)layers->light_side * (size_t)layers->light_side * 3 * (size_t)layers->layer_count;
+    size_t bytes = (size_t)layers->view_count * row * sizeof *maps->node_of_view;
+    maps->node_of_view = malloc(bytes);
+    return maps->node_of_view ? map_views(layers, row, maps->node_of_view, error)
+                              : weft_fail_memory(error, "maps of layers", bytes);
+}
+
 void weft_layer_maps_free(weft_layer_maps *maps)
 {
     free(maps->node);
+    free(maps->node_of_view);
     *maps = (weft_layer_maps){0};
 }

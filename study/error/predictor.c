@@ -15,7 +15,11 @@ struct weft_predictor {
     const weft_material *material;
     weft_table_directions directions; /* of the material */
     weft_layer_maps maps;             /* of its layers, where directions differ from texel to texel */
-    float *factor;                    /* of its layers: [image][layer][3]; NULL without, and beside maps */
+    float *factor; /* of its layers: [image][layer][3], and through heights [image][3 views][layer][3]; NULL without,
+                      and beside maps */
+    weft_material_relief relief;  /* through which the layers are seen; of no view without */
+    weft_barycentric *around;     /* [view] its stored views */
+    weft_predicted_window window; /* of the heights, where the dataset lies */
     const weft_weave *weave;
     weft_woven_table *table; /* of the weave */
     weft_weave_layout tiles;
@@ -44,6 +48,8 @@ void weft_predictor_free(weft_predictor *predictor)
     weft_table_directions_free(&predictor->directions);
     weft_layer_maps_free(&predictor->maps);
     free(predictor->factor);
+    weft_material_relief_free(&predictor->relief);
+    free(predictor->around);
     weft_woven_table_free(predictor->table);
     weft_dataset_close(predictor->other);
     free(predictor->samples);
@@ -102,6 +108,98 @@ static void predict_by_layers(const weft_predictor *predictor, int x, int y, con
     }
 }
 
+/* ---- Layers through heights ---- */
+
+/* Of a coordinate of the whole in the window, whose own coordinate begins at its first texel; NaN beyond the middles of
+ * its outermost ones. A window that is the whole repeats. */
+static weft_real coordinate_in_window(weft_real whole, int first, int count, int texels)
+{
+    if (count == texels)
+        return whole;
+    weft_real place = (whole - floor(whole)) * texels - first;
+    bool inside = place >= (weft_real)0.5 && place <= count - (weft_real)0.5;
+    return inside ? place / count : (weft_real)NAN;
+}
+
+/* The taps of a view from texel (x, y), in coordinates of the window. */
+static void find_taps(const weft_predictor *predictor, int view, int x, int y, weft_relief_tap tap[3])
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    const weft_predicted_window *window = &predictor->window;
+    const weft_barycentric *around = &predictor->around[view];
+    weft_real u = (window->x + x + (weft_real)0.5) / window->whole_width;
+    weft_real v = 1 - (window->y + y + (weft_real)0.5) / window->whole_height;
+    weft_relief_taps(&predictor->relief.relief, 1, u, v, layout->view[view], around->index, around->weight, tap);
+    for (int i = 0; i < 3; i++) {
+        tap[i].u = coordinate_in_window(tap[i].u, window->x, layout->width, window->whole_width);
+        tap[i].v = 1 - coordinate_in_window(1 - tap[i].v, window->y, layout->height, window->whole_height);
+    }
+}
+
+static weft_rgb sample_taps(const weft_predictor *predictor, const weft_relief_tap tap[3], const float *factor,
+                            weft_real light_z)
+{
+    const weft_layers *layers = predictor->material->layers;
+    weft_rgb sum = {0};
+    for (int i = 0; i < 3; i++) {
+        if (!(tap[i].weight > 0))
+            continue;
+        if (isnan(tap[i].u) || isnan(tap[i].v))
+            return (weft_rgb){NAN, NAN, NAN};
+        weft_rgb value =
+            weft_layers_sample(layers, layers->layer_count, factor + 3 * (size_t)i * (size_t)layers->layer_count, 0,
+                               tap[i].u, tap[i].v, light_z);
+        sum.r += tap[i].weight * value.r;
+        sum.g += tap[i].weight * value.g;
+        sum.b += tap[i].weight * value.b;
+    }
+    return sum;
+}
+
+static void predict_through_heights(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+                                    weft_rgb *prediction)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    size_t series = 9 * (size_t)predictor->material->layers->layer_count;
+    weft_relief_tap tap[3];
+    for (int i = 0, view = -1; i < image_count; i++) {
+        weft_vec3 light = layout->light[image[i]];
+        if (layout->view_of_image[image[i]] != view) {
+            view = layout->view_of_image[image[i]];
+            find_taps(predictor, view, x, y, tap);
+        }
+        weft_rgb value = sample_taps(predictor, tap, predictor->factor + (size_t)image[i] * series, light.z);
+        prediction[i] = light.z > 0 ? scaled(quantity(layout, light) / light.z, value) : (weft_rgb){0};
+    }
+}
+
+static weft_code prepare_heights(weft_predictor *predictor, weft_error *error)
+{
+    const weft_dataset_layout *layout = predictor->layout;
+    size_t series = 3 * (size_t)predictor->material->layers->layer_count, views = (size_t)layout->view_count;
+    size_t bytes = 3 * (size_t)layout->image_count * series * sizeof(float);
+    WEFT_TRY(weft_material_relief_create(predictor->material, &predictor->relief, error));
+    WEFT_TRY(weft_layer_maps_keep_views(&predictor->maps, error));
+    predictor->predict = predict_through_heights;
+    predictor->around = malloc(views * sizeof *predictor->around);
+    predictor->factor = calloc(1, bytes);
+    if (!predictor->around || !predictor->factor)
+        return weft_fail_memory(error, "factors of layers", bytes);
+    for (int view = 0; view < layout->view_count; view++)
+        predictor->around[view] = weft_triangulation_lookup(predictor->relief.views, layout->view[view]);
+    for (int i = 0; i < layout->image_count; i++)
+        for (int k = 0; k < 3; k++) {
+            int stored = predictor->around[layout->view_of_image[i]].index[k];
+            if (stored >= 0)
+                weft_layer_factors_of_view(&predictor->maps, layout->light[i], stored,
+                                           predictor->factor + (3 * (size_t)i + (size_t)k) * series);
+        }
+    weft_layer_maps_free(&predictor->maps);
+    return WEFT_OK;
+}
+
+/* ---- Layers, however seen ---- */
+
 /* In a far dataset all texels see an image under the same light and view. */
 static weft_code prepare_far_layers(weft_predictor *predictor, weft_error *error)
 {
@@ -123,11 +221,20 @@ static weft_code prepare_layers(weft_predictor *predictor, weft_error *error)
 {
     WEFT_TRY(weft_layer_maps_create(predictor->material->layers, &predictor->maps, error));
     predictor->predict = predict_by_layers;
+    if (predictor->material->heights && predictor->layout->distance == WEFT_FAR)
+        return prepare_heights(predictor, error);
     return predictor->layout->distance == WEFT_FAR ? prepare_far_layers(predictor, error) : WEFT_OK;
 }
 
 weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const weft_material *material,
                                      weft_predictor **result, weft_error *error)
+{
+    const weft_predicted_window whole = {0, 0, layout->width, layout->height};
+    return weft_predictor_of_window(layout, &whole, material, result, error);
+}
+
+weft_code weft_predictor_of_window(const weft_dataset_layout *layout, const weft_predicted_window *window,
+                                   const weft_material *material, weft_predictor **result, weft_error *error)
 {
     if (material->level[0].width != layout->width || material->level[0].height != layout->height)
         return weft_fail(error, WEFT_BAD_INPUT,
@@ -135,6 +242,7 @@ weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const we
                          layout->width, layout->height, material->level[0].width, material->level[0].height);
     WEFT_TRY(create(layout, predict_by_material, result, error));
     (*result)->material = material;
+    (*result)->window = *window;
     weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
     if (code == WEFT_OK && material->layers)
         code = prepare_layers(*result, error);
@@ -148,14 +256,13 @@ weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const we
 static weft_rgb sample_material(const weft_predictor *predictor, weft_real u, weft_real v, weft_vec3 light,
                                 weft_vec3 view)
 {
-    float factor[3 * WEFT_LAYERS_MAX];
     const weft_layers *layers = predictor->material->layers;
     if (!layers) {
         weft_rgba value = weft_material_sample(predictor->material, &predictor->directions, 0, u, v, light, view);
         return scaled(quantity(predictor->layout, light), (weft_rgb){value.r, value.g, value.b});
     }
-    weft_layer_factors(&predictor->maps, light, view, factor);
-    weft_rgb value = weft_layers_sample(layers, layers->layer_count, factor, 0, u, v, light.z);
+    weft_rgb value =
+        weft_layers_sample_through(&predictor->maps, &predictor->relief, layers->layer_count, 0, u, v, light, view);
     return light.z > 0 ? scaled(quantity(predictor->layout, light) / light.z, value) : (weft_rgb){0};
 }
 
@@ -179,6 +286,10 @@ weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, 
     weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
     if (code == WEFT_OK && material->layers)
         code = weft_layer_maps_create(material->layers, &(*result)->maps, error);
+    if (code == WEFT_OK && material->layers && material->heights)
+        code = weft_layer_maps_keep_views(&(*result)->maps, error);
+    if (code == WEFT_OK)
+        code = weft_material_relief_create(material, &(*result)->relief, error);
     if (code != WEFT_OK)
         weft_predictor_free(*result);
     return code;

@@ -12,10 +12,23 @@ typedef struct weft_predictor weft_predictor;
 
 /* Predictions for one dataset, whose layout outlives the predictor. The caller frees with weft_predictor_free. */
 
-/* Level 0 of a material, which stays the caller's: its layers where it has some, else its lobes. The layout of the
- * dataset is enough. Errors: WEFT_BAD_INPUT where its size is not that of the dataset. */
+/* Level 0 of a material, which stays the caller's: its layers where it has some, through its heights where it has
+ * those, else its lobes. The layout of the dataset is enough. Errors: WEFT_BAD_INPUT where its size is not that of the
+ * dataset.
+ */
 weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const weft_material *material,
                                      weft_predictor **result, weft_error *error);
+
+/* Where the texels of a dataset lie in a larger one. */
+typedef struct weft_predicted_window {
+    int x, y;                      /* the first */
+    int whole_width, whole_height; /* texels */
+} weft_predicted_window;
+
+/* The same of a dataset that is a window of another, whose heights the material has. What some view saw beyond the
+ * window is not known: NaN. */
+weft_code weft_predictor_of_window(const weft_dataset_layout *layout, const weft_predicted_window *window,
+                                   const weft_material *material, weft_predictor **result, weft_error *error);
 
 /* A material of fewer texels over the same area, as the player shows it at the centres of the texels of the dataset:
  * interpolated between its own, which repeat. Errors: WEFT_SYSTEM. */

@@ -72,8 +72,7 @@ static weft_code make_layout(const weft_dataset_layout *source, const texel_choi
                                     .values = source->values,
                                     .distance = source->distance,
                                     .texel_pitch_mm = source->texel_pitch_mm * choice->stride,
-                                    .texel_aspect = source->texel_aspect,
-                                    .plane_mm = source->plane_mm};
+                                    .texel_aspect = source->texel_aspect};
     WEFT_TRY(weft_dataset_layout_allocate(layout, error));
     bool is_near = source->distance == WEFT_NEAR;
     weft_vec3 offset = is_near ? offset_of(choice, source->texel_pitch_mm) : weft_vec3_of(0, 0, 0);
@@ -145,7 +144,7 @@ weft_code weft_excerpt_read(weft_dataset *dataset, weft_excerpt_kind kind, int s
 {
     const weft_dataset_layout *source = weft_dataset_get_layout(dataset);
     texel_choice choice = choose_texels(source, kind, side);
-    *excerpt = (weft_excerpt){0};
+    *excerpt = (weft_excerpt){.first_x = choice.first_x, .first_y = choice.first_y};
     weft_code code = make_layout(source, &choice, &excerpt->layout, error);
     if (code == WEFT_OK)
         code = read_samples(dataset, &choice, excerpt, error);

@@ -14,7 +14,9 @@ typedef enum weft_excerpt_kind {
 
 /* Freed with weft_excerpt_free. */
 typedef struct weft_excerpt {
-    weft_dataset_layout layout; /* of these texels, its origin moved to their centre; every image and view */
+    weft_dataset_layout layout; /* of these texels, its origin moved to their centre, without a plane; every image and
+                                   view */
+    int first_x, first_y;       /* of a block: its first texel in the dataset */
     weft_half *samples;         /* [height][width][image_count][3] */
     uint8_t *mask;              /* [height][width][image_count] */
     float *opacity;             /* [height][width][view_count]; NULL where the dataset has none */

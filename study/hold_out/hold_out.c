@@ -11,10 +11,10 @@
 #include <string.h>
 
 /* Layers learn from 512 texels, which are to be there. */
-enum { SIDE = 12, LAYERS_SIDE = 24, BLOCK_SIDE = 64 };
+enum { SIDE = 12, LAYERS_SIDE = 24, HEIGHTS_SIDE = 48, BLOCK_SIDE = 64 };
 
-/* Of the excerpt, at most. */
-static const long most_samples = 1L << 22;
+/* Of the excerpt, at most; of one with heights, whose texels see each other. */
+static const long most_samples = 1L << 22, most_samples_with_heights = 1L << 23;
 
 /* Of all splits, that a certificate is made of: more change no quantile that is stored with three digits. */
 static const size_t most_residuals = 1 << 20;
@@ -67,20 +67,29 @@ static void take_errors(const weft_hold_out_error *one, means_taken *taken, weft
 
 /* ---- The fits ---- */
 
+typedef struct held_and_fitted {
+    weft_residuals held, fitted;
+} held_and_fitted;
+
 /* The whole measurement at work. */
 typedef struct measuring {
     const weft_compress_options *given;
     weft_compress_options options; /* of the fits without some images */
     const char *scratch_path;
     weft_excerpt excerpt;
+    weft_predicted_window window;
+    weft_dataset_heights surface; /* that layers may be seen through; else none */
+    double size_mm[2];            /* of the dataset */
     weft_splits splits;
     weft_compress_model whole_model; /* that all images carry, and its lobes */
     int whole_lobes;
-    means_taken material_taken, photographs_taken;
-    int fitted_taken;
-    int measured_count; /* of the splits: the first ones */
-    double spacing;     /* of the texels of the excerpt, in texels of the dataset */
-    weft_residuals held_residuals, fitted_residuals;
+    weft_hold_out_error flat; /* of the material without heights, where it has been asked with them */
+    weft_error_summary flat_fitted;
+    means_taken material_taken, flat_taken, photographs_taken;
+    int fitted_taken, flat_fitted_taken;
+    int measured_count;                        /* of the splits: the first ones */
+    double spacing;                            /* of the texels of the excerpt, in texels of the dataset */
+    held_and_fitted residuals, flat_residuals; /* flat: the same without heights */
     weft_hold_out *result;
 } measuring;
 
@@ -97,7 +106,8 @@ static weft_code fit_without(const measuring *work, const uint8_t *held, weft_ma
 /* What one split says. */
 typedef struct answers {
     weft_asked_samples material, fitted, photographs;
-    weft_asked_samples moved; /* the material, its stored numbers moved by a step each */
+    weft_asked_samples moved;                         /* the material, its stored numbers moved by a step each */
+    weft_asked_samples flat, flat_fitted, flat_moved; /* without heights, where `material` is with them */
 } answers;
 
 static void free_answers(answers *said)
@@ -106,29 +116,106 @@ static void free_answers(answers *said)
     weft_asked_samples_free(&said->fitted);
     weft_asked_samples_free(&said->photographs);
     weft_asked_samples_free(&said->moved);
+    weft_asked_samples_free(&said->flat);
+    weft_asked_samples_free(&said->flat_fitted);
+    weft_asked_samples_free(&said->flat_moved);
 }
 
-static weft_code ask_material(const weft_trial *trial, const weft_material *material, weft_asked_samples *held,
-                              weft_asked_samples *fitted, weft_error *error)
+static weft_code ask_material(const measuring *work, const weft_trial *trial, const weft_material *material,
+                              weft_asked_samples *held, weft_asked_samples *fitted, weft_error *error)
 {
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_material(&trial->excerpt->layout, material, &predictor, error));
+    WEFT_TRY(weft_predictor_of_window(&trial->excerpt->layout, &work->window, material, &predictor, error));
     weft_code code = weft_trial_ask(trial, predictor, held, fitted, error);
     weft_predictor_free(predictor);
     return code;
 }
 
-/* The material is another one afterwards. */
-static weft_code ask(const weft_trial *trial, weft_material *material, answers *said, weft_error *error)
+static weft_code give_heights(const measuring *work, weft_material *material, weft_error *error)
+{
+    const weft_dataset_heights *surface = &work->surface;
+    weft_material_heights *heights;
+    WEFT_TRY(weft_material_heights_create(surface->value, surface->width, surface->height, surface->level_count,
+                                          work->size_mm, &heights, error));
+    weft_material_take_heights(material, heights);
+    return WEFT_OK;
+}
+
+/* What storage does to it. The material is another one afterwards, without heights. */
+static weft_code ask_moved(const measuring *work, const weft_trial *trial, weft_material *material, answers *said,
+                           weft_error *error)
 {
     weft_trial held_alone = *trial;
     weft_asked_samples none = {0};
     held_alone.fitted_count = 0;
-    WEFT_TRY(ask_material(trial, material, &said->material, &said->fitted, error));
     weft_material_move_by_steps(material);
-    weft_code code = ask_material(&held_alone, material, &said->moved, &none, error);
+    weft_code code = ask_material(work, &held_alone, material, &said->moved, &none, error);
     weft_asked_samples_free(&none);
-    return code == WEFT_OK ? weft_trial_ask_photographs(trial, &said->photographs, error) : code;
+    if (code != WEFT_OK || !material->heights)
+        return code;
+    weft_material_take_heights(material, NULL);
+    code = ask_material(work, &held_alone, material, &said->flat_moved, &none, error);
+    weft_asked_samples_free(&none);
+    return code;
+}
+
+static weft_code ask(const measuring *work, const weft_trial *trial, weft_material *material, answers *said,
+                     weft_error *error)
+{
+    if (work->surface.value && material->layers) {
+        WEFT_TRY(ask_material(work, trial, material, &said->flat, &said->flat_fitted, error));
+        WEFT_TRY(give_heights(work, material, error));
+    }
+    WEFT_TRY(ask_material(work, trial, material, &said->material, &said->fitted, error));
+    WEFT_TRY(ask_moved(work, trial, material, said, error));
+    return weft_trial_ask_photographs(trial, &said->photographs, error);
+}
+
+/* Relative RMSE with and without heights where both are known; `with` says of fewer samples, in the same order. */
+static void compare_with_flat(const weft_asked_samples *with, const weft_asked_samples *flat, double error_of[2])
+{
+    double square[2] = {0}, energy = 1e-30;
+    for (size_t i = 0, at = 0; i < with->count; i++, at++) {
+        while (flat->sample[at] != with->sample[i])
+            at++;
+        double sample = (double)with->value[i].sample,
+               apart[2] = {(double)with->value[i].prediction - sample, (double)flat->value[at].prediction - sample};
+        square[0] += apart[0] * apart[0];
+        square[1] += apart[1] * apart[1];
+        energy += sample * sample;
+    }
+    error_of[0] = sqrt(square[0] / energy);
+    error_of[1] = sqrt(square[1] / energy);
+}
+
+static weft_code take_flat(measuring *work, const answers *said, weft_error *error)
+{
+    weft_hold_out_error flat;
+    weft_error_summary fitted;
+    double error_of[2];
+    if (!said->flat.value)
+        return WEFT_OK;
+    WEFT_TRY(summarise(&said->flat, &flat, error));
+    WEFT_TRY(weft_error_summary_of(said->flat_fitted.value, said->flat_fitted.count, &fitted, error));
+    take_errors(&flat, &work->flat_taken, &work->flat);
+    take_into_mean(&fitted, &work->flat_fitted_taken, &work->flat_fitted);
+    compare_with_flat(&said->material, &said->flat, error_of);
+    work->result->heights.asked = true;
+    work->result->heights.with += error_of[0] / work->measured_count;
+    work->result->heights.without += error_of[1] / work->measured_count;
+    return WEFT_OK;
+}
+
+/* What is said of the material is what is played of it. */
+static void decide_on_heights(measuring *work)
+{
+    weft_hold_out_heights *heights = &work->result->heights;
+    heights->used = heights->asked && work->result->material.all.count > 0 &&
+                    heights->with <= WEFT_HOLD_OUT_HEIGHTS_GAIN * heights->without;
+    if (!heights->asked || heights->used)
+        return;
+    work->result->material = work->flat;
+    work->result->fitted = work->flat_fitted;
 }
 
 static weft_code take_answers(measuring *work, const answers *said, weft_error *error)
@@ -141,16 +228,31 @@ static weft_code take_answers(measuring *work, const answers *said, weft_error *
     take_errors(&material, &work->material_taken, &work->result->material);
     take_errors(&photographs, &work->photographs_taken, &work->result->photographs);
     take_into_mean(&fitted, &work->fitted_taken, &work->result->fitted);
-    return WEFT_OK;
+    return take_flat(work, said, error);
+}
+
+static void free_residuals(held_and_fitted *residuals)
+{
+    weft_residuals_free(&residuals->held);
+    weft_residuals_free(&residuals->fitted);
+}
+
+static weft_code add_residuals(const measuring *work, int split, const weft_asked_samples *material,
+                               const weft_asked_samples *moved, const weft_asked_samples *fitted,
+                               held_and_fitted *residuals, weft_error *error)
+{
+    uint32_t first_image = (uint32_t)split * (uint32_t)work->splits.image_count;
+    size_t most = most_residuals / (size_t)work->measured_count;
+    WEFT_TRY(weft_residuals_add(&residuals->held, &work->excerpt, material, moved, first_image, most, error));
+    return weft_residuals_add(&residuals->fitted, &work->excerpt, fitted, NULL, first_image, most, error);
 }
 
 static weft_code take_residuals(measuring *work, int split, const answers *said, weft_error *error)
 {
-    uint32_t first_image = (uint32_t)split * (uint32_t)work->splits.image_count;
-    size_t most = most_residuals / (size_t)work->measured_count;
-    WEFT_TRY(weft_residuals_add(&work->held_residuals, &work->excerpt, &said->material, &said->moved, first_image, most,
-                                error));
-    return weft_residuals_add(&work->fitted_residuals, &work->excerpt, &said->fitted, NULL, first_image, most, error);
+    WEFT_TRY(add_residuals(work, split, &said->material, &said->moved, &said->fitted, &work->residuals, error));
+    if (!said->flat.value)
+        return WEFT_OK;
+    return add_residuals(work, split, &said->flat, &said->flat_moved, &said->flat_fitted, &work->flat_residuals, error);
 }
 
 static weft_code measure_split(measuring *work, int split, weft_error *error)
@@ -165,7 +267,7 @@ static weft_code measure_split(measuring *work, int split, weft_error *error)
     answers said = {0};
     weft_code code = weft_trial_create(&work->excerpt, held, next, &trial, error);
     if (code == WEFT_OK)
-        code = ask(&trial, &material, &said, error);
+        code = ask(work, &trial, &material, &said, error);
     if (code == WEFT_OK)
         code = take_answers(work, &said, error);
     if (code == WEFT_OK)
@@ -191,6 +293,15 @@ static int fewest_kept(const weft_splits *splits)
     return fewest;
 }
 
+/* What a view sees of a surface lies in other texels than its own. */
+static weft_code read_with_heights(weft_dataset *dataset, measuring *work, weft_error *error)
+{
+    int side = HEIGHTS_SIDE;
+    while (side > 1 && (long)side * side * work->splits.image_count > most_samples_with_heights)
+        side--;
+    return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, side, &work->excerpt, error);
+}
+
 static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
@@ -200,6 +311,8 @@ static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error
     work->spacing = 1;
     if (weft_compress_plan(&others, &work->options, &lobes) == WEFT_COMPRESS_SPARSE)
         return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &work->excerpt, error);
+    if (work->surface.value)
+        return read_with_heights(dataset, work, error);
     weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
     int side = work->options.layer_count > 0 ? LAYERS_SIDE : SIDE;
     while (side > 1 && (long)side * side * layout->image_count > most_samples)
@@ -224,8 +337,10 @@ static int held_directions(const measuring *work)
 static weft_code certify(weft_dataset *dataset, measuring *work, weft_error *error)
 {
     weft_hold_out *result = work->result;
-    WEFT_TRY(weft_certify(&work->held_residuals, &work->fitted_residuals, certified, work->spacing,
-                          &result->certificate, &result->has_certificate, error));
+    bool is_flat = result->heights.asked && !result->heights.used;
+    const held_and_fitted *by = is_flat ? &work->flat_residuals : &work->residuals;
+    WEFT_TRY(weft_certify(&by->held, &by->fitted, certified, work->spacing, &result->certificate,
+                          &result->has_certificate, error));
     result->certificate.direction_count = held_directions(work);
     return result->has_certificate ? weft_certify_registration(dataset, &result->certificate, error) : WEFT_OK;
 }
@@ -258,12 +373,14 @@ static weft_code measure_splits(weft_dataset *dataset, measuring *work, const we
     WEFT_TRY(read_excerpt(dataset, work, error));
     WEFT_TRY(
         weft_compress_share_budget(layout, &work->excerpt.layout, work->given, &work->options.budget_bytes, error));
+    work->window = (weft_predicted_window){work->excerpt.first_x, work->excerpt.first_y, layout->width, layout->height};
     describe(layout, work);
     work->whole_model = weft_compress_plan(layout, &work->options, &work->whole_lobes);
     for (int s = 0; s < work->measured_count; s++) {
         weft_progress_report(progress, step, s, work->measured_count);
         WEFT_TRY(measure_split(work, s, error));
     }
+    decide_on_heights(work);
     weft_progress_report(progress, step, work->measured_count, work->measured_count);
     if (work->result->material.all.count == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "every sample that was held out is masked");
@@ -275,7 +392,7 @@ weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_optio
                                 weft_error *error)
 {
     measuring work = {.given = options, .options = *options, .scratch_path = scratch_path, .result = result};
-    work.options.levels = false;
+    work.options.levels = work.options.heights = false;
     work.options.held_out = NULL;
     work.options.checkpoint_path = NULL;
     /* The one after the last is that of the fitted images. */
@@ -283,10 +400,14 @@ weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_optio
     weft_code code = weft_splits_create(weft_dataset_get_layout(dataset), 0, most, &work.splits, error);
     bool each = work.splits.kind == WEFT_SPLIT_EACH;
     work.measured_count = each || split_count > work.splits.count ? work.splits.count : split_count;
+    if (code == WEFT_OK && options->heights && options->layer_count > 0)
+        code = weft_dataset_read_surface(dataset, &work.surface, error);
+    weft_dataset_size_mm(weft_dataset_get_layout(dataset), work.size_mm);
     if (code == WEFT_OK)
         code = measure_splits(dataset, &work, progress, error);
-    weft_residuals_free(&work.held_residuals);
-    weft_residuals_free(&work.fitted_residuals);
+    free_residuals(&work.residuals);
+    free_residuals(&work.flat_residuals);
+    weft_dataset_heights_free(&work.surface);
     weft_excerpt_free(&work.excerpt);
     weft_splits_free(&work.splits);
     /* What is free is given back to the system, so that the fit of the whole has room. */

@@ -15,6 +15,16 @@ typedef struct weft_hold_out_error {
     weft_error_summary view, light, both; /* of those whose view alone, whose light alone, and both of whose were */
 } weft_hold_out_error;
 
+/* Heights are played where their error is at most this part of that without. */
+#define WEFT_HOLD_OUT_HEIGHTS_GAIN 0.95
+
+/* Whether layers are to be seen through the heights of the dataset: relative RMSE over all samples of what was held out
+ * that can be predicted through them, means over the splits. */
+typedef struct weft_hold_out_heights {
+    bool asked, used;
+    double with, without;
+} weft_hold_out_heights;
+
 typedef struct weft_hold_out {
     weft_split_kind kind;
     int split_count;
@@ -22,7 +32,8 @@ typedef struct weft_hold_out {
     int image_count, image_held_count;                              /* held of a split, the mean rounded */
     long texel_count, dataset_texel_count;                          /* measured, and all */
     bool smaller_model; /* the images that were left carry less than all of them do */
-    weft_hold_out_error material;
+    weft_hold_out_heights heights;
+    weft_hold_out_error material;    /* as it is to be played: through heights where they are used */
     weft_hold_out_error photographs; /* interpolated between those that were not held out */
     weft_error_summary fitted;       /* of the same fits where they were fitted: on what the next split holds out, which
                                         lies in the same rings. Zero where there is no next one */
@@ -33,8 +44,9 @@ typedef struct weft_hold_out {
 /* Fits some texels with `options` to the images that a split leaves, for each of up to `split_count` splits, and
  * compares what the material says of the others with their samples, in the quantity of the dataset. Without mip levels,
  * held-out images of `options` and checkpoint. A budget is taken for the share of the texels in the whole material. The
- * texels are at most 12 x 12 (24 x 24 with layers, fewer where there are very many images), and 64 x 64 neighbours
- * where the fit borrows from them. What was left out is not in what the fit reads: neither its samples, nor its views
+ * texels are at most 12 x 12 (24 x 24 with layers, fewer where there are very many images), 64 x 64 neighbours
+ * where the fit borrows from them, and 48 x 48 where layers may be seen through heights: with and without, and what is
+ * better counts. What was left out is not in what the fit reads: neither its samples, nor its views
  * as entries of T.
  *
  * Writes a dataset of those texels to the folder of `scratch_path`, nameless once it is complete. The result depends

@@ -47,6 +47,10 @@ json_t *weft_hold_out_to_json(const weft_hold_out *r)
     }
     if (r->smaller_model)
         weft_json_put(&object, "smaller_model", json_true());
+    if (r->heights.asked)
+        weft_json_put(&object, "heights",
+                      json_pack("{s:b, s:f, s:f}", "used", r->heights.used, "relative_rmse_with", r->heights.with,
+                                "relative_rmse_without", r->heights.without));
     weft_json_put(&object, "not_fitted", json_of_errors(&r->material));
     weft_json_put(&object, "photographs_interpolated", json_of_errors(&r->photographs));
     weft_json_put(&object, "fitted", json_of_error(&r->fitted));
@@ -111,6 +115,16 @@ static bool read_kind(const char *name, weft_split_kind *kind)
     return false;
 }
 
+static bool read_heights(const json_t *object, weft_hold_out_heights *heights)
+{
+    int used = 0;
+    heights->asked = object != NULL;
+    bool complete = !object || json_unpack((json_t *)object, "{s:b, s:F, s:F}", "used", &used, "relative_rmse_with",
+                                           &heights->with, "relative_rmse_without", &heights->without) == 0;
+    heights->used = used;
+    return complete;
+}
+
 static bool read_object(const json_t *object, weft_hold_out *r)
 {
     const char *kind = NULL;
@@ -125,7 +139,8 @@ static bool read_object(const json_t *object, weft_hold_out *r)
     r->texel_count = (long)texels;
     r->dataset_texel_count = (long)all_texels;
     r->smaller_model = smaller;
-    return complete && read_kind(kind, &r->kind) && read_errors(json_object_get(object, "not_fitted"), &r->material) &&
+    return complete && read_kind(kind, &r->kind) && read_heights(json_object_get(object, "heights"), &r->heights) &&
+           read_errors(json_object_get(object, "not_fitted"), &r->material) &&
            read_errors(json_object_get(object, "photographs_interpolated"), &r->photographs) &&
            read_error(json_object_get(object, "fitted"), &r->fitted);
 }
@@ -227,6 +242,9 @@ void weft_hold_out_explain(const weft_hold_out *r, char line[WEFT_HOLD_OUT_LINE]
         APPEND(line, "; mean of %d such fits", r->split_count);
     if (r->texel_count < r->dataset_texel_count)
         APPEND(line, "; on %ld of %ld texels", r->texel_count, r->dataset_texel_count);
+    if (r->heights.asked)
+        APPEND(line, "; through the heights %.3f, without them %.3f%s", r->heights.with, r->heights.without,
+               r->heights.used ? "" : ": they are left out");
     if (r->smaller_model)
         APPEND(line, "; too few were left for the whole model");
 }

@@ -129,6 +129,12 @@ static json_t *describe_certificate(const weft_certificate *certificate)
     return described;
 }
 
+static json_t *describe_heights(const weft_material_heights *heights)
+{
+    return json_pack("{s:[f,f], s:[i,i], s:i}", "range_mm", (double)heights->low_mm, (double)heights->high_mm, "places",
+                     heights->width, heights->height, "levels", heights->level_count);
+}
+
 static json_t *describe_layers(const weft_layers *layers)
 {
     return json_pack("{s:i, s:s, s:i, s:i}", "count", layers->layer_count, "maps_over",
@@ -152,6 +158,8 @@ static json_t *describe_material(const char *path, const weft_material *material
         weft_json_put(&described, "certificate", describe_certificate(&held_out->certificate));
     if (material->layers)
         weft_json_put(&described, "layers", describe_layers(material->layers));
+    if (material->heights)
+        weft_json_put(&described, "heights", describe_heights(material->heights));
     return described;
 }
 

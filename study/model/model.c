@@ -18,6 +18,7 @@ struct weft_model {
     bool has_interval;
     weft_certificate certificate; /* of the material, where intervals are asked for */
     weft_layer_maps maps;         /* of its layers; empty without, or where its lobes are asked for */
+    weft_material_relief relief;  /* through which they are seen, where the material has heights */
     weft_dataset *dataset;
     weft_raw_btf *raw;
     weft_weave weave;
@@ -41,6 +42,15 @@ static weft_code open_certificate(weft_model *model, const char *path, const wef
                            "'%s' has no certificate: weft compress makes one unless --hold-out is off", path);
 }
 
+static weft_code open_layers(weft_model *model, weft_error *error)
+{
+    WEFT_TRY(weft_layer_maps_create(model->material.layers, &model->maps, error));
+    if (!model->material.heights)
+        return WEFT_OK;
+    WEFT_TRY(weft_layer_maps_keep_views(&model->maps, error));
+    return weft_material_relief_create(&model->material, &model->relief, error);
+}
+
 static weft_code open_material(weft_model *model, const char *path, const weft_model_options *options,
                                weft_error *error)
 {
@@ -48,7 +58,7 @@ static weft_code open_material(weft_model *model, const char *path, const weft_m
     if (options->interval)
         WEFT_TRY(open_certificate(model, path, options, error));
     if (model->material.layers && !options->lobes)
-        WEFT_TRY(weft_layer_maps_create(model->material.layers, &model->maps, error));
+        WEFT_TRY(open_layers(model, error));
     return weft_table_directions_create(&model->material, &model->directions, error);
 }
 
@@ -112,6 +122,7 @@ void weft_model_close(weft_model *model)
     weft_dataset_close(model->dataset);
     weft_table_directions_free(&model->directions);
     weft_layer_maps_free(&model->maps);
+    weft_material_relief_free(&model->relief);
     weft_material_free(&model->material);
     weft_weave_free(&model->weave);
     free(model);
@@ -194,13 +205,10 @@ static weft_rgb material_mean(const weft_model *model, const weft_query *query)
 static weft_rgb material_sample(const weft_model *model, const weft_query *query)
 {
     const weft_layers *layers = model->maps.layers;
-    float factor[3 * WEFT_LAYERS_MAX];
-    if (layers) {
-        find_factor(model, query, factor);
-        return divided(
-            weft_layers_sample(layers, layers->layer_count, factor, query->level, query->u, query->v, query->light.z),
-            fmax(query->light.z, (weft_real)1e-6));
-    }
+    if (layers)
+        return divided(weft_layers_sample_through(&model->maps, &model->relief, layers->layer_count, query->level,
+                                                  query->u, query->v, query->light, query->view),
+                       fmax(query->light.z, (weft_real)1e-6));
     weft_rgba sample = weft_material_sample(&model->material, &model->directions, query->level, query->u, query->v,
                                             query->light, query->view);
     return (weft_rgb){sample.r, sample.g, sample.b};

@@ -46,6 +46,35 @@ assert -0.5 <= h.min() and h.max() <= 0.125, (h.min(), h.max())
 assert -0.4 < f.attrs["plane_mm"] < 0 and f.attrs["height_levels"] >= 1
 PYTHON
 
+# What is compressed keeps the heights for its layers, where held-out photographs say so.
+expect_ok compress deep.btf.h5 -o deep.weft --layers 16
+grep -q "; through the heights 0[.0-9]*, without them 0[.0-9]*" out.log || fail "nothing is said of the heights: $(cat out.log)"
+grep -q "they are left out" out.log && fail "the heights of a knit are left out: $(cat out.log)"
+expect_ok info deep.weft
+grep -A1 "^heights:" out.log | grep -q "range_mm: \[-0" || fail "the material does not say that it has heights"
+expect_ok verify deep.weft
+expect_ok render deep.weft --mesh plane --repeat 2 --size 64x48 -o through.png
+expect_ok render deep.weft --mesh plane --repeat 2 --size 64x48 --relief off -o flat.png
+expect_ok compress deep.btf.h5 -o off.weft --layers 16 --heights off
+expect_ok render off.weft --mesh plane --repeat 2 --size 64x48 -o off.png
+"$python" - <<'PYTHON' || fail "the heights are not what is switched"
+import struct
+
+def pixels(path):
+    data, at, found = open(path, "rb").read(), 8, b""
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        found += data[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+        at += 12 + size
+    return found
+
+assert pixels("off.png") == pixels("flat.png")
+assert pixels("through.png") != pixels("flat.png")
+PYTHON
+expect_ok compress before.btf.h5 -o before.weft --layers 16
+expect_ok info before.weft
+grep -q "heights" out.log && fail "there are heights that nothing has found"
+
 # Refused in one line, and nothing is written.
 expect_error 2 "needs NAME.btf.h5" relief
 expect_error 2 "--range needs LOW,HIGH" relief knit.btf.h5 --range 1,0

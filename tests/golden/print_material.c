@@ -88,6 +88,15 @@ static void print_level(FILE *out, const weft_material *material, const weft_tab
     }
 }
 
+static void print_heights(FILE *out, const weft_material_heights *heights)
+{
+    fprintf(out, "heights: %d x %d places, %d levels, %.9g x %.9g mm\n", heights->width, heights->height,
+            heights->level_count, heights->size_mm[0], heights->size_mm[1]);
+    for (int y = 0; y < heights->height; y++)
+        for (int x = 0; x < heights->width; x++)
+            fprintf(out, "  (%d, %d): %.9g mm\n", x, y, (double)weft_material_height_mm(heights, x, y));
+}
+
 weft_code print_material(const char *path, FILE *out, weft_error *error)
 {
     weft_material material;
@@ -104,6 +113,8 @@ weft_code print_material(const char *path, FILE *out, weft_error *error)
         print_directions(out, "light", material.light, material.light_count);
         for (int k = 0; k < material.level_count; k++)
             print_level(out, &material, &directions, k);
+        if (material.heights)
+            print_heights(out, material.heights);
         weft_table_directions_free(&directions);
     }
     weft_material_free(&material);

@@ -137,23 +137,77 @@ static void compressed_equals_c_with_a_light_table(void **state)
 typedef struct layer_model {
     material_model lobes; /* which have the opacity */
     weft_layer_maps maps;
+    weft_material_relief relief;
     int count;
 } layer_model;
+
+static weft_vec3 nearest_of_table(const layer_model *model, int stored)
+{
+    const weft_material *material = &model->lobes.material;
+    weft_vec3 nearest = vector((const float[]){0, 0, 1});
+    for (int i = 0; i < material->view_count; i++)
+        if (i == 0 ||
+            weft_dot(material->view[i], model->relief.view[stored]) > weft_dot(nearest, model->relief.view[stored]))
+            nearest = material->view[i];
+    return nearest;
+}
+
+static weft_real opacity_at(const layer_model *model, weft_real level, weft_real u, weft_real v, weft_vec3 light,
+                            weft_vec3 view)
+{
+    return weft_material_sample(&model->lobes.material, &model->lobes.directions, level, u, v, light, view).a;
+}
+
+/* What each stored view knows of it, in its direction as the table has it. */
+static weft_real opacity_through(const layer_model *model, const weft_surface_sample *at)
+{
+    weft_vec3 light = vector(at->light), view = vector(at->view);
+    weft_real level = (weft_real)at->level, u = (weft_real)at->u, v = (weft_real)at->v;
+    weft_real share = weft_material_relief_share(&model->relief, level);
+    weft_real sum = (1 - share) * opacity_at(model, level, u, v, light, view);
+    int index[3];
+    weft_relief_tap tap[3];
+    if (!(share > 0))
+        return sum;
+    weft_material_relief_taps(&model->relief, u, v, view, index, tap);
+    for (int i = 0; i < 3; i++) {
+        if (tap[i].weight > 0)
+            sum += share * tap[i].weight *
+                   opacity_at(model, level, tap[i].u, tap[i].v, light, nearest_of_table(model, index[i]));
+    }
+    return sum;
+}
 
 static weft_rgba evaluate_layers(void *context, const weft_surface_sample *at)
 {
     layer_model *model = context;
-    float factor[3 * WEFT_LAYERS_MAX];
-    weft_vec3 light = vector(at->light), view = vector(at->view);
-    weft_rgba opacity = evaluate_material(&model->lobes, at);
-    weft_layer_factors(&model->maps, light, view, factor);
-    weft_rgb value = weft_layers_sample(model->maps.layers, model->count, factor, (weft_real)at->level,
-                                        (weft_real)at->u, (weft_real)at->v, light.z);
-    return (weft_rgba){value.r, value.g, value.b, opacity.a};
+    weft_rgb value =
+        weft_layers_sample_through(&model->maps, &model->relief, model->count, (weft_real)at->level, (weft_real)at->u,
+                                   (weft_real)at->v, vector(at->light), vector(at->view));
+    return (weft_rgba){value.r, value.g, value.b, opacity_through(model, at)};
 }
 
-static void compare_layers(void **state, const char *what, weft_layers_kind kind, int layer_count, int views,
-                           weft_scene scene)
+/* Hills of 0.6 mm, two heights along each side of a texel, on the finest levels; or only a plane. */
+static void give_heights(weft_material *material, bool hills, int levels)
+{
+    int width = hills ? 2 * material->level[0].width : 1, height = hills ? 2 * material->level[0].height : 1;
+    const double size_mm[2] = {4, 2.6};
+    weft_error error = {0};
+    weft_material_heights *heights;
+    float *value = malloc((size_t)width * (size_t)height * sizeof *value);
+    for (int i = 0; i < width * height; i++) {
+        double u = (i % width + 0.5) / width, v = 1 - (i / width + 0.5) / height;
+        value[i] = (float)(-0.4 + (hills ? 0.3 * sin(2 * WEFT_PI * u) * cos(2 * WEFT_PI * v + 1) : 0));
+    }
+    expect_ok(weft_material_heights_create(value, width, height, levels, size_mm, &heights, &error), &error);
+    weft_material_take_heights(material, heights);
+    free(value);
+}
+
+typedef enum surface_shape { FLAT, PLANE, HILLS } surface_shape;
+
+static stage_difference difference_of_layers(void **state, weft_layers_kind kind, int layer_count, int views,
+                                             surface_shape shape, weft_scene scene)
 {
     stage *s = *state;
     weft_error error = {0};
@@ -161,13 +215,26 @@ static void compare_layers(void **state, const char *what, weft_layers_kind kind
     weft_material *material = &model.lobes.material;
     stage_material(20, 13, 1, views, 0, material);
     stage_layers(kind, layer_count, material);
+    if (shape != FLAT)
+        give_heights(material, shape == HILLS, 2);
     expect_ok(weft_table_directions_create(material, &model.lobes.directions, &error), &error);
     expect_ok(weft_layer_maps_create(material->layers, &model.maps, &error), &error);
+    expect_ok(weft_layer_maps_keep_views(&model.maps, &error), &error);
+    expect_ok(weft_material_relief_create(material, &model.relief, &error), &error);
     expect_ok(weft_player_set_material(s->player, material, &error), &error);
-    expect_small(what, stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_layers, &model));
+    stage_difference result =
+        stage_compare(s->player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, evaluate_layers, &model);
+    weft_material_relief_free(&model.relief);
     weft_layer_maps_free(&model.maps);
     weft_table_directions_free(&model.lobes.directions);
     weft_material_free(material);
+    return result;
+}
+
+static void compare_layers(void **state, const char *what, weft_layers_kind kind, int layer_count, int views,
+                           weft_scene scene)
+{
+    expect_small(what, difference_of_layers(state, kind, layer_count, views, FLAT, scene));
 }
 
 static void layers_equal_c(void **state)
@@ -192,6 +259,48 @@ static void layers_equal_c_between_levels(void **state)
 static void layers_through_holes_equal_c(void **state)
 {
     compare_layers(state, "layers with opacity", WEFT_LAYERS_OF_HALF_VECTOR, 8, 37, weft_scene_default());
+}
+
+/* A pixel on the edge of a hill may see either side of it, as single precision has it. */
+static void expect_alike(const char *what, stage_difference difference)
+{
+    printf("%s: RMSE %.4f/255, largest %g/255 over %ld pixels\n", what, difference.rmse, difference.largest,
+           difference.pixels);
+    assert_true(difference.pixels > WIDTH * HEIGHT / 8);
+    assert_true(difference.rmse < 0.2);
+}
+
+static void layers_through_heights_equal_c(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    scene.level_choice = WEFT_LEVEL_NONE;
+    expect_alike("layers through hills", difference_of_layers(state, WEFT_LAYERS_OF_LIGHT, 8, 0, HILLS, scene));
+    expect_alike("layers through a plane", difference_of_layers(state, WEFT_LAYERS_OF_HALF_VECTOR, 8, 0, PLANE, scene));
+    expect_alike("layers with opacity through hills",
+                 difference_of_layers(state, WEFT_LAYERS_OF_HALF_VECTOR, 4, 37, HILLS, scene));
+}
+
+/* Level 1 is seen through heights, level 2 is not. */
+static void heights_count_on_their_levels(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    scene.level_choice = WEFT_LEVEL_FIXED;
+    scene.level = 1.37;
+    expect_alike("layers through hills, level 1.37",
+                 difference_of_layers(state, WEFT_LAYERS_OF_LIGHT, 8, 0, HILLS, scene));
+    scene.level = 2;
+    expect_alike("layers, level 2", difference_of_layers(state, WEFT_LAYERS_OF_LIGHT, 8, 0, HILLS, scene));
+}
+
+/* So much, at least, the tests above would see were the heights not used. */
+static void heights_of_layers_that_are_switched_off_are_not_used(void **state)
+{
+    weft_scene scene = weft_scene_default();
+    scene.level_choice = WEFT_LEVEL_NONE;
+    scene.relief = false;
+    stage_difference off = difference_of_layers(state, WEFT_LAYERS_OF_LIGHT, 8, 0, HILLS, scene);
+    printf("heights of layers against none: RMSE %.4f/255\n", off.rmse);
+    assert_true(off.rmse > 3);
 }
 
 static void the_first_layers_alone_equal_c(void **state)
@@ -572,6 +681,9 @@ int main(void)
         cmocka_unit_test(layers_equal_c),
         cmocka_unit_test(layers_equal_c_between_levels),
         cmocka_unit_test(layers_through_holes_equal_c),
+        cmocka_unit_test(layers_through_heights_equal_c),
+        cmocka_unit_test(heights_count_on_their_levels),
+        cmocka_unit_test(heights_of_layers_that_are_switched_off_are_not_used),
         cmocka_unit_test(the_first_layers_alone_equal_c),
         cmocka_unit_test(raw_equals_c_interpolation_in_views_and_lights),
         cmocka_unit_test(raw_through_heights_equals_c),

@@ -1,12 +1,15 @@
 // The compressed material: linear layers. Coefficients are interpolated by the hardware between texels, the maps of the
-// factors between directions, and both are multiplied once a pixel and light. C twin: weft_layers_sample.
+// factors between directions, and both are multiplied once a pixel and light. C twin: weft_layers_sample_through.
 // Constants defined by player/draw/programs.c: LAYER_GROUPS, four layers each; HALF_VECTOR, whether the maps are over it;
-// OPACITY, whether there is any below 1.
+// OPACITY, whether there is any below 1; RELIEF, whether it is all seen through heights (reflectance/relief/relief.glsl):
+// then from the stored views around, each at a place of its own.
 uniform sampler2DArray layer_coefficient; // of a group in each layer, all levels side by side; -1 .. 1
 uniform sampler2D layer_ceiling;          // codes, all levels side by side
 // Factors of a group: x: light nodes, for red, green and blue in turn; y: light nodes, group after group; z: view nodes,
 // row after row.
 uniform highp sampler3D layer_map;
+uniform highp sampler2DArray layer_map_of_view; // the same of every stored view by itself
+uniform sampler2D layer_view;              // of every stored view: direction, entry in the table of views
 uniform int layer_groups; // that are evaluated
 uniform vec2 layer_sides; // nodes along a side, of lights and of views
 uniform vec2 layer_step, ceiling_step; // 1 / size of the textures
@@ -32,13 +35,25 @@ float ceiling_at(int level, vec2 coordinate)
     return exp2((255.0 * textureLod(layer_ceiling, place * ceiling_step, 0.0).r - 192.0) / 8.0);
 }
 
+// Where a light is in the maps, in nodes.
+vec2 inner_node(vec3 light, vec3 half_vector)
+{
+    vec2 place = HALF_VECTOR ? place_of_half_vector(half_vector) : place_of_direction(light);
+    return place * (layer_sides.x - 1.0) + 0.5;
+}
+
+vec2 map_place(vec2 inner, int group, int colour)
+{
+    vec2 node = inner + vec2(float(colour), float(group)) * layer_sides.x;
+    return node / (layer_sides.x * vec2(3.0, float(LAYER_GROUPS)));
+}
+
 // Reflectance times cosine, for directions above the horizon. STOCHASTIC takes one of the two rows of view nodes.
 vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view, inout float chance)
 {
     vec3 half_vector = half_vector_of(light, view);
-    vec2 inner = (HALF_VECTOR ? place_of_half_vector(half_vector) : place_of_direction(light));
+    vec2 inner = inner_node(light, half_vector);
     vec2 outer = place_of_direction(view) * (layer_sides.y - 1.0);
-    inner = inner * (layer_sides.x - 1.0) + 0.5;
     float row = min(floor(outer.y), layer_sides.y - 2.0), share = outer.y - row;
     float rows = 1.0 / layer_sides.y;
     if (STOCHASTIC)
@@ -49,13 +64,26 @@ vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view, inout f
         if (i >= layer_groups)
             break;
         for (int c = 0; c < 3; c++) {
-            vec2 node = inner + vec2(float(c), float(i)) * layer_sides.x;
-            vec2 place = node / (layer_sides.x * vec2(3.0, float(LAYER_GROUPS)));
+            vec2 place = map_place(inner, i, c);
             vec4 factor = textureLod(layer_map, vec3(place, low), 0.0);
             if (!STOCHASTIC)
                 factor = mix(factor, textureLod(layer_map, vec3(place, high), 0.0), share);
             sum[c] += dot(coefficient[i], factor);
         }
+    }
+    return HALF_VECTOR ? sum / max(dot(light, half_vector), 0.0625) : sum;
+}
+
+// The same as stored view `number` has it.
+vec3 layers_value_of_view(vec4 coefficient[LAYER_GROUPS], vec3 light, int number, vec3 view)
+{
+    vec3 half_vector = half_vector_of(light, view), sum = vec3(0.0);
+    vec2 inner = inner_node(light, half_vector);
+    for (int i = 0; i < LAYER_GROUPS; i++) {
+        if (i >= layer_groups)
+            break;
+        for (int c = 0; c < 3; c++)
+            sum[c] += dot(coefficient[i], textureLod(layer_map_of_view, vec3(map_place(inner, i, c), float(number)), 0.0));
     }
     return HALF_VECTOR ? sum / max(dot(light, half_vector), 0.0625) : sum;
 }
@@ -74,35 +102,119 @@ float opacity_of_level(int level, vec2 coordinate, Entries views)
     return mix(top, bottom, share.y);
 }
 
+// Of `point` at a place: as stored view `number` saw it from its direction `view`, or with -1 as seen from there.
+// Loops of one round or none, here and below, since software rasterisers pass over a loop that no pixel takes, not over a
+// branch.
+vec4 radiance_at(SurfacePoint point, vec2 coordinate, int number, vec3 view, Entries views, int fine, float share)
+{
+    int of_view = RELIEF && number >= 0 ? 1 : 0;
+    vec4 coefficient[LAYER_GROUPS];
+    for (int i = 0; i < LAYER_GROUPS; i++)
+        coefficient[i] = vec4(0.0);
+    add_coefficients(fine, coordinate, 1.0 - share, coefficient);
+    if (share > 0.0)
+        add_coefficients(fine + 1, coordinate, share, coefficient);
+    float ceiling = ceiling_at(fine, coordinate);
+    vec3 sum = vec3(0.0), value = vec3(0.0);
+    for (int i = 0; i < LIGHT_COUNT; i++) {
+        vec3 irradiance = surface_irradiance(point, i), light = surface_light(point, i);
+        if (irradiance == vec3(0.0) || light.z <= 0.0 || view.z <= 0.0)
+            continue;
+        vec3 most = vec3(ceiling * min(1.0, light.z / least_cosine));
+        for (int k = 0; k < of_view; k++)
+            value = layers_value_of_view(coefficient, light, number, view);
+        for (int k = of_view; k < 1; k++)
+            value = layers_value(coefficient, light, view, point.chance);
+        sum += irradiance / light.z * clamp(value, vec3(0.0), most);
+    }
+    if (!OPACITY)
+        return vec4(sum, 1.0);
+    float opacity = opacity_of_level(fine, coordinate, views);
+    if (share > 0.0)
+        opacity = mix(opacity, opacity_of_level(fine + 1, coordinate, views), share);
+    return vec4(sum, opacity);
+}
+
+vec4 radiance_of_tap(SurfacePoint point, int number, vec2 coordinate, int fine, float share)
+{
+    vec4 view = texelFetch(layer_view, ivec2(number, 0), 0);
+    Entries views;
+    if (OPACITY)
+        views = table_entries(Corners(ivec3(int(view.w)), vec3(1.0, 0.0, 0.0)), table_columns);
+    return radiance_at(point, coordinate, number, view.xyz, views, fine, share);
+}
+
+int chosen_tap(ReliefTap tap[3], inout float chance)
+{
+    float rest = tap[1].weight + tap[2].weight;
+    bool first = happens(chance, tap[0].weight);
+    bool second = happens(chance, rest > 0.0 ? tap[1].weight / rest : 1.0);
+    return first ? 0 : second ? 1 : 2;
+}
+
+vec4 radiance_through_heights(SurfacePoint point, int fine, float share)
+{
+    Corners corners = find_corners(2, point.view);
+    ReliefTap tap[3];
+    relief_taps(1.0, point.coordinate, point.view, corners.label, corners.weight, tap);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 3; i++)
+        sum += tap[i].weight * radiance_of_tap(point, corners.label[i], tap[i].coordinate, fine, share);
+    return sum;
+}
+
+vec4 radiance_without_heights(SurfacePoint point, int fine, float share)
+{
+    Entries views;
+    if (OPACITY)
+        views = table_entries(find_corners(0, point.view), table_columns);
+    return radiance_at(point, point.coordinate, -1, point.view, views, fine, share);
+}
+
+// One level and one view, stored or not, by chance.
+vec4 chosen_radiance(SurfacePoint point, float through, int fine)
+{
+    Corners views;
+    int number = -1, rounds = happens(point.chance, through) ? 1 : 0;
+    vec2 coordinate = point.coordinate;
+    vec3 view = point.view;
+    for (int i = 0; i < rounds; i++) {
+        Corners corners = find_corners(2, point.view);
+        ReliefTap tap[3];
+        relief_taps(1.0, point.coordinate, point.view, corners.label, corners.weight, tap);
+        int chosen = chosen_tap(tap, point.chance);
+        number = corners.label[chosen];
+        coordinate = tap[chosen].coordinate;
+        vec4 stored = texelFetch(layer_view, ivec2(number, 0), 0);
+        view = stored.xyz;
+        views = Corners(ivec3(int(stored.w)), vec3(1.0, 0.0, 0.0));
+    }
+    for (int i = rounds; OPACITY && i < 1; i++)
+        views = find_corners(0, point.view);
+    Entries entries;
+    if (OPACITY)
+        entries = table_entries(views, table_columns);
+    return radiance_at(point, coordinate, number, view, entries, fine, 0.0);
+}
+
 vec4 radiance(SurfacePoint point)
 {
     float level = clamp(point.level, 0.0, float(level_count - 1));
     int fine = int(level);
-    float share = level - float(fine);
+    float share = level - float(fine), through = RELIEF ? clamp(relief_levels - level, 0.0, 1.0) : 0.0;
     if (STOCHASTIC) {
         fine = happens(point.chance, share) ? fine + 1 : fine;
         share = 0.0;
+        if (RELIEF)
+            return chosen_radiance(point, through, fine);
     }
-    vec4 coefficient[LAYER_GROUPS];
-    for (int i = 0; i < LAYER_GROUPS; i++)
-        coefficient[i] = vec4(0.0);
-    add_coefficients(fine, point.coordinate, 1.0 - share, coefficient);
-    if (share > 0.0)
-        add_coefficients(fine + 1, point.coordinate, share, coefficient);
-    float ceiling = ceiling_at(fine, point.coordinate);
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < LIGHT_COUNT; i++) {
-        vec3 irradiance = surface_irradiance(point, i), light = surface_light(point, i);
-        if (irradiance == vec3(0.0) || light.z <= 0.0 || point.view.z <= 0.0)
-            continue;
-        vec3 most = vec3(ceiling * min(1.0, light.z / least_cosine));
-        sum += irradiance / light.z * clamp(layers_value(coefficient, light, point.view, point.chance), vec3(0.0), most);
-    }
-    if (!OPACITY)
-        return vec4(sum, 1.0);
-    Entries views = table_entries(find_corners(0, point.view), table_columns);
-    float opacity = opacity_of_level(fine, point.coordinate, views);
-    if (share > 0.0)
-        opacity = mix(opacity, opacity_of_level(fine + 1, point.coordinate, views), share);
-    return vec4(sum, opacity);
+    if (!RELIEF)
+        return radiance_without_heights(point, fine, share);
+    vec4 sum = vec4(0.0);
+    int rounds = through > 0.0 ? 1 : 0, rounds_without = through < 1.0 ? 1 : 0;
+    for (int i = 0; i < rounds; i++)
+        sum += through * radiance_through_heights(point, fine, share);
+    for (int i = 0; i < rounds_without; i++)
+        sum += (1.0 - through) * radiance_without_heights(point, fine, share);
+    return sum;
 }

@@ -1,0 +1,8 @@
+#include "tests/btf/heights_example.h"
+#include "tests/support/fuzz.h"
+
+/* Heights that layers are seen through. */
+void fuzz_write_seed(const char *path)
+{
+    heights_write_example(path);
+}
