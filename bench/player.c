@@ -36,7 +36,7 @@ static void create_screen(GLuint *buffer, GLuint *texture)
 static void draw(weft_player *player, const weft_scene *scene, weft_canvas *canvas, GLuint screen)
 {
     weft_error error = {0};
-    const weft_sampling moving = {.frame = -1};
+    const weft_sampling moving = {.frame = -1, .hurry = scene->filter == WEFT_FILTER_STOCHASTIC};
     weft_canvas_clear(canvas);
     weft_canvas_begin_frame(canvas);
     stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, moving, &error), &error);

@@ -31,7 +31,7 @@ void weft_material_heights_free(weft_material_heights *heights);
 /* Of one place, in mm. Pure. */
 float weft_material_height_mm(const weft_material_heights *heights, int x, int y);
 
-/* ---- The file (docs/reference/weft-format.md, 8) ---- */
+/* ---- The file (docs/reference/weft-format.md, 9) ---- */
 
 /* Bytes of the section HGHT. Pure. */
 size_t weft_material_heights_size(const weft_material_heights *heights);

@@ -79,7 +79,7 @@ typedef struct weft_sampling {
     double shift_x, shift_y; /* of the picture, pixels */
     double level_bias;       /* added to the level of detail */
     long frame;              /* number of the frame in a mean; -1: a picture that moves, to be good by itself */
-    bool hurry;              /* WEFT_FILTER_AUTO is then stochastic */
+    bool hurry;              /* WEFT_FILTER_AUTO is then stochastic, and of linear layers the first 16 are drawn */
 } weft_sampling;
 
 /* Draws into the current framebuffer, width x height pixels of floats: linear radiance, or the signed difference of two

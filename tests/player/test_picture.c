@@ -374,6 +374,45 @@ static void the_window_shows_differences_as_saved_pictures_do(void **state)
     weft_canvas_free(&canvas);
 }
 
+static weft_image frame_of_layers(void **state, int layers, bool hurry)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_scene scene = scene_of(WEFT_MODE_COMPRESSED);
+    weft_canvas canvas;
+    weft_image image;
+    scene.layers = layers;
+    scene.filter = hurry ? WEFT_FILTER_AUTO : WEFT_FILTER_STOCHASTIC;
+    expect_ok(weft_canvas_create(WIDTH, HEIGHT, &canvas, &error), &error);
+    weft_canvas_begin_frame(&canvas);
+    weft_sampling sampling = {.frame = 3, .hurry = hurry};
+    expect_ok(weft_player_draw(s->player, &scene, WIDTH, HEIGHT, sampling, &error), &error);
+    weft_canvas_end_frame(&canvas);
+    expect_ok(weft_canvas_read(&canvas, &image, &error), &error);
+    weft_canvas_free(&canvas);
+    return image;
+}
+
+static void a_frame_in_a_hurry_has_the_first_sixteen_layers(void **state)
+{
+    stage *s = *state;
+    weft_error error = {0};
+    weft_material material;
+    size_t size = sizeof(float) * 3 * PIXELS;
+    stage_material(8, 8, 1, 0, 0, &material);
+    stage_layers(WEFT_LAYERS_OF_LIGHT, 32, &material);
+    expect_ok(weft_player_set_material(s->player, &material, &error), &error);
+    weft_material_free(&material);
+    weft_image hurried = frame_of_layers(state, 64, true), first = frame_of_layers(state, 16, false),
+               all = frame_of_layers(state, 64, false), few = frame_of_layers(state, 8, true);
+    assert_memory_equal(hurried.pixels, first.pixels, size);
+    assert_memory_not_equal(hurried.pixels, all.pixels, size);
+    assert_memory_not_equal(hurried.pixels, few.pixels, size);
+    weft_image *const image[] = {&hurried, &first, &all, &few};
+    for (int i = 0; i < 4; i++)
+        weft_image_free(image[i]);
+}
+
 static void set_drape(void **state, bool coarse)
 {
     stage *s = *state;
@@ -420,6 +459,7 @@ int main(void)
         cmocka_unit_test(differences_are_told_by_hue_and_darkness),
         cmocka_unit_test(false_colours_are_those_of_their_legends),
         cmocka_unit_test(the_window_shows_differences_as_saved_pictures_do),
+        cmocka_unit_test(a_frame_in_a_hurry_has_the_first_sixteen_layers),
     };
     return cmocka_run_group_tests(tests, open_with_models, stage_close);
 }

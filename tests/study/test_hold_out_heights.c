@@ -45,13 +45,27 @@ static void meet(double *x, double *y, weft_vec3 view)
     }
 }
 
-static weft_rgb printed(int column, int row, weft_vec3 light, weft_vec3 view)
+static weft_rgb seen(int column, int row, weft_vec3 view)
 {
-    (void)light;
     double x = column + 0.5, y = HEIGHT - row - 0.5;
     meet(&x, &y, view);
     double red = sin(2 * WEFT_PI * x / 13) * sin(2 * WEFT_PI * y / 8), green = cos(2 * WEFT_PI * (x / 13 + y / 8));
     return (weft_rgb){0.4 + 0.3 * red, 0.4 + 0.3 * green, 0.3};
+}
+
+/* Under every light alike: of one view after the other. */
+static weft_rgb printed(int column, int row, weft_vec3 light, weft_vec3 view)
+{
+    static weft_rgb of_view[HEIGHT][WIDTH];
+    static double (*of_surface)(double, double);
+    static weft_vec3 last;
+    (void)light;
+    bool is_same = of_surface == surface && last.x == view.x && last.y == view.y && last.z == view.z;
+    for (int i = 0; i < WIDTH * HEIGHT && !is_same; i++)
+        of_view[i / WIDTH][i % WIDTH] = seen(i % WIDTH, i / WIDTH, view);
+    of_surface = surface;
+    last = view;
+    return of_view[row][column];
 }
 
 /* A dataset of the pattern on `shape` that says of itself to lie at `factor` times its heights. */
