@@ -15,6 +15,12 @@ target_compile_definitions(weft_options INTERFACE _GNU_SOURCE WEFT_VERSION="${PR
 target_compile_options(weft_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wvla -Werror
     $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes> -fno-math-errno)
 target_link_libraries(weft_options INTERFACE m)
+# Where it is there, gold links the two hundred programs of the tests in half the time.
+include(CheckLinkerFlag)
+check_linker_flag(C -fuse-ld=gold WEFT_HAS_GOLD)
+if(WEFT_HAS_GOLD AND NOT WEFT_SANITIZE)
+    target_link_options(weft_options INTERFACE -fuse-ld=gold)
+endif()
 if(WEFT_SANITIZE STREQUAL "address")
     target_compile_options(weft_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(weft_options INTERFACE -fsanitize=address,undefined)

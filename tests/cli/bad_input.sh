@@ -114,7 +114,7 @@ limited 8 compress good.btf.h5 --lobes 2 --hold-out off -o full.weft
 expect_no_file full.weft
 limited 8 render good.weft --size 400x400 -o full.png
 expect_no_file full.png
-limited 4 compare good.btf.h5 good.weft -o full-report
+limited 4 compare good.btf.h5 good.weft --size 64 -o full-report
 
 # Weaves and plans.
 sed 's/tileWidth = /tileWidht = /' "$weave" >typo.wv

@@ -57,7 +57,7 @@ PYTHON
 done
 
 # Directions that were on no photograph lie in their intervals as often as is said.
-expect_ok compare between.btf.h5 grid.weft -o report --json
+expect_ok compare between.btf.h5 grid.weft --size 64 -o report --json
 cp out.log compare.log
 "$python" - <<'PYTHON' || fail "the certificate does not keep to what it says"
 import json
