@@ -161,7 +161,7 @@ static void predict_through_heights(const weft_predictor *predictor, int x, int 
 {
     const weft_dataset_layout *layout = predictor->layout;
     size_t series = 9 * (size_t)predictor->material->layers->layer_count;
-    weft_relief_tap tap[3];
+    weft_relief_tap tap[3] = {0};
     for (int i = 0, view = -1; i < image_count; i++) {
         weft_vec3 light = layout->light[image[i]];
         if (layout->view_of_image[image[i]] != view) {
@@ -181,7 +181,7 @@ static weft_code prepare_heights(weft_predictor *predictor, weft_error *error)
     WEFT_TRY(weft_material_relief_create(predictor->material, &predictor->relief, error));
     WEFT_TRY(weft_layer_maps_keep_views(&predictor->maps, error));
     predictor->predict = predict_through_heights;
-    predictor->around = malloc(views * sizeof *predictor->around);
+    predictor->around = calloc(views, sizeof *predictor->around);
     predictor->factor = calloc(1, bytes);
     if (!predictor->around || !predictor->factor)
         return weft_fail_memory(error, "factors of layers", bytes);
