@@ -132,8 +132,8 @@ int main(int argc, char **argv)
     }
     testing t = {.name = argv[1], .model = argv[2], .options = weft_compress_default_options()};
     weft_error error = {0};
+    t.options.layer_count = is_layers ? 16 : 0;
     if (is_layers) {
-        t.options.layer_count = 16;
         t.options.lobe_count = 0;
         t.options.table = false;
     }
