@@ -46,4 +46,4 @@ for frame in $(seq 0 $((frames - 1))); do
         -draw "$(label 12 photographs)" -draw "$(label $((first + 12)) compressed)" -draw "$(label $((second + 12)) 'woven model')" \
         "frame-$number.png"
 done
-convert -delay $((100 / per_second)) -loop 0 frame-*.png -quality 62 -define webp:method=6 "$source_dir/docs/images/moving-light.webp"
+convert -delay $((100 / per_second)) -loop 0 frame-*.png -quality 82 -define webp:method=6 "$source_dir/docs/images/moving-light.webp"
