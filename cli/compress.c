@@ -305,7 +305,10 @@ static void say_layers(const weft_common_options *common, const weft_compress_op
     const weft_layers_report *layers = &report->layers;
     if (options->layer_count == 0)
         return;
-    if (layers->scattered)
+    if (layers->scattered && layers->left_out_count < 2)
+        weft_command_say(common,
+                         "a photograph alone tells nothing of other directions: what is said of them is a guess");
+    else if (layers->scattered)
         weft_command_say(common,
                          "photographs that are no grid: completed by kriging; relative RMSE %.4f where each of %d is "
                          "predicted by the others of these",

@@ -22,6 +22,16 @@ static weft_code check_count(const char *path, const char *what, int count, int 
     return WEFT_OK;
 }
 
+/* Slopes through heights are to stay numbers in single precision. */
+static weft_code check_pitch_of_depth(const weft_dataset_layout *layout, const char *path, weft_code code,
+                                      weft_error *error)
+{
+    if (layout->texel_pitch_mm >= 1e-6 && layout->texel_pitch_mm < 1e9)
+        return WEFT_OK;
+    return weft_fail(error, code, "'%s': texel_pitch_mm is %g, must be 1e-6 to 1e9 for a dataset with heights", path,
+                     layout->texel_pitch_mm);
+}
+
 /* Optional numbers: 0 stands for "not known". */
 static weft_code check_numbers(const weft_dataset_layout *layout, const char *path, weft_code code, weft_error *error)
 {
@@ -34,7 +44,7 @@ static weft_code check_numbers(const weft_dataset_layout *layout, const char *pa
     if (!(fabs(layout->plane_mm) <= side * sqrt(most_aspect)))
         return weft_fail(error, code, "'%s': plane_mm is %g, further from the texels than the material is wide", path,
                          layout->plane_mm);
-    return WEFT_OK;
+    return layout->plane_mm == 0 ? WEFT_OK : check_pitch_of_depth(layout, path, code, error);
 }
 
 weft_code weft_dataset_layout_check_counts(const weft_dataset_layout *layout, const char *path, weft_code code,
@@ -100,6 +110,7 @@ weft_code weft_dataset_heights_check(const weft_dataset_layout *layout, const we
                                      const char *path, weft_code code, weft_error *error)
 {
     double most = 2 * layout->texel_pitch_mm * weft_larger(layout->width, layout->height);
+    WEFT_TRY(check_pitch_of_depth(layout, path, code, error));
     if (!is_multiple(heights->width, layout->width) || !is_multiple(heights->height, layout->height))
         return weft_fail(error, code, "'%s': %d x %d heights, must be 1 to %d times the %d x %d texels", path,
                          heights->width, heights->height, WEFT_MOST_HEIGHTS, layout->width, layout->height);

@@ -35,9 +35,10 @@ void weft_material_heights_free(weft_material_heights *heights)
 
 /* ---- What they must be ---- */
 
+/* A nanometre to a thousand kilometres: slopes through heights stay numbers in single precision. */
 static bool is_length(double mm)
 {
-    return mm > 0 && mm < 1e9;
+    return mm >= 1e-6 && mm < 1e9;
 }
 
 static const char *fault_of_shape(const weft_material_heights *shape)

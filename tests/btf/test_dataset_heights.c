@@ -185,6 +185,8 @@ static void numbers_out_of_range_are_named(void **state)
     }
     put_number(open_copy(), "plane_mm", INFINITY);
     assert_refused("plane_mm is inf");
+    put_number(open_copy(), "texel_pitch_mm", 1e12);
+    assert_refused("texel_pitch_mm is 1e+12");
 }
 
 static void the_shape_of_texels_is_kept(void **state)

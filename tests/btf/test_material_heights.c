@@ -115,7 +115,7 @@ static void damaged_heights_are_named(void **state)
 {
     (void)state;
     const uint32_t none = 0, many = 1u << 31, eleven = 11, seventeen = 17, one = 1;
-    const double nan_mm = NAN, no_mm = 0;
+    const double nan_mm = NAN, no_mm = 0, least_mm = 1e-7;
     const float deep = -6, above = 0.75f, not_a_number = NAN;
     expect_damage(0, &none, 4, "has too few or too many places");
     expect_damage(4, &many, 4, "has too few or too many places");
@@ -126,6 +126,7 @@ static void damaged_heights_are_named(void **state)
     expect_damage(40, &one, 4, "has reserved fields that are not zero");
     expect_damage(16, &nan_mm, 8, "holds a size of the material out of range");
     expect_damage(24, &no_mm, 8, "holds a size of the material out of range");
+    expect_damage(24, &least_mm, 8, "holds a size of the material out of range");
     expect_damage(32, &deep, 4, "holds heights out of range");
     expect_damage(32, &above, 4, "holds heights out of range");
     expect_damage(36, &not_a_number, 4, "holds heights out of range");

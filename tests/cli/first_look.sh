@@ -89,4 +89,9 @@ expect_ok render dark.weft --layers 0 --lobes-on none --size 60x40 --samples 1 -
 grep -q "drawn by its layers" out.log && fail "lobes that are drawn are said to be idle"
 expect_ok info dark.weft
 grep -q "errors_of: diffuse term beside the layers" out.log || fail "info does not say whose errors the levels of a layered material have"
+
+# Of one photograph nothing can be left out, and nothing is said of what the others say.
+echo "30,0,0,0" | photograph alone "30%"
+grep -q "a photograph alone tells nothing of other directions" out.log || fail "a photograph alone is said to be predicted: $(cat out.log)"
+grep -q "by the others" out.log && fail "there are no others"
 echo "first_look.sh: $passed checks"
