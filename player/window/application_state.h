@@ -40,7 +40,7 @@ struct weft_application {
     weft_probe_plots plots;
     weft_weave_edit weave; /* what the sliders change */
     weft_history history;  /* of lights, weave, and what is shown */
-    bool has_warned;       /* that quitting would lose a weave */
+    bool has_warned;       /* that quitting would lose the weave as it is */
     int noise_seed;        /* of the noise that was on last; 0: none yet */
     double progress;
     weft_error failure;                 /* of reading, last */

@@ -128,6 +128,7 @@ void weft_panel_show_weave(weft_application *a)
         changed |= range_row(edit, &weft_weave_ranges[i]);
     changed |= colour_rows(edit);
     changed |= noise_rows(a);
+    a->has_warned &= !changed;
     if (changed)
         tell(a, weft_weave_edit_ask(edit, &error), &error);
     if (weft_ui_button("Save this weave"))

@@ -150,7 +150,7 @@ struct mouse_event {
 
 const int none = -1;
 std::deque<mouse_event> waiting;
-mouse_event last_event{};
+ImVec2 last_place;
 bool is_down[ImGuiMouseButton_COUNT];
 GLFWcursorposfun move_before;
 GLFWmousebuttonfun button_before;
@@ -159,10 +159,10 @@ void on_move(GLFWwindow *window, double x, double y)
 {
     if (move_before)
         move_before(window, x, y);
-    last_event = {ImVec2((float)x, (float)y), none, false};
+    last_place = ImVec2((float)x, (float)y);
     if (!waiting.empty() && waiting.back().button == none)
         waiting.pop_back();
-    waiting.push_back(last_event);
+    waiting.push_back({last_place, none, false});
 }
 
 void on_button(GLFWwindow *window, int button, int action, int modifiers)
@@ -170,7 +170,7 @@ void on_button(GLFWwindow *window, int button, int action, int modifiers)
     if (button_before)
         button_before(window, button, action, modifiers);
     if (button < ImGuiMouseButton_COUNT)
-        waiting.push_back({last_event.at, button, action == GLFW_PRESS});
+        waiting.push_back({last_place, button, action == GLFW_PRESS});
 }
 
 void listen_to_mouse(GLFWwindow *window)

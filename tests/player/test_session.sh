@@ -126,6 +126,9 @@ xdotool key ctrl+z # the noise goes on again
 shoot_when is_not "$edited"
 xdotool key ctrl+y
 shoot_when is "$edited"
+xdotool key q
+shoot_when is "$edited"
+kill -0 $player || fail "an edited weave is lost by one key"
 click 60 678
 for _ in $(seq 100); do
     [ -s weft-001.wv ] && break
