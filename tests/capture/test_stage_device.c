@@ -67,9 +67,13 @@ typedef struct bench {
     weft_rig_light light;
 } bench;
 
+/* A test that fails leaves it open: its device must not be plugged in again while its testbed is taken away. */
+static bench *opened;
+
 static void open_bench_with(bench *b, UMockdevTestbed *testbed, const weft_axes *axes)
 {
     *b = (bench){.axes = *axes};
+    opened = b;
     fake_controller_start(&b->fake, testbed);
     const weft_controller_settings settings = {.address = {0x1209, 0xb7f1, "ST-0001"},
                                                .timeout_s = timeout_s,
@@ -98,6 +102,7 @@ static void open_bench(bench *b, UMockdevTestbed *testbed)
 
 static void close_bench(bench *b)
 {
+    opened = NULL;
     weft_stage_free(b->stage);
     weft_controller_free(b->controller);
     fake_controller_end(&b->fake);
@@ -133,7 +138,7 @@ static unsigned random_below(unsigned limit)
 static void faults_in_two_thousand_moves_give_no_wrong_pose(void **state)
 {
     enum { MOVES = 2000, ONE_IN = 20 };
-    bench b;
+    static bench b;
     open_bench(&b, *state);
     int wrong = 0, refused = 0, stays = 0, armed = 0;
     for (int i = 0; i < MOVES; i++) {
@@ -169,7 +174,7 @@ static void faults_in_two_thousand_moves_give_no_wrong_pose(void **state)
 static void lost_and_broken_answers_are_asked_for_again(void **state)
 {
     static const fake_fault faults[] = {FAKE_LATE, FAKE_LOST, FAKE_DOUBLED, FAKE_BROKEN, FAKE_STALE, FAKE_DEAF};
-    bench b;
+    static bench b;
     open_bench(&b, *state);
     bool moved;
     for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
@@ -187,7 +192,7 @@ static void lost_and_broken_answers_are_asked_for_again(void **state)
 
 static void an_axis_that_stalls_for_good_is_named_and_all_stand_still(void **state)
 {
-    bench b;
+    static bench b;
     open_bench(&b, *state);
     weft_error error = {0};
     bool moved;
@@ -204,7 +209,7 @@ static void an_axis_that_stalls_for_good_is_named_and_all_stand_still(void **sta
 
 static void a_controller_that_stays_away_is_named(void **state)
 {
-    bench b;
+    static bench b;
     open_bench_with(&b, *state, &goniometer);
     weft_controller_free(b.controller);
     const weft_controller_settings settings = {
@@ -225,7 +230,7 @@ static void a_controller_that_stays_away_is_named(void **state)
 
 static void a_serial_number_chooses_among_controllers(void **state)
 {
-    bench b;
+    static bench b;
     open_bench_with(&b, *state, &goniometer);
     weft_usb_link link = {.address = {0x1209, 0xb7f1, "ST-0002"}};
     weft_error error = {0};
@@ -241,7 +246,7 @@ static void a_serial_number_chooses_among_controllers(void **state)
 
 static void a_stop_in_mid_move_halts_the_axes(void **state)
 {
-    bench b;
+    static bench b;
     open_bench(&b, *state);
     weft_error error = {0};
     bool moved;
@@ -264,7 +269,7 @@ static void a_stop_in_mid_move_halts_the_axes(void **state)
 
 static void limits_hold_in_the_host_and_in_the_device(void **state)
 {
-    bench b;
+    static bench b;
     open_bench(&b, *state);
     weft_axis_driver driver = weft_controller_driver(b.controller);
     weft_move_failure failure;
@@ -285,7 +290,7 @@ static void limits_hold_in_the_host_and_in_the_device(void **state)
 
 static void a_push_is_noticed_and_the_next_pose_is_true_again(void **state)
 {
-    bench b;
+    static bench b;
     open_bench(&b, *state);
     weft_angles pose = weft_ubo81_angles(33);
     bool moved, held;
@@ -309,7 +314,7 @@ static void a_push_is_noticed_and_the_next_pose_is_true_again(void **state)
  * account. */
 static void a_restart_between_move_and_photograph_is_noticed(void **state)
 {
-    bench b;
+    static bench b;
     open_bench(&b, *state);
     weft_angles zenith = {0, 0};
     bool moved, held;
@@ -329,7 +334,7 @@ static void a_restart_between_move_and_photograph_is_noticed(void **state)
 
 static void a_lamp_burns_at_its_level_and_goes_off(void **state)
 {
-    bench b;
+    static bench b;
     open_bench(&b, *state);
     assert_int_equal(b.light.power(b.light.device, true, NULL), WEFT_OK);
     assert_int_equal(b.fake.stage.lamp, 0);
@@ -349,7 +354,7 @@ static void a_lamp_burns_at_its_level_and_goes_off(void **state)
 
 static void a_shutter_is_released_once_whatever_is_lost(void **state)
 {
-    bench b;
+    static bench b;
     open_bench(&b, *state);
     for (int i = 0; i < 3; i++) {
         fake_stage_arm(&b.fake.stage, (fake_fault[]){FAKE_LOST, FAKE_BROKEN, FAKE_LATE}[i], 0);
@@ -413,7 +418,7 @@ static weft_rig rig_of(bench *b, witness *w)
 
 static void a_session_with_faults_holds_no_wrong_pose(void **state)
 {
-    bench b;
+    static bench b;
     static witness w;
     w = (witness){.bench = &b};
     open_bench(&b, *state);
@@ -539,6 +544,8 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
+    if (opened)
+        close_bench(opened);
     g_object_unref(*state);
     return 0;
 }

@@ -7,8 +7,6 @@
 #include <linux/input.h>
 #include <poll.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -17,8 +15,6 @@
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { QUEUE = 64, REPORT_SIZE = 64 };
 
@@ -50,6 +46,15 @@ hid_device *__wrap_hid_open_path(const char *path)
     hid_device *device = __real_hid_open_path(path);
     pthread_mutex_unlock(&system_mutex);
     return device;
+}
+
+/* Threads of the testbed come here, too: an assertion of cmocka would jump into the stack of another. */
+static void require(bool is_so, const char *what)
+{
+    if (is_so)
+        return;
+    fprintf(stderr, "fake_hid: %s: %s\n", what, strerror(errno));
+    abort();
 }
 
 /* The testbed may call a handler late: what it was given stays until the process ends. */
@@ -88,8 +93,7 @@ static gboolean on_read(UMockdevIoctlBase *handler, UMockdevIoctlClient *client,
         umockdev_ioctl_data_update(argument, 0, hid->report[hid->first], size);
         hid->first = (hid->first + 1) % QUEUE;
         hid->count--;
-        if (read(hid->slave, &token, 1) != 1)
-            abort();
+        require(read(hid->slave, &token, 1) == 1, "no token read");
         umockdev_ioctl_client_complete(client, (glong)size, 0);
     }
     pthread_mutex_unlock(&hid->mutex);
@@ -202,14 +206,14 @@ static void add(fake_hid *hid, int index, const char *rest)
     device_path(hid, index, path);
     snprintf(text, sizeof text, "P: %s\n%s\n", path, rest);
     if (!umockdev_testbed_add_from_string(hid->testbed, text, &error))
-        fail_msg("umockdev: %s", error->message);
+        require(false, error->message);
 }
 
 static void add_to_system(fake_hid *hid)
 {
     const fake_hid_kind *kind = hid->kind;
     char text[1536], bytes[2 * 256 + 1] = "";
-    assert_true(kind->descriptor_size <= 256);
+    require(kind->descriptor_size <= 256, "too long a descriptor");
     for (size_t k = 0; k < kind->descriptor_size; k++)
         sprintf(bytes + 2 * k, "%02X", kind->descriptor[k]);
     snprintf(text, sizeof text,
@@ -239,13 +243,13 @@ static void open_terminal(fake_hid *hid, const char *node)
     cfmakeraw(&settings);
     tcsetattr(hid->master, TCSANOW, &settings);
     hid->slave = open(ptsname(hid->master), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    assert_true(hid->slave >= 0);
+    require(hid->slave >= 0, "no terminal");
 }
 
 static fake_hid *create(UMockdevTestbed *testbed, int number, const fake_hid_kind *kind, char node[32])
 {
     fake_hid *hid = calloc(1, sizeof *hid);
-    assert_non_null(hid);
+    require(hid, "no memory");
     snprintf(node, 32, "/dev/hidraw%d", number);
     hid->testbed = testbed;
     hid->kind = kind;
@@ -267,7 +271,7 @@ fake_hid *fake_hid_plug(UMockdevTestbed *testbed, int number, const fake_hid_kin
     g_signal_connect(hid->handler, "handle-read", G_CALLBACK(on_read), hid);
     g_signal_connect(hid->handler, "handle-write", G_CALLBACK(on_write), hid);
     if (!umockdev_testbed_attach_ioctl(testbed, node, hid->handler, &error))
-        fail_msg("umockdev: %s", error->message);
+        require(false, error->message);
     open_terminal(hid, node);
     pthread_mutex_unlock(&system_mutex);
     return hid;
@@ -278,7 +282,7 @@ fake_hid *fake_hid_plug_forbidden(UMockdevTestbed *testbed, int number, const fa
     char node[32];
     fake_hid *hid = create(testbed, number, kind, node);
     open_terminal(hid, node);
-    assert_int_equal(fchmod(hid->slave, 0600), 0);
+    require(fchmod(hid->slave, 0600) == 0, "no permissions");
     return hid;
 }
 
@@ -290,13 +294,13 @@ void fake_hid_push(fake_hid *hid, const unsigned char *report, size_t size)
         pthread_mutex_unlock(&hid->mutex);
         return;
     }
-    assert_true(hid->count < QUEUE && size <= REPORT_SIZE);
+    require(hid->count < QUEUE && size <= REPORT_SIZE, "too many reports wait");
     int last = (hid->first + hid->count++) % QUEUE;
     memcpy(hid->report[last], report, size);
     hid->size[last] = size;
-    assert_int_equal(write(hid->master, "T", 1), 1);
+    require(write(hid->master, "T", 1) == 1, "no token written");
     struct pollfd arrived = {hid->slave, POLLIN, 0};
-    assert_int_equal(poll(&arrived, 1, 5000), 1);
+    require(poll(&arrived, 1, 5000) == 1, "no token arrives");
     pthread_mutex_unlock(&hid->mutex);
 }
 
