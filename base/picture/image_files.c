@@ -1,4 +1,5 @@
 #include "base/picture/image_library.h"
+#include "base/picture/png.h"
 
 #include <stddef.h>
 
@@ -18,6 +19,8 @@ weft_code weft_image_write_settings(const char *path, const weft_image *image, c
                                     const char *settings, weft_error *error)
 {
     const weft_image_library *library;
+    if (weft_png_is_named(path))
+        return weft_png_write(path, image, description, settings, error);
     WEFT_TRY(weft_image_library_open(&library, error));
     return library->image_write(path, image, description, settings, error);
 }

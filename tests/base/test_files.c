@@ -217,6 +217,39 @@ static void images_survive_the_round_trip(void **state)
     weft_image_free(&written);
 }
 
+static void a_png_is_rounded_clamped_and_black_where_there_is_no_number(void **state)
+{
+    (void)state;
+    static const float given[] = {NAN,           -INFINITY,     -1, 0.49F / 255, 0.51F / 255,
+                                  254.49F / 255, 254.51F / 255, 2,  INFINITY};
+    static const float wanted[] = {0, 0, 0, 0, 1, 254, 255, 255, 255};
+    weft_image written, read;
+    weft_image_kind kind;
+    assert_int_equal(weft_image_create(3, 1, &written, NULL), WEFT_OK);
+    memcpy(written.pixels, given, sizeof given);
+    assert_int_equal(weft_image_write("edges.PNG", &written, NULL, NULL), WEFT_OK);
+    assert_int_equal(weft_image_read("edges.PNG", &read, &kind, NULL), WEFT_OK);
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++)
+        assert_true(fabsf(255 * read.pixels[i] - wanted[i]) < 1e-3F);
+    weft_image_free(&read);
+    weft_image_free(&written);
+}
+
+/* The reader of the texts is another library. */
+static void a_png_keeps_its_text(void **state)
+{
+    (void)state;
+    static const char text[] = "{\n \"version\": 1\n}";
+    weft_image written;
+    char *settings;
+    assert_int_equal(weft_image_create(3, 1, &written, NULL), WEFT_OK);
+    assert_int_equal(weft_image_write_settings("text.png", &written, "radiance", text, NULL), WEFT_OK);
+    assert_int_equal(weft_image_read_settings("text.png", &settings, NULL), WEFT_OK);
+    assert_string_equal(settings, text);
+    free(settings);
+    weft_image_free(&written);
+}
+
 static void the_size_of_a_file_is_0_where_there_is_none(void **state)
 {
     (void)state;
@@ -247,6 +280,8 @@ int main(void)
         cmocka_unit_test(photograph_keeps_every_raw_value_of_every_depth),
         cmocka_unit_test(bad_photographs_are_named),
         cmocka_unit_test(images_survive_the_round_trip),
+        cmocka_unit_test(a_png_is_rounded_clamped_and_black_where_there_is_no_number),
+        cmocka_unit_test(a_png_keeps_its_text),
         cmocka_unit_test(the_size_of_a_file_is_0_where_there_is_none),
         cmocka_unit_test(a_file_is_the_same_under_another_name),
     };

@@ -13,11 +13,11 @@ cd "$scratch"
 
 DESTDIR=$scratch/stage cmake --install "$build" --prefix /opt/weft >/dev/null
 mv stage/opt/weft moved
-expect_ok render --weave moved/share/weft/weaves/cotton_denim.wv --size 32x32 --samples 1 -o picture.png
-[ -s picture.png ] || fail "no picture from the installed program"
+expect_ok render --weave moved/share/weft/weaves/cotton_denim.wv --size 32x32 --samples 1 -o picture.exr
+[ -s picture.exr ] || fail "no picture from the installed program"
 mv moved/lib gone
-expect_error 3 "weft_image_library.so" render --weave "$assets/weaves/cotton_denim.wv" --size 32x32 --samples 1 -o none.png
-expect_no_file none.png
+expect_error 3 "weft_image_library.so" render --weave "$assets/weaves/cotton_denim.wv" --size 32x32 --samples 1 -o none.exr
+expect_no_file none.exr
 expect_ok info "$assets/weaves/cotton_denim.wv"
 mv gone moved/lib
 
