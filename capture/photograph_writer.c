@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char weft_unfinished_photograph[] = ".photograph.tif";
+
 struct weft_photograph_writer {
     weft_session *session;
     uint16_t *filling, *writing; /* two buffers that change places */
@@ -60,7 +62,7 @@ static weft_code store(weft_photograph_writer *writer, weft_error *error)
     if (begins_stay(writer))
         WEFT_TRY(sync_stay(writer, error));
     weft_session_photograph_path(session, writer->shot, path, sizeof path);
-    snprintf(temporary, sizeof temporary, "%s/.photograph.tif", session->folder);
+    snprintf(temporary, sizeof temporary, "%s/%s", session->folder, weft_unfinished_photograph);
     WEFT_TRY(make_folder_of(path, error));
     WEFT_TRY(weft_photograph_write(temporary, camera->width, camera->height, session->bits, writer->writing, error));
     weft_shot_record record = writer->record;
@@ -77,7 +79,7 @@ static weft_code store(weft_photograph_writer *writer, weft_error *error)
 static void remove_temporary(const weft_session *session)
 {
     char temporary[PATH_MAX];
-    snprintf(temporary, sizeof temporary, "%s/.photograph.tif", session->folder);
+    snprintf(temporary, sizeof temporary, "%s/%s", session->folder, weft_unfinished_photograph);
     remove(temporary);
 }
 

@@ -4,6 +4,9 @@
 
 #include "btf/session/session.h"
 
+/* Name, in the folder of the session, of the photograph that is being written. */
+extern const char weft_unfinished_photograph[];
+
 typedef struct weft_photograph_writer weft_photograph_writer;
 
 /* Starts the thread. It writes session->record and the journal until finish; nobody else may meanwhile.

@@ -53,6 +53,7 @@ static weft_code read_line(weft_session *session, const char *path, int line, co
     if (shot < 0 || shot >= session->shot_count)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d names shot %lld, the plan has %d", path, line,
                          (long long)shot, session->shot_count);
+    record.line = line;
     session->record[shot] = record;
     return WEFT_OK;
 }

@@ -29,6 +29,7 @@ typedef struct weft_shot_record {
     double exposure_s;
     uint64_t bytes; /* size of the file */
     uint32_t crc32; /* of its bytes */
+    int line;       /* of the journal, from 1, as it was opened; 0: appended since */
 } weft_shot_record;
 
 typedef struct weft_session {
