@@ -22,12 +22,12 @@ static int count_missing(const weft_session *session)
     return missing;
 }
 
-static weft_code check_space(const weft_session *session, int missing, weft_error *error)
+static weft_code check_space(const weft_session *session, int missing, int brackets, weft_error *error)
 {
     struct statvfs disk;
     if (statvfs(session->folder, &disk) != 0)
         return weft_fail_errno(error, "look at the disk of", session->folder);
-    double needed = (double)missing * (double)weft_photograph_bytes(session);
+    double needed = (double)missing * (1 + brackets) * (double)weft_photograph_bytes(session);
     double available = (double)disk.f_bavail * (double)disk.f_frsize;
     if (needed > available)
         return weft_fail(error, WEFT_SYSTEM, "session '%s' needs %.2f GB for %d photographs, the disk has %.2f GB",
@@ -39,7 +39,7 @@ weft_code weft_capture_begin(const weft_capture_request *request, weft_rig *rig,
                              weft_capture *capture, weft_error *error)
 {
     weft_session planned;
-    *capture = (weft_capture){.rig = rig, .held = {.lock = -1}};
+    *capture = (weft_capture){.rig = rig, .brackets = request->brackets, .held = {.lock = -1}};
     WEFT_TRY(weft_session_of_plan(request->folder, request->plan, rig, &planned, error));
     weft_code code = weft_session_hold(&planned, progress, &capture->held, error);
     weft_session_free(&planned);
@@ -48,7 +48,7 @@ weft_code weft_capture_begin(const weft_capture_request *request, weft_rig *rig,
     int missing = count_missing(session);
     capture->summary.damaged = capture->held.damaged;
     capture->summary.found = session->shot_count - missing;
-    code = check_space(session, missing, error);
+    code = check_space(session, missing, request->brackets, error);
     if (code != WEFT_OK)
         weft_capture_end(capture);
     return code;
@@ -72,18 +72,33 @@ typedef struct run {
 } run;
 
 /* The file that the camera made lies beside the photograph that was made of it, under the same name and its own ending.
- */
-static weft_code keep_original(run *r, int shot, weft_error *error)
+ * `bracket` is -1 for the first photograph of a shot. */
+static weft_code keep_original(run *r, int shot, int bracket, weft_error *error)
 {
     const weft_rig_camera *camera = &r->capture->rig->camera;
     char path[PATH_MAX], kept[PATH_MAX + 16];
     if (!camera->original)
         return WEFT_OK;
     const char *original = camera->original(camera->device);
-    weft_session_photograph_path(&r->capture->held.session, shot, path, sizeof path);
+    if (bracket < 0)
+        weft_session_photograph_path(&r->capture->held.session, shot, path, sizeof path);
+    else
+        weft_session_bracket_path(&r->capture->held.session, shot, bracket, path, sizeof path);
     const char *ending = strrchr(original, '.');
     snprintf(kept, sizeof kept, "%.*s.original%s", (int)(strrchr(path, '.') - path), path, ending ? ending : "");
     return weft_keep_file(original, kept, error);
+}
+
+static weft_code take_brackets(run *r, int shot, uint16_t *samples, weft_shot_record *record, weft_error *error)
+{
+    bool taken = true;
+    while (taken && record->bracket_count < r->capture->brackets) {
+        WEFT_TRY(weft_shooting_bracket(&r->shooting, shot, samples, record, &taken, error));
+        if (taken)
+            WEFT_TRY(keep_original(r, shot, record->bracket_count - 1, error));
+    }
+    r->capture->summary.bracketed += record->bracket_count;
+    return WEFT_OK;
 }
 
 static weft_code take_shots(run *r, weft_error *error)
@@ -95,7 +110,8 @@ static weft_code take_shots(run *r, weft_error *error)
         weft_shot_record record;
         uint16_t *samples = weft_photograph_writer_buffer(r->writer);
         WEFT_TRY(weft_shooting_take(&r->shooting, shot, samples, &record, error));
-        WEFT_TRY(keep_original(r, shot, error));
+        WEFT_TRY(keep_original(r, shot, -1, error));
+        WEFT_TRY(take_brackets(r, shot, samples, &record, error));
         WEFT_TRY(weft_photograph_writer_submit(r->writer, shot, &record, error));
         summary->taken++;
         weft_progress_report(r->progress, "taking photographs", summary->found + summary->taken, shot_count);
@@ -105,7 +121,7 @@ static weft_code take_shots(run *r, weft_error *error)
 
 static weft_code take_and_write(run *r, weft_error *error)
 {
-    WEFT_TRY(weft_photograph_writer_start(&r->capture->held.session, &r->writer, error));
+    WEFT_TRY(weft_photograph_writer_start(&r->capture->held.session, r->capture->brackets, &r->writer, error));
     double start_s = weft_now_s();
     weft_code code = take_shots(r, error);
     weft_error last = {0};

@@ -36,12 +36,14 @@ static weft_code list_expected(const weft_session *session, expected_names *name
     return WEFT_OK;
 }
 
-/* A photograph, or what the camera wrote for it. */
+/* A photograph, one of its bracket, or what the camera wrote for either. */
 static bool belongs(const expected_names *names, const char *folder, const char *file)
 {
     char name[PATH_MAX];
-    int stem = (int)strcspn(file, ".");
+    int stem = (int)strcspn(file, "."), bracket, read = 0;
     const char *ending = file + stem;
+    if (sscanf(ending, ".bracket%1d%n", &bracket, &read) == 1 && bracket <= WEFT_SESSION_MAX_BRACKETS)
+        ending += read;
     snprintf(name, sizeof name, "%s/%.*s", folder, stem, file);
     return (strcmp(ending, ".tif") == 0 || strncmp(ending, ".original", strlen(".original")) == 0) &&
            bsearch(name, names->name, (size_t)names->count, sizeof *names->name, compare_names);

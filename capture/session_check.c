@@ -38,7 +38,13 @@ weft_code weft_session_faults_add(weft_session_faults *faults, weft_session_faul
 
 /* ---- One shot ---- */
 
-static weft_code check_bytes(const char *path, const weft_shot_record *record, weft_error *error)
+/* What the journal says of one photograph. */
+typedef struct expected_file {
+    uint64_t bytes;
+    uint32_t crc32;
+} expected_file;
+
+static weft_code check_bytes(const char *path, const expected_file *record, weft_error *error)
 {
     uint64_t bytes = 0;
     uint32_t crc32 = 0;
@@ -63,18 +69,29 @@ static weft_code check_picture(const weft_session *session, const char *path, we
     return code;
 }
 
+static weft_code check_file(const weft_session *session, const char *path, expected_file expected,
+                            weft_session_fault_kind *kind, weft_error *what)
+{
+    *kind = access(path, F_OK) == 0 ? WEFT_FAULT_DAMAGED : WEFT_FAULT_MISSING;
+    WEFT_TRY(check_bytes(path, &expected, what));
+    return check_picture(session, path, what);
+}
+
 /* What is wrong with a shot is an error of `what`, and its kind. */
 static weft_code check_shot(const weft_session *session, int shot, weft_session_fault_kind *kind, weft_error *what)
 {
     char path[PATH_MAX];
     weft_session_photograph_path(session, shot, path, sizeof path);
-    bool exists = access(path, F_OK) == 0;
-    *kind = WEFT_FAULT_MISSING;
-    if (!session->record[shot].taken)
-        return weft_fail(what, WEFT_BAD_INPUT, exists ? "'%s' is not in the journal" : "'%s' was not taken", path);
-    *kind = exists ? WEFT_FAULT_DAMAGED : WEFT_FAULT_MISSING;
-    WEFT_TRY(check_bytes(path, &session->record[shot], what));
-    return check_picture(session, path, what);
+    const weft_shot_record *record = &session->record[shot];
+    if (!record->taken)
+        return WEFT_OK;
+    WEFT_TRY(check_file(session, path, (expected_file){record->bytes, record->crc32}, kind, what));
+    for (int i = 0; i < record->bracket_count; i++) {
+        const weft_bracket_record *bracket = &record->bracket[i];
+        weft_session_bracket_path(session, shot, i, path, sizeof path);
+        WEFT_TRY(check_file(session, path, (expected_file){bracket->bytes, bracket->crc32}, kind, what));
+    }
+    return WEFT_OK;
 }
 
 /* ---- All of them ---- */

@@ -6,7 +6,7 @@
 #include "btf/session/session.h"
 
 typedef enum weft_session_fault_kind {
-    WEFT_FAULT_MISSING, /* a shot of the plan that was not taken, or whose photograph is gone */
+    WEFT_FAULT_MISSING, /* a photograph that the journal names is gone */
     WEFT_FAULT_DAMAGED, /* a photograph of other bytes than the journal says, or that cannot be read */
     WEFT_FAULT_DOUBLED, /* a photograph with the bytes of another shot, which was taken before it: the camera handed
                            over an old one, for its noise repeats nothing */
@@ -28,7 +28,8 @@ typedef struct weft_session_faults {
     weft_session_fault *fault; /* [count] those of shots in the order of the plan, then foreign files; owned */
 } weft_session_faults;
 
-/* Reads every photograph. A hidden file is foreign only where a capture leaves it that is killed. Parallel (OpenMP).
+/* Reads every photograph that the journal names: a shot that was never taken is no fault, and counts in
+ * session->record. A hidden file is foreign only where a capture leaves it that is killed. Parallel (OpenMP).
  * The caller frees with weft_session_faults_free. Errors: WEFT_SYSTEM for memory; a fault is none. */
 weft_code weft_session_check(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,
                              weft_error *error);

@@ -39,6 +39,12 @@ static const weft_option option_table[] = {
      .offset = offsetof(capture_command, truth.size), .low = 1, .high = 4096},
     {"truth-images", .argument = "N", .help = "Photographs of which the truth is computed (default: 81)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, truth.image_count), .low = 1, .high = 1000000},
+    {"brackets", .argument = "N",
+     .help =
+         "Photographs of a shot beyond the first, with other exposures, where that clips or shows shadows badly: up "
+         "to 4 (default: 0)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, request.brackets), .low = 0,
+     .high = WEFT_SESSION_MAX_BRACKETS},
     {"dry-run", .help = "Say what would be done and what it needs; write nothing", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(capture_command, dry_run)},
     {0},
@@ -134,6 +140,8 @@ static void say_summary(const capture_command *command, const weft_capture_summa
     if (summary->disturbed > 0)
         weft_command_say(common, "%d photographs during which the stage did not stand still were taken again",
                          summary->disturbed);
+    if (summary->bracketed > 0)
+        weft_command_say(common, "%d more photographs, with other exposures", summary->bracketed);
     weft_command_say(common, "%s: %d photographs, of which %d taken now, in %.1f s with %d exposures",
                      command->request.folder, summary->found + summary->taken, summary->taken, summary->seconds,
                      summary->exposures);

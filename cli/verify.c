@@ -26,6 +26,18 @@ static void say_faults(const weft_common_options *common, json_t *description)
     }
 }
 
+/* An interrupted session is sound as far as it goes. */
+static void say_sound(const weft_common_options *common, json_t *description)
+{
+    json_int_t planned = json_integer_value(json_object_get(description, "planned"));
+    json_int_t taken = json_integer_value(json_object_get(description, "taken"));
+    if (taken < planned)
+        weft_command_say(common, "sound, but %lld of %lld shots are not taken yet", (long long)(planned - taken),
+                         (long long)planned);
+    else
+        weft_command_say(common, "sound");
+}
+
 static int run(int argc, char **argv)
 {
     verify_command values = {0};
@@ -38,7 +50,7 @@ static int run(int argc, char **argv)
     if (code == WEFT_OK)
         code = weft_command_describe(&values.common, "verify", description, &error);
     if (code == WEFT_OK)
-        weft_command_say(&values.common, "sound");
+        say_sound(&values.common, description);
     json_decref(description);
     return weft_command_exit("verify", &values.common, code, &error);
 }

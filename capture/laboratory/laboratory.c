@@ -189,6 +189,7 @@ static weft_code prepare(weft_laboratory *lab, weft_error *error)
     lab->rig.sample = lab->sample;
     lab->rig.identity = lab->identity;
     lab->rig.settings = settings;
+    lab->rig.noise = (weft_sensor_noise){lab->file.camera.electrons_per_value, lab->file.camera.read_noise_electrons};
     lab->rig.seconds_per_photograph = lab->file.camera.seconds_per_photograph;
     lab->rig.stage = weft_stage_for_rig(lab->stage);
     lab->rig.light = weft_stage_light(lab->stage);
