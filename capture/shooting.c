@@ -64,6 +64,7 @@ static weft_code expose(weft_shooting *shooting, int shot, double exposure_s, ui
     weft_code code = WEFT_SYSTEM;
     for (int attempt = 0; attempt <= shooting->retries; attempt++) {
         uint64_t frame = (uint64_t)shot * FRAMES_PER_SHOT + (uint64_t)shooting->frames++;
+        shooting->last_frame = frame;
         shooting->exposures++;
         code = camera->expose(camera->device, frame, exposure_s, samples, read_back_s, error);
         if (code == WEFT_OK)

@@ -16,6 +16,7 @@ typedef struct weft_shooting {
     double exposure_s; /* of the last shot, 0 before the first */
     weft_real light_cosine;
     int frames;                         /* exposures of this shot so far */
+    uint64_t last_frame;                /* number of the last exposure; those behind it are free up to the next shot */
     int exposures, timeouts, disturbed; /* counted; disturbed: the stage did not stand still */
 } weft_shooting;
 
