@@ -27,11 +27,8 @@ static json_t *pack_target(const weft_target *t)
                      "paper_reflectance", t->paper_reflectance, "ink_reflectance", t->ink_reflectance);
 }
 
-/* NULL where it is not known. */
 static json_t *pack_noise(const weft_sensor_noise *noise)
 {
-    if (noise->electrons_per_value == 0)
-        return NULL;
     return json_pack("{sf sf}", "electrons_per_value", noise->electrons_per_value, "read_noise_electrons",
                      noise->read_noise_electrons);
 }
@@ -59,7 +56,7 @@ static json_t *pack_session(const weft_session *s)
     json_t *settings = json_loads(s->rig_settings ? s->rig_settings : "{}", 0, &ignored);
     if (!settings && errno != ENOMEM)
         settings = json_object();
-    return json_pack("{si ss so so so sf sf si si so* so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
+    return json_pack("{si ss so so so sf sf si si so so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
                      weft_json_text(s->sample, strlen(s->sample)), "rig_settings", settings, "camera",
                      weft_camera_pack(&s->camera), "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
                      s->light_distance_mm, "bits", s->bits, "black_level", s->black_level, "noise",
