@@ -12,6 +12,7 @@ typedef struct weft_capture_request {
     const char *plan;   /* "ubo81" or a CSV file, see capture/plan.h */
     int brackets;       /* photographs of a shot beyond the first, where it shows highlights or shadows badly: 0 to
                            WEFT_SESSION_MAX_BRACKETS */
+    const char *status; /* folder of a page that tells how it goes (capture/status_page.h); NULL: none */
 } weft_capture_request;
 
 typedef struct weft_capture_summary {
@@ -30,6 +31,7 @@ typedef struct weft_capture {
     weft_rig *rig; /* borrowed */
     weft_held_session held;
     int brackets;
+    const char *status; /* borrowed */
     weft_capture_summary summary;
 } weft_capture;
 

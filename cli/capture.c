@@ -49,6 +49,8 @@ static const weft_option option_table[] = {
          "to 4 (default: 0)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, request.brackets), .low = 0,
      .high = WEFT_SESSION_MAX_BRACKETS},
+    {"status", .argument = "FOLDER", .help = "Write a page there that tells how it goes, anew at every view",
+     .kind = WEFT_OPTION_FOLDER, .offset = offsetof(capture_command, request.status)},
     {"dry-run", .help = "Say what would be done and what it needs; write nothing", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(capture_command, dry_run)},
     {"check",
