@@ -83,8 +83,6 @@ static weft_code check_shot(const weft_session *session, int shot, weft_session_
     char path[PATH_MAX];
     weft_session_photograph_path(session, shot, path, sizeof path);
     const weft_shot_record *record = &session->record[shot];
-    if (!record->taken)
-        return WEFT_OK;
     WEFT_TRY(check_file(session, path, (expected_file){record->bytes, record->crc32}, kind, what));
     for (int i = 0; i < record->bracket_count; i++) {
         const weft_bracket_record *bracket = &record->bracket[i];
@@ -120,12 +118,22 @@ static void note(shot_checks *checks, int shot, weft_session_fault_kind kind, we
         *checks->error = *what;
 }
 
+static long count_taken(const weft_session *session)
+{
+    long taken = 0;
+    for (int shot = 0; shot < session->shot_count; shot++)
+        taken += session->record[shot].taken;
+    return taken;
+}
+
 static weft_code check_shots(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,
                              weft_error *error)
 {
-    shot_checks checks = {.faults = faults, .progress = progress, .total = session->shot_count, .error = error};
+    shot_checks checks = {.faults = faults, .progress = progress, .total = count_taken(session), .error = error};
 #pragma omp parallel for schedule(dynamic, 16)
     for (int shot = 0; shot < session->shot_count; shot++) {
+        if (!session->record[shot].taken)
+            continue;
         weft_error what = {0};
         weft_session_fault_kind kind = WEFT_FAULT_MISSING;
         weft_code found = check_shot(session, shot, &kind, &what);
