@@ -298,7 +298,7 @@ int main(int argc, char **argv)
     sample = realpath(assets, NULL);
     if (!program || !sample)
         fail("no such program or weave");
-    shot_count = LIGHTS * (2 + 2 * kills / LIGHTS);
+    shot_count = LIGHTS * (2 + 4 * kills / LIGHTS);
     enter_scratch_folder(folder);
     srand(20240607);
     measure();
