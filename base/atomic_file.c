@@ -1,5 +1,6 @@
 #include "base/atomic_file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
@@ -26,19 +27,53 @@ static void folder_of(const char *path, char folder[PATH_MAX])
     snprintf(folder, PATH_MAX, "%s", dirname(copy));
 }
 
+static const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Where the extension begins; the end of the name where there is none. */
+static const char *extension_of(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && dot != name ? dot : name + strlen(name);
+}
+
 /* "a/b.c.png" becomes "a/.b.c.PID.png": the extension stays, because writers choose the format by it. */
 static char *temporary_name(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    const char *name = slash ? slash + 1 : path;
-    const char *dot = strrchr(name, '.');
-    if (!dot || dot == name)
-        dot = name + strlen(name);
+    const char *name = name_of(path), *dot = extension_of(name);
     char *result = NULL;
     if (asprintf(&result, "%.*s.%.*s.%ld%s", (int)(name - path), path, (int)(dot - name), name, (long)getpid(), dot) <
         0)
         return NULL;
     return result;
+}
+
+bool weft_is_left_over(const char *name, const char *file_name)
+{
+    const char *extension = extension_of(file_name);
+    size_t stem = (size_t)(extension - file_name), length = strlen(name), last = strlen(extension);
+    if (length <= stem + 2 + last || name[0] != '.' || name[stem + 1] != '.')
+        return false;
+    const char *number = name + stem + 2, *end = name + length - last;
+    return strncmp(name + 1, file_name, stem) == 0 && strcmp(end, extension) == 0 &&
+           strspn(number, "0123456789") == (size_t)(end - number);
+}
+
+void weft_sweep_left_over(const char *path)
+{
+    char folder[PATH_MAX];
+    folder_of(path, folder);
+    DIR *listing = opendir(folder);
+    if (!listing)
+        return;
+    for (struct dirent *entry; (entry = readdir(listing));) {
+        if (weft_is_left_over(entry->d_name, name_of(path)))
+            unlinkat(dirfd(listing), entry->d_name, 0);
+    }
+    closedir(listing);
 }
 
 /* A rename would put a file in the place of a device or pipe. */

@@ -33,6 +33,15 @@ weft_code weft_atomic_file_commit(weft_atomic_file *file, weft_error *error);
 /* Removes the temporary file, if it exists, and frees `file`. Harmless after commit. */
 void weft_atomic_file_abandon(weft_atomic_file *file);
 
+/* Whether `name` is that of a temporary file, of any process, for a file called `file_name`; both without a folder.
+ * Pure.
+ */
+bool weft_is_left_over(const char *name, const char *file_name);
+
+/* Removes the temporary files of `path` that processes left which died while they wrote it. The caller is the only one
+ * who writes it. */
+void weft_sweep_left_over(const char *path);
+
 /* The whole of begin, write, commit for `size` bytes in memory. */
 weft_code weft_write_file(const char *path, const void *bytes, size_t size, weft_error *error);
 

@@ -5,6 +5,7 @@
 #include "capture/photograph_writer.h"
 #include "capture/planned_session.h"
 #include "capture/shooting.h"
+#include "capture/status_page.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -22,12 +23,12 @@ static int count_missing(const weft_session *session)
     return missing;
 }
 
-static weft_code check_space(const weft_session *session, int missing, weft_error *error)
+static weft_code check_space(const weft_session *session, int missing, int brackets, weft_error *error)
 {
     struct statvfs disk;
     if (statvfs(session->folder, &disk) != 0)
         return weft_fail_errno(error, "look at the disk of", session->folder);
-    double needed = (double)missing * (double)weft_photograph_bytes(session);
+    double needed = (double)missing * (1 + brackets) * (double)weft_photograph_bytes(session);
     double available = (double)disk.f_bavail * (double)disk.f_frsize;
     if (needed > available)
         return weft_fail(error, WEFT_SYSTEM, "session '%s' needs %.2f GB for %d photographs, the disk has %.2f GB",
@@ -39,7 +40,8 @@ weft_code weft_capture_begin(const weft_capture_request *request, weft_rig *rig,
                              weft_capture *capture, weft_error *error)
 {
     weft_session planned;
-    *capture = (weft_capture){.rig = rig, .held = {.lock = -1}};
+    *capture =
+        (weft_capture){.rig = rig, .brackets = request->brackets, .status = request->status, .held = {.lock = -1}};
     WEFT_TRY(weft_session_of_plan(request->folder, request->plan, rig, &planned, error));
     weft_code code = weft_session_hold(&planned, progress, &capture->held, error);
     weft_session_free(&planned);
@@ -48,7 +50,7 @@ weft_code weft_capture_begin(const weft_capture_request *request, weft_rig *rig,
     int missing = count_missing(session);
     capture->summary.damaged = capture->held.damaged;
     capture->summary.found = session->shot_count - missing;
-    code = check_space(session, missing, error);
+    code = check_space(session, missing, request->brackets, error);
     if (code != WEFT_OK)
         weft_capture_end(capture);
     return code;
@@ -66,24 +68,53 @@ typedef struct run {
     weft_capture *capture;
     weft_shooting shooting;
     weft_photograph_writer *writer;
+    weft_status_page *status;
+    double start_s;
     const volatile sig_atomic_t *stop;
     const weft_progress *progress;
     int missing, *shot; /* [missing] their numbers in the order of taking */
 } run;
 
 /* The file that the camera made lies beside the photograph that was made of it, under the same name and its own ending.
- */
-static weft_code keep_original(run *r, int shot, weft_error *error)
+ * `bracket` is -1 for the first photograph of a shot. */
+static weft_code keep_original(run *r, int shot, int bracket, weft_error *error)
 {
     const weft_rig_camera *camera = &r->capture->rig->camera;
     char path[PATH_MAX], kept[PATH_MAX + 16];
     if (!camera->original)
         return WEFT_OK;
     const char *original = camera->original(camera->device);
-    weft_session_photograph_path(&r->capture->held.session, shot, path, sizeof path);
+    if (bracket < 0)
+        weft_session_photograph_path(&r->capture->held.session, shot, path, sizeof path);
+    else
+        weft_session_bracket_path(&r->capture->held.session, shot, bracket, path, sizeof path);
     const char *ending = strrchr(original, '.');
     snprintf(kept, sizeof kept, "%.*s.original%s", (int)(strrchr(path, '.') - path), path, ending ? ending : "");
     return weft_keep_file(original, kept, error);
+}
+
+static weft_code take_brackets(run *r, int shot, uint16_t *samples, weft_shot_record *record, weft_error *error)
+{
+    bool taken = true;
+    while (taken && record->bracket_count < r->capture->brackets) {
+        WEFT_TRY(weft_shooting_bracket(&r->shooting, shot, samples, record, &taken, error));
+        if (taken)
+            WEFT_TRY(keep_original(r, shot, record->bracket_count - 1, error));
+    }
+    r->capture->summary.bracketed += record->bracket_count;
+    return WEFT_OK;
+}
+
+static weft_status_counts counts_of(const run *r)
+{
+    const weft_capture_summary *summary = &r->capture->summary;
+    return (weft_status_counts){.taken = summary->found + summary->taken,
+                                .total = r->capture->held.session.shot_count,
+                                .taken_now = summary->taken,
+                                .seconds = weft_now_s() - r->start_s,
+                                .damaged = summary->damaged,
+                                .timeouts = r->shooting.timeouts,
+                                .disturbed = r->shooting.disturbed};
 }
 
 static weft_code take_shots(run *r, weft_error *error)
@@ -95,7 +126,12 @@ static weft_code take_shots(run *r, weft_error *error)
         weft_shot_record record;
         uint16_t *samples = weft_photograph_writer_buffer(r->writer);
         WEFT_TRY(weft_shooting_take(&r->shooting, shot, samples, &record, error));
-        WEFT_TRY(keep_original(r, shot, error));
+        WEFT_TRY(keep_original(r, shot, -1, error));
+        WEFT_TRY(take_brackets(r, shot, samples, &record, error));
+        weft_status_counts counts = counts_of(r);
+        counts.taken++;
+        counts.taken_now++;
+        WEFT_TRY(weft_status_page_note(r->status, shot, &record, &r->shooting.meter, samples, &counts, error));
         WEFT_TRY(weft_photograph_writer_submit(r->writer, shot, &record, error));
         summary->taken++;
         weft_progress_report(r->progress, "taking photographs", summary->found + summary->taken, shot_count);
@@ -103,24 +139,33 @@ static weft_code take_shots(run *r, weft_error *error)
     return WEFT_OK;
 }
 
+/* The first of two failures counts. */
+static weft_code first_of(weft_code code, weft_code later, const weft_error *last, weft_error *error)
+{
+    if (code == WEFT_OK && later != WEFT_OK && error)
+        *error = *last;
+    return code != WEFT_OK ? code : later;
+}
+
 static weft_code take_and_write(run *r, weft_error *error)
 {
-    WEFT_TRY(weft_photograph_writer_start(&r->capture->held.session, &r->writer, error));
-    double start_s = weft_now_s();
-    weft_code code = take_shots(r, error);
-    weft_error last = {0};
-    weft_code last_code = weft_photograph_writer_finish(r->writer, &last);
-    if (code == WEFT_OK && last_code != WEFT_OK) {
-        code = last_code;
-        if (error)
-            *error = last;
+    weft_error own = {0}, last = {0};
+    r->start_s = weft_now_s();
+    weft_code code = weft_photograph_writer_start(&r->capture->held.session, r->capture->brackets, &r->writer, &own);
+    if (code == WEFT_OK) {
+        code = take_shots(r, &own);
+        code = first_of(code, weft_photograph_writer_finish(r->writer, &last), &last, &own);
     }
+    if (code != WEFT_OK && error)
+        *error = own;
     weft_capture_summary *summary = &r->capture->summary;
-    summary->seconds = weft_now_s() - start_s;
+    summary->seconds = weft_now_s() - r->start_s;
     summary->exposures = r->shooting.exposures;
     summary->timeouts = r->shooting.timeouts;
     summary->disturbed = r->shooting.disturbed;
-    return code;
+    const weft_status_counts counts = counts_of(r);
+    weft_code told = weft_status_page_end(r->status, &counts, code == WEFT_OK ? NULL : own.message, &last);
+    return first_of(code, told, &last, error);
 }
 
 static weft_code choose_order(run *r, weft_error *error)
@@ -144,6 +189,8 @@ static weft_code take_missing(run *r, weft_error *error)
     weft_code code = choose_order(r, error);
     if (code == WEFT_OK)
         code = weft_shooting_begin(r->capture->rig, &held->session, held->next_stay, &r->shooting, error);
+    if (code == WEFT_OK)
+        code = weft_status_page_begin(r->capture->status, &held->session, &r->status, error);
     if (code == WEFT_OK)
         code = take_and_write(r, error);
     weft_shooting_end(&r->shooting);

@@ -10,12 +10,16 @@
 typedef struct weft_capture_request {
     const char *folder; /* of the session */
     const char *plan;   /* "ubo81" or a CSV file, see capture/plan.h */
+    int brackets;       /* photographs of a shot beyond the first, where it shows highlights or shadows badly: 0 to
+                           WEFT_SESSION_MAX_BRACKETS */
+    const char *status; /* folder of a page that tells how it goes (capture/status_page.h); NULL: none */
 } weft_capture_request;
 
 typedef struct weft_capture_summary {
     int found;   /* photographs that were there already */
     int damaged; /* of the journal, taken again */
     int taken;
+    int bracketed;  /* photographs beyond the first of their shot */
     int exposures;  /* including those repeated for a better exposure */
     int timeouts;   /* exposures that the camera did not deliver, repeated */
     int disturbed;  /* photographs during which the stage did not keep its pose, repeated */
@@ -26,6 +30,8 @@ typedef struct weft_capture_summary {
 typedef struct weft_capture {
     weft_rig *rig; /* borrowed */
     weft_held_session held;
+    int brackets;
+    const char *status; /* borrowed */
     weft_capture_summary summary;
 } weft_capture;
 
@@ -48,7 +54,7 @@ weft_code weft_capture_take(weft_capture *capture, const volatile sig_atomic_t *
 /* What a capture would do. */
 typedef struct weft_capture_rehearsal {
     int shot_count, view_count, driven_aside; /* lights that step aside for the camera */
-    uint64_t bytes;                           /* of disk */
+    uint64_t bytes;                           /* of disk, at most */
     double seconds_per_photograph;            /* as the rig says, or measured on one photograph */
     weft_stage_estimate stage;                /* all 0 where the stage does not know */
     int *order;                               /* [shot_count] numbers of the shots as they would be taken, owned */

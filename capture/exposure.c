@@ -114,3 +114,64 @@ double weft_exposure_after(double exposure_s, double level, weft_exposure_limits
     double factor = level >= clipped ? 0.125 : 1 / fmax(level, 1 / 64.0);
     return weft_exposure_in_thirds(exposure_s * factor, limits);
 }
+
+/* ---- Brackets ---- */
+
+static uint16_t darkest(const uint16_t rgb[3])
+{
+    uint16_t two = rgb[0] < rgb[1] ? rgb[0] : rgb[1];
+    return two < rgb[2] ? two : rgb[2];
+}
+
+static bool clips(const weft_meter *meter, int full_scale, const uint16_t *samples)
+{
+    for (int i = 0; i < meter->opening_count; i++) {
+        if (brightest(samples + 3 * (size_t)meter->opening[i]) >= full_scale)
+            return true;
+    }
+    return false;
+}
+
+/* The 0.5th percentile of the darkest channel of the opening, above black. */
+static int dark_value(const weft_meter *meter, const weft_session *session, const uint16_t *samples)
+{
+    static _Thread_local int histogram[1 << 16];
+    int full_scale = (1 << session->bits) - 1, below = (int)((1 - percentile) * meter->opening_count), value = 0;
+    memset(histogram, 0, ((size_t)full_scale + 1) * sizeof *histogram);
+    for (int i = 0; i < meter->opening_count; i++)
+        histogram[darkest(samples + 3 * (size_t)meter->opening[i])]++;
+    for (int seen = histogram[0]; value < full_scale && seen <= below; seen += histogram[++value])
+        ;
+    return value - session->black_level;
+}
+
+/* The longest exposure of a shot, and which of its photographs that is. */
+static double longest_of(const weft_shot_record *record, int *index)
+{
+    double longest_s = record->exposure_s;
+    *index = 0;
+    for (int i = 0; i < record->bracket_count; i++) {
+        if (record->bracket[i].exposure_s > longest_s) {
+            longest_s = record->bracket[i].exposure_s;
+            *index = i + 1;
+        }
+    }
+    return longest_s;
+}
+
+double weft_exposure_of_bracket(const weft_meter *meter, const weft_session *session, const uint16_t *samples,
+                                const weft_shot_record *record, weft_exposure_limits limits)
+{
+    const double largest_step = 16, least_step = 1.5;
+    int full_scale = (1 << session->bits) - 1, index;
+    double aim = (full_scale - session->black_level) / 32.0, longest_s = longest_of(record, &index);
+    if (record->bracket_count == 0 && clips(meter, full_scale, samples)) {
+        double shorter_s = weft_exposure_in_thirds(record->exposure_s / 8, limits);
+        if (shorter_s < record->exposure_s)
+            return shorter_s;
+    }
+    size_t size = (size_t)session->camera.width * (size_t)session->camera.height * 3;
+    double dark = fmax(dark_value(meter, session, samples + (size_t)index * size), 1);
+    double longer_s = weft_exposure_in_thirds(longest_s * fmin(1.3 * aim / dark, largest_step), limits);
+    return dark >= aim || longer_s < least_step * longest_s ? 0 : longer_s;
+}

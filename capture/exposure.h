@@ -36,4 +36,12 @@ double weft_exposure_in_thirds(double exposure_s, weft_exposure_limits limits);
  * one third stop and a little below the aim) or the limits allow no better. Pure. */
 double weft_exposure_after(double exposure_s, double level, weft_exposure_limits limits);
 
+/* Exposure of the next photograph of a bracket, 0 where none is needed or possible. `samples` holds the photographs of
+ * the shot so far, [1 + record->bracket_count][height][width][3]. Where the sensor clipped in the opening of the first:
+ * an eighth of it. Then, from the histogram of the longest so far: so long that the 0.5th percentile of the opening (of
+ * its darkest channel) reaches a thirty-second of full scale, at most 16 times as long as that. So what one photograph
+ * shows too dark, another shows well. Pure. */
+double weft_exposure_of_bracket(const weft_meter *meter, const weft_session *session, const uint16_t *samples,
+                                const weft_shot_record *record, weft_exposure_limits limits);
+
 #endif

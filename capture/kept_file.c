@@ -13,6 +13,7 @@ static weft_code copy_file(const char *from, const char *to, weft_error *error)
     const size_t limit = (size_t)1 << 31;
     char *bytes;
     size_t size;
+    weft_sweep_left_over(to);
     WEFT_TRY(weft_read_file(from, limit, &bytes, &size, error));
     weft_code code = weft_write_file(to, bytes, size, error);
     free(bytes);

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char weft_unfinished_photograph[] = ".photograph.tif";
+
 struct weft_photograph_writer {
     weft_session *session;
     uint16_t *filling, *writing; /* two buffers that change places */
@@ -25,6 +27,11 @@ struct weft_photograph_writer {
 };
 
 /* ---- In the writer's thread ---- */
+
+static size_t sample_count(const weft_session *session)
+{
+    return (size_t)session->camera.width * (size_t)session->camera.height * 3;
+}
 
 static weft_code make_folder_of(const char *path, weft_error *error)
 {
@@ -51,24 +58,38 @@ static bool begins_stay(const weft_photograph_writer *writer)
     return before >= 0 && writer->session->record[before].stay != writer->record.stay;
 }
 
-/* A photograph is synced before the journal names it. */
+/* Photograph `index` of the shot appears under its name when it is on the disk. */
+static weft_code store_photograph(const weft_photograph_writer *writer, const char *path, int index, uint64_t *bytes,
+                                  uint32_t *crc32, weft_error *error)
+{
+    const weft_session *session = writer->session;
+    const weft_camera *camera = &session->camera;
+    const uint16_t *samples = writer->writing + (size_t)index * sample_count(session);
+    char temporary[PATH_MAX];
+    snprintf(temporary, sizeof temporary, "%s/%s", session->folder, weft_unfinished_photograph);
+    WEFT_TRY(make_folder_of(path, error));
+    WEFT_TRY(weft_photograph_write(temporary, camera->width, camera->height, session->bits, samples, error));
+    WEFT_TRY(weft_file_crc(temporary, bytes, crc32, error));
+    WEFT_TRY(weft_sync_file(temporary, error));
+    return rename(temporary, path) == 0 ? WEFT_OK : weft_fail_errno(error, "write", path);
+}
+
+/* Photographs are synced before the journal names their shot. */
 static weft_code store(weft_photograph_writer *writer, weft_error *error)
 {
     weft_session *session = writer->session;
-    const weft_camera *camera = &session->camera;
-    char path[PATH_MAX], temporary[PATH_MAX];
+    weft_shot_record record = writer->record;
+    char path[PATH_MAX];
     if (begins_stay(writer))
         WEFT_TRY(sync_stay(writer, error));
+    for (int i = 0; i < record.bracket_count; i++) {
+        weft_bracket_record *bracket = &record.bracket[i];
+        weft_session_bracket_path(session, writer->shot, i, path, sizeof path);
+        WEFT_TRY(store_photograph(writer, path, i + 1, &bracket->bytes, &bracket->crc32, error));
+    }
     weft_session_photograph_path(session, writer->shot, path, sizeof path);
-    snprintf(temporary, sizeof temporary, "%s/.photograph.tif", session->folder);
-    WEFT_TRY(make_folder_of(path, error));
-    WEFT_TRY(weft_photograph_write(temporary, camera->width, camera->height, session->bits, writer->writing, error));
-    weft_shot_record record = writer->record;
+    WEFT_TRY(store_photograph(writer, path, 0, &record.bytes, &record.crc32, error));
     record.taken = true;
-    WEFT_TRY(weft_file_crc(temporary, &record.bytes, &record.crc32, error));
-    WEFT_TRY(weft_sync_file(temporary, error));
-    if (rename(temporary, path) != 0)
-        return weft_fail_errno(error, "write", path);
     WEFT_TRY(weft_session_append(session, writer->shot, &record, error));
     writer->unsynced_shot = writer->shot;
     return WEFT_OK;
@@ -77,7 +98,7 @@ static weft_code store(weft_photograph_writer *writer, weft_error *error)
 static void remove_temporary(const weft_session *session)
 {
     char temporary[PATH_MAX];
-    snprintf(temporary, sizeof temporary, "%s/.photograph.tif", session->folder);
+    snprintf(temporary, sizeof temporary, "%s/%s", session->folder, weft_unfinished_photograph);
     remove(temporary);
 }
 
@@ -118,12 +139,13 @@ static void free_writer(weft_photograph_writer *writer)
     free(writer);
 }
 
-weft_code weft_photograph_writer_start(weft_session *session, weft_photograph_writer **result, weft_error *error)
+weft_code weft_photograph_writer_start(weft_session *session, int brackets, weft_photograph_writer **result,
+                                       weft_error *error)
 {
     weft_photograph_writer *writer = calloc(1, sizeof *writer);
     if (!writer)
         return weft_fail_memory(error, "photograph writer", sizeof *writer);
-    size_t bytes = (size_t)session->camera.width * (size_t)session->camera.height * 3 * sizeof(uint16_t);
+    size_t bytes = (1 + (size_t)brackets) * sample_count(session) * sizeof(uint16_t);
     writer->session = session;
     writer->unsynced_shot = -1;
     pthread_mutex_init(&writer->mutex, NULL);

@@ -4,20 +4,25 @@
 
 #include "btf/session/session.h"
 
+/* Name, in the folder of the session, of the photograph that is being written. */
+extern const char weft_unfinished_photograph[];
+
 typedef struct weft_photograph_writer weft_photograph_writer;
 
-/* Starts the thread. It writes session->record and the journal until finish; nobody else may meanwhile.
- * Errors: WEFT_SYSTEM. */
-weft_code weft_photograph_writer_start(weft_session *session, weft_photograph_writer **result, weft_error *error);
+/* Starts the thread, for shots of up to `brackets` photographs beyond the first. It writes session->record and the
+ * journal until finish; nobody else may meanwhile. Errors: WEFT_SYSTEM. */
+weft_code weft_photograph_writer_start(weft_session *session, int brackets, weft_photograph_writer **result,
+                                       weft_error *error);
 
-/* The buffer for the next photograph, [height][width][3] raw samples, owned by the writer and valid until it is
+/* The buffer for the next shot, [1 + brackets][height][width][3] raw samples, owned by the writer and valid until it is
  * submitted. */
 uint16_t *weft_photograph_writer_buffer(weft_photograph_writer *writer);
 
-/* Hands over the buffer: the photograph of `shot`, of which `record` holds stay and exposure. Waits until the
- * photograph before it is written, so at most one is under way. The file appears under its final name when it is
- * complete and on the disk, and after that the journal names it. Names and journal are synced when a stay is over, so
- * that a power cut takes the photographs of one stay at most. Errors: the first failure of an earlier photograph. */
+/* Hands over the buffer: the photographs of `shot`, of which `record` holds stay and exposures. Waits until the
+ * photograph before it is written, so at most one is under way. A file appears under its final name when it is
+ * complete and on the disk, and after that the journal names the shot. Names and journal are synced when a stay is
+ * over, so that a power cut takes the photographs of one stay at most. Errors: the first failure of an earlier
+ * photograph. */
 weft_code weft_photograph_writer_submit(weft_photograph_writer *writer, int shot, const weft_shot_record *record,
                                         weft_error *error);
 

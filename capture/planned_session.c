@@ -17,6 +17,7 @@ static weft_code describe(const char *folder, const weft_rig *rig, weft_session 
     session->light_distance_mm = settings->light_distance_mm;
     session->bits = (int)settings->bits;
     session->black_level = (int)settings->black_level;
+    session->noise = rig->noise;
     session->target = weft_target_for_opening(settings->opening_mm);
     if (!session->folder || !session->rig || !session->sample || !session->rig_settings)
         return weft_fail_memory(error, "session", 0);

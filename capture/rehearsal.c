@@ -62,9 +62,10 @@ static weft_code choose_order(weft_rig_stage *stage, weft_capture_rehearsal *reh
                : WEFT_OK;
 }
 
-static weft_code rehearse(weft_rig *rig, weft_capture_rehearsal *rehearsal, weft_error *error)
+static weft_code rehearse(weft_rig *rig, int brackets, weft_capture_rehearsal *rehearsal, weft_error *error)
 {
     count_plan(&rehearsal->session, rehearsal);
+    rehearsal->bytes *= 1 + (uint64_t)brackets;
     WEFT_TRY(choose_order(&rig->stage, rehearsal, error));
     rehearsal->seconds_per_photograph = rig->seconds_per_photograph;
     return rig->seconds_per_photograph > 0 ? WEFT_OK : measure_photograph(rig, rehearsal, error);
@@ -75,7 +76,7 @@ weft_code weft_capture_rehearse(const weft_capture_request *request, weft_rig *r
 {
     *rehearsal = (weft_capture_rehearsal){0};
     WEFT_TRY(weft_session_of_plan(request->folder, request->plan, rig, &rehearsal->session, error));
-    weft_code code = rehearse(rig, rehearsal, error);
+    weft_code code = rehearse(rig, request->brackets, rehearsal, error);
     if (code != WEFT_OK)
         weft_capture_rehearsal_free(rehearsal);
     return code;

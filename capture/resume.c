@@ -2,7 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
-#include "capture/file_crc.h"
+#include "capture/photograph_writer.h"
+#include "capture/session_check.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -31,30 +32,14 @@ static weft_code lock_folder(const char *folder, int *lock, weft_error *error)
     return weft_fail_errno(error, "lock", path);
 }
 
-/* What a process left that died before it renamed it: whoever holds the lock is alone. See base/atomic_file.h for the
- * names. */
-static bool is_left_over(const char *name)
+/* What a process left that died before it renamed it: whoever holds the lock is alone. */
+static void sweep(const char *folder)
 {
-    static const char begin[] = ".session.", end[] = ".json";
-    size_t length = strlen(name), first = sizeof begin - 1, last = sizeof end - 1;
-    if (strcmp(name, ".photograph.tif") == 0)
-        return true;
-    if (length <= first + last || strncmp(name, begin, first) != 0 || strcmp(name + length - last, end) != 0)
-        return false;
-    return strspn(name + first, "0123456789") == length - first - last;
-}
-
-static weft_code sweep(const char *folder, weft_error *error)
-{
-    DIR *listing = opendir(folder);
-    if (!listing)
-        return weft_fail_errno(error, "list folder", folder);
-    for (struct dirent *entry; (entry = readdir(listing));) {
-        if (is_left_over(entry->d_name))
-            unlinkat(dirfd(listing), entry->d_name, 0);
-    }
-    closedir(listing);
-    return WEFT_OK;
+    char path[PATH_MAX];
+    snprintf(path, sizeof path, "%s/session.json", folder);
+    weft_sweep_left_over(path);
+    snprintf(path, sizeof path, "%s/%s", folder, weft_unfinished_photograph);
+    unlink(path);
 }
 
 /* ---- New or known ---- */
@@ -160,33 +145,25 @@ static weft_code check_same(const weft_session *wanted, const weft_session *foun
 
 /* ---- Are the photographs there? ---- */
 
-static bool photograph_matches(const weft_session *session, int shot)
+/* What the journal has and the check finds wrong is taken again. */
+static void forget_faulty(const weft_session_faults *faults, weft_held_session *held)
 {
-    char path[PATH_MAX];
-    uint64_t bytes;
-    uint32_t crc32;
-    weft_session_photograph_path(session, shot, path, sizeof path);
-    return weft_file_crc(path, &bytes, &crc32, NULL) == WEFT_OK && bytes == session->record[shot].bytes &&
-           crc32 == session->record[shot].crc32;
+    for (int i = 0; i < faults->count; i++) {
+        int shot = faults->fault[i].shot;
+        if (shot < 0 || !held->session.record[shot].taken)
+            continue;
+        held->session.record[shot].taken = false;
+        held->damaged++;
+    }
 }
 
-static void verify_photographs(weft_held_session *held, const weft_progress *progress)
+static weft_code check_photographs(weft_held_session *held, const weft_progress *progress, weft_error *error)
 {
-    weft_session *session = &held->session;
-    int damaged = 0;
-    long done = 0;
-#pragma omp parallel for schedule(dynamic, 16) reduction(+ : damaged)
-    for (int shot = 0; shot < session->shot_count; shot++) {
-        if (!session->record[shot].taken)
-            continue;
-        if (!photograph_matches(session, shot)) {
-            session->record[shot].taken = false;
-            damaged++;
-        }
-#pragma omp critical
-        weft_progress_report(progress, "verifying photographs", ++done, session->shot_count);
-    }
-    held->damaged = damaged;
+    weft_session_faults faults;
+    WEFT_TRY(weft_session_check(&held->session, progress, &faults, error));
+    forget_faulty(&faults, held);
+    weft_session_faults_free(&faults);
+    return WEFT_OK;
 }
 
 static int count_stays(const weft_session *session)
@@ -203,12 +180,11 @@ static weft_code hold(const weft_session *wanted, const weft_progress *progress,
                       weft_error *error)
 {
     WEFT_TRY(lock_folder(wanted->folder, &held->lock, error));
-    WEFT_TRY(sweep(wanted->folder, error));
+    sweep(wanted->folder);
     WEFT_TRY(create_or_open(wanted, &held->session, error));
     WEFT_TRY(check_same(wanted, &held->session, error));
     held->next_stay = count_stays(&held->session);
-    verify_photographs(held, progress);
-    return WEFT_OK;
+    return check_photographs(held, progress, error);
 }
 
 weft_code weft_session_hold(const weft_session *wanted, const weft_progress *progress, weft_held_session *held,

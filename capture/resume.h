@@ -10,12 +10,12 @@ typedef struct weft_held_session {
     weft_session session;
     int lock;      /* descriptor */
     int next_stay; /* stays seen so far */
-    int damaged;   /* photographs in the journal whose file does not match it: to be taken again */
+    int damaged;   /* shots of the journal with a fault: to be taken again */
 } weft_held_session;
 
 /* Creates the folder and session.json of `wanted`, or opens what is there after checking that it is the same session
- * (plan, camera, set-up, sample and settings), and compares every photograph that the journal names with its size and
- * checksum. The caller frees with weft_held_session_release.
+ * (plan, camera, set-up, sample and settings), and checks it (capture/session_check.h): shots with a fault count as not
+ * taken. The caller frees with weft_held_session_release.
  * Errors: WEFT_BAD_INPUT where the folder holds something else or another session; WEFT_SYSTEM where another process
  * takes photographs in it. */
 weft_code weft_session_hold(const weft_session *wanted, const weft_progress *progress, weft_held_session *held,

@@ -62,6 +62,7 @@ typedef struct weft_rig {
                              goes on only where all its values are the same */
     weft_rig_settings settings;    /* set-up and exposure */
     weft_camera calibration;       /* of the camera */
+    weft_sensor_noise noise;       /* of a raw value */
     double seconds_per_photograph; /* beyond moving, as the operator knows it; 0: a rehearsal measures it on one */
     weft_rig_camera camera;
     weft_rig_stage stage;

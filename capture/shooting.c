@@ -57,13 +57,14 @@ static double predict_exposure(weft_shooting *shooting, const weft_shot *shot)
 }
 
 /* One exposure, repeated where the camera does not deliver it. */
-static weft_code expose(weft_shooting *shooting, int shot, int *number, double exposure_s, uint16_t *samples,
-                        double *read_back_s, weft_error *error)
+static weft_code expose(weft_shooting *shooting, int shot, double exposure_s, uint16_t *samples, double *read_back_s,
+                        weft_error *error)
 {
     weft_rig_camera *camera = &shooting->rig->camera;
     weft_code code = WEFT_SYSTEM;
     for (int attempt = 0; attempt <= shooting->retries; attempt++) {
-        uint64_t frame = (uint64_t)shot * FRAMES_PER_SHOT + (uint64_t)(*number)++;
+        uint64_t frame = (uint64_t)shot * FRAMES_PER_SHOT + (uint64_t)shooting->frames++;
+        shooting->last_frame = frame;
         shooting->exposures++;
         code = camera->expose(camera->device, frame, exposure_s, samples, read_back_s, error);
         if (code == WEFT_OK)
@@ -84,9 +85,9 @@ static weft_code meter_and_expose(weft_shooting *shooting, int shot, uint16_t *s
                                   weft_error *error)
 {
     double exposure_s = predict_exposure(shooting, &shooting->session->shot[shot]), before_s = 0;
-    int number = 0;
+    shooting->frames = 0;
     for (int metered = 0; metered < MAX_METERED; metered++) {
-        WEFT_TRY(expose(shooting, shot, &number, exposure_s, samples, read_back_s, error));
+        WEFT_TRY(expose(shooting, shot, exposure_s, samples, read_back_s, error));
         double taken_s = exposure_taken(exposure_s, *read_back_s);
         double level = weft_meter_read(&shooting->meter, shooting->session, samples);
         exposure_s = weft_exposure_after(taken_s, level, shooting->limits);
@@ -130,5 +131,39 @@ weft_code weft_shooting_take(weft_shooting *shooting, int shot, uint16_t *sample
     double read_back_s = 0;
     WEFT_TRY(halt(shooting->rig, take_in_pose(shooting, shot, samples, &read_back_s, error)));
     *record = (weft_shot_record){.stay = shooting->stay, .exposure_s = read_back_s};
+    return WEFT_OK;
+}
+
+/* ---- Brackets ---- */
+
+static weft_code expose_lit(weft_shooting *shooting, int shot, double exposure_s, uint16_t *samples,
+                            double *read_back_s, bool *held, weft_error *error)
+{
+    weft_rig_light *light = &shooting->rig->light;
+    weft_rig_stage *stage = &shooting->rig->stage;
+    WEFT_TRY(light->power(light->device, true, error));
+    WEFT_TRY(expose(shooting, shot, exposure_s, samples, read_back_s, error));
+    WEFT_TRY(light->power(light->device, false, error));
+    return stage->held ? stage->held(stage->device, held, error) : WEFT_OK;
+}
+
+weft_code weft_shooting_bracket(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
+                                bool *taken, weft_error *error)
+{
+    const weft_camera *camera = &shooting->session->camera;
+    size_t size = (size_t)camera->width * (size_t)camera->height * 3;
+    int count = record->bracket_count;
+    double last_s = count > 0 ? record->bracket[count - 1].exposure_s : record->exposure_s, read_back_s = 0;
+    bool held = true;
+    *taken = false;
+    double exposure_s =
+        weft_exposure_of_bracket(&shooting->meter, shooting->session, samples, record, shooting->limits);
+    if (exposure_s == 0)
+        return WEFT_OK;
+    uint16_t *behind = samples + ((size_t)count + 1) * size;
+    WEFT_TRY(halt(shooting->rig, expose_lit(shooting, shot, exposure_s, behind, &read_back_s, &held, error)));
+    *taken = held && read_back_s != last_s;
+    if (*taken)
+        record->bracket[record->bracket_count++].exposure_s = read_back_s;
     return WEFT_OK;
 }

@@ -15,6 +15,8 @@ typedef struct weft_shooting {
     weft_meter meter;  /* of the view */
     double exposure_s; /* of the last shot, 0 before the first */
     weft_real light_cosine;
+    int frames;                         /* exposures of this shot so far */
+    uint64_t last_frame;                /* number of the last exposure; those behind it are free up to the next shot */
     int exposures, timeouts, disturbed; /* counted; disturbed: the stage did not stand still */
 } weft_shooting;
 
@@ -29,5 +31,13 @@ void weft_shooting_end(weft_shooting *shooting);
  * + 1 times; WEFT_BAD_INPUT where the view shows nothing of the sample. */
 weft_code weft_shooting_take(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
                              weft_error *error);
+
+/* Takes the next photograph of a bracket, of the shot that was taken last: shorter where the sensor clipped in the
+ * opening, else longer, up to 16 times, until the darkest of the opening reaches a thirty-second of full scale.
+ * `samples` holds all photographs of the shot, one after the other: this one goes behind the last. *record gets its
+ * exposure. *taken says whether there was need of it. One during which the stage moved is left out, and ends the
+ * bracket. Errors: as above. */
+weft_code weft_shooting_bracket(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
+                                bool *taken, weft_error *error);
 
 #endif

@@ -1,9 +1,13 @@
 #include "capture/capture.h"
+#include "base/text/json_text.h"
 #include "capture/laboratory/laboratory.h"
 #include "capture/virtual/ground_truth.h"
 #include "cli/arguments.h"
+#include "cli/describe.h"
 #include "cli/person.h"
+#include "study/preflight/preflight.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +18,7 @@ typedef struct capture_command {
     weft_virtual_request rig;
     weft_truth_request truth;
     const char *rig_file; /* "virtual" or NULL: the virtual rig as it stands */
-    bool dry_run;
+    bool dry_run, check;
 } capture_command;
 
 static const weft_option option_table[] = {
@@ -39,8 +43,20 @@ static const weft_option option_table[] = {
      .offset = offsetof(capture_command, truth.size), .low = 1, .high = 4096},
     {"truth-images", .argument = "N", .help = "Photographs of which the truth is computed (default: 81)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, truth.image_count), .low = 1, .high = 1000000},
+    {"brackets", .argument = "N",
+     .help =
+         "Photographs of a shot beyond the first, with other exposures, where that clips or shows shadows badly: up "
+         "to 4 (default: 0)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, request.brackets), .low = 0,
+     .high = WEFT_SESSION_MAX_BRACKETS},
+    {"status", .argument = "FOLDER", .help = "Write a page there that tells how it goes, anew at every view",
+     .kind = WEFT_OPTION_FOLDER, .offset = offsetof(capture_command, request.status)},
     {"dry-run", .help = "Say what would be done and what it needs; write nothing", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(capture_command, dry_run)},
+    {"check",
+     .help = "Say what would go wrong: focus, light, noise, target, vibration, disk; take a few photographs, write "
+             "SESSION.check.png and no session",
+     .kind = WEFT_OPTION_FLAG, .offset = offsetof(capture_command, check)},
     {0},
 };
 
@@ -122,6 +138,90 @@ static weft_code rehearse(const capture_command *command, weft_rig *rig, const c
     return WEFT_OK;
 }
 
+/* ---- Before the night ---- */
+
+static json_t *pack_check(const weft_preflight *result, int kind)
+{
+    const weft_preflight_meaning *meaning = &weft_preflight_meaning_of[kind];
+    const weft_preflight_check *check = &result->check[kind];
+    double limit = kind == WEFT_CHECK_DISK ? result->disk_needed : meaning->limit;
+    json_t *packed = json_pack("{s:s, s:b, s:f, s:f, s:s}", "check", meaning->name, "passed", check->passed, "value",
+                               check->value * meaning->scale, "limit", limit * meaning->scale, "unit", meaning->unit);
+    if (meaning->of_view)
+        weft_json_put(&packed, "view",
+                      json_pack("[ff]", weft_deg_of_rad(check->view.theta_rad), weft_deg_of_rad(check->view.phi_rad)));
+    if (!check->passed)
+        weft_json_put(&packed, "advice", json_string(meaning->advice));
+    return packed;
+}
+
+static void say_check(const weft_common_options *common, const weft_preflight *result, int kind)
+{
+    const weft_preflight_meaning *meaning = &weft_preflight_meaning_of[kind];
+    const weft_preflight_check *check = &result->check[kind];
+    double limit = kind == WEFT_CHECK_DISK ? result->disk_needed : meaning->limit;
+    char view[64] = "";
+    if (!check->done) {
+        weft_command_say(common, "%-4s %-15s not known", "-", meaning->name);
+        return;
+    }
+    if (meaning->of_view)
+        snprintf(view, sizeof view, ", seen from %.0f %.0f degrees", weft_deg_of_rad(check->view.theta_rad),
+                 weft_deg_of_rad(check->view.phi_rad));
+    weft_command_say(common, "%-4s %-15s %.3g %s (%s %.3g)%s", check->passed ? "pass" : "FAIL", meaning->name,
+                     check->value * meaning->scale, meaning->unit, meaning->is_least ? "at least" : "at most",
+                     limit * meaning->scale, view);
+    if (!check->passed)
+        weft_command_say(common, "     %s", meaning->advice);
+}
+
+static weft_code say_checks(const weft_common_options *common, const weft_preflight *result, weft_error *error)
+{
+    weft_code code = WEFT_OK;
+    for (int kind = 0; kind < WEFT_CHECK_KINDS && code == WEFT_OK; kind++) {
+        if (!common->json) {
+            say_check(common, result, kind);
+        } else if (result->check[kind].done) {
+            json_t *packed = pack_check(result, kind);
+            code = weft_command_describe(common, "check", packed, error);
+            json_decref(packed);
+        }
+    }
+    return code;
+}
+
+static weft_code judge(const capture_command *command, const weft_preflight *result, weft_error *error)
+{
+    char path[PATH_MAX];
+    size_t length = strlen(command->request.folder);
+    while (length > 1 && command->request.folder[length - 1] == '/')
+        length--;
+    snprintf(path, sizeof path, "%.*s.check.png", (int)length, command->request.folder);
+    WEFT_TRY(weft_image_write(path, &result->sheet, NULL, error));
+    WEFT_TRY(say_checks(&command->common, result, error));
+    weft_command_say(&command->common,
+                     "%s shows %d views: with the lamp, the change until the next photograph times 8, "
+                     "without the lamp times 100",
+                     path, result->pose_count);
+    int failed = 0;
+    for (int kind = 0; kind < WEFT_CHECK_KINDS; kind++)
+        failed += result->check[kind].done && !result->check[kind].passed;
+    return failed ? weft_fail(error, WEFT_BAD_INPUT, "%d of the checks failed", failed) : WEFT_OK;
+}
+
+static weft_code check_rig(const capture_command *command, weft_rig *rig, const char *lens, weft_error *error)
+{
+    const weft_preflight_request request = {&command->request, lens};
+    weft_progress progress = weft_command_progress(&command->common);
+    weft_preflight result;
+    WEFT_TRY(weft_preflight_run(&request, rig, &progress, &result, error));
+    weft_code code = judge(command, &result, error);
+    weft_preflight_free(&result);
+    return code;
+}
+
+/* ---- The night ---- */
+
 static void say_summary(const capture_command *command, const weft_capture_summary *summary)
 {
     const weft_common_options *common = &command->common;
@@ -134,6 +234,8 @@ static void say_summary(const capture_command *command, const weft_capture_summa
     if (summary->disturbed > 0)
         weft_command_say(common, "%d photographs during which the stage did not stand still were taken again",
                          summary->disturbed);
+    if (summary->bracketed > 0)
+        weft_command_say(common, "%d more photographs, with other exposures", summary->bracketed);
     weft_command_say(common, "%s: %d photographs, of which %d taken now, in %.1f s with %d exposures",
                      command->request.folder, summary->found + summary->taken, summary->taken, summary->seconds,
                      summary->exposures);
@@ -173,6 +275,7 @@ static weft_code capture_with_virtual_rig(capture_command *command, weft_error *
         WEFT_TRY(weft_virtual_settings_read(command->rig_file, &command->rig.settings, error));
     WEFT_TRY(weft_virtual_rig_open(&command->rig, &rig, error));
     weft_code code = command->dry_run ? rehearse(command, &rig.rig, rig.warning, error)
+                     : command->check ? check_rig(command, &rig.rig, NULL, error)
                                       : take_session(command, &rig.rig, &rig, error);
     weft_virtual_rig_close(&rig);
     return code;
@@ -191,7 +294,9 @@ static weft_code capture_with_laboratory(const capture_command *command, weft_er
     WEFT_TRY(weft_laboratory_open(&request, &laboratory, error));
     weft_rig *rig = weft_laboratory_rig(laboratory);
     weft_code code = command->dry_run ? rehearse(command, rig, "", error) : weft_laboratory_connect(laboratory, error);
-    if (code == WEFT_OK && !command->dry_run)
+    if (code == WEFT_OK && command->check)
+        code = check_rig(command, rig, weft_laboratory_lens(laboratory), error);
+    else if (code == WEFT_OK && !command->dry_run)
         code = take_session(command, rig, NULL, error);
     weft_laboratory_close(laboratory);
     return code;
@@ -201,6 +306,14 @@ static bool is_rig_file(const char *path)
 {
     const char *ending = path ? strrchr(path, '.') : NULL;
     return ending && strcmp(ending, ".conf") == 0;
+}
+
+static weft_code check_options(void *values, weft_error *error)
+{
+    const capture_command *command = values;
+    return command->dry_run && command->check
+               ? weft_fail(error, WEFT_BAD_USAGE, "--dry-run touches no device, --check needs them: one or the other")
+               : WEFT_OK;
 }
 
 static int run(int argc, char **argv)
@@ -226,5 +339,6 @@ const weft_command weft_command_capture = {
     .options = option_table,
     .needs = "--sample with a cloth or a name, and -o SESSION",
     .surplus = "the session is named by -o",
+    .check = check_options,
     .run = run,
 };

@@ -1,7 +1,10 @@
 #include "registration/rectify.h"
 
+#include "base/picture/image.h"
+#include "registration/radiometry/bracket.h"
 #include "registration/resample/resample.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,6 +22,8 @@ typedef struct job {
 /* Memory of one thread. */
 typedef struct bench {
     uint16_t *samples;
+    uint16_t *bracket;       /* [WEFT_SESSION_MAX_BRACKETS] photographs; NULL until there is one */
+    float *value, *variance; /* of a merged bracket, the same */
     float *texel;
     weft_half *half;
     uint8_t *mask;
@@ -31,6 +36,7 @@ static size_t texel_count(const job *j)
 
 static bool bench_create(const job *j, bench *b)
 {
+    *b = (bench){0};
     b->samples = malloc(weft_photograph_sample_count(j->rectifier->session) * sizeof *b->samples);
     b->texel = malloc(texel_count(j) * 3 * sizeof *b->texel);
     b->half = malloc(texel_count(j) * 3 * sizeof *b->half);
@@ -41,6 +47,9 @@ static bool bench_create(const job *j, bench *b)
 static void bench_free(bench *b)
 {
     free(b->samples);
+    free(b->bracket);
+    free(b->value);
+    free(b->variance);
     free(b->texel);
     free(b->half);
     free(b->mask);
@@ -86,6 +95,50 @@ static weft_code put(job *j, int shot, bench *b, weft_error *error)
     return weft_dataset_writer_put_image(j->rectifier->writer, shot, b->half, b->mask, error);
 }
 
+/* ---- Brackets ---- */
+
+static weft_code provide_for_brackets(const weft_session *session, bench *b, weft_error *error)
+{
+    size_t samples = weft_photograph_sample_count(session);
+    if (b->bracket)
+        return WEFT_OK;
+    b->bracket = malloc(WEFT_SESSION_MAX_BRACKETS * samples * sizeof *b->bracket);
+    b->value = malloc(samples * sizeof *b->value);
+    b->variance = malloc(samples * sizeof *b->variance);
+    return b->bracket && b->value && b->variance ? WEFT_OK : weft_fail_memory(error, "brackets", samples * 16);
+}
+
+static weft_code read_brackets(const weft_session *session, int shot, const bench *b, weft_bracket_frame *frame,
+                               weft_error *error)
+{
+    const weft_shot_record *record = &session->record[shot];
+    size_t samples = weft_photograph_sample_count(session);
+    for (int i = 0; i < record->bracket_count; i++) {
+        char path[PATH_MAX];
+        uint16_t *to = b->bracket + (size_t)i * samples;
+        weft_session_bracket_path(session, shot, i, path, sizeof path);
+        WEFT_TRY(weft_photograph_read(path, session->camera.width, session->camera.height, session->bits, to, error));
+        frame[i + 1] = (weft_bracket_frame){to, record->bracket[i].exposure_s, 1};
+    }
+    return WEFT_OK;
+}
+
+static weft_code resample_bracket(const job *j, int shot, const uint16_t *samples, bench *b, weft_error *error)
+{
+    const weft_session *session = j->rectifier->session;
+    const weft_shot_record *record = &session->record[shot];
+    size_t sample_count = weft_photograph_sample_count(session);
+    weft_bracket_frame frame[1 + WEFT_SESSION_MAX_BRACKETS] = {{samples, record->exposure_s, 1}};
+    WEFT_TRY(provide_for_brackets(session, b, error));
+    WEFT_TRY(read_brackets(session, shot, b, frame, error));
+    weft_bracket_compare(session, frame, 1 + record->bracket_count, sample_count);
+    weft_bracket_merge(session, frame, 1 + record->bracket_count, sample_count, b->value, b->variance);
+    weft_resampler_apply_merged(&j->resampler, b->value, b->variance, b->texel, b->mask);
+    return WEFT_OK;
+}
+
+/* ---- Photographs ---- */
+
 /* Rectifies photograph `index`; *done says whether it is in the dataset. */
 static weft_code rectify_photograph(job *j, int index, bench *b, bool *done, weft_error *error)
 {
@@ -105,7 +158,10 @@ static weft_code rectify_photograph(job *j, int index, bench *b, bool *done, wef
             return WEFT_OK;
         *white = j->estimated[shot];
     }
-    weft_resampler_apply(&j->resampler, samples, exposure.black_level, exposure.full_scale, b->texel, b->mask);
+    if (session->record[shot].bracket_count > 0)
+        WEFT_TRY(resample_bracket(j, shot, samples, b, error));
+    else
+        weft_resampler_apply(&j->resampler, samples, exposure.black_level, exposure.full_scale, b->texel, b->mask);
     weft_reflectance_of_raw(white, &exposure, &j->rectifier->sight->bend, session->target.opening_mm,
                             j->resampler.width, j->resampler.height, b->texel);
     *done = true;

@@ -27,8 +27,9 @@ typedef enum weft_distance {
 
 /* Why a sample cannot be used (bits); 0 is a valid sample. One with another bit, which only others write, is not. */
 enum {
-    WEFT_MASK_MISSING = 1,  /* no photograph, or its view could not be registered */
-    WEFT_MASK_SATURATED = 2 /* the sensor clipped */
+    WEFT_MASK_MISSING = 1,   /* no photograph, or its view could not be registered */
+    WEFT_MASK_SATURATED = 2, /* the sensor clipped */
+    WEFT_MASK_DARK = 8       /* its noise is as large as its value, in the longest exposure of a bracket, too */
 };
 
 /* Numbers that may be known about every image. */

@@ -22,6 +22,30 @@ static void journal_path(const weft_session *session, char path[PATH_MAX])
 
 /* ---- Reading ---- */
 
+static bool unpack_bracket(json_t *json, weft_bracket_record *bracket)
+{
+    json_int_t bytes, crc32;
+    if (json_unpack(json, "{sF sI sI}", "exposure_s", &bracket->exposure_s, "bytes", &bytes, "crc32", &crc32) != 0 ||
+        bytes < 0 || crc32 < 0 || crc32 > UINT32_MAX || !(bracket->exposure_s > 0))
+        return false;
+    bracket->bytes = (uint64_t)bytes;
+    bracket->crc32 = (uint32_t)crc32;
+    return true;
+}
+
+static bool unpack_brackets(json_t *list, weft_shot_record *record)
+{
+    size_t count = json_array_size(list);
+    if ((list && !json_is_array(list)) || count > WEFT_SESSION_MAX_BRACKETS)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        if (!unpack_bracket(json_array_get(list, i), &record->bracket[i]))
+            return false;
+    }
+    record->bracket_count = (int)count;
+    return true;
+}
+
 static bool unpack_record(json_t *json, json_int_t *shot, weft_shot_record *record)
 {
     json_int_t stay, bytes, crc32;
@@ -29,7 +53,7 @@ static bool unpack_record(json_t *json, json_int_t *shot, weft_shot_record *reco
                     &bytes, "crc32", &crc32) != 0)
         return false;
     if (bytes < 0 || crc32 < 0 || crc32 > UINT32_MAX || stay < 0 || stay >= WEFT_SESSION_MAX_SHOTS ||
-        !(record->exposure_s > 0))
+        !(record->exposure_s > 0) || !unpack_brackets(json_object_get(json, "brackets"), record))
         return false;
     record->stay = (int)stay;
     record->taken = true;
@@ -53,6 +77,7 @@ static weft_code read_line(weft_session *session, const char *path, int line, co
     if (shot < 0 || shot >= session->shot_count)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d names shot %lld, the plan has %d", path, line,
                          (long long)shot, session->shot_count);
+    record.line = line;
     session->record[shot] = record;
     return WEFT_OK;
 }
@@ -119,13 +144,27 @@ weft_code weft_session_sync(const weft_session *session, weft_error *error)
     return weft_sync_file(path, error);
 }
 
+/* Room for a line of a shot with all its brackets. */
+enum { LINE_SIZE = 1024 };
+
+static int write_line(int shot, const weft_shot_record *record, char line[LINE_SIZE])
+{
+    int length = snprintf(line, LINE_SIZE, "{\"shot\":%d,\"stay\":%d,\"exposure_s\":%.9g,\"bytes\":%llu,\"crc32\":%u",
+                          shot, record->stay, record->exposure_s, (unsigned long long)record->bytes, record->crc32);
+    for (int i = 0; i < record->bracket_count; i++) {
+        const weft_bracket_record *bracket = &record->bracket[i];
+        length += snprintf(line + length, (size_t)(LINE_SIZE - length),
+                           "%s{\"exposure_s\":%.9g,\"bytes\":%llu,\"crc32\":%u}", i ? "," : ",\"brackets\":[",
+                           bracket->exposure_s, (unsigned long long)bracket->bytes, bracket->crc32);
+    }
+    return length + snprintf(line + length, (size_t)(LINE_SIZE - length), "%s}\n", record->bracket_count ? "]" : "");
+}
+
 weft_code weft_session_append(weft_session *session, int shot, const weft_shot_record *record, weft_error *error)
 {
-    char path[PATH_MAX], line[256];
+    char path[PATH_MAX], line[LINE_SIZE];
     journal_path(session, path);
-    int length =
-        snprintf(line, sizeof line, "{\"shot\":%d,\"stay\":%d,\"exposure_s\":%.9g,\"bytes\":%llu,\"crc32\":%u}\n", shot,
-                 record->stay, record->exposure_s, (unsigned long long)record->bytes, record->crc32);
+    int length = write_line(shot, record, line);
     if (append_text(path, line, (size_t)length) != 0)
         return weft_fail_errno(error, "append to", path);
     session->record[shot] = *record;

@@ -27,6 +27,12 @@ static json_t *pack_target(const weft_target *t)
                      "paper_reflectance", t->paper_reflectance, "ink_reflectance", t->ink_reflectance);
 }
 
+static json_t *pack_noise(const weft_sensor_noise *noise)
+{
+    return json_pack("{sf sf}", "electrons_per_value", noise->electrons_per_value, "read_noise_electrons",
+                     noise->read_noise_electrons);
+}
+
 static json_t *pack_angles(weft_angles a)
 {
     return json_pack("[ff]", weft_deg_of_rad(a.theta_rad), weft_deg_of_rad(a.phi_rad));
@@ -50,11 +56,11 @@ static json_t *pack_session(const weft_session *s)
     json_t *settings = json_loads(s->rig_settings ? s->rig_settings : "{}", 0, &ignored);
     if (!settings && errno != ENOMEM)
         settings = json_object();
-    return json_pack("{si ss so so so sf sf si si so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
+    return json_pack("{si ss so so so sf sf si si so so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
                      weft_json_text(s->sample, strlen(s->sample)), "rig_settings", settings, "camera",
                      weft_camera_pack(&s->camera), "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
-                     s->light_distance_mm, "bits", s->bits, "black_level", s->black_level, "target",
-                     pack_target(&s->target), "plan", pack_plan(s));
+                     s->light_distance_mm, "bits", s->bits, "black_level", s->black_level, "noise",
+                     pack_noise(&s->noise), "target", pack_target(&s->target), "plan", pack_plan(s));
 }
 
 weft_code weft_session_create(const weft_session *session, weft_error *error)
@@ -79,6 +85,13 @@ static bool unpack_target(json_t *json, weft_target *t, json_error_t *cause)
     return json_unpack_ex(json, cause, 0, "{sF sF sF sF}", "opening_mm", &t->opening_mm, "white_reflectance",
                           &t->white_reflectance, "paper_reflectance", &t->paper_reflectance, "ink_reflectance",
                           &t->ink_reflectance) == 0;
+}
+
+/* Sessions of before brackets have none. */
+static bool unpack_noise(json_t *json, weft_sensor_noise *noise, json_error_t *cause)
+{
+    return !json || json_unpack_ex(json, cause, 0, "{sF sF}", "electrons_per_value", &noise->electrons_per_value,
+                                   "read_noise_electrons", &noise->read_noise_electrons) == 0;
 }
 
 static bool unpack_angles(json_t *json, weft_angles *angles)
@@ -131,6 +144,8 @@ static weft_code check_values(const weft_session *s, const char *path, weft_erro
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': %d bits with black level %d", path, s->bits, s->black_level);
     if (!(c->fx > 0 && c->fy > 0 && s->camera_distance_mm > 0 && s->light_distance_mm > 0 && s->target.opening_mm > 0))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': a focal length, distance or opening is not positive", path);
+    if (!(s->noise.electrons_per_value >= 0 && s->noise.read_noise_electrons >= 0))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': noise of the sensor is negative", path);
     const weft_target *t = &s->target;
     if (!(t->white_reflectance > 0 && is_reflectance(t->white_reflectance)) || !is_reflectance(t->paper_reflectance) ||
         !is_reflectance(t->ink_reflectance))
@@ -160,7 +175,8 @@ static weft_code unpack_fields(json_t *root, const char *path, weft_session *s, 
                        &camera, "target", &target, "rig_settings", &settings, "camera_distance_mm",
                        &s->camera_distance_mm, "light_distance_mm", &s->light_distance_mm, "bits", &bits, "black_level",
                        &black_level) != 0 ||
-        !weft_camera_unpack(camera, &s->camera, &cause) || !unpack_target(target, &s->target, &cause))
+        !weft_camera_unpack(camera, &s->camera, &cause) || !unpack_target(target, &s->target, &cause) ||
+        !unpack_noise(json_object_get(root, "noise"), &s->noise, &cause))
         return weft_json_fail(error, WEFT_BAD_INPUT, "'%s' lacks a field, or one has the wrong type: %s", path,
                               cause.text);
     if (settings && !json_is_object(settings))
@@ -229,4 +245,11 @@ void weft_session_photograph_path(const weft_session *session, int shot, char *p
     int tv = whole_degrees(s->view.theta_rad), pv = whole_degrees(s->view.phi_rad);
     snprintf(path, (size_t)size, "%s/tv%03d_pv%03d/tl%03d_pl%03d_tv%03d_pv%03d.tif", session->folder, tv, pv, tl, pl,
              tv, pv);
+}
+
+void weft_session_bracket_path(const weft_session *session, int shot, int bracket, char *path, int size)
+{
+    weft_session_photograph_path(session, shot, path, size);
+    size_t stem = strlen(path) - strlen(".tif");
+    snprintf(path + stem, (size_t)size - stem, ".bracket%d.tif", bracket + 1);
 }

@@ -13,13 +13,20 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { WEFT_SESSION_MAX_SHOTS = 1000000 };
+enum { WEFT_SESSION_MAX_SHOTS = 1000000, WEFT_SESSION_MAX_BRACKETS = 4 };
 
 /* One planned photograph. */
 typedef struct weft_shot {
     weft_angles light, view;  /* of the grid: they name the file */
     weft_angles light_driven; /* where the light is really sent; differs where the camera would stand in its way */
 } weft_shot;
+
+/* One more photograph of a shot, with another exposure. */
+typedef struct weft_bracket_record {
+    double exposure_s;
+    uint64_t bytes;
+    uint32_t crc32;
+} weft_bracket_record;
 
 /* What the journal says of a shot. */
 typedef struct weft_shot_record {
@@ -29,7 +36,16 @@ typedef struct weft_shot_record {
     double exposure_s;
     uint64_t bytes; /* size of the file */
     uint32_t crc32; /* of its bytes */
+    int line;       /* of the journal, from 1, as it was opened; 0: appended since */
+    int bracket_count;
+    weft_bracket_record bracket[WEFT_SESSION_MAX_BRACKETS];
 } weft_shot_record;
+
+/* How much a raw value of the camera varies: by shot noise, by read noise and by rounding. */
+typedef struct weft_sensor_noise {
+    double electrons_per_value;  /* 0: not known */
+    double read_noise_electrons; /* standard deviation */
+} weft_sensor_noise;
 
 typedef struct weft_session {
     char *folder;
@@ -40,6 +56,7 @@ typedef struct weft_session {
     double camera_distance_mm, light_distance_mm; /* as set up */
     int bits;                                     /* of the raw values; full scale is 2^bits - 1 */
     int black_level;                              /* raw value of no light */
+    weft_sensor_noise noise;
     weft_target target;
     int shot_count;
     weft_shot *shot;          /* [shot_count], in the order of the plan */
@@ -57,6 +74,9 @@ void weft_session_free(weft_session *session);
 
 /* Path of the photograph of a shot inside the folder; `path` holds at least `size` bytes. Pure. */
 void weft_session_photograph_path(const weft_session *session, int shot, char *path, int size);
+
+/* The same for bracket `bracket` of a shot: "NAME.bracket1.tif" and so on. Pure. */
+void weft_session_bracket_path(const weft_session *session, int shot, int bracket, char *path, int size);
 
 /* Appends a shot to the journal with one write() and updates session->record[shot]. A cut last line left by a
  * crash is removed first. Errors: WEFT_SYSTEM. */

@@ -22,6 +22,7 @@ struct weft_laboratory {
     int lamp_count;
     char *sample, *identity;
     char camera_device[PATH_MAX];
+    char lens[PATH_MAX];
     weft_controller *controller;
     weft_relay *relay;
     weft_stage *stage;
@@ -35,10 +36,9 @@ struct weft_laboratory {
 
 static weft_code read_lens(weft_laboratory *lab, weft_error *error)
 {
-    char path[PATH_MAX];
     weft_lens lens;
-    WEFT_TRY(weft_rig_file_beside(&lab->file, lab->file.camera.lens, path, sizeof path, error));
-    WEFT_TRY(weft_lens_read(path, &lens, error));
+    WEFT_TRY(weft_rig_file_beside(&lab->file, lab->file.camera.lens, lab->lens, sizeof lab->lens, error));
+    WEFT_TRY(weft_lens_read(lab->lens, &lens, error));
     lab->rig.calibration = lens.camera;
     return WEFT_OK;
 }
@@ -189,6 +189,7 @@ static weft_code prepare(weft_laboratory *lab, weft_error *error)
     lab->rig.sample = lab->sample;
     lab->rig.identity = lab->identity;
     lab->rig.settings = settings;
+    lab->rig.noise = (weft_sensor_noise){lab->file.camera.electrons_per_value, lab->file.camera.read_noise_electrons};
     lab->rig.seconds_per_photograph = lab->file.camera.seconds_per_photograph;
     lab->rig.stage = weft_stage_for_rig(lab->stage);
     lab->rig.light = weft_stage_light(lab->stage);
@@ -222,6 +223,11 @@ void weft_laboratory_close(weft_laboratory *lab)
     free(lab->sample);
     free(lab->identity);
     free(lab);
+}
+
+const char *weft_laboratory_lens(const weft_laboratory *lab)
+{
+    return lab->lens;
 }
 
 weft_rig *weft_laboratory_rig(weft_laboratory *lab)

@@ -26,6 +26,9 @@ weft_code weft_laboratory_connect(weft_laboratory *laboratory, weft_error *error
 /* Stops what moves and switches off what burns. */
 void weft_laboratory_close(weft_laboratory *laboratory);
 
+/* File of the calibration of its lens; lives as long as the laboratory. */
+const char *weft_laboratory_lens(const weft_laboratory *laboratory);
+
 /* What a capture drives; lives as long as the laboratory. */
 weft_rig *weft_laboratory_rig(weft_laboratory *laboratory);
 

@@ -212,6 +212,7 @@ weft_code weft_truth_write(const weft_truth_request *request, const weft_session
     truth t;
     char path[PATH_MAX];
     choose_path(request, session->folder, path);
+    weft_sweep_left_over(path);
     weft_code code = allocate_truth(request, session, &t, error);
     if (code == WEFT_OK) {
         fill_poses(session, &rig->world, &t);

@@ -174,6 +174,7 @@ static weft_code open_devices(const weft_virtual_request *request, weft_virtual_
                           .identity = devices->identity,
                           .settings = request->settings.rig,
                           .calibration = weft_rig_settings_camera(&request->settings.rig),
+                          .noise = {devices->sensor.electrons_per_step, devices->sensor.read_noise},
                           .camera = {devices, expose},
                           .stage = {.device = devices, .home = home, .move = move},
                           .light = {devices, power_light}};

@@ -236,3 +236,36 @@ void weft_resampler_apply(const weft_resampler *resampler, const uint16_t *sampl
             texel[3 * i + c] = (float)(sum[c] - (double)resampler->sum[i] * black_level);
     }
 }
+
+/* Sums over the taps of a texel; returns the variance of the mean over its channels. */
+static double merged_texel(const weft_resampler *resampler, long i, const float *value, const float *variance,
+                           float texel[3])
+{
+    double sum[3] = {0, 0, 0}, squares = 0;
+    for (long tap = resampler->first[i]; tap < resampler->first[i + 1]; tap++) {
+        size_t at = 3 * (size_t)resampler->pixel[tap];
+        double weight = (double)resampler->weight[tap];
+        for (int c = 0; c < 3; c++) {
+            sum[c] += weight * (double)value[at + (size_t)c];
+            squares += weight * weight * (double)variance[at + (size_t)c];
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        texel[c] = (float)sum[c];
+    return squares / 9;
+}
+
+void weft_resampler_apply_merged(const weft_resampler *resampler, const float *value, const float *variance,
+                                 float *texel, uint8_t *mask)
+{
+    long texels = (long)resampler->width * resampler->height;
+    for (long i = 0; i < texels; i++) {
+        double squares = merged_texel(resampler, i, value, variance, texel + 3 * i);
+        double mean = ((double)texel[3 * i] + (double)texel[3 * i + 1] + (double)texel[3 * i + 2]) / 3;
+        bool seen = resampler->first[i] < resampler->first[i + 1];
+        mask[i] = !seen                                 ? WEFT_MASK_MISSING
+                  : !isfinite(mean)                     ? WEFT_MASK_SATURATED
+                  : mean * mean <= squares || mean <= 0 ? WEFT_MASK_DARK
+                                                        : 0;
+    }
+}

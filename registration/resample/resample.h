@@ -49,4 +49,10 @@ void weft_resampler_free(weft_resampler *resampler);
 void weft_resampler_apply(const weft_resampler *resampler, const uint16_t *samples, int black_level, int full_scale,
                           float *texel, uint8_t *mask);
 
+/* The same of a merged bracket (registration/radiometry/bracket.h): `value` [height][width][3] above black, INFINITY
+ * where all its photographs clipped, and `variance` of each. MISSING and SATURATED as above, DARK where the standard
+ * error of a texel, in its mean over the channels, is not below its value. Thread-safe. */
+void weft_resampler_apply_merged(const weft_resampler *resampler, const float *value, const float *variance,
+                                 float *texel, uint8_t *mask);
+
 #endif

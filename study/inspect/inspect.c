@@ -335,7 +335,7 @@ static weft_code inspect_any(const char *path, const weft_progress *progress, bo
                          path);
     if (code == WEFT_OK && !*result)
         code = weft_json_fail(error, WEFT_BAD_INPUT, "'%s' cannot be described: its texts are not UTF-8", path);
-    if (code != WEFT_OK) {
+    if (code != WEFT_OK && !json_object_get(*result, "faults")) {
         json_decref(*result);
         *result = NULL;
     }

@@ -14,7 +14,8 @@ weft_code weft_inspect(const char *path, json_t **result, weft_error *error);
 
 /* Reads all of it: every checksum of a material and every number in it; every sample of a dataset; every photograph of
  * a session (size, checksum, decoding). *result is as from weft_inspect, with what was counted under "verified".
- * Errors: WEFT_BAD_INPUT naming the first thing that is wrong. */
+ * Errors: WEFT_BAD_INPUT naming the first thing that is wrong, and *result is NULL. Of a session all that is wrong is
+ * found: *result then lists it under "faults", each with "kind", "shot" (of shots) and "text". */
 weft_code weft_verify(const char *path, const weft_progress *progress, json_t **result, weft_error *error);
 
 #endif

@@ -16,7 +16,9 @@ weft_code weft_verify_material(const char *path, const weft_material *material, 
 weft_code weft_verify_dataset(weft_dataset *dataset, const weft_progress *progress, json_t *description,
                               weft_error *error);
 
-/* Every photograph of the journal there, of its recorded size and checksum, and readable. */
+/* Every photograph of the journal whole, and nothing else there (capture/session_check.h). Puts the counts into
+ * description["verified"] and the faults, where there are any, into description["faults"]. Errors: WEFT_BAD_INPUT with
+ * the fault, or how many there are of each kind; WEFT_SYSTEM. */
 weft_code weft_verify_session(const weft_session *session, const weft_progress *progress, json_t *description,
                               weft_error *error);
 

@@ -1,55 +1,67 @@
 #include "study/inspect/verify.h"
 
-#include "base/atomic_file.h"
-#include "base/picture/image.h"
+#include "base/text/json_text.h"
+#include "capture/session_check.h"
 
-#include <limits.h>
-#include <stdlib.h>
-#include <zlib.h>
+#include <stdio.h>
+#include <string.h>
 
-static const size_t largest_photograph = (size_t)1 << 32;
-
-static weft_code check_bytes(const char *path, const weft_shot_record *record, weft_error *error)
+static json_t *pack_fault(const weft_session_fault *fault)
 {
-    char *bytes;
-    size_t size;
-    WEFT_TRY(weft_read_file(path, largest_photograph, &bytes, &size, error));
-    uint32_t crc = (uint32_t)crc32_z(crc32_z(0, NULL, 0), (const unsigned char *)bytes, size);
-    free(bytes);
-    if (size != record->bytes)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has %zu bytes, but %llu in the journal", path, size,
-                         (unsigned long long)record->bytes);
-    if (crc != record->crc32)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has the checksum %08x, but %08x in the journal", path, crc,
-                         record->crc32);
-    return WEFT_OK;
+    json_t *packed = json_pack("{s:s}", "kind", weft_session_fault_name[fault->kind]);
+    if (fault->shot >= 0)
+        weft_json_put(&packed, "shot", json_integer(fault->shot));
+    weft_json_put(&packed, "text", weft_json_text(fault->text, strlen(fault->text)));
+    return packed;
 }
 
-static weft_code check_photograph(const weft_session *session, int shot, uint16_t *pixels, weft_error *error)
+static weft_code put_faults(const weft_session_faults *faults, json_t *description, weft_error *error)
 {
-    char path[PATH_MAX];
-    weft_session_photograph_path(session, shot, path, (int)sizeof path);
-    WEFT_TRY(check_bytes(path, &session->record[shot], error));
-    return weft_photograph_read(path, session->camera.width, session->camera.height, session->bits, pixels, error);
+    json_t *list = json_array();
+    for (int i = 0; list && i < faults->count; i++)
+        weft_json_append(&list, pack_fault(&faults->fault[i]));
+    bool put = list && json_object_set_new(description, "faults", list) == 0;
+    return put ? WEFT_OK : weft_fail_memory(error, "faults of a session", 0);
+}
+
+static weft_code put_count(const weft_session *session, json_t *description, weft_error *error)
+{
+    int taken = 0;
+    for (int shot = 0; shot < session->shot_count; shot++)
+        taken += session->record[shot].taken;
+    bool put = json_object_set_new(description, "verified", json_pack("{s:i}", "photographs", taken)) == 0;
+    return put ? WEFT_OK : weft_fail_memory(error, "description", 0);
+}
+
+/* "session 'scarf': 2 missing, 1 damaged". */
+static weft_code fail_of(const weft_session *session, const weft_session_faults *faults, weft_error *error)
+{
+    int counts[WEFT_FAULT_KINDS] = {0};
+    char text[128] = "";
+    if (faults->count == 1)
+        return weft_fail(error, WEFT_BAD_INPUT, "%s", faults->fault[0].text);
+    for (int i = 0; i < faults->count; i++)
+        counts[faults->fault[i].kind]++;
+    for (int kind = 0; kind < WEFT_FAULT_KINDS; kind++) {
+        size_t length = strlen(text);
+        if (counts[kind] > 0)
+            snprintf(text + length, sizeof text - length, "%s%d %s", length ? ", " : "", counts[kind],
+                     weft_session_fault_name[kind]);
+    }
+    return weft_fail(error, WEFT_BAD_INPUT, "session '%s': %s", session->folder, text);
 }
 
 weft_code weft_verify_session(const weft_session *session, const weft_progress *progress, json_t *description,
                               weft_error *error)
 {
-    size_t samples = 3 * (size_t)session->camera.width * (size_t)session->camera.height;
-    uint16_t *pixels = malloc(samples * sizeof *pixels);
-    weft_code code = pixels ? WEFT_OK : weft_fail_memory(error, "photograph", samples * sizeof *pixels);
-    int checked = 0;
-    for (int i = 0; i < session->shot_count && code == WEFT_OK; i++) {
-        if (session->record[i].taken) {
-            code = check_photograph(session, i, pixels, error);
-            checked++;
-        }
-        weft_progress_report(progress, "checking photographs", i + 1, session->shot_count);
+    weft_session_faults faults;
+    WEFT_TRY(weft_session_check(session, progress, &faults, error));
+    weft_code code = put_count(session, description, error);
+    if (code == WEFT_OK && faults.count > 0) {
+        code = put_faults(&faults, description, error);
+        if (code == WEFT_OK)
+            code = fail_of(session, &faults, error);
     }
-    free(pixels);
-    if (json_object_set_new(description, "verified", json_pack("{s:i}", "photographs", checked)) != 0 &&
-        code == WEFT_OK)
-        code = weft_fail_memory(error, "description", 0);
+    weft_session_faults_free(&faults);
     return code;
 }

@@ -152,16 +152,17 @@ static void photographs_that_do_not_match_the_journal_are_taken_again(void **sta
 static void what_a_dead_process_left_is_swept_away_and_nothing_else(void **state)
 {
     (void)state;
-    static const char *const left[] = {"session/.session.12345.json", "session/.photograph.tif"};
+    static const char *const left[] = {"session/.session.12345.json", "session/.photograph.tif",
+                                       ".session.truth.12345.h5"};
     static const char *const others[] = {"session/.session.notes.json", "session/.session.json",
                                          "session/.session.7.json.bak"};
     complete_run();
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < 3; i++)
         scratch_store(left[i], "{", 1);
     for (int i = 0; i < 3; i++)
         scratch_store(others[i], "{", 1);
     complete_run();
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < 3; i++)
         assert_int_not_equal(access(left[i], F_OK), 0);
     for (int i = 0; i < 3; i++)
         assert_int_equal(remove(others[i]), 0);

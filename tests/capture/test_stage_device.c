@@ -425,7 +425,7 @@ static void a_session_with_faults_holds_no_wrong_pose(void **state)
     open_bench(&b, *state);
     write_plan();
     weft_rig rig = rig_of(&b, &w);
-    const weft_capture_request request = {"session", "plan.csv"};
+    const weft_capture_request request = {.folder = "session", .plan = "plan.csv"};
     weft_capture capture;
     weft_error error = {0};
     assert_int_equal(weft_capture_begin(&request, &rig, NULL, &capture, &error), WEFT_OK);

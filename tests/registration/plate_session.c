@@ -71,7 +71,11 @@ static void take_view(weft_session *s, int view, const plate_mishaps *mishaps)
     for (int light = 0; light < PLATE_SESSION_LIGHTS; light++) {
         int shot = view * PLATE_SESSION_LIGHTS + light;
         char path[512], parent[512];
-        weft_shot_record record = {true, view, shot == mishaps->overexposed ? 2.2 : 0.9, 1, 1};
+        weft_shot_record record = {.taken = true,
+                                   .stay = view,
+                                   .exposure_s = shot == mishaps->overexposed ? 2.2 : 0.9,
+                                   .bytes = 1,
+                                   .crc32 = 1};
         if (shot == mishaps->untaken)
             continue;
         expose(s, even, &pose, light_of[light], record.exposure_s, raw);

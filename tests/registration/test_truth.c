@@ -31,7 +31,7 @@ static int take_and_register(void **state)
     if (scratch_folder_enter(state) != 0)
         return -1;
     scratch_store("plan.csv", plan, sizeof plan - 1);
-    virtual_session request = {{"session", "plan.csv"},
+    virtual_session request = {{.folder = "session", .plan = "plan.csv"},
                                {WEFT_ASSETS "/weaves/cotton_denim.wv", 5, weft_virtual_settings_default()},
                                {NULL, TEXELS, TRUTH_IMAGES}};
     weft_capture_summary summary;

@@ -36,7 +36,7 @@ static void write_plan(void)
 static void photograph(void)
 {
     virtual_session request = {
-        {"session", "plan.csv"}, {cloth, 11, weft_virtual_settings_default()}, {NULL, TEXELS, 1}};
+        {.folder = "session", .plan = "plan.csv"}, {cloth, 11, weft_virtual_settings_default()}, {NULL, TEXELS, 1}};
     weft_capture_summary summary;
     weft_error error = {0};
     request.rig.settings.rig.width_px = request.rig.settings.rig.height_px = SIZE;

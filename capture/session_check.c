@@ -1,0 +1,166 @@
+#include "capture/session_check.h"
+
+#include "base/atomic_file.h"
+#include "base/picture/image.h"
+#include "capture/doubled.h"
+#include "capture/file_crc.h"
+#include "capture/foreign.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+const char *const weft_session_fault_name[WEFT_FAULT_KINDS] = {"missing", "damaged", "doubled", "foreign"};
+
+void weft_session_faults_free(weft_session_faults *faults)
+{
+    for (int i = 0; i < faults->count; i++)
+        free(faults->fault[i].text);
+    free(faults->fault);
+    *faults = (weft_session_faults){0};
+}
+
+weft_code weft_session_faults_add(weft_session_faults *faults, weft_session_fault_kind kind, int shot, const char *text,
+                                  weft_error *error)
+{
+    size_t bytes = ((size_t)faults->count + 1) * sizeof *faults->fault;
+    char *copy = strdup(text);
+    weft_session_fault *grown = copy ? realloc(faults->fault, bytes) : NULL;
+    if (!grown) {
+        free(copy);
+        return weft_fail_memory(error, "faults of a session", bytes);
+    }
+    faults->fault = grown;
+    faults->fault[faults->count++] = (weft_session_fault){kind, shot, copy};
+    return WEFT_OK;
+}
+
+/* ---- One shot ---- */
+
+/* What the journal says of one photograph. */
+typedef struct expected_file {
+    uint64_t bytes;
+    uint32_t crc32;
+} expected_file;
+
+static weft_code check_bytes(const char *path, const expected_file *record, weft_error *error)
+{
+    uint64_t bytes = 0;
+    uint32_t crc32 = 0;
+    WEFT_TRY(weft_file_crc(path, &bytes, &crc32, error));
+    if (bytes != record->bytes)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has %llu bytes, but %llu in the journal", path,
+                         (unsigned long long)bytes, (unsigned long long)record->bytes);
+    if (crc32 != record->crc32)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has the checksum %08x, but %08x in the journal", path, crc32,
+                         record->crc32);
+    return WEFT_OK;
+}
+
+static weft_code check_picture(const weft_session *session, const char *path, weft_error *error)
+{
+    const weft_camera *camera = &session->camera;
+    size_t bytes = (size_t)camera->width * (size_t)camera->height * 3 * sizeof(uint16_t);
+    uint16_t *samples = malloc(bytes);
+    weft_code code = samples ? weft_photograph_read(path, camera->width, camera->height, session->bits, samples, error)
+                             : weft_fail_memory(error, "photograph", bytes);
+    free(samples);
+    return code;
+}
+
+static weft_code check_file(const weft_session *session, const char *path, expected_file expected,
+                            weft_session_fault_kind *kind, weft_error *what)
+{
+    *kind = access(path, F_OK) == 0 ? WEFT_FAULT_DAMAGED : WEFT_FAULT_MISSING;
+    WEFT_TRY(check_bytes(path, &expected, what));
+    return check_picture(session, path, what);
+}
+
+/* What is wrong with a shot is an error of `what`, and its kind. */
+static weft_code check_shot(const weft_session *session, int shot, weft_session_fault_kind *kind, weft_error *what)
+{
+    char path[PATH_MAX];
+    weft_session_photograph_path(session, shot, path, sizeof path);
+    const weft_shot_record *record = &session->record[shot];
+    WEFT_TRY(check_file(session, path, (expected_file){record->bytes, record->crc32}, kind, what));
+    for (int i = 0; i < record->bracket_count; i++) {
+        const weft_bracket_record *bracket = &record->bracket[i];
+        weft_session_bracket_path(session, shot, i, path, sizeof path);
+        WEFT_TRY(check_file(session, path, (expected_file){bracket->bytes, bracket->crc32}, kind, what));
+    }
+    return WEFT_OK;
+}
+
+/* ---- All of them ---- */
+
+/* What the threads that check shots share. */
+typedef struct shot_checks {
+    weft_session_faults *faults;
+    const weft_progress *progress;
+    long done, total;
+    weft_code code;
+    weft_error *error;
+} shot_checks;
+
+/* Short memory is no fault of the session. */
+static void note(shot_checks *checks, int shot, weft_session_fault_kind kind, weft_code found, const weft_error *what)
+{
+    weft_progress_report(checks->progress, "checking photographs", ++checks->done, checks->total);
+    if (found == WEFT_OK || checks->code != WEFT_OK)
+        return;
+    if (found == WEFT_BAD_INPUT) {
+        checks->code = weft_session_faults_add(checks->faults, kind, shot, what->message, checks->error);
+        return;
+    }
+    checks->code = found;
+    if (checks->error)
+        *checks->error = *what;
+}
+
+static long count_taken(const weft_session *session)
+{
+    long taken = 0;
+    for (int shot = 0; shot < session->shot_count; shot++)
+        taken += session->record[shot].taken;
+    return taken;
+}
+
+static weft_code check_shots(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,
+                             weft_error *error)
+{
+    shot_checks checks = {.faults = faults, .progress = progress, .total = count_taken(session), .error = error};
+#pragma omp parallel for schedule(dynamic, 16)
+    for (int shot = 0; shot < session->shot_count; shot++) {
+        if (!session->record[shot].taken)
+            continue;
+        weft_error what = {0};
+        weft_session_fault_kind kind = WEFT_FAULT_MISSING;
+        weft_code found = check_shot(session, shot, &kind, &what);
+#pragma omp critical
+        note(&checks, shot, kind, found, &what);
+    }
+    return checks.code;
+}
+
+static int compare_faults(const void *a, const void *b)
+{
+    const weft_session_fault *p = a, *q = b;
+    return (p->shot > q->shot) - (p->shot < q->shot);
+}
+
+weft_code weft_session_check(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,
+                             weft_error *error)
+{
+    *faults = (weft_session_faults){0};
+    weft_code code = check_shots(session, progress, faults, error);
+    if (code == WEFT_OK)
+        code = weft_find_doubled(session, faults, error);
+    if (faults->count > 1)
+        qsort(faults->fault, (size_t)faults->count, sizeof *faults->fault, compare_faults);
+    if (code == WEFT_OK)
+        code = weft_find_foreign(session, faults, error);
+    if (code != WEFT_OK)
+        weft_session_faults_free(faults);
+    return code;
+}

@@ -1,0 +1,42 @@
+/* Whether a session is sound: what its folder holds against what its journal and its plan say. */
+#ifndef WEFT_CAPTURE_SESSION_CHECK_H
+#define WEFT_CAPTURE_SESSION_CHECK_H
+
+#include "base/progress.h"
+#include "btf/session/session.h"
+
+typedef enum weft_session_fault_kind {
+    WEFT_FAULT_MISSING, /* a photograph that the journal names is gone */
+    WEFT_FAULT_DAMAGED, /* a photograph of other bytes than the journal says, or that cannot be read */
+    WEFT_FAULT_DOUBLED, /* a photograph with the bytes of another shot, which was taken before it: the camera handed
+                           over an old one, for its noise repeats nothing */
+    WEFT_FAULT_FOREIGN, /* a file that belongs to no shot of the plan */
+    WEFT_FAULT_KINDS
+} weft_session_fault_kind;
+
+/* "missing", "damaged", "doubled", "foreign". */
+extern const char *const weft_session_fault_name[WEFT_FAULT_KINDS];
+
+typedef struct weft_session_fault {
+    weft_session_fault_kind kind;
+    int shot;   /* which is to be taken again; -1 for a foreign file */
+    char *text; /* one line that names the file and what is wrong; owned */
+} weft_session_fault;
+
+typedef struct weft_session_faults {
+    int count;
+    weft_session_fault *fault; /* [count] those of shots in the order of the plan, then foreign files; owned */
+} weft_session_faults;
+
+/* Reads every photograph that the journal names: a shot that was never taken is no fault, and counts in
+ * session->record. A hidden file is foreign only where a capture leaves it that is killed. Parallel (OpenMP).
+ * The caller frees with weft_session_faults_free. Errors: WEFT_SYSTEM for memory; a fault is none. */
+weft_code weft_session_check(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,
+                             weft_error *error);
+void weft_session_faults_free(weft_session_faults *faults);
+
+/* Adds a fault with a copy of `text`. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_session_faults_add(weft_session_faults *faults, weft_session_fault_kind kind, int shot, const char *text,
+                                  weft_error *error);
+
+#endif

@@ -1,0 +1,225 @@
+#include "capture/status_page.h"
+
+#include "base/atomic_file.h"
+#include "base/picture/colour.h"
+#include "base/text/html_page.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { THUMBNAIL = 160, CHART_WIDTH = 1000, CHART_HEIGHT = 200 };
+
+/* One photograph of which the lamp is known. */
+typedef struct lamp_level {
+    int number; /* of the photographs of this run */
+    double level;
+} lamp_level;
+
+struct weft_status_page {
+    char folder[PATH_MAX];
+    const weft_session *session;
+    int stay;                /* of the last photograph; -1: none yet */
+    int *shown, shown_count; /* [shot_count] first shots of the stays */
+    lamp_level *lamp;        /* [shot_count] */
+    int lamp_count, noted;
+};
+
+static void free_status(weft_status_page *status)
+{
+    free(status->shown);
+    free(status->lamp);
+    free(status);
+}
+
+weft_code weft_status_page_begin(const char *folder, const weft_session *session, weft_status_page **result,
+                                 weft_error *error)
+{
+    *result = NULL;
+    if (!folder)
+        return WEFT_OK;
+    weft_status_page *status = calloc(1, sizeof *status);
+    if (!status)
+        return weft_fail_memory(error, "status page", sizeof *status);
+    snprintf(status->folder, sizeof status->folder, "%s", folder);
+    status->session = session;
+    status->stay = -1;
+    status->shown = calloc((size_t)session->shot_count, sizeof *status->shown);
+    status->lamp = calloc((size_t)session->shot_count, sizeof *status->lamp);
+    if (!status->shown || !status->lamp) {
+        free_status(status);
+        return weft_fail_memory(error, "status page", (size_t)session->shot_count * sizeof *status->lamp);
+    }
+    *result = status;
+    return WEFT_OK;
+}
+
+/* ---- The lamp ---- */
+
+static double white_value(const weft_session *session, const weft_meter *meter, const uint16_t *samples)
+{
+    double sum = 0;
+    for (int i = 0; i < meter->white_count; i++)
+        sum += samples[3 * (size_t)meter->white[i] + 1] - session->black_level;
+    return meter->white_count ? sum / meter->white_count : 0;
+}
+
+/* Power of the lamp in units of its own: what the white patches show, per second and per cosine of its direction. */
+static void measure_lamp(weft_status_page *status, int shot, const weft_shot_record *record, const weft_meter *meter,
+                         const uint16_t *samples)
+{
+    const weft_session *session = status->session;
+    double theta_rad = session->shot[shot].light_driven.theta_rad, value = white_value(session, meter, samples);
+    double range = (1 << session->bits) - 1 - session->black_level;
+    if (theta_rad > weft_rad_of_deg(60) || value < 0.01 * range || value > 0.95 * range)
+        return;
+    status->lamp[status->lamp_count++] = (lamp_level){status->noted, value / record->exposure_s / cos(theta_rad)};
+}
+
+static int compare_levels(const void *a, const void *b)
+{
+    double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+/* 0 where nothing is known. */
+static double median_level(const weft_status_page *status)
+{
+    double *level = calloc((size_t)status->lamp_count + 1, sizeof *level);
+    if (!level)
+        return 0;
+    for (int i = 0; i < status->lamp_count; i++)
+        level[i] = status->lamp[i].level;
+    qsort(level, (size_t)status->lamp_count, sizeof *level, compare_levels);
+    double median = level[status->lamp_count / 2];
+    free(level);
+    return median;
+}
+
+static double largest_drift(const weft_status_page *status, double median)
+{
+    double largest = 0;
+    for (int i = 0; i < status->lamp_count && median > 0; i++)
+        largest = fmax(largest, fabs(status->lamp[i].level / median - 1));
+    return largest;
+}
+
+/* ---- The page ---- */
+
+static weft_code write_thumbnail(const weft_status_page *status, int shot, const uint16_t *samples, weft_error *error)
+{
+    const weft_session *session = status->session;
+    int step = (session->camera.width + THUMBNAIL - 1) / THUMBNAIL;
+    double range = (1 << session->bits) - 1 - session->black_level;
+    weft_image image;
+    char path[PATH_MAX + 32];
+    WEFT_TRY(weft_image_create(session->camera.width / step, session->camera.height / step, &image, error));
+    for (int i = 0; i < image.width * image.height; i++) {
+        size_t at = (size_t)(i / image.width * step) * (size_t)session->camera.width + (size_t)(i % image.width * step);
+        for (int c = 0; c < 3; c++)
+            image.pixels[3 * i + c] = weft_srgb_of_linear(
+                (float)weft_clamp((samples[3 * at + (size_t)c] - session->black_level) / range, 0, 1));
+    }
+    snprintf(path, sizeof path, "%s/shot%d.png", status->folder, shot);
+    weft_code code = weft_image_write(path, &image, NULL, error);
+    weft_image_free(&image);
+    return code;
+}
+
+static void write_tiles(weft_page *page, const weft_status_page *status, const weft_status_counts *counts)
+{
+    double to_go_s = counts->taken_now ? counts->seconds / counts->taken_now * (counts->total - counts->taken) : 0;
+    fputs("<div class=\"tiles\">", page->html);
+    weft_page_tile(page, "photographs", "%d of %d", counts->taken, counts->total);
+    weft_page_tile(page, "time to go", "%d h %02d min", (int)(to_go_s / 3600), (int)(to_go_s / 60) % 60);
+    weft_page_tile(page, "largest change of the lamp from its median", "%.2f %%",
+                   100 * largest_drift(status, median_level(status)));
+    fputs("</div>", page->html);
+}
+
+/* The lamp over the photographs of this run: 10 % to either side of its median. */
+static void write_drift(weft_page *page, const weft_status_page *status)
+{
+    double median = median_level(status), span = fmax(status->noted - 1, 1);
+    if (!(median > 0))
+        return;
+    fprintf(
+        page->html,
+        "<h2>Lamp</h2><p class=\"note\">On the white patches, by photograph, 10 %% to either side of its median.</p>"
+        "<svg class=\"chart\" viewBox=\"0 0 %d %d\"><line x1=\"0\" x2=\"%d\" y1=\"%d\" y2=\"%d\" stroke=\"gray\"/>",
+        CHART_WIDTH, CHART_HEIGHT, CHART_WIDTH, CHART_HEIGHT / 2, CHART_HEIGHT / 2);
+    for (int i = 0; i < status->lamp_count; i++) {
+        double change = weft_clamp(status->lamp[i].level / median - 1, -0.1, 0.1);
+        fprintf(page->html, "<circle class=\"colour0\" r=\"3\" cx=\"%.1f\" cy=\"%.1f\"/>",
+                status->lamp[i].number / span * CHART_WIDTH, (0.5 - change / 0.2) * CHART_HEIGHT);
+    }
+    fputs("</svg>", page->html);
+}
+
+static void write_faults(weft_page *page, const weft_status_counts *counts, const char *why)
+{
+    fputs("<h2>What went wrong</h2><table>", page->html);
+    weft_page_columns(page, "what|times");
+    weft_page_fact(page, "photographs that were not as the journal says, taken again", "%d", counts->damaged);
+    weft_page_fact(page, "exposures that the camera did not deliver", "%d", counts->timeouts);
+    weft_page_fact(page, "photographs during which the stage moved", "%d", counts->disturbed);
+    fputs("</table>", page->html);
+    if (why) {
+        fputs("<p>The run ended early: ", page->html);
+        weft_page_text(page, why);
+        fputs("</p>", page->html);
+    }
+}
+
+static void write_gallery(weft_page *page, const weft_status_page *status)
+{
+    fputs("<h2>The first photograph of each stay</h2><div class=\"gallery\">", page->html);
+    for (int i = 0; i < status->shown_count; i++) {
+        const weft_shot *shot = &status->session->shot[status->shown[i]];
+        fprintf(page->html,
+                "<figure><div><img src=\"shot%d.png\" alt=\"\"></div><figcaption>view %.0f %.0f, light %.0f "
+                "%.0f</figcaption></figure>",
+                status->shown[i], weft_deg_of_rad(shot->view.theta_rad), weft_deg_of_rad(shot->view.phi_rad),
+                weft_deg_of_rad(shot->light_driven.theta_rad), weft_deg_of_rad(shot->light_driven.phi_rad));
+    }
+    fputs("</div>", page->html);
+}
+
+static weft_code write_page(const weft_status_page *status, const weft_status_counts *counts, const char *why,
+                            weft_error *error)
+{
+    weft_page page;
+    WEFT_TRY(weft_page_begin(status->folder, status->session->sample, &page, error));
+    write_tiles(&page, status, counts);
+    write_faults(&page, counts, why);
+    write_drift(&page, status);
+    write_gallery(&page, status);
+    return weft_page_finish(&page, error);
+}
+
+weft_code weft_status_page_note(weft_status_page *status, int shot, const weft_shot_record *record,
+                                const weft_meter *meter, const uint16_t *samples, const weft_status_counts *counts,
+                                weft_error *error)
+{
+    if (!status)
+        return WEFT_OK;
+    measure_lamp(status, shot, record, meter, samples);
+    status->noted++;
+    if (record->stay == status->stay)
+        return WEFT_OK;
+    status->stay = record->stay;
+    status->shown[status->shown_count++] = shot;
+    WEFT_TRY(weft_make_folder(status->folder, error));
+    WEFT_TRY(write_thumbnail(status, shot, samples, error));
+    return write_page(status, counts, NULL, error);
+}
+
+weft_code weft_status_page_end(weft_status_page *status, const weft_status_counts *counts, const char *why,
+                               weft_error *error)
+{
+    if (!status)
+        return WEFT_OK;
+    weft_code code = write_page(status, counts, why, error);
+    free_status(status);
+    return code;
+}

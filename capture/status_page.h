@@ -1,0 +1,34 @@
+/* A page that tells, while photographs are taken, how it goes: how many, how long still, how steady the lamp is, and
+ * what was repeated. It is rewritten when a stay is over. */
+#ifndef WEFT_CAPTURE_STATUS_PAGE_H
+#define WEFT_CAPTURE_STATUS_PAGE_H
+
+#include "capture/exposure.h"
+
+/* What has happened so far. */
+typedef struct weft_status_counts {
+    int taken, total; /* photographs: those there now, and all of the plan */
+    int taken_now;    /* by this run, in `seconds` */
+    double seconds;
+    int damaged, timeouts, disturbed; /* see weft_capture_summary */
+} weft_status_counts;
+
+typedef struct weft_status_page weft_status_page;
+
+/* Makes the folder. `status` is NULL where `folder` is: every function below then does nothing. Borrows session.
+ * Errors: WEFT_SYSTEM. */
+weft_code weft_status_page_begin(const char *folder, const weft_session *session, weft_status_page **status,
+                                 weft_error *error);
+
+/* Notes the photograph of a shot: the first one of a stay is shown, and the lamp is measured on the white patches of
+ * each, where they do not clip and the light stands at most 60 degrees from the zenith. Writes the page when a stay was
+ * over. Errors: WEFT_SYSTEM. */
+weft_code weft_status_page_note(weft_status_page *status, int shot, const weft_shot_record *record,
+                                const weft_meter *meter, const uint16_t *samples, const weft_status_counts *counts,
+                                weft_error *error);
+
+/* Writes the page a last time, with why the run ended early (NULL: it did not), and frees. Errors: WEFT_SYSTEM. */
+weft_code weft_status_page_end(weft_status_page *status, const weft_status_counts *counts, const char *why,
+                               weft_error *error);
+
+#endif
