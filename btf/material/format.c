@@ -8,7 +8,7 @@ const unsigned char weft_format_magic[8] = {0x89, 'W', 'E', 'F', 'T', '\r', '\n'
 
 const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ", "LOBE",
                                                        "TABL", "STAB", "MODL", "TPCA", "SPCA", "ALPH",
-                                                       "ERRO", "LAYR", "LCOE", "CEIL", "HGHT"};
+                                                       "ERRO", "LAYR", "LCOE", "CEIL", "FLOR", "HGHT"};
 
 weft_section_kind weft_section_kind_of(const char type[5])
 {
@@ -46,6 +46,8 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind)
     case WEFT_SECTION_LCOE:
     case WEFT_SECTION_CEIL:
         return material->has_layers ? material->level_count : 0;
+    case WEFT_SECTION_FLOR:
+        return material->has_layers && material->has_floors ? material->level_count : 0;
     case WEFT_SECTION_HGHT:
         return material->has_heights;
     default:
@@ -85,6 +87,8 @@ uint64_t weft_section_size(const weft_material *material, weft_section_kind kind
         return material->heights ? weft_material_heights_size(material->heights) : 0;
     case WEFT_SECTION_CEIL:
         return weft_ceiling_count(material->level[level].width, material->level[level].height);
+    case WEFT_SECTION_FLOR:
+        return 3 * weft_ceiling_count(material->level[level].width, material->level[level].height);
     default:
         return 0;
     }
@@ -110,6 +114,8 @@ void *weft_section_texels(const weft_material *material, weft_section_kind kind,
         return material->layers->level[level].coefficient;
     case WEFT_SECTION_CEIL:
         return material->layers->level[level].ceiling;
+    case WEFT_SECTION_FLOR:
+        return material->layers->level[level].floor;
     default:
         return NULL;
     }

@@ -43,6 +43,7 @@ typedef enum weft_section_kind {
     WEFT_SECTION_LAYR,
     WEFT_SECTION_LCOE,
     WEFT_SECTION_CEIL,
+    WEFT_SECTION_FLOR,
     WEFT_SECTION_HGHT,
     WEFT_SECTION_KINDS /* their number; stands for an unknown type */
 } weft_section_kind;
@@ -66,7 +67,7 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind);
  * and for LAYR, LCOE and HGHT while the layers or heights are not read. Pure. */
 uint64_t weft_section_size(const weft_material *material, weft_section_kind kind, int level);
 
-/* The texels of FRAM, RHO, LOBE, TABL, STAB, MODL, LCOE and CEIL in memory; NULL for the other kinds. */
+/* The texels of FRAM, RHO, LOBE, TABL, STAB, MODL, LCOE, CEIL and FLOR in memory; NULL for the other kinds. */
 void *weft_section_texels(const weft_material *material, weft_section_kind kind, int level);
 
 /* What is wrong with decoded contents ("holds ..."), NULL where they are fine: numbers that are not finite, negative

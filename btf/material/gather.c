@@ -169,29 +169,34 @@ static int squares_of(int side)
     return (side + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
 }
 
-static uint8_t ceiling_at(const weft_layers_level *level, int x, int y)
+static size_t square_at(const weft_layers_level *level, int x, int y)
 {
-    return level
-        ->ceiling[(size_t)(y / WEFT_CEILING_SIDE) * (size_t)squares_of(level->width) + (size_t)(x / WEFT_CEILING_SIDE)];
+    return (size_t)(y / WEFT_CEILING_SIDE) * (size_t)squares_of(level->width) + (size_t)(x / WEFT_CEILING_SIDE);
 }
 
-static void raise(uint8_t *ceiling, uint8_t to)
+/* The square of `from` is under that of `to`. */
+static void widen_bounds(const weft_layers_level *from, size_t square, weft_layers_level *to, size_t mixed)
 {
-    *ceiling = *ceiling > to ? *ceiling : to;
+    if (to->ceiling[mixed] < from->ceiling[square])
+        to->ceiling[mixed] = from->ceiling[square];
+    for (size_t c = 0; c < 3; c++)
+        if (to->floor[3 * mixed + c] > from->floor[3 * square + c])
+            to->floor[3 * mixed + c] = from->floor[3 * square + c];
 }
 
 /* Of each level from level 0: a square of level k lies over 2^k x 2^k of those of level 0 at most. */
-static void mix_ceilings(const weft_layers *from, const weft_texel_mix *mix, int k, weft_layers *to)
+static void mix_bounds(const weft_layers *from, const weft_texel_mix *mix, int k, weft_layers *to)
 {
-    int width = to->level[0].width, height = to->level[0].height, columns = squares_of(to->level[k].width);
+    int width = to->level[0].width, height = to->level[0].height;
+    weft_layers_level *level = &to->level[k];
+    memset(level->floor, UINT8_MAX, 3 * weft_ceiling_count(level->width, level->height));
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
-            size_t square =
-                (size_t)((y >> k) / WEFT_CEILING_SIDE) * (size_t)columns + (size_t)((x >> k) / WEFT_CEILING_SIDE);
             const weft_texel_mix *at = &mix[(size_t)y * (size_t)width + (size_t)x];
             for (int p = 0; p < WEFT_MIX_TEXELS; p++)
                 if (at->part[p].weight > 0)
-                    raise(&to->level[k].ceiling[square], ceiling_at(&from->level[0], at->part[p].x, at->part[p].y));
+                    widen_bounds(&from->level[0], square_at(&from->level[0], at->part[p].x, at->part[p].y), level,
+                                 square_at(level, x >> k, y >> k));
         }
 }
 
@@ -211,7 +216,7 @@ static weft_code gather_layers(const weft_layers *from, const weft_texel_mix *mi
     copy_shared(from, to->layers);
     for (int k = 0; k < to->level_count; k++) {
         mix_level(from, mix, k, to->layers);
-        mix_ceilings(from, mix, k, to->layers);
+        mix_bounds(from, mix, k, to->layers);
     }
     return WEFT_OK;
 }
@@ -281,6 +286,7 @@ static weft_code allocate_like(const weft_material *from, int width, int height,
                           .has_table_bases = from->has_table_bases,
                           .has_opacity = from->has_opacity,
                           .has_layers = from->has_layers,
+                          .has_floors = from->has_floors,
                           .texel_pitch_mm = from->texel_pitch_mm};
     WEFT_TRY(weft_material_set_shape(to, width, height, from->level_count > 1 ? 0 : 1, from->lobe_count,
                                      from->view_count, from->light_count, error));

@@ -5,6 +5,9 @@
 
 enum { CEILING_STEPS = 8, CEILING_OF_ONE = 192, LEAST_SIDE = 4, MOST_SIDE = 64, HEADER_WORDS = 16 };
 
+/* A floor is a float of 4 bits of mantissa, whose exponent begins here: the lower bits of a float cut off. */
+enum { FLOOR_SHIFT = 19, FLOOR_FIRST = (127 - 13) << 4 };
+
 /* ---- Memory ---- */
 
 static weft_code allocate(void *array, size_t count, size_t size, weft_error *error)
@@ -34,6 +37,7 @@ static weft_code allocate_levels(weft_layers *layers, int width, int height, wef
         size_t texels = (size_t)width * (size_t)height;
         WEFT_TRY(allocate(&level->coefficient, texels * (size_t)layers->layer_count, 1, error));
         WEFT_TRY(allocate(&level->ceiling, weft_ceiling_count(width, height), 1, error));
+        WEFT_TRY(allocate(&level->floor, 3 * weft_ceiling_count(width, height), 1, error));
         width = (width + 1) / 2;
         height = (height + 1) / 2;
     }
@@ -100,6 +104,7 @@ void weft_layers_free(weft_layers *layers)
     for (int k = 0; k < layers->level_count; k++) {
         free(layers->level[k].coefficient);
         free(layers->level[k].ceiling);
+        free(layers->level[k].floor);
     }
     free(layers);
 }
@@ -108,10 +113,11 @@ void weft_layers_drop_finest(weft_layers *layers)
 {
     free(layers->level[0].coefficient);
     free(layers->level[0].ceiling);
+    free(layers->level[0].floor);
     memmove(layers->level, layers->level + 1, (size_t)--layers->level_count * sizeof *layers->level);
 }
 
-/* ---- Ceilings ---- */
+/* ---- Ceilings and floors ---- */
 
 float weft_ceiling_of_code(uint8_t code)
 {
@@ -125,6 +131,25 @@ uint8_t weft_ceiling_code(float value)
     while (code < 255 && weft_ceiling_of_code((uint8_t)code) < value)
         code++;
     return (uint8_t)code;
+}
+
+float weft_floor_of_code(uint8_t code)
+{
+    uint32_t bits = (uint32_t)(FLOOR_FIRST + code) << FLOOR_SHIFT;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return code > 0 ? value : 0;
+}
+
+uint8_t weft_floor_code(float value)
+{
+    uint32_t bits;
+    if (!(value >= weft_floor_of_code(1)))
+        return 0;
+    if (value >= weft_floor_of_code(255))
+        return 255;
+    memcpy(&bits, &value, sizeof bits);
+    return (uint8_t)((bits >> FLOOR_SHIFT) - FLOOR_FIRST);
 }
 
 size_t weft_ceiling_count(int width, int height)

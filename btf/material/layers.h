@@ -3,7 +3,8 @@
  *
  * For each colour channel, r = reflectance times cosine, as in the dataset:
  *
- *     r(l, v) = sum_k c_k B_k(l, v),   held to 0 .. the ceiling of the texel times min(1, l_z / least_cosine)
+ *     r(l, v) = sum_k c_k B_k(l, v),   held to the floor of the texel times l_z
+ *                                      .. the ceiling of the texel times min(1, l_z / least_cosine)
  *
  * c_k are whole numbers of -127 .. 127, the most important first, so that the first few alone are a coarser material.
  * B_k is stored as its values at the images of a dataset. Between them it is a smooth map (btf/direction/smooth_map.h):
@@ -33,7 +34,7 @@ enum {
     WEFT_LAYERS_GROUP = 4,       /* layers that are stored, and fetched, together */
     WEFT_LAYERS_MAX_LEVELS = 16, /* as many as a material may have */
     WEFT_LAYERS_LARGEST_CODE = 127,
-    WEFT_CEILING_SIDE = 8, /* texels along a side of a square that has one ceiling */
+    WEFT_CEILING_SIDE = 8, /* texels along a side of a square that has one ceiling and one floor */
     WEFT_LAYERS_MAX_IMAGES = 1 << 20,
     WEFT_LAYERS_MAX_VIEWS = 4096
 };
@@ -43,6 +44,7 @@ typedef struct weft_layers_level {
     int width, height;
     int8_t *coefficient; /* [layer_count / 4][height][width][4] */
     uint8_t *ceiling;    /* [ceil(height / 8)][ceil(width / 8)] weft_ceiling_of_code */
+    uint8_t *floor;      /* [ceil(height / 8)][ceil(width / 8)][3] weft_floor_of_code */
 } weft_layers_level;
 
 typedef struct weft_layers {
@@ -74,13 +76,20 @@ void weft_layers_free(weft_layers *layers);
 /* Takes the finest level away; there must be another. */
 void weft_layers_drop_finest(weft_layers *layers);
 
-/* ---- Ceilings ---- */
+/* ---- Ceilings and floors ---- */
 
 /* 2^((code - 192) / 8), about 6e-8 .. 235. Pure. */
 float weft_ceiling_of_code(uint8_t code);
 
 /* The least code whose ceiling is at least `value`; 255 beyond. Pure. */
 uint8_t weft_ceiling_code(float value);
+
+/* A reflectance in each channel that a square does not fall below: 0 for code 0, else
+ * 2^(floor(code / 16) - 13) (1 + (code mod 16) / 16), about 1.3e-4 .. 7.8. Pure. */
+float weft_floor_of_code(uint8_t code);
+
+/* The largest code whose floor is at most `value`. Pure. */
+uint8_t weft_floor_code(float value);
 
 /* Number of ceilings of a level. Pure. */
 size_t weft_ceiling_count(int width, int height);

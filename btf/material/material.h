@@ -52,6 +52,7 @@ typedef struct weft_material {
     bool has_table_bases;  /* tables are stored by components, and so */
     bool has_opacity;      /* are opacities by themselves, if any is below 1 */
     bool has_layers;       /* `layers` is, or will be, set */
+    bool has_floors;       /* its layers have floors that are not all 0 */
     bool has_heights;      /* and so are `heights` */
     double texel_pitch_mm; /* of level 0 */
     weft_vec3 *view;       /* [view_count], unit, upper hemisphere */

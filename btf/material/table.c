@@ -143,6 +143,7 @@ static weft_code note_section(weft_file_image *file, int index, weft_material *m
         return WEFT_OK;
     material->has_models = material->has_models || kind == WEFT_SECTION_MODL;
     material->has_layers = material->has_layers || kind == WEFT_SECTION_LAYR;
+    material->has_floors = material->has_floors || kind == WEFT_SECTION_FLOR;
     material->has_heights = material->has_heights || kind == WEFT_SECTION_HGHT;
     material->has_opacity = material->has_opacity || kind == WEFT_SECTION_ALPH;
     material->has_table_bases = material->has_table_bases || kind == WEFT_SECTION_TPCA || kind == WEFT_SECTION_SPCA;

@@ -193,6 +193,17 @@ static weft_code measure(const fitting *work, weft_layers_report *report, weft_e
 
 /* ---- The whole ---- */
 
+/* Rounding down leaves some floors 0; where all are, the file says nothing of them. */
+static bool has_floors(const weft_layers *layers)
+{
+    const weft_layers_level *level = &layers->level[0];
+    for (size_t i = 0; i < 3 * weft_ceiling_count(level->width, level->height); i++) {
+        if (level->floor[i] > 0)
+            return true;
+    }
+    return false;
+}
+
 static weft_code fit(fitting *work, weft_material *material, weft_layers_report *report, weft_error *error)
 {
     WEFT_TRY(learn(work, material, report, error));
@@ -230,6 +241,7 @@ weft_code weft_layers_fit(weft_dataset *dataset, const weft_layers_options *opti
     if (code == WEFT_OK) {
         material->layers = work.layers;
         material->has_layers = true;
+        material->has_floors = has_floors(work.layers);
         work.layers = NULL;
     }
     free_all(&work);

@@ -8,7 +8,7 @@
 typedef struct pyramid {
     int width, height;
     size_t layer_count;
-    float *coefficient, *brightest;
+    float *coefficient, *brightest, *floor;
 } pyramid;
 
 /* The largest coefficient of level 0 gets the largest code; means are never larger. */
@@ -51,6 +51,23 @@ static void write_ceilings(const pyramid *p, uint8_t *code)
             *code++ = weft_ceiling_code(WEFT_BRIGHTEST_MULTIPLE * brightest_in(p, x, y));
 }
 
+static float darkest_in(const pyramid *p, int x0, int y0, size_t channel)
+{
+    float least = INFINITY;
+    for (int y = y0; y < y0 + WEFT_CEILING_SIDE && y < p->height; y++)
+        for (int x = x0; x < x0 + WEFT_CEILING_SIDE && x < p->width; x++)
+            least = fminf(least, p->floor[3 * ((size_t)y * (size_t)p->width + (size_t)x) + channel]);
+    return least;
+}
+
+static void write_floors(const pyramid *p, uint8_t *code)
+{
+    for (int y = 0; y < p->height; y += WEFT_CEILING_SIDE)
+        for (int x = 0; x < p->width; x += WEFT_CEILING_SIDE)
+            for (size_t c = 0; c < 3; c++)
+                *code++ = weft_floor_code(darkest_in(p, x, y, c));
+}
+
 /* How many texels of level 0 along a side the texel at `index` of a level covers. */
 static int covered(int index, int level, int size)
 {
@@ -62,18 +79,22 @@ static int covered(int index, int level, int size)
 static void merge(pyramid *p, int level, int width0, int height0, int x, int y, int next_width)
 {
     size_t to = (size_t)y * (size_t)next_width + (size_t)x;
-    float sum[WEFT_LAYERS_MAX] = {0}, most = 0, total = 0;
+    float sum[WEFT_LAYERS_MAX] = {0}, dark[3] = {0}, most = 0, total = 0;
     for (int j = 2 * y; j < 2 * y + 2 && j < p->height; j++)
         for (int i = 2 * x; i < 2 * x + 2 && i < p->width; i++) {
             size_t from = (size_t)j * (size_t)p->width + (size_t)i;
             float weight = (float)covered(i, level, width0) * (float)covered(j, level, height0);
             for (size_t k = 0; k < p->layer_count; k++)
                 sum[k] += weight * p->coefficient[from * p->layer_count + k];
+            for (size_t c = 0; c < 3; c++)
+                dark[c] += weight * p->floor[3 * from + c];
             most = fmaxf(most, p->brightest[from]);
             total += weight;
         }
     for (size_t k = 0; k < p->layer_count; k++)
         p->coefficient[to * p->layer_count + k] = sum[k] / total;
+    for (size_t c = 0; c < 3; c++)
+        p->floor[3 * to + c] = dark[c] / total;
     p->brightest[to] = most;
 }
 
@@ -95,13 +116,15 @@ void weft_layers_fill_levels(weft_projection *projection, weft_layers *layers)
                  .height = projection->height,
                  .layer_count = (size_t)projection->layer_count,
                  .coefficient = projection->coefficient,
-                 .brightest = projection->brightest};
+                 .brightest = projection->brightest,
+                 .floor = projection->floor};
     find_steps(&p, step);
     for (int k = 0; k < layers->level_count; k++) {
         if (k > 0)
             next_level(&p, k - 1, projection->width, projection->height);
         write_codes(&p, step, layers->level[k].coefficient);
         write_ceilings(&p, layers->level[k].ceiling);
+        write_floors(&p, layers->level[k].floor);
     }
     for (int k = 0; k < layers->layer_count; k++)
         layers->scale[k] *= step[k];

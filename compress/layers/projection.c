@@ -1,6 +1,7 @@
 #include "compress/layers/projection.h"
 
 #include "base/thread_pool.h"
+#include "compress/layers/darkest.h"
 #include "compress/run/block_plan.h"
 
 #include <math.h>
@@ -36,6 +37,7 @@ void weft_projection_free(weft_projection *projection)
 {
     free(projection->coefficient);
     free(projection->brightest);
+    free(projection->floor);
     *projection = (weft_projection){0};
 }
 
@@ -62,9 +64,9 @@ static void gather(const run *r, const weft_layer_images *seen, worker *own, lon
                                              vector, own->valid + i * images);
         own->masked += r->images->image_count - valid;
         own->empty += valid == 0;
-        r->projection
-            ->brightest[((size_t)block->place.y + y) * (size_t)r->projection->width + (size_t)block->place.x + x] =
-            brightest(r->images, vector);
+        size_t texel = ((size_t)block->place.y + y) * (size_t)r->projection->width + (size_t)block->place.x + x;
+        r->projection->brightest[texel] = brightest(r->images, vector);
+        weft_floor_of_texel(seen, vector, own->valid + i * images, r->projection->floor + 3 * texel);
     }
 }
 
@@ -187,7 +189,8 @@ static weft_code allocate(const weft_dataset_layout *layout, int layer_count, we
     *projection = (weft_projection){.width = layout->width, .height = layout->height, .layer_count = layer_count};
     projection->coefficient = malloc(texels * (size_t)layer_count * sizeof *projection->coefficient);
     projection->brightest = calloc(texels, sizeof *projection->brightest);
-    if (projection->coefficient && projection->brightest)
+    projection->floor = calloc(3 * texels, sizeof *projection->floor);
+    if (projection->coefficient && projection->brightest && projection->floor)
         return WEFT_OK;
     weft_projection_free(projection);
     return weft_fail_memory(error, "coefficients", texels * (size_t)layer_count * sizeof(float));
@@ -228,7 +231,7 @@ weft_code weft_projection_make(weft_dataset *dataset, const weft_layer_images *i
     weft_block_plan plan;
     WEFT_TRY(weft_memory_budget_require(budget,
                                         weft_block_reader_bytes(layout, block_texels) +
-                                            texels * 4 * (uint64_t)(components->count + 1) +
+                                            texels * 4 * (uint64_t)(components->count + 4) +
                                             (uint64_t)r.thread_count * (uint64_t)layout->image_count *
                                                 (32 * BATCH + (projector ? 0 : 12 * (uint64_t)components->count + 128)),
                                         weft_dataset_path(dataset), "its layers", error));

@@ -11,6 +11,7 @@ typedef struct weft_projection {
     int width, height, layer_count;
     float *coefficient; /* [height][width][layer_count] */
     float *brightest;   /* [height][width] the largest valid sample of the texel, reflectance times cosine; 0 without */
+    float *floor;       /* [height][width][3] weft_floor_of_texel */
     long masked;        /* samples */
     long empty;         /* texels without any */
 } weft_projection;

@@ -11,13 +11,14 @@ static weft_fetches of_lobes(const weft_material *material)
 }
 
 /* Coefficients of four layers at once from two levels; their factors, four half floats, from two rows of view nodes for
- * each channel; a ceiling (player/draw/shaders/layered.glsl). With opacity, three entries of T at each of eight texels.
+ * each channel; three floors and a ceiling (player/draw/shaders/layered.glsl). With opacity, three entries of T at each
+ * of eight texels.
  */
 static weft_fetches of_layers(const weft_material *material)
 {
     int groups = material->layers->layer_count / WEFT_LAYERS_GROUP, coefficients = LEVELS * groups,
         factors = 2 * 3 * groups;
-    weft_fetches fetches = {coefficients + factors + 1, 4 * BILINEAR * coefficients + 8 * TRILINEAR * factors + 1};
+    weft_fetches fetches = {coefficients + factors + 1, 4 * BILINEAR * coefficients + 8 * TRILINEAR * factors + 4};
     if (weft_material_has_holes(material)) {
         fetches.reads += CORNERS * LEVELS * BILINEAR;
         fetches.bytes += 4 * CORNERS * LEVELS * BILINEAR;

@@ -8,7 +8,7 @@
 enum { COLOURS = 3 };
 
 static const weft_texture_format coefficient_format = {GL_RGBA8_SNORM, GL_RGBA, GL_BYTE};
-static const weft_texture_format ceiling_format = {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+static const weft_texture_format bounds_format = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
 
 static void filter_linearly(GLenum target)
 {
@@ -51,16 +51,30 @@ static weft_code upload_coefficients(const weft_layers *layers, weft_layer_textu
     return code == WEFT_OK ? weft_gl_check("uploading coefficients", error) : code;
 }
 
-static weft_code upload_ceilings(const weft_layers *layers, weft_layer_texture *t, weft_error *error)
+/* Three floors and the ceiling of each square of a level. */
+static void join_bounds(const weft_layers_level *level, size_t squares, uint8_t (*texel)[4])
 {
-    WEFT_TRY(weft_gl_texture(ceiling_format, t->ceiling_layout.width, t->ceiling_layout.height, 0, NULL, &t->ceiling,
-                             error));
-    for (int k = 0; k < layers->level_count; k++) {
-        weft_mip_area a = t->ceiling_layout.area[k];
-        glTexSubImage2D(GL_TEXTURE_2D, 0, a.x, a.y, a.width, a.height, ceiling_format.layout, ceiling_format.type,
-                        layers->level[k].ceiling);
+    for (size_t i = 0; i < squares; i++) {
+        memcpy(texel[i], level->floor + 3 * i, 3);
+        texel[i][3] = level->ceiling[i];
     }
-    return weft_gl_check("uploading ceilings", error);
+}
+
+static weft_code upload_bounds(const weft_layers *layers, weft_layer_texture *t, weft_error *error)
+{
+    size_t most = weft_ceiling_count(layers->level[0].width, layers->level[0].height);
+    uint8_t(*texel)[4] = calloc(most, sizeof *texel);
+    if (!texel)
+        return weft_fail_memory(error, "bounds of layers", most * sizeof *texel);
+    weft_code code =
+        weft_gl_texture(bounds_format, t->bounds_layout.width, t->bounds_layout.height, 0, NULL, &t->bounds, error);
+    for (int k = 0; k < layers->level_count && code == WEFT_OK; k++) {
+        weft_mip_area a = t->bounds_layout.area[k];
+        join_bounds(&layers->level[k], (size_t)a.width * (size_t)a.height, texel);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, a.x, a.y, a.width, a.height, bounds_format.layout, bounds_format.type, texel);
+    }
+    free(texel);
+    return code == WEFT_OK ? weft_gl_check("uploading bounds", error) : code;
 }
 
 /* ---- Maps ---- */
@@ -182,21 +196,21 @@ weft_code weft_layer_texture_upload(const weft_layers *layers, const int *entry_
     int columns = (finest->width + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
     int rows = (finest->height + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
     *t = (weft_layer_texture){.layout = weft_mip_layout_of(finest->width, finest->height, layers->level_count, 1, 1),
-                              .ceiling_layout = weft_mip_layout_of(columns, rows, layers->level_count, 0, 1),
+                              .bounds_layout = weft_mip_layout_of(columns, rows, layers->level_count, 0, 1),
                               .group_count = layers->layer_count / WEFT_LAYERS_GROUP,
                               .light_side = layers->light_side,
                               .view_side = layers->view_side,
                               .half_vector = layers->kind == WEFT_LAYERS_OF_HALF_VECTOR,
                               .least_cosine = layers->least_cosine};
     WEFT_TRY(upload_coefficients(layers, t, error));
-    WEFT_TRY(upload_ceilings(layers, t, error));
+    WEFT_TRY(upload_bounds(layers, t, error));
     return upload_maps(layers, entry_of_view, t, error);
 }
 
 void weft_layer_texture_free(weft_layer_texture *t)
 {
     glDeleteTextures(1, &t->coefficient);
-    glDeleteTextures(1, &t->ceiling);
+    glDeleteTextures(1, &t->bounds);
     glDeleteTextures(3, (const GLuint[]){t->map, t->map_of_view, t->view});
     *t = (weft_layer_texture){0};
 }
@@ -208,7 +222,7 @@ size_t weft_layer_texture_bytes(const weft_layer_texture *t, size_t *shared)
     size_t nodes = lights * ((size_t)t->view_side * (size_t)t->view_side + (size_t)t->view_count);
     *shared = nodes * groups * COLOURS * WEFT_LAYERS_GROUP * sizeof(weft_half);
     return *shared + texels * groups * WEFT_LAYERS_GROUP +
-           (size_t)t->ceiling_layout.width * (size_t)t->ceiling_layout.height;
+           sizeof(uint8_t[4]) * (size_t)t->bounds_layout.width * (size_t)t->bounds_layout.height;
 }
 
 static void set_areas(const weft_mip_layout *layout, GLuint program, const char *areas, const char *step)
@@ -222,14 +236,14 @@ static void set_areas(const weft_mip_layout *layout, GLuint program, const char 
 void weft_layer_texture_bind(const weft_layer_texture *t, GLuint program, int unit, int view_unit, int count)
 {
     weft_gl_bind(program, "layer_coefficient", unit, GL_TEXTURE_2D_ARRAY, t->coefficient);
-    weft_gl_bind(program, "layer_ceiling", unit + 1, GL_TEXTURE_2D, t->ceiling);
+    weft_gl_bind(program, "layer_bounds", unit + 1, GL_TEXTURE_2D, t->bounds);
     weft_gl_bind(program, "layer_map", unit + 2, GL_TEXTURE_3D, t->map);
     if (t->view_count > 0) {
         weft_gl_bind(program, "layer_map_of_view", unit + 3, GL_TEXTURE_2D_ARRAY, t->map_of_view);
         weft_gl_bind(program, "layer_view", view_unit, GL_TEXTURE_2D, t->view);
     }
     set_areas(&t->layout, program, "layer_area", "layer_step");
-    set_areas(&t->ceiling_layout, program, "ceiling_area", "ceiling_step");
+    set_areas(&t->bounds_layout, program, "bounds_area", "bounds_step");
     weft_gl_set_int(program, "layer_groups", (count + WEFT_LAYERS_GROUP - 1) / WEFT_LAYERS_GROUP);
     weft_gl_set_vec2(program, "layer_sides", t->light_side, t->view_side);
     weft_gl_set_float(program, "least_cosine", (double)t->least_cosine);

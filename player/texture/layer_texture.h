@@ -11,11 +11,11 @@
 
 /* All zero without layers. Coefficients are signed bytes and the maps half floats, both filtered by the hardware. */
 typedef struct weft_layer_texture {
-    GLuint coefficient, ceiling, map;
+    GLuint coefficient, bounds, map;
     GLuint map_of_view, view; /* the maps of the stored views by themselves, and their directions; 0 unless they are
                                  looked through heights from */
     int view_count;
-    weft_mip_layout layout, ceiling_layout;
+    weft_mip_layout layout, bounds_layout;
     int group_count, light_side, view_side;
     bool half_vector;
     float least_cosine;

@@ -76,17 +76,27 @@ static weft_rgb combine(int count, const float *coefficient, const float *factor
     return (weft_rgb){r, g, b};
 }
 
-static weft_rgb held(const weft_layers *layers, weft_rgb value, float ceiling, weft_real light_z)
-{
-    weft_real most = (weft_real)ceiling * fmin((weft_real)1, light_z / (weft_real)layers->least_cosine);
-    return (weft_rgb){fmin(fmax(value.r, (weft_real)0), most), fmin(fmax(value.g, (weft_real)0), most),
-                      fmin(fmax(value.b, (weft_real)0), most)};
-}
+/* What the values of a texel are held to, under a light from above. */
+typedef struct bounds {
+    weft_real floor[3], ceiling;
+} bounds;
 
-static float ceiling_at(const weft_layers_level *level, int x, int y)
+static bounds bounds_at(const weft_layers_level *level, int x, int y)
 {
     int columns = (level->width + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
-    return weft_ceiling_of_code(level->ceiling[(y / WEFT_CEILING_SIDE) * columns + x / WEFT_CEILING_SIDE]);
+    size_t square = (size_t)(y / WEFT_CEILING_SIDE) * (size_t)columns + (size_t)(x / WEFT_CEILING_SIDE);
+    const uint8_t *floor_code = level->floor + 3 * square;
+    return (bounds){{(weft_real)weft_floor_of_code(floor_code[0]), (weft_real)weft_floor_of_code(floor_code[1]),
+                     (weft_real)weft_floor_of_code(floor_code[2])},
+                    (weft_real)weft_ceiling_of_code(level->ceiling[square])};
+}
+
+static weft_rgb held(const weft_layers *layers, weft_rgb value, const bounds *within, weft_real light_z)
+{
+    weft_real most = within->ceiling * fmin((weft_real)1, light_z / (weft_real)layers->least_cosine);
+    const weft_real *least = within->floor;
+    return (weft_rgb){fmin(fmax(value.r, least[0] * light_z), most), fmin(fmax(value.g, least[1] * light_z), most),
+                      fmin(fmax(value.b, least[2] * light_z), most)};
 }
 
 /* Adds `weight` times the coefficients of texel (x, y). */
@@ -109,13 +119,14 @@ weft_rgb weft_layers_texel(const weft_layers *layers, int count, const float *fa
     if (!(light_z > 0))
         return (weft_rgb){0};
     add_coefficients(at, count, x, y, 1, coefficient);
-    return held(layers, combine(count, coefficient, factor), ceiling_at(at, x, y), light_z);
+    bounds within = bounds_at(at, x, y);
+    return held(layers, combine(count, coefficient, factor), &within, light_z);
 }
 
 /* ---- Texture coordinates ---- */
 
-/* Adds the coefficients of a level and returns its ceiling. */
-static float add_level(const weft_layers_level *level, int count, weft_real u, weft_real v, float weight, float *sum)
+/* Adds the coefficients of a level and returns its bounds. */
+static bounds add_level(const weft_layers_level *level, int count, weft_real u, weft_real v, float weight, float *sum)
 {
     weft_neighbours column = weft_neighbours_of(u, level->width), row = weft_neighbours_of(-v, level->height);
     float right = (float)column.share, below = (float)row.share;
@@ -124,7 +135,7 @@ static float add_level(const weft_layers_level *level, int count, weft_real u, w
     add_coefficients(level, count, column.high, row.low, upper * right, sum);
     add_coefficients(level, count, column.low, row.high, lower * (1 - right), sum);
     add_coefficients(level, count, column.high, row.high, lower * right, sum);
-    return ceiling_at(level, right < 0.5f ? column.low : column.high, below < 0.5f ? row.low : row.high);
+    return bounds_at(level, right < 0.5f ? column.low : column.high, below < 0.5f ? row.low : row.high);
 }
 
 weft_rgb weft_layers_sample(const weft_layers *layers, int count, const float *factor, weft_real level, weft_real u,
@@ -136,10 +147,10 @@ weft_rgb weft_layers_sample(const weft_layers *layers, int count, const float *f
     weft_real clamped = level > 0 ? fmin(level, (weft_real)(layers->level_count - 1)) : 0;
     int fine = (int)clamped;
     float share = (float)(clamped - (weft_real)fine);
-    float ceiling = add_level(&layers->level[fine], count, u, v, 1 - share, coefficient);
+    bounds within = add_level(&layers->level[fine], count, u, v, 1 - share, coefficient);
     if (share > 0)
         add_level(&layers->level[fine + 1], count, u, v, share, coefficient);
-    return held(layers, combine(count, coefficient, factor), ceiling, light_z);
+    return held(layers, combine(count, coefficient, factor), &within, light_z);
 }
 
 /* ---- Through heights ---- */

@@ -36,13 +36,14 @@ void weft_layer_factors(const weft_layer_maps *maps, weft_vec3 light, weft_vec3 
 void weft_layer_factors_of_view(const weft_layer_maps *maps, weft_vec3 light, int view, float *factor);
 
 /* Reflectance times cosine of texel (x, y) of a level as the first `count` layers give it (a multiple of 4; at most
- * layer_count), from the factors of the light and the view: held to 0 .. the ceiling. Thread-safe. */
+ * layer_count), from the factors of the light and the view, which is above the horizon: held to the floor .. the
+ * ceiling. Thread-safe. */
 weft_rgb weft_layers_texel(const weft_layers *layers, int count, const float *factor, int level, int x, int y,
                            weft_real light_z);
 
 /* The same at texture coordinates (u, v), repeated (docs/reference/weft-format.md, 3.5): coefficients are interpolated
- * between texels and levels, bilinear and trilinear, and then evaluated; level >= 0 may be fractional. The ceiling is
- * that of the nearest texel of the finer level. */
+ * between texels and levels, bilinear and trilinear, and then evaluated; level >= 0 may be fractional. The floor and
+ * the ceiling are those of the nearest texel of the finer level. */
 weft_rgb weft_layers_sample(const weft_layers *layers, int count, const float *factor, weft_real level, weft_real u,
                             weft_real v, weft_real light_z);
 

@@ -104,7 +104,7 @@ static void predict_by_layers(const weft_predictor *predictor, int x, int y, con
         if (!predictor->factor)
             weft_layer_factors(&predictor->maps, light, view, own);
         weft_rgb value = weft_layers_texel(layers, layers->layer_count, factor, 0, x, y, light.z);
-        prediction[i] = light.z > 0 ? scaled(quantity(layout, light) / light.z, value) : (weft_rgb){0};
+        prediction[i] = light.z > 0 && view.z > 0 ? scaled(quantity(layout, light) / light.z, value) : (weft_rgb){0};
     }
 }
 

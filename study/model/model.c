@@ -140,6 +140,8 @@ static weft_rgb texel_value(const weft_model *model, int level, int x, int y, co
                             const float *factor)
 {
     const weft_layers *layers = model->maps.layers;
+    if (layers && !(query->view.z > 0))
+        return (weft_rgb){0};
     if (layers)
         return divided(weft_layers_texel(layers, layers->layer_count, factor, level, x, y, query->light.z),
                        fmax(query->light.z, (weft_real)1e-6));

@@ -48,8 +48,10 @@ void layers_write_example(const char *path)
             level->coefficient[i] = (int8_t)((i * 31 + k) % 255 - 127);
         for (size_t i = 0; i < weft_ceiling_count(level->width, level->height); i++)
             level->ceiling[i] = (uint8_t)(200 + k);
+        for (size_t i = 0; i < 3 * weft_ceiling_count(level->width, level->height); i++)
+            level->floor[i] = (uint8_t)(100 + 10 * k + (int)i);
     }
-    material.has_layers = true;
+    material.has_layers = material.has_floors = true;
     if (weft_material_write(path, &material, NULL) != WEFT_OK)
         abort();
     weft_material_free(&material);

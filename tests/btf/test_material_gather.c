@@ -53,6 +53,7 @@ static void texels_in_their_order_are_the_same_file(void **state)
         weft_layers_level *a = &material.layers->level[k], *b = &same.layers->level[k];
         memcpy(a->coefficient, b->coefficient, (size_t)(a->width * a->height * material.layers->layer_count));
         memcpy(a->ceiling, b->ceiling, weft_ceiling_count(a->width, a->height));
+        memcpy(a->floor, b->floor, 3 * weft_ceiling_count(a->width, a->height));
     }
     weft_error error = {0};
     expect_ok(weft_material_write("as_it_was.weft", &material, &error), &error);
@@ -122,7 +123,7 @@ static void layers_are_mixed_and_all_else_is_the_heaviest(void **state)
     weft_material_free(&material);
 }
 
-static void a_ceiling_is_the_largest_of_what_is_mixed(void **state)
+static void a_ceiling_is_the_largest_of_what_is_mixed_and_a_floor_the_least(void **state)
 {
     (void)state;
     const weft_layers shape = {.layer_count = 4,
@@ -139,12 +140,20 @@ static void a_ceiling_is_the_largest_of_what_is_mixed(void **state)
     expect_ok(weft_layers_create(&shape, 24, 8, 1, &material.layers, &error), &error);
     material.has_layers = true;
     memcpy(material.layers->level[0].ceiling, (uint8_t[]){50, 90, 70}, 3);
+    memcpy(material.layers->level[0].floor, (uint8_t[]){40, 5, 9, 20, 7, 8, 30, 6, 7}, 9);
+    material.has_floors = true;
     for (int i = 0; i < 6; i++) {
         int a = i % 3, b = (i % 3 + 1 + i / 3) % 3;
         weft_texel_mix mix = {{{8 * a, 0, 0.75f}, {8 * b + 3, 5, 0.25f}}};
         weft_material one = gathered(&material, 1, 1, &mix);
         const uint8_t *ceiling = material.layers->level[0].ceiling;
         assert_int_equal(one.layers->level[0].ceiling[0], ceiling[a] > ceiling[b] ? ceiling[a] : ceiling[b]);
+        const uint8_t *least = material.layers->level[0].floor;
+        for (int c = 0; c < 3; c++) {
+            int of_a = least[3 * a + c], of_b = least[3 * b + c];
+            assert_int_equal(one.layers->level[0].floor[c], of_a < of_b ? of_a : of_b);
+        }
+        assert_true(one.has_floors);
         weft_material_free(&one);
     }
     weft_material_free(&material);
@@ -189,7 +198,7 @@ int main(void)
         cmocka_unit_test(texels_in_their_order_are_the_same_file),
         cmocka_unit_test(texels_and_levels_are_moved_alike),
         cmocka_unit_test(layers_are_mixed_and_all_else_is_the_heaviest),
-        cmocka_unit_test(a_ceiling_is_the_largest_of_what_is_mixed),
+        cmocka_unit_test(a_ceiling_is_the_largest_of_what_is_mixed_and_a_floor_the_least),
         cmocka_unit_test(levels_of_layers_are_means_of_what_they_cover),
         cmocka_unit_test(more_texels_than_there_were_are_refused),
     };

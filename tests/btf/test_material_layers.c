@@ -28,6 +28,7 @@ static void layers_are_read_back(void **state)
     assert_float_equal(a->scale[7], 0.25f / 8, 0);
     assert_int_equal(a->level[0].coefficient[1], 31 - 127);
     assert_int_equal(a->level[2].ceiling[0], 202);
+    assert_int_equal(a->level[2].floor[1], 121);
     expect_ok(weft_material_write("again.weft", &material, &error), &error);
     expect_ok(weft_material_read("again.weft", &again, &error), &error);
     const weft_layers *b = again.layers;
@@ -39,17 +40,71 @@ static void layers_are_read_back(void **state)
     weft_material_free(&again);
 }
 
-/* A reader of version 1 from before there were layers skips what it does not know, and has the lobes. */
-static void sections_of_layers_can_be_skipped(void **state)
+/* A file from before there were floors. */
+static void without_floors_they_are_0(void **state)
 {
     (void)state;
-    static const char *const type[] = {"LAYR", "LCOE", "CEIL"};
+    weft_error error = {0};
+    weft_material material, again;
+    layers_write_example(NAME);
+    expect_ok(weft_material_read(NAME, &material, &error), &error);
+    assert_true(material.has_floors);
+    material.has_floors = false;
+    expect_ok(weft_material_write("without.weft", &material, &error), &error);
+    expect_ok(weft_material_read("without.weft", &again, &error), &error);
+    assert_false(again.has_floors);
+    for (int k = 0; k < again.level_count; k++)
+        for (size_t i = 0; i < 3 * weft_ceiling_count(again.level[k].width, again.level[k].height); i++)
+            assert_int_equal(again.layers->level[k].floor[i], 0);
+    weft_material_free(&material);
+    weft_material_free(&again);
+}
+
+/* Floors of one level announce those of all. */
+static void floors_are_there_on_all_levels(void **state)
+{
+    (void)state;
     weft_error error = {0};
     weft_material material;
     size_t size;
     layers_write_example(NAME);
     unsigned char *bytes = scratch_load(NAME, &size);
-    for (int i = 0; i < 3; i++)
+    memcpy(weft_bytes_entry(bytes, weft_bytes_find(bytes, "FLOR", 1)) + ENTRY_TYPE, "XYZ ", 4);
+    weft_bytes_repair(bytes, size, false);
+    scratch_store(NAME, bytes, size);
+    free(bytes);
+    assert_int_equal(weft_material_read(NAME, &material, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "FLOR"));
+}
+
+/* A floor never says more than what it is made of, and at most a sixteenth less. */
+static void floors_are_rounded_down(void **state)
+{
+    (void)state;
+    for (int code = 0; code < 256; code++) {
+        float value = weft_floor_of_code((uint8_t)code), steps = (float)(16 + code % 16);
+        if (code > 0)
+            assert_float_equal(value, ldexp((double)steps / 16, code / 16 - 13), 0);
+        assert_int_equal(weft_floor_code(value), code);
+        assert_int_equal(weft_floor_code(nextafterf(value, -1)), code > 1 ? code - 1 : 0);
+    }
+    assert_float_equal(weft_floor_of_code(0), 0, 0);
+    assert_int_equal(weft_floor_code(-INFINITY), 0);
+    assert_int_equal(weft_floor_code(NAN), 0);
+    assert_int_equal(weft_floor_code(INFINITY), 255);
+}
+
+/* A reader of version 1 from before there were layers skips what it does not know, and has the lobes. */
+static void sections_of_layers_can_be_skipped(void **state)
+{
+    (void)state;
+    static const char *const type[] = {"LAYR", "LCOE", "CEIL", "FLOR"};
+    weft_error error = {0};
+    weft_material material;
+    size_t size;
+    layers_write_example(NAME);
+    unsigned char *bytes = scratch_load(NAME, &size);
+    for (int i = 0; i < 4; i++)
         for (uint32_t level = 0; level < 4; level++) {
             int index = weft_bytes_find(bytes, type[i], level);
             if (index >= 0)
@@ -175,8 +230,13 @@ static void ceilings_never_round_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_are_read_back),      cmocka_unit_test(sections_of_layers_can_be_skipped),
-        cmocka_unit_test(every_field_is_checked),    cmocka_unit_test(coefficients_must_be_those_of_the_layers),
+        cmocka_unit_test(layers_are_read_back),
+        cmocka_unit_test(without_floors_they_are_0),
+        cmocka_unit_test(floors_are_there_on_all_levels),
+        cmocka_unit_test(floors_are_rounded_down),
+        cmocka_unit_test(sections_of_layers_can_be_skipped),
+        cmocka_unit_test(every_field_is_checked),
+        cmocka_unit_test(coefficients_must_be_those_of_the_layers),
         cmocka_unit_test(ceilings_never_round_down),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

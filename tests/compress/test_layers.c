@@ -58,6 +58,14 @@ static void fill_masked(const weft_dataset_layout *layout, int x, int y, float *
     }
 }
 
+/* All but 46 or so of 3721 samples of a texel are masked. */
+static void fill_mostly_masked(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 0; i < layout->image_count; i++)
+        mask[i] = (i + x + y) % 81 == 0 ? 0 : WEFT_MASK_SATURATED;
+}
+
 /* A highlight of another width in every texel, over a dim ground: no few functions say it. */
 static void fill_widths(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
 {
@@ -348,6 +356,74 @@ static void ceilings_hold_everywhere(void **state)
     weft_material_free(&material);
 }
 
+/* The mixture above a ground that is brighter in the right squares, and three noisy or shadowed images of 3721. */
+static void fill_ground(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    fill_mixture(layout, x, y, samples, mask);
+    for (int i = 0; i < layout->image_count; i++)
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = i % 1200 == 7 ? 0 : samples[3 * i + c] + (float)(layout->light[i].z * (x >= 8));
+}
+
+/* What the mixture has without any highlight, in the darkest texel of a square. Floors are rounded down by 1/16. */
+static void floors_are_what_samples_never_fall_below(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_ground, WEFT_FAR);
+    fit(&options, &material, NULL);
+    assert_true(material.has_floors);
+    for (int i = 0; i < 4; i++)
+        for (int c = 0; c < 3; c++) {
+            double ground = (c == 2 ? 0.1 : 0.2) + (i % 2 == 1);
+            double ratio = (double)weft_floor_of_code(material.layers->level[0].floor[3 * i + c]) / ground;
+            assert_true(ratio > 15.0 / 16 && ratio < 1.001);
+        }
+    weft_material_free(&material);
+}
+
+/* Layers that ring, eight for highlights of all widths, stay above the ground where nobody photographed. */
+static void floors_keep_the_ground_from_ringing(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_layer_maps maps;
+    weft_error error = {0};
+    weft_compress_options options = options_for_layers();
+    float factor[3 * LAYERS];
+    long held_up = 0, all = 0;
+    write_dataset(fill_widths, WEFT_FAR);
+    fit(&options, &material, NULL);
+    expect_ok(weft_layer_maps_create(material.layers, &maps, &error), &error);
+    for (int i = 0; i < 300; i++) {
+        weft_vec3 light = between(i), view = between(3 * i + 1);
+        weft_layer_factors(&maps, light, view, factor);
+        for (int texel = 0; texel < WIDTH * HEIGHT; texel++, all++) {
+            weft_rgb value =
+                weft_layers_texel(material.layers, LAYERS, factor, 0, texel % WIDTH, texel / WIDTH, light.z);
+            assert_true((double)value.g >= 0.0187 * (double)light.z);
+            held_up += (double)value.g < 0.0201 * (double)light.z;
+        }
+    }
+    print_message("%ld of %ld values held to a floor\n", held_up, all);
+    assert_true(held_up > all / 20);
+    weft_layer_maps_free(&maps);
+    weft_material_free(&material);
+}
+
+/* A dozen photographs do not say how dark a texel gets. */
+static void few_photographs_have_no_floor(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_mostly_masked, WEFT_FAR);
+    fit(&options, &material, NULL);
+    assert_false(material.has_floors);
+    weft_material_free(&material);
+}
+
 static void the_same_bytes_for_any_number_of_threads(void **state)
 {
     (void)state;
@@ -395,6 +471,9 @@ int main(void)
         cmocka_unit_test(levels_are_means),
         cmocka_unit_test(ceilings_are_four_times_the_brightest_sample),
         cmocka_unit_test(ceilings_hold_everywhere),
+        cmocka_unit_test(floors_are_what_samples_never_fall_below),
+        cmocka_unit_test(floors_keep_the_ground_from_ringing),
+        cmocka_unit_test(few_photographs_have_no_floor),
         cmocka_unit_test(the_same_bytes_for_any_number_of_threads),
         cmocka_unit_test(odd_numbers_are_refused),
     };

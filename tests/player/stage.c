@@ -251,7 +251,8 @@ static void fill_image(weft_layers *layers, int view, int light)
                                                 direction_at(layers->view + 3 * view)));
 }
 
-/* The last squares of the largest level are dark enough for their ceilings to be reached. */
+/* The last squares of the largest level are dark enough for their ceilings to be reached. Floors are so bright that
+ * dark texels reach them; they differ by a step between squares, since a pixel on the edge of a hill may see either. */
 static void fill_layers_level(weft_layers_level *level, int layer_count)
 {
     int texels = level->width * level->height;
@@ -262,6 +263,8 @@ static void fill_layers_level(weft_layers_level *level, int layer_count)
     size_t ceilings = weft_ceiling_count(level->width, level->height);
     for (size_t i = 0; i < ceilings; i++)
         level->ceiling[i] = i + 2 < ceilings ? 255 : 176;
+    for (size_t i = 0; i < 3 * ceilings; i++)
+        level->floor[i] = (uint8_t)(172 + 4 * (i % 3) + i / 3 % 2);
 }
 
 void stage_layers(weft_layers_kind kind, int layer_count, weft_material *material)

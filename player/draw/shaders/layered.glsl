@@ -4,7 +4,7 @@
 // OPACITY, whether there is any below 1; RELIEF, whether it is all seen through heights (reflectance/relief/relief.glsl):
 // then from the stored views around, each at a place of its own.
 uniform sampler2DArray layer_coefficient; // of a group in each layer, all levels side by side; -1 .. 1
-uniform sampler2D layer_ceiling;          // codes, all levels side by side
+uniform sampler2D layer_bounds;           // codes of floors and of the ceiling, all levels side by side
 // Factors of a group: x: light nodes, for red, green and blue in turn; y: light nodes, group after group; z: view nodes,
 // row after row.
 uniform highp sampler3D layer_map;
@@ -12,8 +12,8 @@ uniform highp sampler2DArray layer_map_of_view; // the same of every stored view
 uniform sampler2D layer_view;              // of every stored view: direction, entry in the table of views
 uniform int layer_groups; // that are evaluated
 uniform vec2 layer_sides; // nodes along a side, of lights and of views
-uniform vec2 layer_step, ceiling_step; // 1 / size of the textures
-uniform vec4 layer_area[16], ceiling_area[16];
+uniform vec2 layer_step, bounds_step; // 1 / size of the textures
+uniform vec4 layer_area[16], bounds_area[16];
 uniform float least_cosine;
 
 void add_coefficients(int level, vec2 coordinate, float weight, inout vec4 sum[LAYER_GROUPS])
@@ -27,12 +27,16 @@ void add_coefficients(int level, vec2 coordinate, float weight, inout vec4 sum[L
     }
 }
 
-float ceiling_at(int level, vec2 coordinate)
+// Floors of red, green and blue, and the ceiling, of the nearest texel.
+vec4 bounds_at(int level, vec2 coordinate)
 {
     vec2 size = layer_area[level].zw;
     vec2 texel = floor(fract(vec2(coordinate.x, -coordinate.y)) * size);
-    vec2 place = ceiling_area[level].xy + floor(min(texel, size - 1.0) / 8.0) + 0.5;
-    return exp2((255.0 * textureLod(layer_ceiling, place * ceiling_step, 0.0).r - 192.0) / 8.0);
+    vec2 place = bounds_area[level].xy + floor(min(texel, size - 1.0) / 8.0) + 0.5;
+    vec4 code = floor(255.0 * textureLod(layer_bounds, place * bounds_step, 0.0) + 0.5);
+    vec3 octave = floor(code.rgb / 16.0);
+    vec3 least = exp2(octave - 13.0) * (1.0 + (code.rgb - 16.0 * octave) / 16.0) * step(0.5, code.rgb);
+    return vec4(least, exp2((code.a - 192.0) / 8.0));
 }
 
 // Where a light is in the maps, in nodes.
@@ -114,18 +118,18 @@ vec4 radiance_at(SurfacePoint point, vec2 coordinate, int number, vec3 view, Ent
     add_coefficients(fine, coordinate, 1.0 - share, coefficient);
     if (share > 0.0)
         add_coefficients(fine + 1, coordinate, share, coefficient);
-    float ceiling = ceiling_at(fine, coordinate);
+    vec4 bounds = bounds_at(fine, coordinate);
     vec3 sum = vec3(0.0), value = vec3(0.0);
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i), light = surface_light(point, i);
         if (irradiance == vec3(0.0) || light.z <= 0.0 || view.z <= 0.0)
             continue;
-        vec3 most = vec3(ceiling * min(1.0, light.z / least_cosine));
+        vec3 most = vec3(bounds.a * min(1.0, light.z / least_cosine));
         for (int k = 0; k < of_view; k++)
             value = layers_value_of_view(coefficient, light, number, view);
         for (int k = of_view; k < 1; k++)
             value = layers_value(coefficient, light, view, point.chance);
-        sum += irradiance / light.z * clamp(value, vec3(0.0), most);
+        sum += irradiance / light.z * min(max(value, bounds.rgb * light.z), most);
     }
     if (!OPACITY)
         return vec4(sum, 1.0);
