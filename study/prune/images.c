@@ -37,12 +37,21 @@ static void list_cells(weft_vec3 direction, double margin_rad, cell_list *list)
             list->cell[list->count++] = cell;
 }
 
-static bool is_reached(const weft_reach *reach, const cell_list *views, const cell_list *lights)
+/* What a map over the lights of a view is of: the light, or the half vector. Unit. */
+static weft_vec3 inner_direction(const weft_layers *layers, weft_vec3 light, weft_vec3 view)
+{
+    return layers->kind == WEFT_LAYERS_OF_LIGHT ? light : weft_unit(weft_add(light, view));
+}
+
+/* Whether a pair of the reach has one of the views, and within an angle of `inner` what maps are of. */
+static bool is_reached(const weft_reach *reach, const weft_layers *layers, const cell_list *views, weft_vec3 inner,
+                       double least)
 {
     for (int v = 0; v < views->count; v++) {
         const uint8_t *row = reach->pair + (size_t)views->cell[v] * WEFT_REACH_PAIR_CELLS;
-        for (int l = 0; l < lights->count; l++)
-            if (row[lights->cell[l]])
+        weft_vec3 view = middle_of(views->cell[v]);
+        for (int l = 0; l < WEFT_REACH_PAIR_CELLS; l++)
+            if (row[l] && weft_dot(inner_direction(layers, middle_of(l), view), inner) >= least)
                 return true;
     }
     return false;
@@ -51,19 +60,19 @@ static bool is_reached(const weft_reach *reach, const cell_list *views, const ce
 static void find_of_view(const weft_reach *reach, const weft_layers *layers, int view, double margin_rad,
                          cell_list *list, bool *kept)
 {
-    list_cells(direction_at(layers->view, (size_t)view), margin_rad, &list[0]);
-    for (uint32_t i = layers->first[view]; i < layers->first[view + 1]; i++) {
-        list_cells(direction_at(layers->light, i), margin_rad, &list[1]);
-        kept[i] = is_reached(reach, &list[0], &list[1]);
-    }
+    weft_vec3 v = direction_at(layers->view, (size_t)view);
+    double least = cos(fmin(margin_rad + cell_radius, WEFT_PI));
+    list_cells(v, margin_rad, list);
+    for (uint32_t i = layers->first[view]; i < layers->first[view + 1]; i++)
+        kept[i] = is_reached(reach, layers, list, inner_direction(layers, direction_at(layers->light, i), v), least);
 }
 
 weft_code weft_prune_find_images(const weft_reach *reach, const weft_layers *layers, double margin_rad, bool *kept,
                                  int *kept_count, weft_error *error)
 {
-    cell_list *list = calloc(2, sizeof *list);
+    cell_list *list = calloc(1, sizeof *list);
     if (!list)
-        return weft_fail_memory(error, "cells", 2 * sizeof *list);
+        return weft_fail_memory(error, "cells", sizeof *list);
     *kept_count = 0;
     for (int view = 0; view < layers->view_count; view++)
         find_of_view(reach, layers, view, margin_rad, list, kept);
@@ -75,13 +84,14 @@ weft_code weft_prune_find_images(const weft_reach *reach, const weft_layers *lay
 
 /* ---- What the others become ---- */
 
-/* The kept image of a view whose light is nearest, or -1. */
+/* The kept image of a view that is nearest in its map, or -1. */
 static long nearest_image(const weft_layers *layers, const bool *kept, int view, weft_vec3 light)
 {
     long nearest = -1;
     double most = -2;
+    weft_vec3 v = direction_at(layers->view, (size_t)view), inner = inner_direction(layers, light, v);
     for (uint32_t i = layers->first[view]; i < layers->first[view + 1]; i++) {
-        double cosine = weft_dot(direction_at(layers->light, i), light);
+        double cosine = weft_dot(inner_direction(layers, direction_at(layers->light, i), v), inner);
         if (kept[i] && cosine > most) {
             most = cosine;
             nearest = i;

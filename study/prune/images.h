@@ -4,8 +4,8 @@
 
 #include "study/prune/reach.h"
 
-/* Marks the images whose view and light are both within an angle of a pair of the reach: kept [image_count]. Returns
- * how many. Errors: WEFT_SYSTEM. */
+/* Marks the images whose view is within an angle of that of a pair of the reach, and whose light, or half vector,
+ * whatever the maps are of, of that of the same pair: kept [image_count]. Errors: WEFT_SYSTEM. */
 weft_code weft_prune_find_images(const weft_reach *reach, const weft_layers *layers, double margin_rad, bool *kept,
                                  int *kept_count, weft_error *error);
 
