@@ -106,8 +106,7 @@ static weft_code prune_material(prune_command *command, weft_player *player, wef
                                     .width = settings->width,
                                     .height = settings->height,
                                     .samples = settings->samples};
-    weft_code code =
-        weft_prune(player, &scene, command->allowed, command->seed, &progress, material, report, error);
+    weft_code code = weft_prune(player, &scene, command->allowed, command->seed, &progress, material, report, error);
     weft_mesh_free(&mesh);
     if (code == WEFT_OK)
         code = weft_material_put_metadata(material, "pruned", weft_prune_to_json(report), error);

@@ -7,6 +7,7 @@
 #include "fixture.h"
 #include "player/draw/player.h"
 #include "player/gl/context.h"
+#include "player/scene/false_colour.h"
 #include "study/prune/images.h"
 #include "study/prune/lobes.h"
 #include "study/prune/reach.h"
@@ -346,6 +347,56 @@ static void far_cameras_take_finer_levels_away(void **state)
     close_stage(&s);
 }
 
+/* Beside the path the shader tints what the maps, asked in C, say is missing. */
+static void the_tint_is_what_the_maps_say(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    stage s;
+    int finer, coarser;
+    double last_view, last_light;
+    weft_surface_sample *at;
+    weft_image plain, tinted;
+    long count[3] = {0};
+    open_stage("plane", close_by, 1, &s);
+    expect_ok(weft_prune_texels(&s.reach, &s.material, &finer, &coarser, &error), &error);
+    expect_ok(weft_prune_note_seen(&s.reach, finer, coarser, &s.material, &error), &error);
+    expect_ok(weft_player_set_material(player, &s.material, &error), &error);
+    weft_player_last_ring(player, WEFT_MODE_COMPRESSED, &last_view, &last_light);
+    weft_scene scene = s.scene.scene;
+    scene.orbit = (weft_orbit){weft_rad_of_deg(-85), weft_rad_of_deg(60), 1.3, 0, 0};
+    scene.light[0].direction = (weft_angles){weft_rad_of_deg(22), weft_rad_of_deg(15)};
+    expect_ok(weft_player_picture(player, &scene, WIDTH, HEIGHT, 1, NULL, &plain, &error), &error);
+    scene.show_extrapolation = true;
+    expect_ok(weft_player_picture(player, &scene, WIDTH, HEIGHT, 1, NULL, &tinted, &error), &error);
+    expect_ok(weft_player_read_surface(player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error), &error);
+    for (int p = 0; p < PIXELS; p++) {
+        weft_vec3 v = weft_vec3_of(at[p].view[0], at[p].view[1], at[p].view[2]);
+        weft_vec3 l = weft_vec3_of(at[p].light[0], at[p].light[1], at[p].light[2]);
+        float shown[3];
+        if (at[p].covered == 0)
+            continue;
+        const weft_missing missing = {
+            .view = v.z < cos(last_view) - 1e-3 || !weft_seen_direction(s.material.seen, WEFT_SEEN_VIEWS, v),
+            .light =
+                l.z > 0 && (l.z < cos(last_light) - 1e-3 || !weft_seen_direction(s.material.seen, WEFT_SEEN_LIGHTS, l)),
+            .place = !weft_seen_place(s.material.seen, (double)at[p].level, (double)at[p].u, (double)at[p].v)};
+        weft_extrapolation_shown(plain.pixels + 3 * p, missing, shown);
+        bool same = true;
+        for (int c = 0; c < 3; c++)
+            same = same && fabsf(shown[c] - tinted.pixels[3 * p + c]) < 1e-4f;
+        count[0]++;
+        count[1] += missing.view || missing.place;
+        count[2] += !same; /* at the border of a cell, by rounding */
+    }
+    assert_true(count[1] > 100 && count[1] < count[0]);
+    assert_true(count[2] < count[0] / 200);
+    free(at);
+    weft_image_free(&plain);
+    weft_image_free(&tinted);
+    close_stage(&s);
+}
+
 int main(void)
 {
     weft_error error = {0};
@@ -362,6 +413,7 @@ int main(void)
         cmocka_unit_test(pictures_stay_as_they_were),
         cmocka_unit_test(texels_that_are_not_seen_become_copies),
         cmocka_unit_test(far_cameras_take_finer_levels_away),
+        cmocka_unit_test(the_tint_is_what_the_maps_say),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     weft_player_free(player);
