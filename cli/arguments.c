@@ -170,8 +170,10 @@ static void refuse_overwriting(const arguments *a, struct argp_state *state)
         for (int input = 0; input < a->row_count; input++)
             if (a->row[input].option->kind == WEFT_OPTION_INPUT)
                 refuse_same_file(text_of(a, output), text_of(a, input), state);
-        if (a->command->shows_scene)
-            refuse_same_file(text_of(a, output), scene_of(a)->settings.environment, state);
+        if (!a->command->shows_scene)
+            continue;
+        refuse_same_file(text_of(a, output), scene_of(a)->settings.environment, state);
+        refuse_same_file(text_of(a, output), scene_of(a)->settings.material, state);
     }
 }
 

@@ -28,7 +28,7 @@ typedef struct weft_command {
 extern const weft_command weft_command_capture, weft_command_hand, weft_command_simulate, weft_command_register,
     weft_command_photographs, weft_command_import;
 extern const weft_command weft_command_tile, weft_command_relief, weft_command_bard, weft_command_compress,
-    weft_command_fit_weave;
+    weft_command_fit_weave, weft_command_prune;
 extern const weft_command weft_command_render, weft_command_play, weft_command_compare, weft_command_tradeoff,
     weft_command_eval;
 extern const weft_command weft_command_info, weft_command_verify, weft_command_target, weft_command_lens;

@@ -15,6 +15,7 @@ const weft_command_entry weft_commands[] = {
     {NULL, &weft_command_relief},
     {NULL, &weft_command_bard},
     {"A dataset to a model:", &weft_command_compress},
+    {NULL, &weft_command_prune},
     {NULL, &weft_command_fit_weave},
     {"Look and measure:", &weft_command_render},
     {NULL, &weft_command_play},

@@ -8,7 +8,7 @@ const unsigned char weft_format_magic[8] = {0x89, 'W', 'E', 'F', 'T', '\r', '\n'
 
 const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ", "LOBE",
                                                        "TABL", "STAB", "MODL", "TPCA", "SPCA", "ALPH",
-                                                       "ERRO", "LAYR", "LCOE", "CEIL", "FLOR", "HGHT"};
+                                                       "ERRO", "LAYR", "LCOE", "CEIL", "FLOR", "HGHT", "SEEN"};
 
 weft_section_kind weft_section_kind_of(const char type[5])
 {
@@ -50,6 +50,8 @@ int weft_section_levels(const weft_material *material, weft_section_kind kind)
         return material->has_layers && material->has_floors ? material->level_count : 0;
     case WEFT_SECTION_HGHT:
         return material->has_heights;
+    case WEFT_SECTION_SEEN:
+        return material->has_seen;
     default:
         return material->level_count;
     }
@@ -85,6 +87,8 @@ uint64_t weft_section_size(const weft_material *material, weft_section_kind kind
         return material->layers ? texels * (uint64_t)material->layers->layer_count : 0;
     case WEFT_SECTION_HGHT:
         return material->heights ? weft_material_heights_size(material->heights) : 0;
+    case WEFT_SECTION_SEEN:
+        return material->seen ? weft_seen_size(material->seen) : 0;
     case WEFT_SECTION_CEIL:
         return weft_ceiling_count(material->level[level].width, material->level[level].height);
     case WEFT_SECTION_FLOR:

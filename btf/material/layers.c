@@ -117,6 +117,15 @@ void weft_layers_drop_finest(weft_layers *layers)
     memmove(layers->level, layers->level + 1, (size_t)--layers->level_count * sizeof *layers->level);
 }
 
+void weft_layers_drop_coarsest(weft_layers *layers)
+{
+    weft_layers_level *last = &layers->level[--layers->level_count];
+    free(last->coefficient);
+    free(last->ceiling);
+    free(last->floor);
+    *last = (weft_layers_level){0};
+}
+
 /* ---- Ceilings and floors ---- */
 
 float weft_ceiling_of_code(uint8_t code)

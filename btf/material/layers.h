@@ -76,6 +76,9 @@ void weft_layers_free(weft_layers *layers);
 /* Takes the finest level away; there must be another. */
 void weft_layers_drop_finest(weft_layers *layers);
 
+/* Takes the coarsest away. */
+void weft_layers_drop_coarsest(weft_layers *layers);
+
 /* ---- Ceilings and floors ---- */
 
 /* 2^((code - 192) / 8), about 6e-8 .. 235. Pure. */

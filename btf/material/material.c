@@ -147,6 +147,13 @@ void weft_material_take_heights(weft_material *material, weft_material_heights *
     material->has_heights = heights != NULL;
 }
 
+void weft_material_take_seen(weft_material *material, weft_seen *seen)
+{
+    weft_seen_free(material->seen);
+    material->seen = seen;
+    material->has_seen = seen != NULL;
+}
+
 void weft_material_drop_finest(weft_material *material)
 {
     if (material->level_count < 2)
@@ -158,6 +165,19 @@ void weft_material_drop_finest(weft_material *material)
         weft_layers_drop_finest(material->layers);
     if (material->heights && --material->heights->level_count == 0)
         weft_material_take_heights(material, NULL);
+    if (material->seen)
+        weft_seen_drop_finest(material->seen);
+}
+
+void weft_material_drop_coarsest(weft_material *material)
+{
+    if (material->level_count < 2)
+        return;
+    weft_material_level *last = &material->level[--material->level_count];
+    free_level(last);
+    *last = (weft_material_level){0};
+    if (material->layers)
+        weft_layers_drop_coarsest(material->layers);
 }
 
 void weft_material_free(weft_material *material)
@@ -166,6 +186,7 @@ void weft_material_free(weft_material *material)
         free_level(&material->level[k]);
     weft_layers_free(material->layers);
     weft_material_heights_free(material->heights);
+    weft_seen_free(material->seen);
     free(material->view);
     free(material->light);
     free(material->metadata);

@@ -13,6 +13,7 @@
 #include "btf/direction/frame.h"
 #include "btf/material/heights.h"
 #include "btf/material/layers.h"
+#include "btf/material/seen.h"
 #include "btf/material/table_basis.h"
 
 #include <stdbool.h>
@@ -54,12 +55,14 @@ typedef struct weft_material {
     bool has_layers;       /* `layers` is, or will be, set */
     bool has_floors;       /* its layers have floors that are not all 0 */
     bool has_heights;      /* and so are `heights` */
+    bool has_seen;         /* and so is `seen` */
     double texel_pitch_mm; /* of level 0 */
     weft_vec3 *view;       /* [view_count], unit, upper hemisphere */
     weft_vec3 *light;      /* [light_count], unit, upper hemisphere */
     weft_material_level level[WEFT_MATERIAL_MAX_LEVELS];
     weft_layers *layers;            /* the same reflectance a second time, nearer to the photographs; NULL without */
     weft_material_heights *heights; /* that its layers are seen through; NULL without */
+    weft_seen *seen;                /* what of it the scene reaches that it was pruned for; NULL without */
     char *metadata;                 /* JSON text: provenance, fit settings; never NULL once read */
 } weft_material;
 
@@ -69,12 +72,18 @@ weft_code weft_material_create(int width, int height, int lobe_count, int view_c
                                weft_material *material, weft_error *error);
 void weft_material_free(weft_material *material);
 
-/* Takes the finest level away, of layers and heights, too: the same material with a quarter of the texels. Does nothing
- * where there is but one. */
+/* Takes the finest level away, of layers, heights and what is seen, too: the same material with a quarter of the
+ * texels. Does nothing where there is but one. */
 void weft_material_drop_finest(weft_material *material);
+
+/* Takes the coarsest level away, of layers, too. Does nothing where there is but one. */
+void weft_material_drop_coarsest(weft_material *material);
 
 /* Puts heights, which are taken, into the place of those that it has; NULL: none. */
 void weft_material_take_heights(weft_material *material, weft_material_heights *heights);
+
+/* The same of what a scene reaches of it. */
+void weft_material_take_seen(weft_material *material, weft_seen *seen);
 
 /* Adds maps of models, all 0. Errors: WEFT_SYSTEM. */
 weft_code weft_material_add_models(weft_material *material, weft_error *error);

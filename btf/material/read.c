@@ -165,6 +165,20 @@ static weft_code read_heights(const weft_file_image *file, const weft_section *s
     return fault ? weft_fail_section(file, section, error, fault) : code;
 }
 
+static weft_code read_seen(const weft_file_image *file, const weft_section *section, weft_material *material,
+                           weft_error *error)
+{
+    uint8_t *bytes = malloc(section->decoded_size + 1);
+    const char *fault = NULL;
+    if (!bytes)
+        return weft_fail_memory(error, "maps of what is seen", section->decoded_size + 1);
+    weft_code code = decode(file, section, bytes, error);
+    if (code == WEFT_OK)
+        code = weft_seen_read(bytes, section->decoded_size, material->level_count, &material->seen, &fault, error);
+    free(bytes);
+    return fault ? weft_fail_section(file, section, error, fault) : code;
+}
+
 static weft_code read_section(const weft_file_image *file, weft_material *material, weft_section_kind kind, int k,
                               weft_error *error)
 {
@@ -187,6 +201,8 @@ static weft_code read_section(const weft_file_image *file, weft_material *materi
         return read_layers(file, section, material, error);
     case WEFT_SECTION_HGHT:
         return read_heights(file, section, material, error);
+    case WEFT_SECTION_SEEN:
+        return read_seen(file, section, material, error);
     default:
         if (section->decoded_size < weft_section_size(material, kind, k))
             return read_compact(file, section, material, kind, k, error);

@@ -134,6 +134,12 @@ static weft_code check_codec(const weft_file_image *file, const weft_section *se
     return WEFT_OK;
 }
 
+/* And of a size of its own, which its reader checks. */
+static bool is_of_all_levels(weft_section_kind kind)
+{
+    return kind == WEFT_SECTION_LAYR || kind == WEFT_SECTION_HGHT || kind == WEFT_SECTION_SEEN;
+}
+
 /* One map of models announces those of all levels. */
 static weft_code note_section(weft_file_image *file, int index, weft_material *material, weft_error *error)
 {
@@ -145,11 +151,11 @@ static weft_code note_section(weft_file_image *file, int index, weft_material *m
     material->has_layers = material->has_layers || kind == WEFT_SECTION_LAYR;
     material->has_floors = material->has_floors || kind == WEFT_SECTION_FLOR;
     material->has_heights = material->has_heights || kind == WEFT_SECTION_HGHT;
+    material->has_seen = material->has_seen || kind == WEFT_SECTION_SEEN;
     material->has_opacity = material->has_opacity || kind == WEFT_SECTION_ALPH;
     material->has_table_bases = material->has_table_bases || kind == WEFT_SECTION_TPCA || kind == WEFT_SECTION_SPCA;
     /* Whether there are TABL or TPCA is known at the end of the table alone. */
-    if (section->level >= (uint32_t)material->level_count ||
-        ((kind == WEFT_SECTION_LAYR || kind == WEFT_SECTION_HGHT) && section->level > 0) ||
+    if (section->level >= (uint32_t)material->level_count || (is_of_all_levels(kind) && section->level > 0) ||
         (kind <= WEFT_SECTION_LITE && section->level >= (uint32_t)weft_section_levels(material, kind)))
         return weft_fail_section(file, section, error, "the material has no such section");
     if (file->found[kind][section->level])
@@ -206,7 +212,7 @@ static weft_code check_size(const weft_file_image *file, const weft_material *ma
         return check_basis(file, material, kind, k, error);
     if (kind == WEFT_SECTION_LCOE)
         return check_coefficients(file, material, k, error);
-    if (kind == WEFT_SECTION_LAYR || kind == WEFT_SECTION_HGHT)
+    if (is_of_all_levels(kind))
         return WEFT_OK;
     bool compact = weft_section_may_be_compact(material, kind) && section->decoded_size < whole;
     if (kind != WEFT_SECTION_META && section->decoded_size != whole && !compact)

@@ -10,6 +10,8 @@
 
 /* Higher levels gain under 1 % on half floats and cost several times as long. */
 static const int zstd_level = 6;
+/* Of what was pruned, and rounded, they gain a fifth. */
+static const int pruned_level = 19;
 
 /* The file as it grows in memory. */
 typedef struct file_image {
@@ -18,6 +20,7 @@ typedef struct file_image {
     size_t size, capacity;
     weft_section section[WEFT_SECTION_KINDS * WEFT_MATERIAL_MAX_LEVELS];
     int section_count;
+    int level; /* of Zstandard */
 } file_image;
 
 static size_t aligned(size_t size)
@@ -84,9 +87,9 @@ static void put_header(const file_image *file, const weft_material *material)
 }
 
 /* Compresses into `stored`; 0 where the section had better be stored as it is. */
-static size_t compress_section(void *stored, size_t capacity, const void *bytes, size_t size)
+static size_t compress_section(void *stored, size_t capacity, const void *bytes, size_t size, int level)
 {
-    size_t packed = ZSTD_compress(stored, capacity, bytes, size, zstd_level);
+    size_t packed = ZSTD_compress(stored, capacity, bytes, size, level);
     if (ZSTD_isError(packed) || packed >= size - size / 32)
         return 0;
     return size <= (uint64_t)packed * WEFT_FORMAT_MAX_RATIO + WEFT_FORMAT_FREE_RATIO ? packed : 0;
@@ -102,7 +105,7 @@ static weft_code add_section(file_image *file, weft_section_kind kind, int level
     size_t offset = aligned(file->size), bound = ZSTD_compressBound(size);
     unsigned char *stored = file->bytes + offset;
     bool is_texels = kind >= WEFT_SECTION_FRAM && kind != WEFT_SECTION_ERRO;
-    size_t packed = is_texels ? compress_section(stored, bound, bytes, size) : 0;
+    size_t packed = is_texels ? compress_section(stored, bound, bytes, size, file->level) : 0;
     size_t stored_size = packed > 0 ? packed : size;
     if (packed == 0)
         memcpy(stored, bytes, size);
@@ -200,6 +203,18 @@ static weft_code add_heights(file_image *file, const weft_material *material, we
     return code;
 }
 
+static weft_code add_seen(file_image *file, const weft_material *material, weft_error *error)
+{
+    size_t size = weft_seen_size(material->seen);
+    uint8_t *bytes = calloc(1, size);
+    if (!bytes)
+        return weft_fail_memory(error, "maps of what is seen", size);
+    weft_seen_write(material->seen, bytes);
+    weft_code code = add_section(file, WEFT_SECTION_SEEN, 0, bytes, size, error);
+    free(bytes);
+    return code;
+}
+
 static weft_code add_level_section(file_image *file, const weft_material *material, weft_section_kind kind, int k,
                                    weft_error *error)
 {
@@ -226,6 +241,8 @@ static weft_code add_level_section(file_image *file, const weft_material *materi
         return add_layers(file, material, error);
     case WEFT_SECTION_HGHT:
         return add_heights(file, material, error);
+    case WEFT_SECTION_SEEN:
+        return add_seen(file, material, error);
     default:
         return add_texels(file, material, kind, k, error);
     }
@@ -260,6 +277,7 @@ static size_t largest_file(const weft_material *material)
 
 static weft_code fill(file_image *file, const weft_material *material, weft_error *error)
 {
+    file->level = material->seen ? pruned_level : zstd_level;
     file->capacity = largest_file(material);
     file->bytes = calloc(1, file->capacity);
     if (!file->bytes)

@@ -67,7 +67,8 @@ static void set_shown(const weft_player *p, GLuint program, const weft_scene *sc
     weft_gl_set_int(program, "show_level", scene->show_level);
     weft_gl_set_int(program, "show_extrapolation", scene->show_extrapolation);
     glUniform3fv(glGetUniformLocation(program, "level_palette"), WEFT_LEVEL_COLOURS, weft_level_palette[0]);
-    glUniform3fv(glGetUniformLocation(program, "extrapolation_tint"), 2, weft_extrapolation_tint[0]);
+    glUniform3fv(glGetUniformLocation(program, "extrapolation_tint"), WEFT_EXTRAPOLATION_TINTS,
+                 weft_extrapolation_tint[0]);
     /* A ring was measured to within rounding. */
     weft_gl_set_vec2(program, "last_ring", p->last_ring_z[mode][0] - 1e-3, p->last_ring_z[mode][1] - 1e-3);
 }
@@ -84,6 +85,12 @@ weft_code weft_player_check_mode(const weft_player *p, weft_mode mode, weft_erro
 
 /* ---- Panes ---- */
 
+/* They take other texture units than lobes do. */
+static bool uses_layers(const weft_player *p, const weft_scene *scene)
+{
+    return scene->layers > 0 && p->material.layers.group_count > 0;
+}
+
 void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_mode mode, GLuint program)
 {
     switch (mode) {
@@ -92,6 +99,8 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
         break;
     case WEFT_MODE_COMPRESSED:
         weft_material_texture_bind(&p->material, program, scene->layers);
+        if (scene->show_extrapolation && p->material.seen.maps)
+            weft_seen_texture_bind(&p->material.seen, program, uses_layers(p, scene) ? 0 : 5);
         glUniform1fv(glGetUniformLocation(program, "lobe_share"), WEFT_SCENE_MAX_LOBES,
                      (const GLfloat[]){scene->lobe[0], scene->lobe[1], scene->lobe[2]});
         weft_gl_set_float(program, "view_table_share", scene->view_table);
@@ -134,6 +143,7 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         kind.view_table = p->material.table.count > 0;
         kind.light_table = p->material.light_table.count > 0;
         kind.fewer_bits = scene->table_bits < 8;
+        kind.pruned = scene->show_extrapolation && p->material.seen.maps;
         kind.layer_groups = scene->layers > 0 ? p->material.layers.group_count : 0;
         kind.half_vector = p->material.layers.half_vector;
         kind.opacity = kind.layer_groups > 0 && !p->material.opaque;

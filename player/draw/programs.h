@@ -22,6 +22,7 @@ typedef struct weft_program_kind {
     int lobe_count;
     bool view_table, light_table;
     bool fewer_bits; /* of T and S than they have */
+    bool pruned;     /* tinted where the scene that it was pruned for does not reach */
 } weft_program_kind;
 
 enum { WEFT_PROGRAM_CAPACITY = 32 };

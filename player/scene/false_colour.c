@@ -6,8 +6,9 @@ const float weft_level_palette[WEFT_LEVEL_COLOURS][3] = {
     {0.9f, 0.9f, 0.9f},  {0.2f, 0.45f, 0.9f},   {0.15f, 0.7f, 0.45f},
     {0.95f, 0.8f, 0.2f}, {0.95f, 0.45f, 0.15f}, {0.75f, 0.1f, 0.25f},
 };
-/* Magenta and cyan. */
-const float weft_extrapolation_tint[2][3] = {{0.7f, 0.03f, 0.45f}, {0, 0.45f, 0.6f}};
+/* Magenta, cyan and amber. */
+const float weft_extrapolation_tint[WEFT_EXTRAPOLATION_TINTS][3] = {
+    {0.7f, 0.03f, 0.45f}, {0, 0.45f, 0.6f}, {0.75f, 0.4f, 0}};
 
 void weft_level_shown(const float value[3], float level, float shown[3])
 {
@@ -19,12 +20,16 @@ void weft_level_shown(const float value[3], float level, float shown[3])
         shown[c] = brightness * (a[c] + (level - (float)lower) * (b[c] - a[c]));
 }
 
-void weft_extrapolation_shown(const float value[3], bool view, bool light, float shown[3])
+void weft_extrapolation_shown(const float value[3], weft_missing missing, float shown[3])
 {
+    const float share[WEFT_EXTRAPOLATION_TINTS] = {(float)missing.view, (float)missing.light, (float)missing.place};
+    bool any = missing.view || missing.light || missing.place;
     float brightness = sqrtf(fmaxf(weft_channel_mean(value), 0));
     for (int c = 0; c < 3; c++) {
-        float tint = (float)view * weft_extrapolation_tint[0][c] + (float)light * weft_extrapolation_tint[1][c];
-        shown[c] = view || light ? 0.3f * value[c] + (0.1f + 0.9f * brightness) * tint : value[c];
+        float tint = 0;
+        for (int i = 0; i < WEFT_EXTRAPOLATION_TINTS; i++)
+            tint += share[i] * weft_extrapolation_tint[i][c];
+        shown[c] = any ? 0.3f * value[c] + (0.1f + 0.9f * brightness) * tint : value[c];
     }
 }
 
@@ -47,9 +52,9 @@ uint32_t weft_level_swatch(int level)
     return swatch_of(shown);
 }
 
-uint32_t weft_extrapolation_swatch(bool view, bool light)
+uint32_t weft_extrapolation_swatch(weft_missing missing)
 {
     float shown[3];
-    weft_extrapolation_shown(middle_grey, view, light, shown);
+    weft_extrapolation_shown(middle_grey, missing, shown);
     return swatch_of(shown);
 }

@@ -177,6 +177,61 @@ void weft_path_apply(const weft_path *path, double time_s, weft_scene *scene)
     }
 }
 
+/* ---- Bounds ---- */
+
+static double mixed(double a, double b, double t)
+{
+    return a + t * (b - a);
+}
+
+/* The blossom of a Bezier cubic: symmetric, and the curve itself where all three times are alike. */
+static double blossom(const double point[4], double r, double s, double t)
+{
+    double a = mixed(point[0], point[1], r), b = mixed(point[1], point[2], r), c = mixed(point[2], point[3], r);
+    return mixed(mixed(a, b, s), mixed(b, c, s), t);
+}
+
+/* Widens range [2] by the curve of value v after `key`, from a to b of the way. */
+static void add_curve(const weft_path *path, int key, int v, double a, double b, double range[2])
+{
+    double third = (path->time_s[key + 1] - path->time_s[key]) / 3;
+    double first = path->value[key][v], last = path->value[key + 1][v];
+    const double point[4] = {first, first + third * slope(path, key, v), last - third * slope(path, key + 1, v), last};
+    const double part[4] = {blossom(point, a, a, a), blossom(point, a, a, b), blossom(point, a, b, b),
+                            blossom(point, b, b, b)};
+    for (int i = 0; i < 4; i++) {
+        range[0] = fmin(range[0], part[i]);
+        range[1] = fmax(range[1], part[i]);
+    }
+}
+
+static void find_range(const weft_path *path, double from_s, double to_s, int v, double range[2])
+{
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (int key = 0; key + 1 < path->key_count; key++) {
+        double start = path->time_s[key], length = path->time_s[key + 1] - start;
+        double a = fmin(fmax((from_s - start) / length, 0), 1), b = fmin(fmax((to_s - start) / length, 0), 1);
+        bool rests = (key == 0 && from_s < start) || (key + 2 == path->key_count && to_s > start + length);
+        if (a < b || rests || (from_s >= start && from_s <= start + length))
+            add_curve(path, key, v, a, b, range);
+    }
+    if (path->key_count == 1)
+        range[0] = range[1] = path->value[0][v];
+}
+
+void weft_path_span(const weft_path *path, double from_s, double to_s, weft_scene *low, weft_scene *high)
+{
+    for (int v = 0; v < WEFT_PATH_VALUE_COUNT; v++) {
+        double range[2];
+        if (!path->given[v])
+            continue;
+        find_range(path, from_s, to_s, v, range);
+        *(double *)((char *)low + columns[v].offset) = unscaled(&columns[v], range[0]);
+        *(double *)((char *)high + columns[v].offset) = unscaled(&columns[v], range[1]);
+    }
+}
+
 weft_code weft_path_count_frames(const weft_path *path, double frames_per_second, int *count, weft_error *error)
 {
     double last = (path->time_s[path->key_count - 1] - path->time_s[0]) * frames_per_second;

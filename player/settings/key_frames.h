@@ -27,6 +27,11 @@ void weft_path_free(weft_path *path);
  * Elevation stays within 90 degrees. Pure. */
 void weft_path_apply(const weft_path *path, double time_s, weft_scene *scene);
 
+/* Bounds of the scene between two times: `low` and `high`, which are the scene itself, get the least and the largest
+ * that each value of the path may have there, from the control points of its curves (a cubic lies within the hull of
+ * its Bezier points). from_s <= to_s. Pure. */
+void weft_path_span(const weft_path *path, double from_s, double to_s, weft_scene *low, weft_scene *high);
+
 /* Frames from the first key to the last, both counted, frame i at time_s[0] + i / frames_per_second. Errors:
  * WEFT_BAD_INPUT for more than WEFT_PATH_MAX_FRAMES. */
 weft_code weft_path_count_frames(const weft_path *path, double frames_per_second, int *count, weft_error *error);

@@ -181,6 +181,7 @@ weft_code weft_material_texture_upload(const weft_material *material, weft_mater
     WEFT_TRY(upload_texels(material, t, error));
     WEFT_TRY(upload_table(material, &t->layout, false, &t->table, error));
     WEFT_TRY(upload_table(material, &t->layout, true, &t->light_table, error));
+    WEFT_TRY(weft_seen_texture_upload(material->seen, &t->seen, error));
     weft_material_relief relief;
     int *entry = NULL;
     WEFT_TRY(weft_material_relief_create(material, &relief, error));
@@ -204,6 +205,7 @@ void weft_material_texture_free(weft_material_texture *t)
     weft_direction_texture_free(&t->directions);
     weft_layer_texture_free(&t->layers);
     weft_relief_texture_free(&t->relief);
+    weft_seen_texture_free(&t->seen);
     *t = (weft_material_texture){0};
 }
 

@@ -7,6 +7,7 @@
 #include "player/texture/layer_texture.h"
 #include "player/texture/mip_layout.h"
 #include "player/texture/relief_texture.h"
+#include "player/texture/seen_texture.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -29,6 +30,7 @@ typedef struct weft_material_texture {
     weft_mip_layout layout;
     weft_layer_texture layers;
     weft_relief_texture relief; /* of the layers */
+    weft_seen_texture seen;     /* what it holds, where it was pruned */
     int lobe_count;
     bool opaque;
 } weft_material_texture;

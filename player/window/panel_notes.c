@@ -46,11 +46,13 @@ static void show_tints(void)
 {
     weft_ui_text("Not measured:");
     weft_ui_same_line();
-    weft_ui_swatch(weft_extrapolation_swatch(true, false), "view");
+    weft_ui_swatch(weft_extrapolation_swatch((weft_missing){.view = true}), "view");
     weft_ui_same_line();
-    weft_ui_swatch(weft_extrapolation_swatch(false, true), "light");
+    weft_ui_swatch(weft_extrapolation_swatch((weft_missing){.light = true}), "light");
     weft_ui_same_line();
-    weft_ui_swatch(weft_extrapolation_swatch(true, true), "both");
+    weft_ui_swatch(weft_extrapolation_swatch((weft_missing){.view = true, .light = true}), "both");
+    weft_ui_same_line();
+    weft_ui_swatch(weft_extrapolation_swatch((weft_missing){.place = true}), "texel (pruned)");
 }
 
 static void show_colours(const weft_scene *scene, double left, double bottom, double scale)

@@ -97,6 +97,19 @@ static void print_heights(FILE *out, const weft_material_heights *heights)
             fprintf(out, "  (%d, %d): %.9g mm\n", x, y, (double)weft_material_height_mm(heights, x, y));
 }
 
+static void print_seen(FILE *out, const weft_seen *seen)
+{
+    fprintf(out, "seen: %d x %d cells, %d levels, %d finer and %d coarser are gone\n", seen->side, seen->side,
+            seen->level_count, seen->finer_levels, seen->coarser_levels);
+    for (int map = 0; map < WEFT_SEEN_PLACES + seen->level_count; map++)
+        for (int row = 0; row < seen->side; row++) {
+            fprintf(out, "  map %d row %d:", map, row);
+            for (int column = 0; column < seen->side; column++)
+                fprintf(out, " %d", weft_seen_cells(seen, map)[row * seen->side + column]);
+            fprintf(out, "\n");
+        }
+}
+
 weft_code print_material(const char *path, FILE *out, weft_error *error)
 {
     weft_material material;
@@ -115,6 +128,8 @@ weft_code print_material(const char *path, FILE *out, weft_error *error)
             print_level(out, &material, &directions, k);
         if (material.heights)
             print_heights(out, material.heights);
+        if (material.seen)
+            print_seen(out, material.seen);
         weft_table_directions_free(&directions);
     }
     weft_material_free(&material);

@@ -5,6 +5,7 @@
 #include "tests/support/scratch_folder.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static weft_path read_path(const char *text)
@@ -119,6 +120,35 @@ static void frames_are_counted_with_both_ends(void **state)
     weft_path_free(&path);
 }
 
+/* All that the scene is at random times of a span, some of which reach over keys and beyond the path, lies within its
+ * bounds; those of a moment are the moment. */
+static void a_span_holds_all_of_its_moments(void **state)
+{
+    (void)state;
+    weft_path path = read_path("time_s,azimuth_deg,distance,exposure,light_phi_deg\n"
+                               "1,10,3,0.5,40\n2,90,1.2,2,-60\n2.5,80,6,1,300\n5,-120,2,8,0\n");
+    for (int i = 0; i < 400; i++) {
+        double from = 6.0 * rand() / RAND_MAX, to = from + (i % 2 ? 0.3 : 2) * rand() / RAND_MAX;
+        weft_scene low = weft_scene_default(), high = low;
+        weft_path_span(&path, from, to, &low, &high);
+        for (int k = 0; k <= 20; k++) {
+            weft_scene at = scene_at(&path, from + (to - from) * k / 20);
+            assert_true(at.orbit.azimuth_rad >= low.orbit.azimuth_rad - 1e-12);
+            assert_true(at.orbit.azimuth_rad <= high.orbit.azimuth_rad + 1e-12);
+            assert_true(at.orbit.distance >= low.orbit.distance - 1e-12);
+            assert_true(at.orbit.distance <= high.orbit.distance + 1e-12);
+            assert_true(at.exposure >= low.exposure - 1e-12 && at.exposure <= high.exposure + 1e-12);
+            assert_true(at.light[0].direction.phi_rad >= low.light[0].direction.phi_rad - 1e-12);
+            assert_true(at.light[0].direction.phi_rad <= high.light[0].direction.phi_rad + 1e-12);
+        }
+        weft_path_span(&path, from, from, &low, &high);
+        assert_float_equal(low.orbit.azimuth_rad, scene_at(&path, from).orbit.azimuth_rad, 1e-12);
+        assert_float_equal(high.orbit.azimuth_rad, low.orbit.azimuth_rad, 1e-12);
+        assert_float_equal(high.orbit.elevation_rad, weft_scene_default().orbit.elevation_rad, 0);
+    }
+    weft_path_free(&path);
+}
+
 static void faults_are_named(void **state)
 {
     (void)state;
@@ -141,6 +171,7 @@ int main(void)
         cmocka_unit_test(exposure_and_distance_change_by_factors),
         cmocka_unit_test(an_elevation_never_passes_the_zenith),
         cmocka_unit_test(frames_are_counted_with_both_ends),
+        cmocka_unit_test(a_span_holds_all_of_its_moments),
         cmocka_unit_test(faults_are_named),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

@@ -319,7 +319,7 @@ static void false_colours_are_those_of_their_legends(void **state)
         bool light = at[i].light[2] > 0 && (double)at[i].light[2] < cos(last_light) - 1e-3;
         float level[3], tint[3];
         weft_level_shown(plain.pixels + 3 * i, at[i].level, level);
-        weft_extrapolation_shown(plain.pixels + 3 * i, view, light, tint);
+        weft_extrapolation_shown(plain.pixels + 3 * i, (weft_missing){.view = view, .light = light}, tint);
         for (int c = 0; c < 3; c++) {
             assert_float_equal(levels.pixels[3 * i + c], level[c], 1e-5);
             assert_float_equal(tinted.pixels[3 * i + c], tint[c], 1e-5);

@@ -1,0 +1,246 @@
+#include "study/prune/images.h"
+
+#include "btf/direction/square_map.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static weft_vec3 direction_at(const float *xyz, size_t index)
+{
+    return weft_vec3_of(xyz[3 * index], xyz[3 * index + 1], xyz[3 * index + 2]);
+}
+
+/* ---- Which images ---- */
+
+/* Cells of the coarser square within an angle of a direction. */
+typedef struct cell_list {
+    int count;
+    int cell[WEFT_REACH_PAIR_CELLS];
+} cell_list;
+
+static weft_vec3 middle_of(int cell)
+{
+    double a = 2 * ((cell % WEFT_REACH_PAIR_SIDE + 0.5) / WEFT_REACH_PAIR_SIDE - 0.5);
+    double b = 2 * ((int)(cell / WEFT_REACH_PAIR_SIDE) + 0.5) / WEFT_REACH_PAIR_SIDE - 1, square = a * a + b * b;
+    return weft_vec3_of(2 * a / (1 + square), 2 * b / (1 + square), (1 - square) / (1 + square));
+}
+
+/* Half the diagonal of a cell, where the square shrinks most. */
+static const double cell_radius = 4 * 0.7071067811865476 / WEFT_REACH_PAIR_SIDE;
+
+static void list_cells(weft_vec3 direction, double margin_rad, cell_list *list)
+{
+    double least = cos(fmin(margin_rad + cell_radius, WEFT_PI));
+    list->count = 0;
+    for (int cell = 0; cell < WEFT_REACH_PAIR_CELLS; cell++)
+        if (weft_dot(middle_of(cell), direction) >= least)
+            list->cell[list->count++] = cell;
+}
+
+/* What a map over the lights of a view is of: the light, or the half vector. Unit. */
+static weft_vec3 inner_direction(const weft_layers *layers, weft_vec3 light, weft_vec3 view)
+{
+    return layers->kind == WEFT_LAYERS_OF_LIGHT ? light : weft_unit(weft_add(light, view));
+}
+
+/* Whether a pair of the reach has one of the views, and within an angle of `inner` what maps are of. */
+static bool is_reached(const weft_reach *reach, const weft_layers *layers, const cell_list *views, weft_vec3 inner,
+                       double least)
+{
+    for (int v = 0; v < views->count; v++) {
+        const uint8_t *row = reach->pair + (size_t)views->cell[v] * WEFT_REACH_PAIR_CELLS;
+        weft_vec3 view = middle_of(views->cell[v]);
+        for (int l = 0; l < WEFT_REACH_PAIR_CELLS; l++)
+            if (row[l] && weft_dot(inner_direction(layers, middle_of(l), view), inner) >= least)
+                return true;
+    }
+    return false;
+}
+
+static void find_of_view(const weft_reach *reach, const weft_layers *layers, int view, double margin_rad,
+                         cell_list *list, bool *kept)
+{
+    weft_vec3 v = direction_at(layers->view, (size_t)view);
+    double least = cos(fmin(margin_rad + cell_radius, WEFT_PI));
+    list_cells(v, margin_rad, list);
+    for (uint32_t i = layers->first[view]; i < layers->first[view + 1]; i++)
+        kept[i] = is_reached(reach, layers, list, inner_direction(layers, direction_at(layers->light, i), v), least);
+}
+
+weft_code weft_prune_find_images(const weft_reach *reach, const weft_layers *layers, double margin_rad, bool *kept,
+                                 int *kept_count, weft_error *error)
+{
+    cell_list *list = calloc(1, sizeof *list);
+    if (!list)
+        return weft_fail_memory(error, "cells", sizeof *list);
+    *kept_count = 0;
+    for (int view = 0; view < layers->view_count; view++)
+        find_of_view(reach, layers, view, margin_rad, list, kept);
+    for (int i = 0; i < layers->image_count; i++)
+        *kept_count += kept[i];
+    free(list);
+    return WEFT_OK;
+}
+
+/* ---- What the others become ---- */
+
+/* The kept image of a view that is nearest in its map, or -1. */
+static long nearest_image(const weft_layers *layers, const bool *kept, int view, weft_vec3 light)
+{
+    long nearest = -1;
+    double most = -2;
+    weft_vec3 v = direction_at(layers->view, (size_t)view), inner = inner_direction(layers, light, v);
+    for (uint32_t i = layers->first[view]; i < layers->first[view + 1]; i++) {
+        double cosine = weft_dot(inner_direction(layers, direction_at(layers->light, i), v), inner);
+        if (kept[i] && cosine > most) {
+            most = cosine;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+static bool has_kept(const weft_layers *layers, const bool *kept, int view)
+{
+    return memchr(kept + layers->first[view], 1, layers->first[view + 1] - layers->first[view]) != NULL;
+}
+
+static int nearest_view(const weft_layers *layers, const bool *kept, int view)
+{
+    int nearest = -1;
+    double most = -2;
+    weft_vec3 from = direction_at(layers->view, (size_t)view);
+    for (int i = 0; i < layers->view_count; i++) {
+        double cosine = weft_dot(direction_at(layers->view, (size_t)i), from);
+        if (cosine > most && has_kept(layers, kept, i)) {
+            most = cosine;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+void weft_prune_fill_images(const bool *kept, weft_layers *layers)
+{
+    size_t row = 3 * (size_t)layers->layer_count;
+    for (int view = 0; view < layers->view_count; view++) {
+        int from = nearest_view(layers, kept, view);
+        for (uint32_t i = layers->first[view]; from >= 0 && i < layers->first[view + 1]; i++) {
+            long source = kept[i] ? (long)i : nearest_image(layers, kept, from, direction_at(layers->light, i));
+            if (source != (long)i)
+                memcpy(layers->value + i * row, layers->value + (size_t)source * row, row * sizeof *layers->value);
+        }
+    }
+}
+
+/* ---- Fewer layers ---- */
+
+weft_code weft_prune_copy_layers(const weft_layers *from, int count, weft_layers **copy, weft_error *error)
+{
+    weft_layers shape = *from;
+    shape.layer_count = count;
+    WEFT_TRY(weft_layers_create(&shape, from->level[0].width, from->level[0].height, from->level_count, copy, error));
+    weft_layers *to = *copy;
+    size_t views = (size_t)from->view_count, images = (size_t)from->image_count, row = 3 * (size_t)count;
+    memcpy(to->view, from->view, 3 * views * sizeof *to->view);
+    memcpy(to->light, from->light, 3 * images * sizeof *to->light);
+    memcpy(to->first, from->first, (views + 1) * sizeof *to->first);
+    memcpy(to->scale, from->scale, (size_t)count * sizeof *to->scale);
+    for (size_t i = 0; i < images; i++)
+        memcpy(to->value + i * row, from->value + i * 3 * (size_t)from->layer_count, row * sizeof *to->value);
+    for (int k = 0; k < from->level_count; k++) {
+        const weft_layers_level *level = &from->level[k];
+        memcpy(to->level[k].coefficient, level->coefficient,
+               (size_t)count * (size_t)level->width * (size_t)level->height);
+        memcpy(to->level[k].ceiling, level->ceiling, weft_ceiling_count(level->width, level->height));
+        memcpy(to->level[k].floor, level->floor, 3 * weft_ceiling_count(level->width, level->height));
+    }
+    return WEFT_OK;
+}
+
+/* ---- Coarser values ---- */
+
+enum { LARGEST_EXACT = 2048 };
+
+static int8_t *coefficients_of(const weft_layers *layers, int k, int layer, size_t *texels)
+{
+    const weft_layers_level *level = &layers->level[k];
+    *texels = (size_t)level->width * (size_t)level->height;
+    return level->coefficient + (size_t)(layer / WEFT_LAYERS_GROUP) * WEFT_LAYERS_GROUP * *texels +
+           layer % WEFT_LAYERS_GROUP;
+}
+
+static weft_half *values_of(const weft_layers *layers, int layer, size_t i)
+{
+    return &layers->value[3 * ((size_t)layers->layer_count * (i / 3) + (size_t)layer) + i % 3];
+}
+
+/* Of a layer over the texels of the finest level. */
+static double coefficient_rms(const weft_layers *layers, int layer)
+{
+    size_t texels;
+    const int8_t *c = coefficients_of(layers, 0, layer, &texels);
+    double sum = 0;
+    for (size_t i = 0; i < texels; i++)
+        sum += (double)(c[WEFT_LAYERS_GROUP * i] * c[WEFT_LAYERS_GROUP * i]);
+    return sqrt(sum / (double)texels);
+}
+
+/* Of a layer over images and channels, of a coefficient of 1. */
+static double value_rms(const weft_layers *layers, int layer)
+{
+    size_t count = 3 * (size_t)layers->image_count;
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        double value = (double)weft_float_of_half(*values_of(layers, layer, i));
+        sum += value * value;
+    }
+    return (double)layers->scale[layer] * sqrt(sum / (double)count);
+}
+
+static double largest_value(const weft_layers *layers, int layer)
+{
+    double most = 0;
+    for (size_t i = 0; i < 3 * (size_t)layers->image_count; i++)
+        most = fmax(most, fabs((double)weft_float_of_half(*values_of(layers, layer, i))));
+    return most;
+}
+
+/* The values become whole numbers, whose half floats end in zeros, and the scale the grid: where they are no more than
+ * half floats hold exactly. */
+static void round_layer(weft_layers *layers, int layer, double grid)
+{
+    if (largest_value(layers, layer) / grid > LARGEST_EXACT)
+        return;
+    for (size_t i = 0; i < 3 * (size_t)layers->image_count; i++) {
+        weft_half *value = values_of(layers, layer, i);
+        *value = weft_half_of_float((float)round((double)weft_float_of_half(*value) / grid));
+    }
+    layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
+}
+
+/* To multiples of `grid` that a coefficient may be. */
+static void round_coefficients(const weft_layers *layers, int layer, int grid)
+{
+    int most = WEFT_LAYERS_LARGEST_CODE / grid;
+    for (int k = 0; k < layers->level_count; k++) {
+        size_t texels;
+        int8_t *c = coefficients_of(layers, k, layer, &texels);
+        for (size_t i = 0; i < texels; i++) {
+            long multiple = lround((double)c[WEFT_LAYERS_GROUP * i] / grid);
+            c[WEFT_LAYERS_GROUP * i] = (int8_t)(grid * (multiple > most ? most : multiple < -most ? -most : multiple));
+        }
+    }
+}
+
+void weft_prune_round_values(double step, weft_layers *layers)
+{
+    for (int layer = 0; layer < layers->layer_count; layer++) {
+        double of_value = (double)layers->scale[layer] * coefficient_rms(layers, layer);
+        double of_coefficient = value_rms(layers, layer);
+        if (of_coefficient > 0 && step / of_coefficient >= 2)
+            round_coefficients(layers, layer, (int)fmin(step / of_coefficient, WEFT_LAYERS_LARGEST_CODE));
+        if (of_value > 0)
+            round_layer(layers, layer, step / of_value);
+    }
+}

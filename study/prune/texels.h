@@ -1,0 +1,17 @@
+/* A material without the mip levels and texels that no pixel of a reach reads. Private to study/prune. */
+#ifndef WEFT_STUDY_PRUNE_TEXELS_H
+#define WEFT_STUDY_PRUNE_TEXELS_H
+
+#include "study/prune/reach.h"
+
+/* Takes the finest levels away that are not reached, as long as the material keeps its proportions, and the coarsest.
+ * Every other texel that is not reached becomes a copy of the nearest in its row that is, and rows without any of the
+ * nearest row: copies take next to no room in the file. The reach then is that of the new levels; *finer and *coarser
+ * are how many are gone. Errors: WEFT_SYSTEM. */
+weft_code weft_prune_texels(weft_reach *reach, weft_material *material, int *finer, int *coarser, weft_error *error);
+
+/* The maps of what is seen (btf/material/seen.h) of the material as it is now. Errors: WEFT_SYSTEM. */
+weft_code weft_prune_note_seen(const weft_reach *reach, int finer, int coarser, weft_material *material,
+                               weft_error *error);
+
+#endif
