@@ -1,4 +1,5 @@
-/* Images: the one door to OpenImageIO, and to libpng for the PNG that Weft writes. Row 0 is the top row; samples are interleaved RGB. */
+/* Images: the one door to OpenImageIO, and to libpng for the PNG that Weft writes. Row 0 is the top row; samples are
+ * interleaved RGB. */
 #ifndef WEFT_BASE_PICTURE_IMAGE_H
 #define WEFT_BASE_PICTURE_IMAGE_H
 

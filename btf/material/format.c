@@ -6,9 +6,9 @@
 
 const unsigned char weft_format_magic[8] = {0x89, 'W', 'E', 'F', 'T', '\r', '\n', 0x1a};
 
-const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ", "LOBE",
-                                                       "TABL", "STAB", "MODL", "TPCA", "SPCA", "ALPH",
-                                                       "ERRO", "LAYR", "LCOE", "CEIL", "FLOR", "HGHT", "SEEN"};
+const char weft_section_type[WEFT_SECTION_KINDS][5] = {"META", "VIEW", "LITE", "FRAM", "RHO ", "LOBE", "TABL",
+                                                       "STAB", "MODL", "TPCA", "SPCA", "ALPH", "ERRO", "LAYR",
+                                                       "LCOE", "CEIL", "FLOR", "HGHT", "SEEN"};
 
 weft_section_kind weft_section_kind_of(const char type[5])
 {

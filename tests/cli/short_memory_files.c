@@ -11,7 +11,8 @@ enum { DESCRIPTORS = 16 };
 /* What a page says of how long something took: no two runs agree there. */
 static bool tells_time(const char *line, size_t size)
 {
-    return memmem(line, size, "time taken", 10) || memmem(line, size, " ms a frame", 11);
+    return memmem(line, size, "time taken", 10) || memmem(line, size, " ms a frame", 11) ||
+           memmem(line, size, "fits together took", 18);
 }
 
 static uint64_t hash_file(const char *path)
