@@ -74,7 +74,7 @@ static cell_box box_of(const weft_direction_cap *cap, int side)
 static void mark_box(uint8_t *map, int side, cell_box box)
 {
     for (int row = box.row[0]; row <= box.row[1]; row++)
-        memset(map + row * side + box.column[0], 1, (size_t)(box.column[1] - box.column[0] + 1));
+        memset(map + row * side + box.column[0], 1, (size_t)box.column[1] - (size_t)box.column[0] + 1);
 }
 
 /* Views below the horizon are lifted onto it, which moves two of them apart where they lie far below. */
