@@ -70,7 +70,7 @@ static void say_errors(const weft_common_options *common, const weft_prune_repor
     weft_command_say(common, "measured  RMSE %.3f/255, FLIP %.4f (%d other moments, whole pictures)", r->measured.rmse,
                      r->measured.flip, r->measured_count);
     if (r->measured.rmse > r->allowed.rmse || r->measured.flip > r->allowed.flip)
-        weft_command_say(common, "that is more than was allowed, by what no picture should show: please report it");
+        weft_command_say(common, "that is more than was allowed: keep the whole material for this scene");
 }
 
 static weft_code say(const prune_command *command, const weft_prune_report *report, weft_error *error)
