@@ -9,51 +9,65 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The photographs of the plan as "FOLDER/NAME" without ".tif", sorted. */
-typedef struct expected_names {
+/* A shot of the plan: "FOLDER/NAME" without ".tif", and the most photographs of a bracket that it may have. */
+typedef struct expected_shot {
+    char name[64];
+    int brackets;
+} expected_shot;
+
+/* Sorted by name. */
+typedef struct expected_shots {
     int count;
-    char (*name)[64];
-} expected_names;
+    expected_shot *shot;
+} expected_shots;
 
 static int compare_names(const void *a, const void *b)
 {
-    return strcmp(a, b);
+    const expected_shot *p = a, *q = b;
+    return strcmp(p->name, q->name);
 }
 
-static weft_code list_expected(const weft_session *session, expected_names *names, weft_error *error)
+/* What a killed capture took of a shot has no line in the journal yet. */
+static weft_code list_expected(const weft_session *session, expected_shots *expected, weft_error *error)
 {
-    size_t skipped = strlen(session->folder) + 1;
-    *names = (expected_names){session->shot_count, calloc((size_t)session->shot_count, sizeof *names->name)};
-    if (!names->name)
-        return weft_fail_memory(error, "names of photographs", (size_t)session->shot_count * sizeof *names->name);
-    for (int shot = 0; shot < session->shot_count; shot++) {
+    size_t skipped = strlen(session->folder) + 1, count = (size_t)session->shot_count;
+    *expected = (expected_shots){session->shot_count, calloc(count, sizeof *expected->shot)};
+    if (!expected->shot)
+        return weft_fail_memory(error, "names of photographs", count * sizeof *expected->shot);
+    for (int i = 0; i < session->shot_count; i++) {
         char path[PATH_MAX];
-        weft_session_photograph_path(session, shot, path, sizeof path);
-        snprintf(names->name[shot], sizeof *names->name, "%.*s", (int)(strlen(path) - skipped - strlen(".tif")),
-                 path + skipped);
+        expected_shot *shot = &expected->shot[i];
+        const weft_shot_record *record = &session->record[i];
+        weft_session_photograph_path(session, i, path, sizeof path);
+        snprintf(shot->name, sizeof shot->name, "%.*s", (int)(strlen(path) - skipped - strlen(".tif")), path + skipped);
+        shot->brackets = record->taken ? record->bracket_count : WEFT_SESSION_MAX_BRACKETS;
     }
-    qsort(names->name, (size_t)names->count, sizeof *names->name, compare_names);
+    qsort(expected->shot, count, sizeof *expected->shot, compare_names);
     return WEFT_OK;
 }
 
 /* A photograph, one of its bracket, or what the camera wrote for either. */
-static bool belongs(const expected_names *names, const char *folder, const char *file)
+static bool belongs(const expected_shots *expected, const char *folder, const char *file)
 {
-    char name[PATH_MAX];
-    int stem = (int)strcspn(file, "."), bracket, read = 0;
+    expected_shot key;
+    int stem = (int)strcspn(file, "."), bracket = 0, read = 0;
     const char *ending = file + stem;
-    if (sscanf(ending, ".bracket%1d%n", &bracket, &read) == 1 && bracket <= WEFT_SESSION_MAX_BRACKETS)
+    if (sscanf(ending, ".bracket%1d%n", &bracket, &read) == 1)
         ending += read;
-    snprintf(name, sizeof name, "%s/%.*s", folder, stem, file);
-    return (strcmp(ending, ".tif") == 0 || strncmp(ending, ".original", strlen(".original")) == 0) &&
-           bsearch(name, names->name, (size_t)names->count, sizeof *names->name, compare_names);
+    if (snprintf(key.name, sizeof key.name, "%s/%.*s", folder, stem, file) >= (int)sizeof key.name)
+        return false;
+    const expected_shot *shot =
+        bsearch(&key, expected->shot, (size_t)expected->count, sizeof *expected->shot, compare_names);
+    return shot && bracket <= shot->brackets &&
+           (strcmp(ending, ".tif") == 0 || strncmp(ending, ".original", strlen(".original")) == 0);
 }
 
-static bool is_folder_of_views(const expected_names *names, const char *folder)
+static bool is_folder_of_views(const expected_shots *expected, const char *folder)
 {
     size_t length = strlen(folder);
-    for (int i = 0; i < names->count; i++) {
-        if (strncmp(names->name[i], folder, length) == 0 && names->name[i][length] == '/')
+    for (int i = 0; i < expected->count; i++) {
+        const char *name = expected->shot[i].name;
+        if (strncmp(name, folder, length) == 0 && name[length] == '/')
             return true;
     }
     return false;
@@ -63,7 +77,7 @@ static bool is_folder_of_views(const expected_names *names, const char *folder)
 
 typedef struct search {
     const weft_session *session;
-    expected_names names;
+    expected_shots expected;
     weft_session_faults *faults;
 } search;
 
@@ -82,7 +96,7 @@ static weft_code look_at_view(const search *s, const char *folder, weft_error *e
     DIR *listing = opendir(path);
     weft_code code = listing ? WEFT_OK : weft_fail_errno(error, "list folder", path);
     for (struct dirent *entry; code == WEFT_OK && (entry = readdir(listing));) {
-        if (entry->d_name[0] != '.' && !belongs(&s->names, folder, entry->d_name))
+        if (entry->d_name[0] != '.' && !belongs(&s->expected, folder, entry->d_name))
             code = add(s, folder, entry->d_name, "belongs to no shot of the plan", error);
     }
     if (listing)
@@ -96,7 +110,7 @@ static weft_code look_at_entry(const search *s, const char *name, weft_error *er
         return add(s, "", name, "was left by a capture that was killed, or still runs", error);
     if (name[0] == '.' || strcmp(name, "session.json") == 0 || strcmp(name, "journal.jsonl") == 0)
         return WEFT_OK;
-    if (is_folder_of_views(&s->names, name))
+    if (is_folder_of_views(&s->expected, name))
         return look_at_view(s, name, error);
     return add(s, "", name, "is no part of a session", error);
 }
@@ -115,8 +129,8 @@ static weft_code look(const search *s, weft_error *error)
 weft_code weft_find_foreign(const weft_session *session, weft_session_faults *faults, weft_error *error)
 {
     search s = {.session = session, .faults = faults};
-    WEFT_TRY(list_expected(session, &s.names, error));
+    WEFT_TRY(list_expected(session, &s.expected, error));
     weft_code code = look(&s, error);
-    free(s.names.name);
+    free(s.expected.shot);
     return code;
 }

@@ -74,6 +74,16 @@ static weft_code store_photograph(const weft_photograph_writer *writer, const ch
     return rename(temporary, path) == 0 ? WEFT_OK : weft_fail_errno(error, "write", path);
 }
 
+/* Of a shot that had more before. */
+static void remove_brackets(const weft_session *session, int shot, int first)
+{
+    char path[PATH_MAX];
+    for (int i = first; i < WEFT_SESSION_MAX_BRACKETS; i++) {
+        weft_session_bracket_path(session, shot, i, path, sizeof path);
+        remove(path);
+    }
+}
+
 /* Photographs are synced before the journal names their shot. */
 static weft_code store(weft_photograph_writer *writer, weft_error *error)
 {
@@ -91,6 +101,7 @@ static weft_code store(weft_photograph_writer *writer, weft_error *error)
     WEFT_TRY(store_photograph(writer, path, 0, &record.bytes, &record.crc32, error));
     record.taken = true;
     WEFT_TRY(weft_session_append(session, writer->shot, &record, error));
+    remove_brackets(session, writer->shot, record.bracket_count);
     writer->unsynced_shot = writer->shot;
     return WEFT_OK;
 }

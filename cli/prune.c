@@ -67,9 +67,11 @@ static void say_errors(const weft_common_options *common, const weft_prune_repor
 {
     weft_command_say(common, "predicted RMSE %.3f/255, FLIP %.4f (%d moments that it was chosen by)", r->predicted.rmse,
                      r->predicted.flip, r->decided_count);
-    weft_command_say(common, "measured  RMSE %.3f/255, FLIP %.4f (%d other moments, whole pictures)", r->measured.rmse,
-                     r->measured.flip, r->measured_count);
-    if (r->measured.rmse > r->allowed.rmse || r->measured.flip > r->allowed.flip)
+    char of[64] = "the same moment, for nothing moves";
+    if (r->decided_count > 1)
+        snprintf(of, sizeof of, "%d other moments, whole pictures", r->measured_count);
+    weft_command_say(common, "measured  RMSE %.3f/255, FLIP %.4f (%s)", r->measured.rmse, r->measured.flip, of);
+    if (!weft_prune_holds(r))
         weft_command_say(common, "that is more than was allowed: keep the whole material for this scene");
 }
 

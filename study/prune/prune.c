@@ -141,6 +141,13 @@ static double allowance(const weft_prune_error *is, const weft_prune_error *allo
     return weft_clamp(reserve * fmin(rmse, flip), 1.0 / MOST_ALLOWANCE, MOST_ALLOWANCE);
 }
 
+bool weft_prune_holds(const weft_prune_report *report)
+{
+    const double rounding_rmse = 1e-3, rounding_flip = 1e-4;
+    return report->measured.rmse <= report->allowed.rmse + rounding_rmse &&
+           report->measured.flip <= report->allowed.flip + rounding_flip;
+}
+
 /* First by what is allowed itself; then by what whole pictures make of that; then, where other moments show more, by
  * less of it, in the end by nothing. */
 static weft_code prune_by_pictures(const weft_prune_pictures pictures[3], const weft_reach *reach,
@@ -159,8 +166,7 @@ static weft_code prune_by_pictures(const weft_prune_pictures pictures[3], const 
         if (i == 0 && whole && report->allowed.rmse > 0)
             continue;
         WEFT_TRY(measure(&pictures[2], report, error));
-        enough =
-            !whole || (report->measured.rmse <= report->allowed.rmse && report->measured.flip <= report->allowed.flip);
+        enough = !whole || weft_prune_holds(report);
     }
     weft_progress_report(progress, "trying what pictures allow", ATTEMPTS + 1, ATTEMPTS + 1);
     return WEFT_OK;

@@ -46,6 +46,10 @@ weft_code weft_prune(weft_player *player, const weft_reach_scene *scene, weft_pr
                      const weft_progress *progress, weft_material *material, weft_prune_report *report,
                      weft_error *error);
 
+/* Whether the measured error is within what was allowed, but for what rounding does: without its finest levels a
+ * material is sampled at places that are rounded otherwise, and pictures differ by 1e-4 of 1/255. */
+bool weft_prune_holds(const weft_prune_report *report);
+
 /* What the metadata hold of it, as `pruned`. The caller owns it; NULL where memory is short. */
 json_t *weft_prune_to_json(const weft_prune_report *report);
 

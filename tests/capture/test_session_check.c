@@ -177,6 +177,37 @@ static void photographs_of_a_bracket_are_checked_like_any(void **state)
     remove_session();
 }
 
+/* A shot that is taken again with fewer exposures leaves none of the old ones; one that nobody took is foreign. */
+static void a_bracket_that_the_journal_does_not_have_is_foreign(void **state)
+{
+    (void)state;
+    weft_session session;
+    char path[PATH_MAX];
+    int shot = 0;
+    brackets = 2;
+    capture();
+    brackets = 0;
+    assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
+    while (session.record[shot].bracket_count == 0)
+        shot++;
+    weft_session_free(&session);
+    change_a_byte(shot);
+    assert_int_equal(capture(), 1);
+    weft_session_faults faults = check();
+    assert_int_equal(faults.count, 0);
+    weft_session_faults_free(&faults);
+    assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
+    weft_session_bracket_path(&session, shot, 0, path, sizeof path);
+    weft_session_free(&session);
+    assert_int_equal(access(path, F_OK), -1);
+    scratch_store(path, "x", 1);
+    faults = check();
+    assert_int_equal(faults.count, 1);
+    expect_fault(&faults, 0, WEFT_FAULT_FOREIGN, -1, ".bracket1.tif");
+    weft_session_faults_free(&faults);
+    remove_session();
+}
+
 static bool lists(const weft_session_faults *faults, const char *file)
 {
     for (int i = 0; i < faults->count; i++) {
@@ -219,6 +250,7 @@ int main(void)
         cmocka_unit_test(every_fault_is_found_and_the_next_capture_takes_those_shots_alone),
         cmocka_unit_test(a_photograph_that_the_journal_knows_but_nobody_can_read_is_damaged),
         cmocka_unit_test(photographs_of_a_bracket_are_checked_like_any),
+        cmocka_unit_test(a_bracket_that_the_journal_does_not_have_is_foreign),
         cmocka_unit_test(files_of_others_are_foreign_and_those_of_the_camera_are_not),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

@@ -32,12 +32,15 @@ head -n 2 path.csv >one.csv
 expect_ok prune knit.weft "$@" --path one.csv -o again.weft
 expect_ok prune knit.weft "$@" --path one.csv -o twice.weft
 cmp again.weft twice.weft || fail "the same scene gives another file"
-expect_ok prune knit.weft "$@" -o still.weft --json
+expect_ok prune knit.weft "$@" --error 0 -o still.weft
+grep -q "nothing moves" out.log || fail "a still scene has other moments: $(cat out.log)"
+! grep -q "more than was allowed" out.log || fail "rounding counts as an error: $(cat out.log)"
+expect_ok prune knit.weft "$@" --error 0 -o told.weft --json
 grep -q '"event":"pruned"' out.log || fail "there is no event"
 
 # A picture is a scene.
 expect_ok render knit.weft "$@" -o shot.png
-expect_ok prune knit.weft --settings shot.png -o shot.weft
+expect_ok prune knit.weft --settings shot.png --error 0 -o shot.weft
 
 expect_error 1 "pruned for a scene before" prune again.weft "$@" -o no.weft
 printf 'time_s,pan_right\n0,30\n' >aside.csv
