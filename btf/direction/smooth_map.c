@@ -116,7 +116,11 @@ weft_code weft_smooth_map_create(const weft_smooth_map_places *places, weft_smoo
  */
 enum { TOGETHER = 16 };
 
-typedef double together[TOGETHER];
+/* A vector of the compiler's, which holds sums in registers where an array would be stored and loaded again. */
+typedef double together __attribute__((vector_size(TOGETHER * sizeof(double)), aligned(sizeof(double))));
+
+/* The number of columns is a constant where these are called: their loops are unrolled. */
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
 
 /* right = B' y for the sets from `first` on. */
 static void spread(const weft_smooth_map *map, const float *value, int first, int series_count, together *right)
@@ -131,33 +135,71 @@ static void spread(const weft_smooth_map *map, const float *value, int first, in
         }
 }
 
-static void subtract(together from, double factor, const together what)
+/* Columns that are solved for together, so that a row is read and written once for all of them. */
+enum { BLOCK = 4 };
+
+/* Element (row, column) of L, 0 below the band. */
+static inline double element(const double *band, int width, int row, int column)
 {
-    for (int set = 0; set < TOGETHER; set++)
-        from[set] -= factor * what[set];
+    return row - column <= width ? band[column * width + row] : 0;
 }
 
-static void divide(together values, double divisor)
+/* Solves L x = right for `count` columns from `first` on, and takes them out of the rows below. */
+ALWAYS_INLINE void forward(const double *band, int node_count, int width, together *right, int first, int count)
 {
-    for (int set = 0; set < TOGETHER; set++)
-        values[set] /= divisor;
+    together x[BLOCK];
+#pragma GCC unroll 4
+    for (int k = 0; k < count; k++) {
+        x[k] = right[first + k];
+#pragma GCC unroll 4
+        for (int j = 0; j < k; j++)
+            x[k] -= element(band, width, first + k, first + j) * x[j];
+        x[k] /= element(band, width, first + k, first + k);
+        right[first + k] = x[k];
+    }
+    for (int row = first + count; row < node_count && row < first + count + width; row++) {
+        together rest = right[row];
+#pragma GCC unroll 4
+        for (int k = 0; k < count; k++)
+            rest -= element(band, width, row, first + k) * x[k];
+        right[row] = rest;
+    }
+}
+
+/* Solves L' x = right for `count` columns from `first` on, where the rows below are solved. */
+ALWAYS_INLINE void backward(const double *band, int node_count, int width, together *right, int first, int count)
+{
+    together x[BLOCK];
+#pragma GCC unroll 4
+    for (int k = 0; k < count; k++)
+        x[k] = right[first + k];
+    for (int row = first + count; row < node_count && row < first + count + width; row++) {
+#pragma GCC unroll 4
+        for (int k = 0; k < count; k++)
+            x[k] -= element(band, width, row, first + k) * right[row];
+    }
+#pragma GCC unroll 4
+    for (int k = count - 1; k >= 0; k--) {
+#pragma GCC unroll 4
+        for (int j = k + 1; j < count; j++)
+            x[k] -= element(band, width, first + j, first + k) * x[j];
+        x[k] /= element(band, width, first + k, first + k);
+        right[first + k] = x[k];
+    }
 }
 
 /* L L' f = right, in place: forward, then backward substitution. */
 WEFT_HOT static void substitute(const double *band, int node_count, int width, together *right)
 {
-    for (int column = 0; column < node_count; column++) {
-        const double *below = band + (size_t)column * (size_t)(width + 1);
-        divide(right[column], below[0]);
-        for (int i = 1; i <= width && column + i < node_count; i++)
-            subtract(right[column + i], below[i], right[column]);
-    }
-    for (int column = node_count - 1; column >= 0; column--) {
-        const double *below = band + (size_t)column * (size_t)(width + 1);
-        for (int i = 1; i <= width && column + i < node_count; i++)
-            subtract(right[column], below[i], right[column + i]);
-        divide(right[column], below[0]);
-    }
+    int whole = node_count / BLOCK * BLOCK;
+    for (int first = 0; first < whole; first += BLOCK)
+        forward(band, node_count, width, right, first, BLOCK);
+    for (int column = whole; column < node_count; column++)
+        forward(band, node_count, width, right, column, 1);
+    for (int column = node_count - 1; column >= whole; column--)
+        backward(band, node_count, width, right, column, 1);
+    for (int first = whole - BLOCK; first >= 0; first -= BLOCK)
+        backward(band, node_count, width, right, first, BLOCK);
 }
 
 static void keep(const weft_smooth_map *map, together *solved, int first, int series_count, float *node)
