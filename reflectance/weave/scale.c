@@ -13,16 +13,51 @@ typedef struct kind_of_yarn {
     double share; /* sum of F aw */
 } kind_of_yarn;
 
+/* ---- Turning: sines and cosines of evenly spaced angles ---- */
+
+typedef struct turn {
+    double sine, cosine;
+} turn;
+
+static turn turn_by(double radians)
+{
+    return (turn){sin(radians), cos(radians)};
+}
+
+static turn turned(turn from, turn by)
+{
+    return (turn){from.sine * by.cosine + from.cosine * by.sine, from.cosine * by.cosine - from.sine * by.sine};
+}
+
+/* A direction with the density cos(theta) / pi; r uniform in [0, 1). */
+static weft_vec3 cosine_weighted_at(double r, turn azimuth)
+{
+    double radius = sqrt(r);
+    return weft_vec3_of((weft_real)(radius * azimuth.cosine), (weft_real)(radius * azimuth.sine),
+                        (weft_real)sqrt(1 - r));
+}
+
+/* ---- Quadrature ---- */
+
+/* The recurrence moves all angles by the same steps: rounding grows over a block only, to some 1e-13. */
 static double block_sum(const weft_prepared_segment *prepared, const double step[DIMENSIONS], int block)
 {
-    weft_real limit = prepared->filament ? (weft_real)(WEFT_PI / 2) : prepared->spine.umax;
-    double sum = 0;
+    const double round = 2 * (double)WEFT_PI;
+    double limit = prepared->filament ? (double)WEFT_PI / 2 : (double)prepared->spine.umax, sum = 0;
+    double place = recurrence_at(step[4], block * BLOCK_POINTS);
+    turn light = turn_by(round * recurrence_at(step[1], block * BLOCK_POINTS)), light_step = turn_by(round * step[1]);
+    turn view = turn_by(round * recurrence_at(step[3], block * BLOCK_POINTS)), view_step = turn_by(round * step[3]);
+    turn along = turn_by((2 * place - 1) * limit);
+    turn onward = turn_by(2 * limit * step[4]), back = turn_by(2 * limit * (step[4] - 1));
     for (int k = block * BLOCK_POINTS + 1; k <= (block + 1) * BLOCK_POINTS; k++) {
-        double r[DIMENSIONS];
-        for (int i = 0; i < DIMENSIONS; i++)
-            r[i] = recurrence_at(step[i], k);
-        weft_vec3 light = cosine_weighted(r[0], r[1]), view = cosine_weighted(r[2], r[3]);
-        sum += weft_prepared_integrand(prepared, (weft_real)(2 * r[4] - 1) * limit, light, view);
+        double before = place;
+        place = recurrence_at(step[4], k);
+        light = turned(light, light_step);
+        view = turned(view, view_step);
+        along = turned(along, place < before ? back : onward);
+        weft_angle at = {(weft_real)((2 * place - 1) * limit), (weft_real)along.sine, (weft_real)along.cosine};
+        sum += weft_prepared_integrand(prepared, at, cosine_weighted_at(recurrence_at(step[0], k), light),
+                                       cosine_weighted_at(recurrence_at(step[2], k), view));
     }
     return sum * 2 * limit;
 }

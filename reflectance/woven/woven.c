@@ -1,13 +1,27 @@
 #include "reflectance/woven/woven.h"
 #include "reflectance/woven/mirror.h"
 
-static bool staple_at(const weft_prepared_segment *prepared, weft_vec3 half, weft_real u, weft_mirror *at)
+/* Where the fibres at inclination u of a staple mirror, given its sine and cosine in `at`. */
+static bool staple_mirrors(const weft_prepared_segment *prepared, weft_vec3 half, weft_mirror *at)
 {
-    at->sin_u = sin(u);
-    at->cos_u = cos(u);
     weft_real along = half.y * at->cos_u - half.z * at->sin_u;
     weft_real across = half.y * at->sin_u + half.z * at->cos_u;
     return staple_mirror(prepared->cot_psi, half.x, along, across, at);
+}
+
+/* G fc A of a yarn of this radius; of a filament without its fade. */
+static weft_real staple_integrand(const weft_prepared_segment *prepared, const weft_mirror *at, weft_real radius,
+                                  weft_real phase)
+{
+    weft_real area = yarn_area(&prepared->segment, radius, at->cos_v) * prepared->inverse_sin_psi;
+    return area * phase * (at->light_share * at->view_share);
+}
+
+static weft_real filament_integrand(const weft_prepared_segment *prepared, const weft_mirror *at, weft_real across,
+                                    weft_real radius, weft_real phase)
+{
+    weft_real attenuation = at->light_share * at->view_share * at->cosine_sum;
+    return yarn_area(&prepared->segment, radius, at->cos_v) / across * phase * attenuation;
 }
 
 /* The point at inclination u as far as it does not depend on the highlight; beyond umax the spine ends. */
@@ -28,19 +42,18 @@ static void light_up(weft_yarn_point *point, const weft_mirror *at)
 
 static weft_yarn_point staple_point(const weft_prepared_segment *prepared, weft_real u, weft_vec3 light, weft_vec3 view)
 {
-    weft_mirror at = {0};
+    weft_mirror at = {.sin_u = sin(u), .cos_u = cos(u)};
     weft_vec3 half = weft_add(light, view);
     if (!(fabs(u) <= prepared->spine.umax))
         return (weft_yarn_point){0};
-    bool mirrors = staple_at(prepared, half, u, &at);
+    bool mirrors = staple_mirrors(prepared, half, &at);
     weft_yarn_point point = dark_point(prepared, u, prepared_phase(prepared, light, view));
     if (!mirrors || !faces_both(&at, light, view))
         return point;
     light_up(&point, &at);
-    weft_real area = yarn_area(&prepared->segment, point.radius, at.cos_v) * prepared->inverse_sin_psi;
     point.solved = atan2(at.sin_v, at.cos_v);
-    point.geometry = area / at.cosine_sum;
-    point.integrand = area * point.phase * (at.light_share * at.view_share);
+    point.geometry = yarn_area(&prepared->segment, point.radius, at.cos_v) * prepared->inverse_sin_psi / at.cosine_sum;
+    point.integrand = staple_integrand(prepared, &at, point.radius, point.phase);
     return point;
 }
 
@@ -61,32 +74,57 @@ static weft_yarn_point filament_point(const weft_prepared_segment *prepared, wef
     light_up(&point, &at);
     point.solved = u;
     point.geometry = yarn_area(&prepared->segment, point.radius, at.cos_v) / across;
-    point.attenuation *= filament_fade(prepared->segment.delta, umax, u);
-    point.integrand = point.geometry * point.phase * point.attenuation;
+    weft_real fade = filament_fade(prepared->segment.delta, umax, u);
+    point.attenuation *= fade;
+    point.integrand = filament_integrand(prepared, &at, across, point.radius, point.phase) * fade;
     return point;
-}
-
-static weft_yarn_point prepared_highlight(const weft_prepared_segment *prepared, weft_real coordinate, weft_vec3 light,
-                                          weft_vec3 view)
-{
-    weft_vec3 half;
-    if (!prepared->admissible || !half_vector(light, view, &half))
-        return (weft_yarn_point){0};
-    if (prepared->filament)
-        return filament_point(prepared, coordinate, light, view);
-    return staple_point(prepared, coordinate, light, view);
 }
 
 weft_yarn_point weft_yarn_highlight(const weft_segment *segment, weft_real coordinate, weft_vec3 light, weft_vec3 view)
 {
     weft_prepared_segment prepared = weft_segment_prepare(segment);
-    return prepared_highlight(&prepared, coordinate, light, view);
+    weft_vec3 half;
+    if (!prepared.admissible || !half_vector(light, view, &half))
+        return (weft_yarn_point){0};
+    if (prepared.filament)
+        return filament_point(&prepared, coordinate, light, view);
+    return staple_point(&prepared, coordinate, light, view);
 }
 
-weft_real weft_prepared_integrand(const weft_prepared_segment *prepared, weft_real coordinate, weft_vec3 light,
+/* What is dark comes first: it needs no radius and no phase. */
+static weft_real staple_integrand_at(const weft_prepared_segment *prepared, weft_angle u, weft_vec3 half,
+                                     weft_vec3 light, weft_vec3 view)
+{
+    const weft_spine *spine = &prepared->spine;
+    weft_mirror at = {.sin_u = u.sine, .cos_u = u.cosine};
+    if (!(fabs(u.radians) <= spine->umax) || !staple_mirrors(prepared, half, &at) || !faces_both(&at, light, view))
+        return 0;
+    weft_real radius = weft_filament_radius(prepared, spine, u.radians, u.sine, u.cosine);
+    return staple_integrand(prepared, &at, radius, prepared_phase(prepared, light, view));
+}
+
+static weft_real filament_integrand_at(const weft_prepared_segment *prepared, weft_angle v, weft_vec3 half,
+                                       weft_vec3 light, weft_vec3 view)
+{
+    const weft_spine *spine = &prepared->spine;
+    weft_mirror at = {.sin_v = v.sine, .cos_v = v.cosine};
+    weft_real across = filament_mirror(half, &at);
+    if (!(across > 0 && at.cos_u > spine->cos_umax && faces_both(&at, light, view)))
+        return 0;
+    weft_real u = atan2(half.y, half.z), radius = weft_filament_radius(prepared, spine, u, at.sin_u, at.cos_u);
+    weft_real fade = filament_fade(prepared->segment.delta, spine->umax, u);
+    return filament_integrand(prepared, &at, across, radius, prepared_phase(prepared, light, view)) * fade;
+}
+
+weft_real weft_prepared_integrand(const weft_prepared_segment *prepared, weft_angle coordinate, weft_vec3 light,
                                   weft_vec3 view)
 {
-    return prepared_highlight(prepared, coordinate, light, view).integrand;
+    weft_vec3 half;
+    if (!prepared->admissible || !half_vector(light, view, &half))
+        return 0;
+    if (prepared->filament)
+        return filament_integrand_at(prepared, coordinate, half, light, view);
+    return staple_integrand_at(prepared, coordinate, half, light, view);
 }
 
 /* Whether `x` lies in the band of `width` that shows the highlight at `centre`, kept whole within the rectangle. */
@@ -107,16 +145,15 @@ static weft_real staple_texture(const weft_prepared_segment *prepared, weft_real
 {
     const weft_segment *segment = &prepared->segment;
     weft_real u = 2 * umax * y / segment->length;
-    weft_mirror at = {0};
-    if (!staple_at(prepared, half, u, &at) || !faces_both(&at, light, view))
+    weft_mirror at = {.sin_u = sin(u), .cos_u = cos(u)};
+    if (!staple_mirrors(prepared, half, &at) || !faces_both(&at, light, view))
         return 0;
     weft_real centre = segment->width * (atan2(at.sin_v, at.cos_v) / (weft_real)WEFT_PI);
     if (!inside_band(x, centre, segment->highlight_width * segment->width, segment->width))
         return 0;
     weft_spine spine = spine_for(prepared, umax);
     weft_real radius = weft_spine_radius_at(segment, &spine, umax - fabs(u), at.sin_u, at.cos_u);
-    weft_real integrand = yarn_area(segment, radius, at.cos_v) * prepared->inverse_sin_psi *
-                          (at.light_share * at.view_share) * prepared_phase(prepared, light, view);
+    weft_real integrand = staple_integrand(prepared, &at, radius, prepared_phase(prepared, light, view));
     return 2 * umax * integrand / segment->highlight_width;
 }
 
@@ -140,9 +177,8 @@ static weft_real filament_texture(const weft_prepared_segment *prepared, weft_re
         return 0;
     weft_spine spine = spine_for(prepared, umax);
     weft_real radius = weft_filament_radius(prepared, &spine, u, at.sin_u, at.cos_u);
-    weft_real attenuation = at.light_share * at.view_share * at.cosine_sum * filament_fade(segment->delta, umax, u);
-    weft_real integrand =
-        yarn_area(segment, radius, at.cos_v) / across * attenuation * prepared_phase(prepared, light, view);
+    weft_real phase = prepared_phase(prepared, light, view), fade = filament_fade(segment->delta, umax, u);
+    weft_real integrand = filament_integrand(prepared, &at, across, radius, phase) * fade;
     return (weft_real)WEFT_PI * integrand / segment->highlight_width;
 }
 

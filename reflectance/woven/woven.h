@@ -82,8 +82,13 @@ weft_prepared_segment weft_segment_prepare(const weft_segment *segment);
 /* The spine of a segment with another umax. */
 weft_spine weft_segment_spine(const weft_segment *segment, weft_real umax);
 
+/* An angle of which the sine and the cosine are known: who steps through many angles turns them. */
+typedef struct weft_angle {
+    weft_real radians, sine, cosine;
+} weft_angle;
+
 /* G fc A as in weft_yarn_highlight. */
-weft_real weft_prepared_integrand(const weft_prepared_segment *prepared, weft_real coordinate, weft_vec3 light,
+weft_real weft_prepared_integrand(const weft_prepared_segment *prepared, weft_angle coordinate, weft_vec3 light,
                                   weft_vec3 view);
 
 /* weft_segment_reflectance and weft_segment_texture. `umax` replaces that of the segment and must leave it admissible.
