@@ -119,10 +119,21 @@ static double squared(double x, double y)
     return x * x + y * y;
 }
 
+/* Whether it is certain that the lens has not turned back anywhere within a radius. The least eigenvalue of the slope
+ * is at least 1 + k1 r^2 + ... or 1 + 3 k1 r^2 + 5 k2 r^4 + 7 k3 r^6, less what the decentring can take from it. */
+static bool is_straight_within(const weft_camera *c, double r2)
+{
+    double k1 = fmin(c->k1, 0), k2 = fmin(c->k2, 0), k3 = fmin(c->k3, 0);
+    double radial = 1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3));
+    return radial - 8 * (fabs(c->p1) + fabs(c->p2)) * sqrt(r2) > 0.01;
+}
+
 /* How far a straight way goes from a point on the side of the axis before the lens turns back: 1 is all of it. Looked
  * at every twentieth of the focal length. */
 static double way_on_the_side_of_the_axis(const weft_camera *c, weft_pixel from, weft_pixel to)
 {
+    if (is_straight_within(c, fmax(squared(from.x, from.y), squared(to.x, to.y))))
+        return 1;
     double length = sqrt(squared(to.x - from.x, to.y - from.y));
     int steps = length < 50 ? (int)ceil(20 * length) : 1000;
     for (int i = 1; i <= steps; i++) {

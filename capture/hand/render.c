@@ -33,9 +33,10 @@ typedef struct view {
 
 /* How a block of pixels is to be drawn. */
 typedef struct block_kind {
-    bool traced;  /* something may stand before the plane, or the rays miss it */
-    bool shaded;  /* the lamp may be hidden */
-    double reach; /* half of the square of the plane that a pixel sees at most, mm */
+    bool traced;              /* something may stand before the plane, or the rays miss it */
+    weft_snap_solids before;  /* what may stand there */
+    weft_snap_solids shading; /* what may hide the lamp */
+    double reach;             /* half of the square of the plane that a pixel sees at most, mm */
 } block_kind;
 
 static weft_vec3 turn(const view *v, weft_vec3 d)
@@ -84,10 +85,10 @@ static weft_rgb look_along(const view *v, const weft_snap_ray *ray, const weft_s
                            const block_kind *kind)
 {
     if (kind->traced)
-        return weft_snap_scene_look(v->scene, ray->from, ray->along, chance);
+        return weft_snap_scene_look(v->scene, ray->from, ray->along, chance, kind->before, kind->shading);
     weft_vec3 point = weft_add(ray->from, weft_scale(ray->along, -ray->from.z / ray->along.z));
     point.z = 0;
-    return weft_snap_scene_shade(v->scene, point, weft_scale(ray->along, -1), chance, kind->shaded);
+    return weft_snap_scene_shade(v->scene, point, weft_scale(ray->along, -1), chance, kind->shading);
 }
 
 /* Whether the first rays of a pixel agree so well that more would say the same. */
@@ -186,10 +187,10 @@ static weft_rgb draw_pixel(const view *v, int x, int y, const block_kind *kind)
         return trace_pixel(v, x, y, EDGE_RAYS, true, kind);
     if (weft_snap_sheet_reflectance(v->scene->sheet, point.x, point.y) < 0)
         return trace_pixel(v, x, y, CONTENT_RAYS, true, kind);
-    if (kind->shaded)
+    if (kind->shading)
         return trace_pixel(v, x, y, SHADOW_RAYS, true, kind);
     weft_vec3 toward_eye = weft_unit(weft_subtract(v->eye, point));
-    weft_rgb seen = weft_snap_scene_shade(v->scene, point, toward_eye, &(weft_snap_chance){{0, 0}, 0, 0}, false);
+    weft_rgb seen = weft_snap_scene_shade(v->scene, point, toward_eye, &(weft_snap_chance){{0, 0}, 0, 0}, 0);
     return plus((weft_rgb){0, 0, 0}, seen, weft_snap_lens_vignetting(v->lens, x, y));
 }
 
@@ -210,10 +211,10 @@ static block_kind kind_of_block(const view *v, int x0, int y0, int x1, int y1)
     double radius = 0, side = 0;
     for (int i = 0; i < 4; i++) {
         if (!meet_plane(v, i == 1 || i == 2 ? x1 : x0, i < 2 ? y0 : y1, &corner[i]) || corner[i].z != 0)
-            return (block_kind){.traced = true, .shaded = true};
+            return (block_kind){.traced = true, .before = WEFT_SNAP_ALL_SOLIDS, .shading = WEFT_SNAP_ALL_SOLIDS};
         middle = weft_add(middle, weft_scale(corner[i], 0.25));
     }
-    block_kind kind = {false, false, 0};
+    block_kind kind = {0};
     for (int i = 0; i < 4; i++) {
         radius = fmax(radius, weft_length(weft_subtract(corner[i], middle)));
         side = fmax(side, weft_length(weft_subtract(corner[i], corner[(i + 1) % 4])));
@@ -221,9 +222,9 @@ static block_kind kind_of_block(const view *v, int x0, int y0, int x1, int y1)
     for (int i = 0; i < 4; i++)
         kind.reach = fmax(kind.reach, reach_of(v, corner[i], side / BLOCK));
     double around = 1.2 * radius + 2 * kind.reach;
-    kind.traced = weft_snap_scene_may_hide(v->scene, middle, around, v->eye, v->lens->pupil_radius_mm);
-    kind.shaded =
-        kind.traced || weft_snap_scene_may_hide(v->scene, middle, around, v->scene->lamp.at, v->scene->lamp.radius_mm);
+    kind.before = weft_snap_scene_between(v->scene, middle, around, v->eye, v->lens->pupil_radius_mm);
+    kind.shading = weft_snap_scene_between(v->scene, middle, around, v->scene->lamp.at, v->scene->lamp.radius_mm);
+    kind.traced = kind.before != 0;
     return kind;
 }
 

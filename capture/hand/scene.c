@@ -72,33 +72,40 @@ void weft_snap_scene_put_hand(weft_snap_scene *scene, weft_vec3 middle, weft_vec
     put(scene, (weft_snap_solid){middle, weft_add(middle, weft_scale(along, -260)), 30, false, skin});
 }
 
-bool weft_snap_scene_may_hide(const weft_snap_scene *scene, weft_vec3 p, double reach, weft_vec3 q, double q_reach)
+static bool holds(weft_snap_solids solids, int i)
+{
+    return (solids >> i & 1) != 0;
+}
+
+weft_snap_solids weft_snap_scene_between(const weft_snap_scene *scene, weft_vec3 p, double reach, weft_vec3 q,
+                                         double q_reach)
 {
     double wider = fmax(reach, q_reach);
+    weft_snap_solids between = 0;
     for (int i = 0; i < scene->solid_count; i++) {
         if (weft_snap_solid_distance(&scene->solid[i], p, q) < scene->solid[i].radius_mm + wider)
-            return true;
+            between |= (weft_snap_solids)1 << i;
     }
-    return false;
+    return between;
 }
 
-static bool is_hidden(const weft_snap_scene *scene, weft_vec3 p, weft_vec3 q)
+static bool is_hidden(const weft_snap_scene *scene, weft_vec3 p, weft_vec3 q, weft_snap_solids by)
 {
     for (int i = 0; i < scene->solid_count; i++) {
-        if (weft_snap_solid_hides(&scene->solid[i], p, q))
+        if (holds(by, i) && weft_snap_solid_hides(&scene->solid[i], p, q))
             return true;
     }
     return false;
 }
 
-/* The first solid on a ray, or -1. */
-static int first_solid(const weft_snap_scene *scene, weft_vec3 from, weft_vec3 along, double *distance,
-                       weft_vec3 *normal)
+/* The first solid of `met` on a ray, or -1. */
+static int first_solid(const weft_snap_scene *scene, weft_snap_solids met, weft_vec3 from, weft_vec3 along,
+                       double *distance, weft_vec3 *normal)
 {
     int first = -1;
     for (int i = 0; i < scene->solid_count; i++) {
         weft_vec3 at_normal;
-        double t = weft_snap_solid_meet(&scene->solid[i], from, along, &at_normal);
+        double t = holds(met, i) ? weft_snap_solid_meet(&scene->solid[i], from, along, &at_normal) : -1;
         if (t > 1e-6 && (first < 0 || t < *distance)) {
             first = i;
             *distance = t;
@@ -146,12 +153,15 @@ weft_rgb weft_snap_scene_illuminance(const weft_snap_scene *scene, weft_vec3 poi
     return sum(scaled(scene->lamp.colour, lamp), grey(window * fmax(toward.z, 0)));
 }
 
-/* 1 where the place on the lamp that chance chose sees the point. */
-static double lamp_seen(const weft_snap_scene *scene, weft_vec3 point, const weft_snap_chance *chance)
+/* 1 where the place on the lamp that chance chose sees the point past the solids of `shading`. */
+static double lamp_seen(const weft_snap_scene *scene, weft_vec3 point, const weft_snap_chance *chance,
+                        weft_snap_solids shading)
 {
     double disc[2];
+    if (shading == 0)
+        return 1;
     weft_snap_disc(chance->lamp[0], chance->lamp[1], disc);
-    return is_hidden(scene, point, weft_snap_lamp_place(&scene->lamp, point, disc)) ? 0 : 1;
+    return is_hidden(scene, point, weft_snap_lamp_place(&scene->lamp, point, disc), shading) ? 0 : 1;
 }
 
 static weft_rgb shade_content(const weft_snap_scene *scene, weft_vec3 point, weft_vec3 toward_eye,
@@ -194,9 +204,9 @@ static weft_rgb shade_sheet(const weft_snap_scene *scene, weft_vec3 point, weft_
 }
 
 weft_rgb weft_snap_scene_shade(const weft_snap_scene *scene, weft_vec3 point, weft_vec3 toward_eye,
-                               const weft_snap_chance *chance, bool may_be_shaded)
+                               const weft_snap_chance *chance, weft_snap_solids shading)
 {
-    double seen = may_be_shaded ? lamp_seen(scene, point, chance) : 1;
+    double seen = lamp_seen(scene, point, chance, shading);
     double reflectance = weft_snap_sheet_reflectance(scene->sheet, point.x, point.y);
     if (reflectance < 0)
         return shade_content(scene, point, toward_eye, chance, seen);
@@ -210,7 +220,7 @@ static weft_rgb shade_solid(const weft_snap_scene *scene, const weft_snap_solid 
     double squared = weft_dot(d, d), cosine = fmax(weft_dot(normal, d), 0) / sqrt(squared);
     double lamp = cosine > 0 ? weft_snap_lamp_toward(&scene->lamp, point) * cosine / (squared * 1e-6) : 0;
     if (lamp > 0)
-        lamp *= lamp_seen(scene, above, chance);
+        lamp *= lamp_seen(scene, above, chance, WEFT_SNAP_ALL_SOLIDS);
     weft_rgb light = scaled(scene->lamp.colour, lamp);
     /* What the sheet below sends up. */
     weft_rgb below =
@@ -234,11 +244,11 @@ static weft_rgb look_at_room(const weft_snap_scene *scene, weft_vec3 from, weft_
 }
 
 static weft_rgb look(const weft_snap_scene *scene, weft_vec3 from, weft_vec3 along, const weft_snap_chance *chance,
-                     int mirrors)
+                     weft_snap_solids may_meet, weft_snap_solids shading, int mirrors)
 {
     double distance = INFINITY, to_plane = along.z < 0 ? -from.z / along.z : INFINITY;
     weft_vec3 normal = {0, 0, 1};
-    int solid = first_solid(scene, from, along, &distance, &normal);
+    int solid = first_solid(scene, may_meet, from, along, &distance, &normal);
     double to_lamp = weft_snap_lamp_meet(&scene->lamp, from, along);
     if (to_lamp > 0 && to_lamp < to_plane && (solid < 0 || to_lamp < distance))
         return scaled(scene->lamp.colour, weft_snap_lamp_luminance(&scene->lamp));
@@ -246,7 +256,7 @@ static weft_rgb look(const weft_snap_scene *scene, weft_vec3 from, weft_vec3 alo
         if (!isfinite(to_plane))
             return look_at_room(scene, from, along);
         weft_vec3 point = weft_add(from, weft_scale(along, to_plane));
-        return weft_snap_scene_shade(scene, weft_vec3_of(point.x, point.y, 0), weft_scale(along, -1), chance, true);
+        return weft_snap_scene_shade(scene, weft_vec3_of(point.x, point.y, 0), weft_scale(along, -1), chance, shading);
     }
     weft_vec3 at = weft_add(from, weft_scale(along, distance));
     const weft_snap_solid *met = &scene->solid[solid];
@@ -255,11 +265,12 @@ static weft_rgb look(const weft_snap_scene *scene, weft_vec3 from, weft_vec3 alo
     if (mirrors == 0)
         return grey(scene->wall_luminance);
     weft_vec3 mirrored = weft_subtract(along, weft_scale(normal, 2 * weft_dot(along, normal)));
-    return product(met->reflectance, look(scene, at, mirrored, chance, mirrors - 1));
+    return product(met->reflectance,
+                   look(scene, at, mirrored, chance, WEFT_SNAP_ALL_SOLIDS, WEFT_SNAP_ALL_SOLIDS, mirrors - 1));
 }
 
 weft_rgb weft_snap_scene_look(const weft_snap_scene *scene, weft_vec3 from, weft_vec3 along,
-                              const weft_snap_chance *chance)
+                              const weft_snap_chance *chance, weft_snap_solids met, weft_snap_solids shading)
 {
-    return look(scene, from, along, chance, 3);
+    return look(scene, from, along, chance, met, shading, 3);
 }

@@ -29,6 +29,11 @@ typedef struct weft_snap_scene {
     int solid_count;
 } weft_snap_scene;
 
+/* Some of the solids of a scene: bit i is solid i. */
+typedef uint32_t weft_snap_solids;
+
+#define WEFT_SNAP_ALL_SOLIDS (~(weft_snap_solids)0)
+
 /* Random numbers of a sample: where on the lamp it looks, and the path that it follows in a stitch. */
 typedef struct weft_snap_chance {
     double lamp[2]; /* unit square */
@@ -36,21 +41,22 @@ typedef struct weft_snap_chance {
     uint32_t index;
 } weft_snap_chance;
 
-/* Radiance (luminance, cd/m^2, times a colour) along a ray, `along` a unit vector away from the eye. Pure. */
+/* Radiance (luminance, cd/m^2, times a colour) along a ray, `along` a unit vector away from the eye. No solid but those
+ * of `met` is met by the ray itself, and none but those of `shading` hides the lamp from the plane where that ray meets
+ * it: who knows no better names all. Pure. */
 weft_rgb weft_snap_scene_look(const weft_snap_scene *scene, weft_vec3 from, weft_vec3 along,
-                              const weft_snap_chance *chance);
+                              const weft_snap_chance *chance, weft_snap_solids met, weft_snap_solids shading);
 
-/* The same for a point of the plane z = 0 that nothing hides from the eye; `lit` false where it is known to see nothing
- * but the whole lamp: no shadow is looked for. */
+/* The same for a point of the plane z = 0 that nothing hides from the eye. */
 weft_rgb weft_snap_scene_shade(const weft_snap_scene *scene, weft_vec3 point, weft_vec3 toward_eye,
-                               const weft_snap_chance *chance, bool may_be_shaded);
+                               const weft_snap_chance *chance, weft_snap_solids shading);
 
 /* Illuminance of the plane at a point, unshaded: lamp, window, and the lamp's mirror images in the balls, by colour. */
 weft_rgb weft_snap_scene_illuminance(const weft_snap_scene *scene, weft_vec3 point);
 
-/* Whether a solid may stand between a place within `reach` of `p` and one within `q_reach` of `q`. It errs on the safe
- * side. */
-bool weft_snap_scene_may_hide(const weft_snap_scene *scene, weft_vec3 p, double reach, weft_vec3 q, double q_reach);
+/* The solids that may stand between a place within `reach` of `p` and one within `q_reach` of `q`, and some more. */
+weft_snap_solids weft_snap_scene_between(const weft_snap_scene *scene, weft_vec3 p, double reach, weft_vec3 q,
+                                         double q_reach);
 
 /* Adds the balls and the pin of the sheet at their places. */
 void weft_snap_scene_put_balls(weft_snap_scene *scene);

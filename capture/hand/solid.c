@@ -29,6 +29,8 @@ double weft_snap_solid_meet(const weft_snap_solid *s, weft_vec3 from, weft_vec3 
         if (candidate[i] > 0 && (t < 0 || candidate[i] < t))
             t = candidate[i];
     }
+    if (t < 0)
+        return t;
     weft_vec3 at = weft_add(from, weft_scale(along, t)), axis = weft_subtract(s->b, s->a);
     double length2 = weft_dot(axis, axis);
     double part = length2 > 0 ? weft_clamp(weft_dot(weft_subtract(at, s->a), axis) / length2, 0, 1) : 0;

@@ -130,6 +130,30 @@ static void where_the_lens_turns_back_the_inverse_stays_on_the_axis_side(void **
                 isfinite(weft_camera_undistort(&c, (weft_pixel){NAN, 1}).x)); /* it ends */
 }
 
+/* Each coefficient alone turns a lens back: k2 where 1 + 5 k2 r^4 = 0, k3 where 1 + 7 k3 r^6 = 0, p1 below and p2 to
+ * the left where 1 - 6 p r = 0. */
+static void whatever_turns_the_lens_back_is_seen(void **state)
+{
+    (void)state;
+    const struct {
+        double k2, k3, p1, p2, turn, x, y; /* the way: x, y */
+    } lens[] = {{-0.3, 0, 0, 0, pow(1.5, -1.0 / 4), 0.6, 0.8},
+                {0, -0.3, 0, 0, pow(2.1, -1.0 / 6), 0.8, -0.6},
+                {0, 0, 0.1, 0, 1 / 0.6, 0, -1},
+                {0, 0, 0, 0.1, 1 / 0.6, -1, 0}};
+    for (size_t i = 0; i < sizeof lens / sizeof lens[0]; i++) {
+        weft_camera c = {.width = 2000, .height = 2000, .fx = 1000, .fy = 1000};
+        c.k2 = lens[i].k2;
+        c.k3 = lens[i].k3;
+        c.p1 = lens[i].p1;
+        c.p2 = lens[i].p2;
+        for (double radius = 100; radius < 4000; radius += 100) {
+            weft_pixel p = weft_camera_undistort(&c, (weft_pixel){radius * lens[i].x, radius * lens[i].y});
+            assert_true(hypot(p.x, p.y) < 1000 * lens[i].turn);
+        }
+    }
+}
+
 static void what_is_written_is_read(void **state)
 {
     (void)state;
@@ -189,6 +213,7 @@ int main(void)
         cmocka_unit_test(a_lens_distorts_as_opencv_does),
         cmocka_unit_test(the_inverse_is_that_of_opencv_and_exact),
         cmocka_unit_test(where_the_lens_turns_back_the_inverse_stays_on_the_axis_side),
+        cmocka_unit_test(whatever_turns_the_lens_back_is_seen),
         cmocka_unit_test(what_is_written_is_read),
         cmocka_unit_test(a_bad_file_is_refused_with_its_fault),
     };

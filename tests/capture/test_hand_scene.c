@@ -33,7 +33,10 @@ static double seen_at(const stage *s, double x, double y)
     double sum = 0;
     for (int i = 0; i < 64; i++) {
         weft_snap_chance chance = {{(i % 8 + 0.5) / 8, (i / 8 + 0.5) / 8}, 1, (uint32_t)i};
-        sum += weft_snap_scene_look(&s->scene, weft_vec3_of(x, y, 5), weft_vec3_of(0, 0, -1), &chance).r / 64;
+        sum += weft_snap_scene_look(&s->scene, weft_vec3_of(x, y, 5), weft_vec3_of(0, 0, -1), &chance,
+                                    WEFT_SNAP_ALL_SOLIDS, WEFT_SNAP_ALL_SOLIDS)
+                   .r /
+               64;
     }
     return sum;
 }
@@ -261,7 +264,9 @@ static void a_ball_mirrors_the_window(void **state)
     weft_vec3 beside_bars = weft_add(s.scene.window.middle, weft_scale(s.scene.window.across, 200));
     weft_vec3 at = shortest_way(middle, eye, beside_bars);
     weft_vec3 along = weft_unit(weft_subtract(at, eye));
-    double seen = weft_snap_scene_look(&s.scene, eye, along, &(weft_snap_chance){{0.5, 0.5}, 1, 0}).g;
+    double seen = weft_snap_scene_look(&s.scene, eye, along, &(weft_snap_chance){{0.5, 0.5}, 1, 0},
+                                       WEFT_SNAP_ALL_SOLIDS, WEFT_SNAP_ALL_SOLIDS)
+                      .g;
     assert_float_equal(seen, 0.66 * 77, 1e-3);
 }
 

@@ -264,28 +264,40 @@ static weft_homography look_from(const weft_camera *camera, weft_angles view, co
 
 enum { SUBPIXELS = 4 };
 
-static double area_of(const raster *r, const weft_target_sheet_settings *s, const weft_homography *back, int x, int y)
+/* `back` leads from a pixel to a dot of the page. */
+static double area_of(const raster *r, const weft_homography *back, int x, int y)
 {
     double sum = 0;
     for (int i = 0; i < SUBPIXELS * SUBPIXELS; i++) {
-        weft_pixel at = weft_homography_apply(back, x + (i % SUBPIXELS + 0.5) / SUBPIXELS - 0.5,
-                                              y + (i / SUBPIXELS + 0.5) / SUBPIXELS - 0.5);
-        weft_pixel dot = dot_of(s, at.x, at.y);
+        weft_pixel dot = weft_homography_apply(back, x + (i % SUBPIXELS + 0.5) / SUBPIXELS - 0.5,
+                                               y + (i / SUBPIXELS + 0.5) / SUBPIXELS - 0.5);
         bool on_paper = dot.x >= 0 && dot.y >= 0 && dot.x < r->width - 1 && dot.y < r->height - 1;
-        sum += on_paper ? r->grey[lround(dot.y) * r->width + lround(dot.x)] : 60; /* a table */
+        sum += on_paper ? r->grey[(long)(dot.y + 0.5) * r->width + (long)(dot.x + 0.5)] : 60; /* a table */
     }
     return sum / (SUBPIXELS * SUBPIXELS);
+}
+
+/* From a pixel to a dot of the page, where `h` leads from the page in mm to a pixel. */
+static weft_homography dots_of(const weft_target_sheet_settings *s, const weft_homography *h)
+{
+    weft_homography back = weft_homography_inverse(h);
+    weft_pixel origin = dot_of(s, 0, 0);
+    for (int k = 0; k < 3; k++) {
+        back.m[0][k] = back.m[0][k] / mm_per_dot + origin.x * back.m[2][k];
+        back.m[1][k] = -back.m[1][k] / mm_per_dot + origin.y * back.m[2][k];
+    }
+    return back;
 }
 
 /* Paper at 180 of 255, falling off to one side as under a lamp, with noise of 3. */
 static void photograph(const raster *r, const weft_target_sheet_settings *s, const weft_homography *h, raster *picture)
 {
-    weft_homography back = weft_homography_inverse(h);
+    weft_homography back = dots_of(s, h);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < HIGH; y++) {
         unsigned state = (unsigned)y * 2654435761u + 1;
         for (int x = 0; x < WIDE; x++) {
-            double light = 0.7 * (1 - 0.4 * x / WIDE), value = 8 + area_of(r, s, &back, x, y);
+            double light = 0.7 * (1 - 0.4 * x / WIDE), value = 8 + area_of(r, &back, x, y);
             picture->grey[(long)y * WIDE + x] = (uint8_t)fmin(255, fmax(0, light * value + 3 * noise_of(&state)));
         }
     }

@@ -98,40 +98,46 @@ typedef struct shot {
 /* Grey of the page, of a table beside it. */
 static double page_at(const printed_page *page, double x, double y)
 {
-    int column = (int)floor((x + page->width_mm / 2) * DPI / 25.4),
-        row = (int)floor((page->height_mm / 2 - y) * DPI / 25.4);
+    double column = (x + page->width_mm / 2) * (DPI / 25.4), row = (page->height_mm / 2 - y) * (DPI / 25.4);
     bool inside = column >= 0 && row >= 0 && column < page->image.width && row < page->image.height;
-    return inside ? 25 + 190 * (double)page->image.pixels[3 * ((long)row * page->image.width + column)] : 90;
+    return inside ? 25 + 190 * (double)page->image.pixels[3 * ((long)row * page->image.width + (long)column)] : 90;
 }
 
 /* Where a ray of the camera meets the page, which is bent along x. */
-static double see(const shot *s, const weft_pose *pose, double ray_x, double ray_y)
+static double see(const shot *s, weft_vec3 from, weft_vec3 along)
 {
-    const double(*r)[3] = pose->rotation;
-    weft_vec3 from = weft_pose_camera_position(pose);
-    double dx = r[0][0] * ray_x + r[1][0] * ray_y + r[2][0], dy = r[0][1] * ray_x + r[1][1] * ray_y + r[2][1];
-    double dz = r[0][2] * ray_x + r[1][2] * ray_y + r[2][2], x = 0, y = 0, z = 0;
+    double x = 0, y = 0, z = 0;
     for (int i = 0; i < (s->bend_mm > 0 ? 6 : 1); i++) {
-        double t = (z - from.z) / dz, across;
-        x = from.x + t * dx;
-        y = from.y + t * dy;
+        double t = (z - from.z) / along.z, across;
+        x = from.x + t * along.x;
+        y = from.y + t * along.y;
         across = 2 * x / s->page->width_mm;
         z = s->bend_mm * fmax(0, 1 - across * across);
     }
     return page_at(s->page, x, y);
 }
 
-static double gather(const shot *s, const weft_pose *pose, int column, int row)
+/* The ray of a corner of a pixel, in the frame of the page. */
+static weft_vec3 turned(const weft_pose *pose, const float ray[2])
+{
+    const double(*r)[3] = pose->rotation;
+    double x = (double)ray[0], y = (double)ray[1];
+    return weft_vec3_of(r[0][0] * x + r[1][0] * y + r[2][0], r[0][1] * x + r[1][1] * y + r[2][1],
+                        r[0][2] * x + r[1][2] * y + r[2][2]);
+}
+
+static double gather(const shot *s, const weft_pose *pose, weft_vec3 from, int column, int row)
 {
     int samples = s->blur_px > 4 ? 8 : 3;
     const float(*ray)[2] = (const float(*)[2])rays + (long)row * (WIDE + 1) + column;
+    weft_vec3 corner = turned(pose, ray[0]);
+    weft_vec3 right = weft_subtract(turned(pose, ray[1]), corner);
+    weft_vec3 down = weft_subtract(turned(pose, ray[WIDE + 1]), corner);
     double sum = 0;
     for (int i = 0; i < samples * samples; i++) {
         double u = 0.5 + s->blur_px * ((i % samples + 0.5) / samples - 0.5);
-        double v = 0.5 + s->blur_px * ((i / samples + 0.5) / samples - 0.5), at[2];
-        for (int k = 0; k < 2; k++)
-            at[k] = (1 - u - v) * (double)ray[0][k] + u * (double)ray[1][k] + v * (double)ray[WIDE + 1][k];
-        sum += see(s, pose, at[0], at[1]);
+        double v = 0.5 + s->blur_px * ((i / samples + 0.5) / samples - 0.5);
+        sum += see(s, from, weft_add(corner, weft_add(weft_scale(right, u), weft_scale(down, v))));
     }
     return sum / (samples * samples);
 }
@@ -145,11 +151,12 @@ static void take(const shot *s, const char *name)
     weft_pose pose = weft_pose_of_view(view, s->distance_mm);
     pose.translation.x += s->right_mm;
     pose.translation.y += s->down_mm;
+    weft_vec3 from = weft_pose_camera_position(&pose);
 #pragma omp parallel for schedule(dynamic, 16)
     for (int row = 0; row < HIGH; row++) {
         unsigned state = (unsigned)row * 2654435761u + (unsigned)s->azimuth_deg;
         for (int column = 0; column < WIDE; column++) {
-            double value = gather(s, &pose, column, row) + 2 * plate_normal(&state);
+            double value = gather(s, &pose, from, column, row) + 2 * plate_normal(&state);
             for (int k = 0; k < 3; k++)
                 image.pixels[3 * ((long)row * WIDE + column) + k] = (float)(value / 255);
         }
