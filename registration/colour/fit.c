@@ -14,6 +14,10 @@ enum { ROUNDS = 20, LIGHT_GREYS = 4, MOST_UNKNOWNS = 3 * (WEFT_COLOUR_ROOT_TERMS
 /* CIEDE2000 from which a patch counts less. */
 static const double usual_difference = 2;
 
+/* What root terms are held to, as if that had been measured: a chart says nothing of colours beyond its own, and large
+ * terms that cancel each other in it do not cancel there. */
+static const double usual_root = 0.5;
+
 typedef struct equations {
     int unknowns;
     double matrix[MOST_UNKNOWNS * MOST_UNKNOWNS], right[MOST_UNKNOWNS];
@@ -114,6 +118,13 @@ static void derivatives(const weft_colour_fit *fit, const double term[WEFT_COLOU
         row[3 * free_terms + 1 + d] = -colour[channel] * place[d];
 }
 
+static void add_equation(const double row[MOST_UNKNOWNS], double weight, equations *e)
+{
+    for (int i = 0; i < e->unknowns; i++)
+        for (int j = 0; j <= i; j++)
+            e->matrix[i * e->unknowns + j] += weight * row[i] * row[j];
+}
+
 static void add_patch(const weft_colour_fit *fit, const double light[3], const double wanted[3], int patch,
                       double weight, equations *e)
 {
@@ -128,10 +139,24 @@ static void add_patch(const weft_colour_fit *fit, const double light[3], const d
             right += metric[m][c] * wanted[c];
         for (int i = 0; i < e->unknowns; i++)
             whole[i] = metric[m][0] * row[0][i] + metric[m][1] * row[1][i] + metric[m][2] * row[2][i];
-        for (int i = 0; i < e->unknowns; i++) {
+        for (int i = 0; i < e->unknowns; i++)
             e->right[i] += weight * whole[i] * right;
-            for (int j = 0; j <= i; j++)
-                e->matrix[i * e->unknowns + j] += weight * whole[i] * whole[j];
+        add_equation(whole, weight, e);
+    }
+}
+
+/* Each root term of a row is 0. The last one is the sum of the row less the others. */
+static void hold_roots(const weft_colour_fit *fit, equations *e)
+{
+    const double weight = usual_difference * usual_difference / (usual_root * usual_root);
+    int free_terms = fit->terms - 1;
+    for (int c = 0; c < 3; c++) {
+        for (int k = WEFT_COLOUR_LINEAR_TERMS; k < fit->terms; k++) {
+            double row[MOST_UNKNOWNS] = {0};
+            for (int i = 0; i < free_terms; i++)
+                row[c * free_terms + i] = k < free_terms ? i == k : -1;
+            row[3 * free_terms] = k == free_terms;
+            add_equation(row, weight, e);
         }
     }
 }
@@ -162,6 +187,8 @@ static bool improve(const weft_chart_colours *light, const weft_chart_colours *r
         if (used[i])
             add_patch(fit, light->rgb[i], reference->rgb[i], i, 1 / (1 + off * off), &e);
     }
+    if (fit->terms == WEFT_COLOUR_ROOT_TERMS)
+        hold_roots(fit, &e);
     if (!weft_cholesky_factor(e.unknowns, e.unknowns, e.matrix))
         return false;
     weft_cholesky_solve(e.unknowns, e.unknowns, e.matrix, e.right);

@@ -62,6 +62,8 @@ char *weft_registration_provenance(const weft_session *session, const weft_regis
                              r->settings.height, "tolerance_mm", r->settings.limits.tolerance_mm, "least_correlation",
                              r->settings.limits.least_correlation, "images", r->image_count, "white_levels_estimated",
                              r->estimated_whites, "faults", pack_faults(session, r), "stays", stays);
+    if (session->colour.terms > 0)
+        weft_json_put(&root, "colour", weft_colour_pack(&session->colour));
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(root);
     return text;
