@@ -122,14 +122,17 @@ double weft_ciede2000(const double lab[3], const double other[3])
 
 /* ---- Near a colour ---- */
 
-/* Differences of Lab at `lab` as lightness, chroma and hue over their tolerances. */
+/* Differences of Lab at `lab` as lightness l, chroma c and hue h over their tolerances; then l^2 + c^2 + h^2 + r c h,
+ * with r the rotation, as a sum of squares: of l, c + r h / 2 and h sqrt(1 - r^2 / 4). */
 static void scale_at(const double lab[3], double scale[3][3])
 {
     double stretch = 1.5 - 0.5 * chroma_share(hypot(lab[1], lab[2])), a = stretch * lab[1], b = lab[2];
     double chroma = hypot(a, b), x = chroma > 0 ? a / chroma : 1, y = chroma > 0 ? b / chroma : 0;
     tolerances s = tolerances_at(lab[0], chroma, hue_deg(a, b));
+    double half = s.rotation / 2, rest = sqrt(1 - half * half);
+    const double c[2] = {stretch * x / s.chroma, y / s.chroma}, h[2] = {-stretch * y / s.hue, x / s.hue};
     const double at[3][3] = {
-        {1 / s.lightness, 0, 0}, {0, stretch * x / s.chroma, y / s.chroma}, {0, -stretch * y / s.hue, x / s.hue}};
+        {1 / s.lightness, 0, 0}, {0, c[0] + half * h[0], c[1] + half * h[1]}, {0, rest * h[0], rest * h[1]}};
     for (int i = 0; i < 9; i++)
         scale[i / 3][i % 3] = at[i / 3][i % 3];
 }

@@ -13,8 +13,7 @@ void weft_linear_srgb_of_lab_d50(const double lab[3], double rgb[3]);
  * Symmetric; 0 for equal colours. Pure. */
 double weft_ciede2000(const double lab[3], const double other[3]);
 
-/* CIEDE2000 near a colour is a length: |metric d| for a small difference d of linear sRGB, but for the term that turns
- * blue hues, which is left out. Pure. */
+/* CIEDE2000 near a colour is a length: |metric d| for a small difference d of linear sRGB. Pure. */
 void weft_ciede2000_metric(const double rgb[3], double metric[3][3]);
 
 #endif

@@ -14,10 +14,6 @@ enum { ROUNDS = 20, LIGHT_GREYS = 4, MOST_UNKNOWNS = 3 * (WEFT_COLOUR_ROOT_TERMS
 /* CIEDE2000 from which a patch counts less. */
 static const double usual_difference = 2;
 
-/* What root terms are held to, as if that had been measured: a chart says nothing of colours beyond its own, and large
- * terms that cancel each other in it do not cancel there. */
-static const double usual_root = 0.5;
-
 typedef struct equations {
     int unknowns;
     double matrix[MOST_UNKNOWNS * MOST_UNKNOWNS], right[MOST_UNKNOWNS];
@@ -145,22 +141,6 @@ static void add_patch(const weft_colour_fit *fit, const double light[3], const d
     }
 }
 
-/* Each root term of a row is 0. The last one is the sum of the row less the others. */
-static void hold_roots(const weft_colour_fit *fit, equations *e)
-{
-    const double weight = usual_difference * usual_difference / (usual_root * usual_root);
-    int free_terms = fit->terms - 1;
-    for (int c = 0; c < 3; c++) {
-        for (int k = WEFT_COLOUR_LINEAR_TERMS; k < fit->terms; k++) {
-            double row[MOST_UNKNOWNS] = {0};
-            for (int i = 0; i < free_terms; i++)
-                row[c * free_terms + i] = k < free_terms ? i == k : -1;
-            row[3 * free_terms] = k == free_terms;
-            add_equation(row, weight, e);
-        }
-    }
-}
-
 /* The sum of the rows is exposure that the greys have missed: it goes into the white. */
 static void adopt(const equations *e, weft_colour_fit *fit)
 {
@@ -187,8 +167,6 @@ static bool improve(const weft_chart_colours *light, const weft_chart_colours *r
         if (used[i])
             add_patch(fit, light->rgb[i], reference->rgb[i], i, 1 / (1 + off * off), &e);
     }
-    if (fit->terms == WEFT_COLOUR_ROOT_TERMS)
-        hold_roots(fit, &e);
     if (!weft_cholesky_factor(e.unknowns, e.unknowns, e.matrix))
         return false;
     weft_cholesky_solve(e.unknowns, e.unknowns, e.matrix, e.right);

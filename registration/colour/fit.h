@@ -26,7 +26,7 @@ typedef struct weft_colour_fit {
 /* Fits matrix, white and slope to the patches that are used, less patch `but` (-1: to all of them). Minimises
  *     sum over patches of w |J (matrix term(light / (white exp(slope x))) - reference)|^2
  * where J is the metric of CIEDE2000 at the reference and w = 1 / (1 + (difference / 2)^2): a patch that is far off, by
- * a stain or by glare, hardly counts. Root terms are held to 0 +- 0.5. The colour of the white is that of the four
+ * a stain or by glare, hardly counts. The colour of the white is that of the four
  * lightest greys, without the highest and the lowest. Errors: WEFT_BAD_INPUT naming `path` where too few greys are used
  * or the equations are singular. */
 weft_code weft_colour_fit_run(const weft_chart_light *chart, int terms, int but, const char *path, weft_colour_fit *fit,
