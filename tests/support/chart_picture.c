@@ -22,9 +22,9 @@ static const double published[COLUMNS][ROWS][3] = {
 
 chart_picture chart_picture_usual(void)
 {
-    return (chart_picture){.width = 720,
-                           .height = 480,
-                           .corner = {{110, 75}, {600, 95}, {620, 395}, {95, 410}},
+    return (chart_picture){.width = 540,
+                           .height = 360,
+                           .corner = {{82, 56}, {450, 71}, {465, 296}, {71, 308}},
                            .camera = &spectral_cameras[0],
                            .lamp = &spectral_lamps[0],
                            .exposure = 0.8,

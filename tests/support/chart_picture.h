@@ -22,7 +22,7 @@ typedef struct chart_picture {
     unsigned seed;
 } chart_picture;
 
-/* An upright chart that fills most of a picture of 720 x 480 pixels, seen a little from the side, under the first lamp
+/* An upright chart that fills most of a picture of 540 x 360 pixels, seen a little from the side, under the first lamp
  * by the first camera. */
 chart_picture chart_picture_usual(void);
 
