@@ -149,12 +149,12 @@ static weft_code choose(const weft_chart_light *chart, int terms, const char *pa
 
 /* ---- The report ---- */
 
-static void tell_patches(const weft_chart_light *chart, const weft_colour_fit *fit, weft_colour_report *report)
+static void tell_patches(const weft_colour_fit *fit, weft_colour_report *report)
 {
     for (int i = 0; i < WEFT_CHART_PATCHES; i++) {
         weft_colour_patch *patch = &report->patch[i];
         for (int c = 0; c < 3; c++) {
-            patch->camera[c] = chart->decoded.rgb[i][c] / fit->white[c];
+            patch->camera[c] = fit->camera.rgb[i][c];
             patch->srgb[c] = fit->srgb.rgb[i][c];
         }
         patch->fitted = fit->difference[i];
@@ -198,7 +198,7 @@ static weft_code calibrate(const weft_chart_shot *shot, const char *path, const 
     WEFT_TRY(check_tone(&chart, path, error));
     WEFT_TRY(choose(&chart, settings->terms, path, report, &fit, error));
     WEFT_TRY(check_colours(report, path, error));
-    tell_patches(&chart, &fit, report);
+    tell_patches(&fit, report);
     return warn(report, error);
 }
 

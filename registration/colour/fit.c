@@ -86,6 +86,7 @@ static void predict(const weft_chart_colours *light, const weft_chart_colours *r
         double term[WEFT_COLOUR_ROOT_TERMS], lab[3], wanted[3];
         terms_of(fit, light->rgb[i], i, term);
         for (int c = 0; c < 3; c++) {
+            fit->camera.rgb[i][c] = term[c];
             fit->srgb.rgb[i][c] = 0;
             for (int k = 0; k < fit->terms; k++)
                 fit->srgb.rgb[i][c] += fit->matrix[c][k] * term[k];

@@ -19,7 +19,8 @@ typedef struct weft_colour_fit {
     double white[3];                          /* light of a perfect white diffuser in the middle of the chart */
     double slope[2];                          /* of the logarithm of the lamp's light, per half width of the chart,
                                                  to the right and down */
-    weft_chart_colours srgb;                  /* of every patch, used or not */
+    weft_chart_colours camera;                /* of every patch, used or not: its light over white and lamp */
+    weft_chart_colours srgb;                  /* the same, as the matrix makes it */
     double difference[WEFT_CHART_PATCHES];    /* CIEDE2000 of it to the reference */
 } weft_colour_fit;
 
