@@ -24,8 +24,8 @@ void weft_colour_terms(int terms, const double rgb[3], double term[WEFT_COLOUR_R
 void weft_colour_apply(const weft_colour *colour, float *rgb, long count)
 {
     for (long i = 0; colour->terms > 0 && i < count; i++) {
-        double term[WEFT_COLOUR_ROOT_TERMS],
-            camera[3] = {(double)rgb[3 * i], (double)rgb[3 * i + 1], (double)rgb[3 * i + 2]};
+        double term[WEFT_COLOUR_ROOT_TERMS] = {0},
+               camera[3] = {(double)rgb[3 * i], (double)rgb[3 * i + 1], (double)rgb[3 * i + 2]};
         weft_colour_terms(colour->terms, camera, term);
         for (int c = 0; c < 3; c++) {
             double sum = 0;
