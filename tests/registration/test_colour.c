@@ -258,6 +258,13 @@ static void what_is_wrong_is_named_and_nothing_written(void **state)
     assert_refused("mirror.exr", "the colour chart is mirrored");
     scratch_store("text.jpg", "no picture", 10);
     assert_refused("text.jpg", "text.jpg");
+    weft_image strip; /* the finder would make it 600000 pixels long */
+    assert_int_equal(weft_image_create(3000, 5, &strip, NULL), WEFT_OK);
+    for (int i = 0; i < 3 * 3000 * 5; i++)
+        strip.pixels[i] = (float)(i * 7919 % 1000) / 1000;
+    assert_int_equal(weft_image_write("strip.exr", &strip, NULL, NULL), WEFT_OK);
+    weft_image_free(&strip);
+    assert_refused("strip.exr", "no colour chart is seen");
     assert_refused("missing.jpg", "missing.jpg");
     assert_refused(".", "session.json");
     expect_weft("colour leaf.jpg -o ./leaf.jpg", 2, "would overwrite");
