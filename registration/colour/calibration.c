@@ -45,7 +45,7 @@ static weft_code check_exposure(const weft_chart_shot *shot, const weft_chart_li
     double least = fmin(white[0], fmin(white[1], white[2]));
     if (!chart->used[WHITE])
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': the white patch of the chart is clipped: expose less", path);
-    if (shot->clipped_at > 0 && !(least >= least_white))
+    if (shot->is_scaled && !(least >= least_white))
         return weft_fail(error, WEFT_BAD_INPUT,
                          "'%s': too dark: the white patch of the chart reaches %.1f %% of full scale, not %.0f %%: "
                          "expose more",

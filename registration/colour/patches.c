@@ -92,7 +92,7 @@ static void measure(const weft_chart_shot *shot, const weft_chart_grid *grid, in
         bool is_clipped = false;
         for (int c = 0; c < 3; c++) {
             value[c][count] = (double)fminf(light[c], 1e6f);
-            is_clipped = is_clipped || (shot->clipped_at > 0 && light[c] >= shot->clipped_at);
+            is_clipped = is_clipped || light[c] >= shot->clipped_at;
         }
         clipped += is_clipped;
         count++;

@@ -10,14 +10,27 @@
 /* Encoded values from which an integer file is clipped: as weft_hand_defaults has it for JPEG. */
 static const float clipped_encoded = 250.0f / 255;
 
+/* Camera raw comes as floats up to 1, at which it is clipped; floats that exceed 1 are none. */
+static const float clipped_raw = 0.98f;
+
 /* ---- A file ---- */
+
+static float clipping_of_floats(const weft_image *image)
+{
+    float highest = 0;
+    long samples = 3L * image->width * image->height;
+    for (long i = 0; i < samples; i++)
+        highest = fmaxf(highest, image->pixels[i]);
+    return highest <= 1 ? clipped_raw : INFINITY;
+}
 
 static weft_code read_file(const char *path, bool linear, weft_chart_shot *shot, weft_error *error)
 {
     weft_image_kind kind;
     WEFT_TRY(weft_image_read(path, &shot->light, &kind, error));
     shot->has_tone = kind == WEFT_IMAGE_INTEGER && !linear;
-    shot->clipped_at = kind == WEFT_IMAGE_FLOAT ? 0 : clipped_encoded;
+    shot->is_scaled = kind == WEFT_IMAGE_INTEGER;
+    shot->clipped_at = shot->is_scaled ? clipped_encoded : clipping_of_floats(&shot->light);
     if (!shot->has_tone)
         return WEFT_OK;
     shot->clipped_at = weft_linear_of_srgb(clipped_encoded);
@@ -80,6 +93,7 @@ static weft_code read_session(const char *folder, weft_chart_shot *shot, weft_er
                          : weft_fail(error, WEFT_BAD_INPUT, "the session '%s' has no photograph yet", folder);
     weft_session_free(&session);
     shot->clipped_at = 1e6f;
+    shot->is_scaled = true;
     return code;
 }
 

@@ -9,7 +9,8 @@
 typedef struct weft_chart_shot {
     weft_image light; /* in proportion to light, 1 at full scale; of a file with a tone curve, as if that were sRGB's */
     bool has_tone;    /* an integer file that was not said to be linear: its tone curve is still to be found */
-    float clipped_at; /* value of `light` from which one is clipped; 0: the file holds floats, none is */
+    float clipped_at; /* value of `light` from which one is clipped */
+    bool is_scaled;   /* 1 is what the sensor holds; floats may have any scale */
 } weft_chart_shot;
 
 /* Reads a photograph of any kind that Weft reads, or the first photograph taken of a session, above black and without

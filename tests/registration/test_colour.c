@@ -243,6 +243,12 @@ static void what_is_wrong_is_named_and_nothing_written(void **state)
     picture.exposure = 1.6;
     chart_picture_write_jpeg(&picture, "bright.jpg");
     assert_refused("bright.jpg", "the white patch of the chart is clipped");
+    weft_image image = chart_picture_render(&picture);
+    for (int i = 0; i < 3 * image.width * image.height; i++)
+        image.pixels[i] = fminf(image.pixels[i], 1);
+    assert_int_equal(weft_image_write("raw.exr", &image, NULL, NULL), WEFT_OK);
+    weft_image_free(&image);
+    assert_refused("raw.exr", "the white patch of the chart is clipped");
     picture.exposure = 0.03;
     chart_picture_write_jpeg(&picture, "dark.jpg");
     assert_refused("dark.jpg", "too dark");
