@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "registration/outcome/lamp_drift.h"
 #include "registration/registration.h"
 #include "registration/report/tables.h"
 
@@ -76,6 +77,12 @@ static weft_code say_outcome(const register_command *command, const weft_session
             "calibration of %.2f %% (standard error %.2f)",
             weft_bend_depth_mm(&r->found.bend), r->found.bend.standard_error_mm,
             100 * weft_vignetting_loss(&r->found.vignetting), 100 * r->found.vignetting.standard_error);
+    weft_lamp_drift drift = weft_lamp_drift_of(r);
+    if (drift.stays > 1)
+        weft_command_say(
+            &command->common,
+            "the lamp: %+.2f to %+.2f %% over %d stays, by the white patches, taken out of each photograph",
+            100 * drift.lowest, 100 * drift.highest, drift.stays);
     if (session->colour.terms > 0)
         weft_command_say(&command->common,
                          "colours: linear sRGB; a patch of the chart that was left out is met within %.2f CIEDE2000 in "
