@@ -218,6 +218,7 @@ static void a_lamp_that_drifts_is_taken_out_and_told(void **state)
     double first = weft_stay_white_of(&registration, 0).level[1], last = weft_stay_white_of(&registration, 2).level[1];
     weft_lamp_drift drift = weft_lamp_drift_of(&registration);
     assert_int_equal(drift.stays, PLATE_SESSION_VIEWS);
+    assert_true(fabs(first / registration.white[0].level[1] - 1) < 0.02);
     assert_true(fabs(last / first - 0.9) < 0.01);
     /* Against the mean of 1, 1 and 0.9. */
     assert_true(fabs(drift.lowest - (0.9 * 3 / 2.9 - 1)) < 0.01 && fabs(drift.highest - (3 / 2.9 - 1)) < 0.01);
