@@ -43,6 +43,7 @@ weft_code weft_capture_begin(const weft_capture_request *request, weft_rig *rig,
     *capture =
         (weft_capture){.rig = rig, .brackets = request->brackets, .status = request->status, .held = {.lock = -1}};
     WEFT_TRY(weft_session_of_plan(request->folder, request->plan, rig, &planned, error));
+    planned.colour = request->colour;
     weft_code code = weft_session_hold(&planned, progress, &capture->held, error);
     weft_session_free(&planned);
     WEFT_TRY(code);

@@ -127,6 +127,15 @@ static weft_code check_settings(const weft_session *wanted, const weft_session *
     return code;
 }
 
+/* Numbers come back from the file as they went in, to the last digit or nearly. */
+static bool same_colour(const weft_colour *a, const weft_colour *b)
+{
+    bool same = a->terms == b->terms;
+    for (int i = 0; same && i < 3 * a->terms; i++)
+        same = nearly(a->matrix[i / a->terms][i % a->terms], b->matrix[i / a->terms][i % a->terms]);
+    return same;
+}
+
 static weft_code check_same(const weft_session *wanted, const weft_session *found, weft_error *error)
 {
     if (strcmp(wanted->rig, found->rig) != 0)
@@ -140,6 +149,10 @@ static weft_code check_same(const weft_session *wanted, const weft_session *foun
     if (shot >= 0)
         return weft_fail(error, WEFT_BAD_INPUT, "session '%s' was begun with another plan: shot %d differs",
                          wanted->folder, shot);
+    if (wanted->colour.terms > 0 && !same_colour(&wanted->colour, &found->colour))
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "session '%s' was begun with another colour: go on without one, and give it to weft register",
+                         wanted->folder);
     return WEFT_OK;
 }
 

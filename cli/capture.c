@@ -18,6 +18,7 @@ typedef struct capture_command {
     weft_virtual_request rig;
     weft_truth_request truth;
     const char *rig_file; /* "virtual" or NULL: the virtual rig as it stands */
+    const char *colour;   /* file */
     bool dry_run, check;
 } capture_command;
 
@@ -49,6 +50,9 @@ static const weft_option option_table[] = {
          "to 4 (default: 0)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(capture_command, request.brackets), .low = 0,
      .high = WEFT_SESSION_MAX_BRACKETS},
+    {"colour", .argument = "COLOUR.json",
+     .help = "The colours of the camera under the lamp, from weft colour: kept in the session for registration",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, colour)},
     {"status", .argument = "FOLDER", .help = "Write a page there that tells how it goes, anew at every view",
      .kind = WEFT_OPTION_FOLDER, .offset = offsetof(capture_command, request.status)},
     {"dry-run", .help = "Say what would be done and what it needs; write nothing", .kind = WEFT_OPTION_FLAG,
@@ -323,8 +327,10 @@ static int run(int argc, char **argv)
                                .truth = {.size = 64, .image_count = WEFT_UBO81_COUNT}};
     weft_arguments_parse(&weft_command_capture, argc, argv, &command);
     weft_error error = {0};
-    weft_code code = is_rig_file(command.rig_file) ? capture_with_laboratory(&command, &error)
-                                                   : capture_with_virtual_rig(&command, &error);
+    weft_code code = command.colour ? weft_colour_read(command.colour, &command.request.colour, &error) : WEFT_OK;
+    if (code == WEFT_OK)
+        code = is_rig_file(command.rig_file) ? capture_with_laboratory(&command, &error)
+                                             : capture_with_virtual_rig(&command, &error);
     return weft_command_exit("capture", &command.common, code, &error);
 }
 

@@ -10,7 +10,7 @@
 
 typedef struct photographs_command {
     weft_common_options common;
-    const char *input, *output, *report_folder, *lens, *lights;
+    const char *input, *output, *report_folder, *lens, *colour, *lights;
     double opening_mm, paper_reflectance;
     weft_hand_settings settings;
 } photographs_command;
@@ -30,6 +30,9 @@ static const weft_option option_table[] = {
      .offset = offsetof(photographs_command, settings.width), .high = LARGEST_SIZE},
     {"lens", .argument = "LENS.json", .help = "The lens, from weft lens (default: found in the photographs)",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(photographs_command, lens)},
+    {"colour", .argument = "COLOUR.json",
+     .help = "The colours of the camera under the lamp, from weft colour (default: those of the camera are kept)",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(photographs_command, colour)},
     {"flash", .help = "The lamp is the camera's flash, or fixed to the camera", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(photographs_command, settings.flash)},
     {"balls", .argument = "MM", .help = "Diameter of the mirror balls on the sheet; 0: there are none (default: 20)",
@@ -67,6 +70,11 @@ static void say_outcome(const photographs_command *command, const weft_hand *han
     weft_command_say(&command->common,
                      "lens: focal length %.1f pixels, k1 %.4f, k2 %.4f; markers lie %.2f pixels off, RMS", camera->fx,
                      camera->k1, camera->k2, hand->lens.rms_px);
+    if (command->settings.colour)
+        weft_command_say(&command->common,
+                         "colours: linear sRGB; a patch of the chart that was left out is met within %.2f CIEDE2000 in "
+                         "the mean",
+                         command->settings.colour->left_out.mean);
     weft_command_say(&command->common, "%s: %d x %d texels, %d of %d photographs, %.0f s", command->output,
                      command->settings.width, command->settings.height, hand->used_count, hand->count, hand->seconds);
 }
@@ -88,10 +96,15 @@ static int run(int argc, char **argv)
     weft_hand hand;
     weft_error error = {0};
     weft_lens lens;
+    weft_colour colour;
     weft_light_list lights = {0};
     weft_code code = command.lens ? weft_lens_read(command.lens, &lens, &error) : WEFT_OK;
     if (command.lens)
         command.settings.lens = &lens.camera;
+    if (code == WEFT_OK && command.colour)
+        code = weft_colour_read(command.colour, &colour, &error);
+    if (command.colour)
+        command.settings.colour = &colour;
     if (code == WEFT_OK && command.lights)
         code = weft_light_list_read(command.lights, &lights, &error);
     if (command.lights)

@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "registration/outcome/lamp_drift.h"
 #include "registration/registration.h"
 #include "registration/report/tables.h"
 
@@ -8,7 +9,7 @@
 
 typedef struct register_command {
     weft_common_options common;
-    const char *input, *output, *report_folder;
+    const char *input, *output, *report_folder, *colour;
     int width, height;
     bool allow_unfinished;
 } register_command;
@@ -24,6 +25,10 @@ static const weft_option option_table[] = {
      .offset = offsetof(register_command, output)},
     {"size", 's', "WxH", "Texels of the opening (default: 64x64)", .kind = WEFT_OPTION_SIZE,
      .offset = offsetof(register_command, width), .high = LARGEST_SIZE},
+    {"colour", .argument = "COLOUR.json",
+     .help =
+         "The colours of the camera under the lamp, from weft colour (default: those that the session holds, if any)",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(register_command, colour)},
     {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
      .offset = offsetof(register_command, report_folder)},
     {"allow-unfinished", .help = "Register what there is of a session that is not finished", .kind = WEFT_OPTION_FLAG,
@@ -72,6 +77,17 @@ static weft_code say_outcome(const register_command *command, const weft_session
             "calibration of %.2f %% (standard error %.2f)",
             weft_bend_depth_mm(&r->found.bend), r->found.bend.standard_error_mm,
             100 * weft_vignetting_loss(&r->found.vignetting), 100 * r->found.vignetting.standard_error);
+    weft_lamp_drift drift = weft_lamp_drift_of(r);
+    if (drift.stays > 1)
+        weft_command_say(
+            &command->common,
+            "the lamp: %+.2f to %+.2f %% over %d stays, by the white patches, taken out of each photograph",
+            100 * drift.lowest, 100 * drift.highest, drift.stays);
+    if (session->colour.terms > 0)
+        weft_command_say(&command->common,
+                         "colours: linear sRGB; a patch of the chart that was left out is met within %.2f CIEDE2000 in "
+                         "the mean",
+                         session->colour.left_out.mean);
     if (command->report_folder)
         weft_command_say(&command->common, "report: %s/index.html", command->report_folder);
     return WEFT_OK;
@@ -93,7 +109,10 @@ static int run(int argc, char **argv)
     settings.height = command.height;
     settings.allow_unfinished = command.allow_unfinished;
     settings.report_folder = command.report_folder;
-    code = weft_register_session(&session, command.output, &settings, &progress, &registration, &error);
+    if (command.colour)
+        code = weft_colour_read(command.colour, &session.colour, &error);
+    if (code == WEFT_OK)
+        code = weft_register_session(&session, command.output, &settings, &progress, &registration, &error);
     if (code == WEFT_OK) {
         code = say_outcome(&command, &session, &registration, &error);
         weft_registration_free(&registration);

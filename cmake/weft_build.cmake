@@ -53,7 +53,7 @@ pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 pkg_check_modules(EXIF REQUIRED IMPORTED_TARGET libexif)
 find_package(embree 3 REQUIRED)
 find_package(Ceres REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video videoio aruco)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc calib3d video videoio aruco mcc)
 
 # ---- Rooms ----
 #

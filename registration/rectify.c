@@ -164,6 +164,7 @@ static weft_code rectify_photograph(job *j, int index, bench *b, bool *done, wef
         weft_resampler_apply(&j->resampler, samples, exposure.black_level, exposure.full_scale, b->texel, b->mask);
     weft_reflectance_of_raw(white, &exposure, &j->rectifier->sight->bend, session->target.opening_mm,
                             j->resampler.width, j->resampler.height, b->texel);
+    weft_colour_apply(&session->colour, b->texel, (long)texel_count(j));
     *done = true;
     return put(j, shot, b, error);
 }

@@ -56,11 +56,14 @@ static json_t *pack_session(const weft_session *s)
     json_t *settings = json_loads(s->rig_settings ? s->rig_settings : "{}", 0, &ignored);
     if (!settings && errno != ENOMEM)
         settings = json_object();
-    return json_pack("{si ss so so so sf sf si si so so so}", "weft_session", SESSION_VERSION, "rig", s->rig, "sample",
-                     weft_json_text(s->sample, strlen(s->sample)), "rig_settings", settings, "camera",
-                     weft_camera_pack(&s->camera), "camera_distance_mm", s->camera_distance_mm, "light_distance_mm",
-                     s->light_distance_mm, "bits", s->bits, "black_level", s->black_level, "noise",
-                     pack_noise(&s->noise), "target", pack_target(&s->target), "plan", pack_plan(s));
+    json_t *root = json_pack("{si ss so so so sf sf si si so so so}", "weft_session", SESSION_VERSION, "rig", s->rig,
+                             "sample", weft_json_text(s->sample, strlen(s->sample)), "rig_settings", settings, "camera",
+                             weft_camera_pack(&s->camera), "camera_distance_mm", s->camera_distance_mm,
+                             "light_distance_mm", s->light_distance_mm, "bits", s->bits, "black_level", s->black_level,
+                             "noise", pack_noise(&s->noise), "target", pack_target(&s->target), "plan", pack_plan(s));
+    if (s->colour.terms > 0)
+        weft_json_put(&root, "colour", weft_colour_pack(&s->colour));
+    return root;
 }
 
 weft_code weft_session_create(const weft_session *session, weft_error *error)
@@ -197,6 +200,8 @@ static weft_code unpack_session(json_t *root, const char *path, weft_session *s,
                          path, (long long)version, SESSION_VERSION);
     WEFT_TRY(unpack_fields(root, path, s, error));
     WEFT_TRY(check_values(s, path, error));
+    if (json_object_get(root, "colour"))
+        WEFT_TRY(weft_colour_unpack(json_object_get(root, "colour"), path, &s->colour, error));
     return unpack_plan(json_object_get(root, "plan"), path, s, error);
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/status.h"
 #include "btf/session/camera.h"
+#include "btf/session/colour.h"
 #include "btf/session/target.h"
 
 #include <stdbool.h>
@@ -58,6 +59,7 @@ typedef struct weft_session {
     int black_level;                              /* raw value of no light */
     weft_sensor_noise noise;
     weft_target target;
+    weft_colour colour; /* of the camera under the lamp; terms 0: not known */
     int shot_count;
     weft_shot *shot;          /* [shot_count], in the order of the plan */
     weft_shot_record *record; /* [shot_count] */

@@ -31,7 +31,7 @@ typedef struct work {
 
 weft_hand_settings weft_hand_defaults(void)
 {
-    return (weft_hand_settings){weft_target_printed(50), 256, 256, 20, 30, false, false, 250.0 / 255, NULL, NULL};
+    return (weft_hand_settings){weft_target_printed(50), 256, 256, 20, 30, false, false, 250.0 / 255, NULL, NULL, NULL};
 }
 
 void weft_hand_free(weft_hand *hand)

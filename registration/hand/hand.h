@@ -5,6 +5,7 @@
 #define WEFT_REGISTRATION_HAND_HAND_H
 
 #include "base/progress.h"
+#include "btf/session/colour.h"
 #include "registration/hand/lamp.h"
 #include "registration/hand/lens.h"
 
@@ -17,6 +18,7 @@ typedef struct weft_hand_settings {
     bool linear;                   /* integer files hold linear values; else a tone curve is found */
     double clipped_at;             /* encoded value of an integer file, 0..1, from which a sample counts as clipped */
     const weft_camera *lens;       /* NULL: found in the photographs */
+    const weft_colour *colour;     /* of the camera under the lamp; NULL: not known */
     const weft_light_list *lights; /* what is known of lamps and views beforehand; NULL: nothing */
 } weft_hand_settings;
 

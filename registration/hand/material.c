@@ -76,8 +76,8 @@ static weft_code invert_vignetting(work *w, weft_error *error)
     return WEFT_OK;
 }
 
-/* Divides weighted sums of light by what a perfect white diffuser would show at each texel; sets the mask where the
- * quotient is beyond half floats. */
+/* Divides weighted sums of light by what a perfect white diffuser would show at each texel, and turns the colours of
+ * the camera into linear sRGB where they are known; sets the mask where the quotient is beyond half floats. */
 static void normalise(const weft_hand_settings *settings, const weft_lamp_place *lamp, const float *texel,
                       weft_half *half, uint8_t *mask)
 {
@@ -88,8 +88,13 @@ static void normalise(const weft_hand_settings *settings, const weft_lamp_place 
             double side = settings->target.opening_mm, dx = l.x - ((x + 0.5) / settings->width - 0.5) * side;
             double dy = l.y - (0.5 - (y + 0.5) / settings->height) * side;
             double nearness = weft_dot(l, l) / (dx * dx + dy * dy + l.z * l.z) * WEFT_HAND_FULL_SCALE;
+            float rgb[3];
+            for (int c = 0; c < 3; c++)
+                rgb[c] = (float)((double)texel[3 * at + c] / (lamp->level[c] * nearness));
+            if (settings->colour)
+                weft_colour_apply(settings->colour, rgb, 1);
             for (int c = 0; c < 3; c++) {
-                half[3 * at + c] = weft_half_of_float((float)((double)texel[3 * at + c] / (lamp->level[c] * nearness)));
+                half[3 * at + c] = weft_half_of_float(rgb[c]);
                 if (!isfinite(weft_float_of_half(half[3 * at + c])))
                     mask[at] |= WEFT_MASK_MISSING;
             }
@@ -187,6 +192,8 @@ static char *provenance(const work *w)
         "width", c->width, "height", c->height, "fx", c->fx, "fy", c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2",
         c->k2, "vignetting", c->vignetting[0], c->vignetting[1], c->vignetting[2], "opening_mm",
         w->settings->target.opening_mm, "ink_over_paper", w->hand->lamps.ink, "tone", tone, "photographs", photographs);
+    if (w->settings->colour)
+        weft_json_put(&root, "colour", weft_colour_pack(w->settings->colour));
     char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
     json_decref(root);
     return text;

@@ -1,4 +1,4 @@
-#include "registration/outcome/outcome.h"
+#include "registration/outcome/lamp_drift.h"
 
 #include "base/text/json_text.h"
 #include "btf/session/camera_json.h"
@@ -18,6 +18,9 @@ static json_t *pack_stay(const weft_session *session, const weft_registration *r
     weft_json_put(&packed, "plate_mm_to_undistorted_pixels",
                   json_pack("[[fff][fff][fff]]", m[0][0], m[0][1], m[0][2], m[1][0], m[1][1], m[1][2], m[2][0], m[2][1],
                             m[2][2]));
+    weft_stay_white white = weft_stay_white_of(r, stay);
+    if (white.photographs > 0)
+        weft_json_put(&packed, "white_level", json_pack("[fff]", white.level[0], white.level[1], white.level[2]));
     if (pose->remark[0])
         weft_json_put(&packed, "remark", json_string(pose->remark));
     return packed;
@@ -62,6 +65,8 @@ char *weft_registration_provenance(const weft_session *session, const weft_regis
                              r->settings.height, "tolerance_mm", r->settings.limits.tolerance_mm, "least_correlation",
                              r->settings.limits.least_correlation, "images", r->image_count, "white_levels_estimated",
                              r->estimated_whites, "faults", pack_faults(session, r), "stays", stays);
+    if (session->colour.terms > 0)
+        weft_json_put(&root, "colour", weft_colour_pack(&session->colour));
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(root);
     return text;

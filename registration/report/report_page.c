@@ -17,6 +17,9 @@ static weft_code write_summary(weft_page *page, const weft_session *session, con
     weft_page_tile(page, "texels: random error, median stay", "%.4f", all.median_uncertainty);
     weft_page_tile(page, "texels: random error, worst stay", "%.4f", all.worst_uncertainty);
     weft_page_tile(page, "median shift against the rig's promise", "%.3f mm", all.median_shift_mm);
+    if (session->colour.terms > 0)
+        weft_page_tile(page, "CIEDE2000: linear sRGB, of a chart's patch left out", "%.2f",
+                       session->colour.left_out.mean);
     weft_page_tile(page, "time taken", "%.0f s", r->seconds);
     fputs("</div>\n", page->html);
     return WEFT_OK;

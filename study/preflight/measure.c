@@ -4,6 +4,9 @@
 
 #include <stdlib.h>
 
+/* Share of an exposure that is short enough beside it to tell whether values grow with it. */
+static const double longest_brief = 0.6;
+
 static const weft_pose_limits pose_limits = {.tolerance_mm = 20, .least_correlation = 0.5};
 
 void weft_preflight_note(weft_preflight_check *check, weft_preflight_kind kind, double value, double limit,
@@ -61,6 +64,17 @@ static double relative_noise(const weft_session *session, const int *pixel, int 
     return level > 0 ? sqrt(variance / 2) / (level / count) : INFINITY;
 }
 
+/* How far a shorter exposure of the white patches is from its share of the longer one. What is seen without the lamp is
+ * taken out of both: that is no fault of the camera. */
+static double departure_from_linear(const weft_session *session, const int *pixel, int count,
+                                    const weft_preflight_photographs *p)
+{
+    double unlit = mean_level(session, pixel, count, p->unlit);
+    double whole = mean_level(session, pixel, count, p->first) - unlit;
+    double brief = mean_level(session, pixel, count, p->brief) - unlit * p->brief_share;
+    return fabs(brief / fmax(whole * p->brief_share, 1e-6) - 1);
+}
+
 static void measure_values(const weft_session *session, const weft_meter *meter, weft_angles view,
                            const weft_preflight_photographs *p, weft_preflight_check *check)
 {
@@ -75,6 +89,8 @@ static void measure_values(const weft_session *session, const weft_meter *meter,
     note(check, WEFT_CHECK_WHITE_CLIPPED, share_at_full_scale(session, meter->white, meter->white_count, p->first),
          view);
     note(check, WEFT_CHECK_NOISE, relative_noise(session, meter->white, meter->white_count, p->first, p->second), view);
+    if (p->brief_share < longest_brief && share_at_full_scale(session, meter->white, meter->white_count, p->first) == 0)
+        note(check, WEFT_CHECK_LINEARITY, departure_from_linear(session, meter->white, meter->white_count, p), view);
     note(check, WEFT_CHECK_STRAY, unlit / fmax(white, 1e-6), view);
 }
 

@@ -6,9 +6,11 @@
 #include "registration/pose/prediction.h"
 #include "study/preflight/preflight.h"
 
-/* Three photographs of a pose, [height][width][3] raw. */
+/* Photographs of a pose, [height][width][3] raw. */
 typedef struct weft_preflight_photographs {
     const uint16_t *first, *second, *unlit; /* the same exposure, the last one without the lamp */
+    const uint16_t *brief;
+    double brief_share; /* exposure of `brief` over that of the others; 1: the camera has no shorter one */
 } weft_preflight_photographs;
 
 /* Measures the pose of `shot` and keeps in `check` what is worse than what is there. Errors: WEFT_SYSTEM;

@@ -61,12 +61,14 @@ static void check_calibration(const char *lens, weft_preflight *result)
 
 /* ---- Photographs ---- */
 
+enum { PHOTOGRAPHS = 4 };
+
 typedef struct flight {
     weft_rig *rig;
     const weft_session *session;
     weft_sight sight;
     weft_shooting shooting;
-    uint16_t *samples; /* three photographs */
+    uint16_t *samples; /* [PHOTOGRAPHS][height][width][3] */
     const weft_progress *progress;
     weft_preflight *result;
 } flight;
@@ -76,8 +78,19 @@ static size_t sample_count(const weft_session *session)
     return (size_t)session->camera.width * (size_t)session->camera.height * 3;
 }
 
-/* A second photograph just as the first was, and one without the lamp. */
-static weft_code repeat(flight *f, double exposure_s, weft_error *error)
+/* A quarter of the exposure, as far as the shutter goes; *share receives what the camera made of it. */
+static weft_code expose_briefly(flight *f, double exposure_s, double *share, weft_error *error)
+{
+    weft_rig_camera *camera = &f->rig->camera;
+    double brief_s = fmax(exposure_s / 4, f->rig->settings.shortest_exposure_s), read_back_s = 0;
+    WEFT_TRY(camera->expose(camera->device, f->shooting.last_frame + 3, brief_s,
+                            f->samples + 3 * sample_count(f->session), &read_back_s, error));
+    *share = read_back_s / exposure_s;
+    return WEFT_OK;
+}
+
+/* A second photograph just as the first was, a shorter one, and one without the lamp. */
+static weft_code repeat(flight *f, double exposure_s, double *brief_share, weft_error *error)
 {
     weft_rig_camera *camera = &f->rig->camera;
     weft_rig_light *light = &f->rig->light;
@@ -86,6 +99,7 @@ static weft_code repeat(flight *f, double exposure_s, weft_error *error)
     WEFT_TRY(light->power(light->device, true, error));
     WEFT_TRY(
         camera->expose(camera->device, f->shooting.last_frame + 1, exposure_s, f->samples + size, &ignored, error));
+    WEFT_TRY(expose_briefly(f, exposure_s, brief_share, error));
     WEFT_TRY(light->power(light->device, false, error));
     return camera->expose(camera->device, f->shooting.last_frame + 2, exposure_s, f->samples + 2 * size, &ignored,
                           error);
@@ -95,9 +109,11 @@ static weft_code visit(flight *f, int shot, int number, weft_error *error)
 {
     size_t size = sample_count(f->session);
     weft_shot_record record;
+    double brief_share = 1;
     WEFT_TRY(weft_shooting_take(&f->shooting, shot, f->samples, &record, error));
-    WEFT_TRY(repeat(f, record.exposure_s, error));
-    const weft_preflight_photographs photographs = {f->samples, f->samples + size, f->samples + 2 * size};
+    WEFT_TRY(repeat(f, record.exposure_s, &brief_share, error));
+    const weft_preflight_photographs photographs = {f->samples, f->samples + size, f->samples + 2 * size,
+                                                    f->samples + 3 * size, brief_share};
     weft_sheet_put(f->session, number, &photographs, &f->result->sheet);
     return weft_preflight_measure(f->session, &f->sight, shot, number == 0, &photographs, f->result->check, error);
 }
@@ -120,7 +136,7 @@ static weft_code visit_all(flight *f, weft_error *error)
 static weft_code fly(flight *f, weft_error *error)
 {
     const weft_session *session = f->session;
-    size_t bytes = 3 * sample_count(session) * sizeof *f->samples;
+    size_t bytes = PHOTOGRAPHS * sample_count(session) * sizeof *f->samples;
     WEFT_TRY(weft_sight_create(&session->camera, &session->target, session->camera.fx / session->camera_distance_mm,
                                &f->sight, error));
     f->samples = malloc(bytes);

@@ -52,6 +52,14 @@ grep -q "dome.lp:4," said || fail "another row is doubted: $(cat said)"
 "$weft" photographs linear -o linear.btf.h5 --opening 40 --size 32x32 -q 2>/dev/null
 "$python" "$here/photographs.py" linear || fail "set linear is wrong"
 
+# A colour is applied to reflectance, once.
+residual='{"mean": 1, "worst": 2}'
+echo "{\"weft_colour\": 1, \"model\": \"linear\", \"ciede2000\": {\"fitted\": $residual, \"left_out\": $residual}," \
+    "\"matrix\": [[1.5, -0.4, -0.1], [-0.2, 1.3, -0.1], [0, -0.5, 1.5]]}" >colour.json
+"$weft" photographs linear -o coloured.btf.h5 --opening 40 --size 32x32 --colour colour.json >said 2>/dev/null
+grep -q "colours: linear sRGB" said || fail "nobody spoke of colours: $(cat said)"
+"$python" "$here/coloured.py" linear.btf.h5 coloured.btf.h5 colour.json || fail "the colour is not that of colour.json"
+
 mkdir empty
 touch file
 refused "cannot create folder" free --report file/report

@@ -4,6 +4,7 @@
 #include "base/picture/image.h"
 #include "tests/geometry/stitch_text.h"
 #include "tests/study/fixture.h"
+#include "tests/support/chart_picture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -80,6 +81,7 @@ const short_memory_job short_memory_jobs[] = {
      {"photographs", IN "taken", "-o", "felt.btf.h5", "--size", "8x8", "--lights", IN "taken.lp", "--report",
       "report"}},
     {"lens", ALL_OR_NOTHING, 8, {"lens", IN "taken", "--board", "plate:50", "-o", "lens.json"}},
+    {"colour", ALL_OR_NOTHING, 8, {"colour", IN "chart.exr", "-o", "colour.json", "--model", "linear"}},
     {"compress", GOES_ON, 4, {"compress", IN "small.btf.h5", "-o", "small.weft", "--lobes", "1"}},
     {"compress-light-table",
      GOES_ON,
@@ -218,6 +220,8 @@ void short_memory_write_inputs(void)
         sky.pixels[i] = 0.5f + 0.01f * (float)(i % 16);
     expect_ok(weft_image_write("sky.exr", &sky, NULL, &error), &error);
     weft_image_free(&sky);
+    const chart_picture chart = chart_picture_usual();
+    chart_picture_write_exr(&chart, "chart.exr");
     write_text("at.csv", "lx,ly,lz,vx,vy,vz\n0,0,1,0,0.6,0.8\n0.6,0,0.8,0,0,1\n");
     write_text("few.csv", "theta_deg,phi_deg\n0,0\n40,0\n40,120\n");
     write_text("one.csv", "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n40,60,0,0\n");

@@ -3,6 +3,7 @@
 #include "base/picture/image.h"
 #include "btf/dataset/dataset.h"
 #include "plate_session.h"
+#include "registration/outcome/lamp_drift.h"
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
@@ -52,6 +53,7 @@ static void read_dataset(void)
     assert_int_equal(layout->values, WEFT_REFLECTANCE_COSINE);
     assert_near((double)layout->texel_pitch_mm, 2, 1e-9);
     assert_non_null(strstr(layout->provenance, "standard_error_texels"));
+    assert_non_null(strstr(layout->provenance, "\"white_level\":["));
     assert_int_equal(
         weft_dataset_read_block(dataset, 0, 0, TEXELS, TEXELS, &samples[0][0][0][0], &mask[0][0][0], &error), WEFT_OK);
     weft_dataset_close(dataset);
@@ -189,6 +191,42 @@ static void a_photograph_without_light_in_a_channel_does_not_sink_the_rest(void 
     finish();
 }
 
+/* Raw values above black times `gain`. */
+static void dim(const char *folder, int shot, double gain)
+{
+    char path[512];
+    const size_t values = (size_t)PLATE_SESSION_SIZE * PLATE_SESSION_SIZE * 3;
+    uint16_t *raw = malloc(values * sizeof *raw);
+    assert_non_null(raw);
+    plate_session_photograph(folder, shot, path);
+    assert_int_equal(weft_photograph_read(path, PLATE_SESSION_SIZE, PLATE_SESSION_SIZE, 12, raw, NULL), WEFT_OK);
+    for (size_t i = 0; i < values; i++)
+        raw[i] = (uint16_t)(64 + fmax(0, gain * (raw[i] - 64)) + 0.5);
+    assert_int_equal(weft_photograph_write(path, PLATE_SESSION_SIZE, PLATE_SESSION_SIZE, 12, raw, NULL), WEFT_OK);
+    free(raw);
+}
+
+/* A lamp that ages: reflectance knows nothing of it, the record does. */
+static void a_lamp_that_drifts_is_taken_out_and_told(void **state)
+{
+    (void)state;
+    plate_session_write("aged", &plate_no_mishaps);
+    for (int shot = 6; shot < 9; shot++)
+        dim("aged", shot, 0.9);
+    assert_int_equal(run("aged", false, NULL), WEFT_OK);
+    read_dataset();
+    double first = weft_stay_white_of(&registration, 0).level[1], last = weft_stay_white_of(&registration, 2).level[1];
+    weft_lamp_drift drift = weft_lamp_drift_of(&registration);
+    assert_int_equal(drift.stays, PLATE_SESSION_VIEWS);
+    assert_true(fabs(first / registration.white[0].level[1] - 1) < 0.02);
+    assert_true(fabs(last / first - 0.9) < 0.01);
+    /* Against the mean of 1, 1 and 0.9. */
+    assert_true(fabs(drift.lowest - (0.9 * 3 / 2.9 - 1)) < 0.01 && fabs(drift.highest - (3 / 2.9 - 1)) < 0.01);
+    for (int shot = 0; shot < PLATE_SESSION_SHOTS; shot++)
+        assert_true(is_registered(shot) && worst_error(shot) < 0.03);
+    finish();
+}
+
 static void an_unfinished_session_is_registered_only_when_allowed(void **state)
 {
     (void)state;
@@ -266,6 +304,7 @@ int main(void)
         cmocka_unit_test(a_view_with_a_covered_target_fails_alone),
         cmocka_unit_test(saturated_white_patches_are_replaced_by_the_light_of_other_photographs),
         cmocka_unit_test(a_photograph_without_light_in_a_channel_does_not_sink_the_rest),
+        cmocka_unit_test(a_lamp_that_drifts_is_taken_out_and_told),
         cmocka_unit_test(an_unfinished_session_is_registered_only_when_allowed),
         cmocka_unit_test(when_nothing_can_be_used_the_command_fails_and_leaves_no_file),
         cmocka_unit_test(a_session_without_photographs_is_refused),

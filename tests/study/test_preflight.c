@@ -14,7 +14,7 @@ enum { SIZE = 160, FULL_SCALE = 4095, BLACK = 64 };
 static const char plan[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n"
                            "60,0,0,0\n30,0,0,0\n60,90,60,0\n30,90,60,0\n30,90,30,90\n";
 
-typedef enum fault { NOTHING, DEFOCUS, STRAY, SHAKING, WHITE_CLIPPED, COVERED, NOISE } fault;
+typedef enum fault { NOTHING, DEFOCUS, STRAY, SHAKING, WHITE_CLIPPED, COVERED, NOISE, CURVED } fault;
 
 /* The virtual rig, with something wrong with what its camera delivers. */
 typedef struct faulty {
@@ -96,6 +96,15 @@ static void be_noisy(uint16_t *samples)
         samples[i] = clip(samples[i] * (0.9 + 0.2 * rand() / RAND_MAX));
 }
 
+/* A tone curve, as in cameras that give no raw values. */
+static void curve(uint16_t *samples)
+{
+    for (int i = 0; i < SIZE * SIZE * 3; i++) {
+        double light = fmax(samples[i] - BLACK, 0) / (FULL_SCALE - BLACK);
+        samples[i] = clip(BLACK + (FULL_SCALE - BLACK) * pow(light, 0.85));
+    }
+}
+
 /* A cloth over the three quarters of the picture at the right. */
 static void cover(uint16_t *samples)
 {
@@ -125,6 +134,8 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
         cover(samples);
     else if (f->fault == NOISE && f->lit)
         be_noisy(samples);
+    else if (f->fault == CURVED)
+        curve(samples);
     return WEFT_OK;
 }
 
@@ -192,11 +203,12 @@ static void each_check_finds_its_fault(void **state)
         unsigned also;
     } cases[] = {
         {DEFOCUS, WEFT_CHECK_FOCUS, 1u << WEFT_CHECK_FOCUS_GRAZING | 1u << WEFT_CHECK_TARGET},
-        {STRAY, WEFT_CHECK_STRAY, 0},
+        {STRAY, WEFT_CHECK_STRAY, 1u << WEFT_CHECK_LINEARITY}, /* as much in a short exposure as in a long one */
         {SHAKING, WEFT_CHECK_VIBRATION, 0},
         {WHITE_CLIPPED, WEFT_CHECK_WHITE_CLIPPED, ~0u},
         {COVERED, WEFT_CHECK_TARGET, ~0u},
         {NOISE, WEFT_CHECK_NOISE, 0},
+        {CURVED, WEFT_CHECK_LINEARITY, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         weft_preflight result = check(cases[i].fault);
