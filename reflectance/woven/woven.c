@@ -2,7 +2,7 @@
 #include "reflectance/woven/mirror.h"
 
 /* Where the fibres at inclination u of a staple mirror, given its sine and cosine in `at`. */
-static bool staple_mirrors(const weft_prepared_segment *prepared, weft_vec3 half, weft_mirror *at)
+static inline bool staple_mirrors(const weft_prepared_segment *prepared, weft_vec3 half, weft_mirror *at)
 {
     weft_real along = half.y * at->cos_u - half.z * at->sin_u;
     weft_real across = half.y * at->sin_u + half.z * at->cos_u;
