@@ -127,6 +127,21 @@ static weft_code check_settings(const weft_session *wanted, const weft_session *
     return code;
 }
 
+/* Whether both know, or do not know, where the rig puts the camera, and put it there. */
+static bool same_poses(const weft_session *a, const weft_session *b)
+{
+    if (!a->pose || !b->pose)
+        return !a->pose && !b->pose;
+    for (int i = 0; i < a->shot_count; i++) {
+        for (int k = 0; k < 3; k++) {
+            if (!nearly(a->pose[i].rotation[k], b->pose[i].rotation[k]) ||
+                !nearly(a->pose[i].translation[k], b->pose[i].translation[k]))
+                return false;
+        }
+    }
+    return true;
+}
+
 static weft_code check_same(const weft_session *wanted, const weft_session *found, weft_error *error)
 {
     if (strcmp(wanted->rig, found->rig) != 0)
@@ -140,6 +155,10 @@ static weft_code check_same(const weft_session *wanted, const weft_session *foun
     if (shot >= 0)
         return weft_fail(error, WEFT_BAD_INPUT, "session '%s' was begun with another plan: shot %d differs",
                          wanted->folder, shot);
+    if (!same_poses(wanted, found))
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "session '%s' was begun with other poses of the rig; repeat them or choose another folder",
+                         wanted->folder);
     return WEFT_OK;
 }
 
