@@ -82,44 +82,40 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Leaves out the worst shot where it is too far off. */
-static bool leave_one_out(work *w, double *off)
+/* Leaves out the shot that is the farthest from its place, where that is too far. `sorted` has room for all. */
+static bool leave_one_out(work *w, const double *apart, double *sorted)
 {
-    const weft_rig_poses *poses = &w->report->fit.poses;
-    int used = 0, worst = -1;
-    double most = 0;
+    int used = 0, worst = 0;
     for (int i = 0; i < w->count; i++) {
-        if (w->shot[i].left_out[0])
-            continue;
-        double rms = rms_px(poses, &w->shot[i]);
-        off[used++] = rms;
-        worst = rms > most ? i : worst;
-        most = fmax(most, rms);
+        if (!w->shot[i].left_out[0])
+            sorted[used++] = apart[i];
+        worst = apart[i] > apart[worst] ? i : worst;
     }
-    qsort(off, (size_t)used, sizeof *off, ascending);
-    double usual = off[used / 2];
-    if (!(most > far_ratio * usual && most > far_px) || used <= WEFT_AXES_FEWEST)
+    qsort(sorted, (size_t)used, sizeof *sorted, ascending);
+    double usual = sorted[used / 2], off_px = rms_px(&w->report->fit.poses, &w->shot[worst]);
+    if (!(apart[worst] > far_ratio * usual && off_px > far_px) || used <= WEFT_AXES_FEWEST)
         return false;
     snprintf(w->shot[worst].left_out, sizeof w->shot[worst].left_out,
-             "the target is %.1f pixels from where the axes put it, %.1f is usual: it was moved, or an axis was", most,
-             usual);
+             "the target is %.1f pixels from where the axes put it, %.1f times as far as is usual: it was moved, or an "
+             "axis was",
+             off_px, apart[worst] / usual);
     return true;
 }
 
 /* Fits until no shot is far off. */
 static weft_code fit_sound_shots(work *w, weft_error *error)
 {
-    double *off = calloc((size_t)w->count, sizeof *off);
-    if (!off)
-        return weft_fail_memory(error, "shots", (size_t)w->count * sizeof *off);
+    double *apart = calloc(2 * (size_t)w->count, sizeof *apart);
+    if (!apart)
+        return weft_fail_memory(error, "shots", 2 * (size_t)w->count * sizeof *apart);
     weft_code code = WEFT_OK;
     bool again = true;
     while (code == WEFT_OK && again) {
         const weft_axes_choice all = {w->shot, w->count, 0, 0};
-        code = weft_axes_fit_run(&all, w->nominal, true, &w->report->fit, error);
-        again = code == WEFT_OK && leave_one_out(w, off);
+        code = weft_axes_fit_run(&all, w->nominal, true, &w->report->fit, apart, error);
+        again = code == WEFT_OK && leave_one_out(w, apart, apart + w->count);
     }
-    free(off);
+    free(apart);
     return code;
 }
 
@@ -142,7 +138,7 @@ static weft_code try_term(const work *w, int index, double *gain, weft_axes_fit 
     const weft_axes_choice all = {w->shot, w->count, 0, 0};
     *with = w->report->fit;
     with->terms.free[index] = true;
-    WEFT_TRY(weft_axes_fit_run(&all, w->nominal, false, with, error));
+    WEFT_TRY(weft_axes_fit_run(&all, w->nominal, false, with, NULL, error));
     double asked = weft_term_numbers(weft_term_of(index).kind) * log(6.0 * count_used(w));
     *gain = (w->report->fit.squares - with->squares) / asked;
     return WEFT_OK;
@@ -199,7 +195,7 @@ static weft_code hold_out(work *w, weft_error *error)
     for (int fold = 0; fold < WEFT_AXES_FOLDS; fold++) {
         const weft_axes_choice others = {w->shot, w->count, fold, WEFT_AXES_FOLDS};
         weft_axes_fit fit = w->report->fit;
-        WEFT_TRY(weft_axes_fit_run(&others, w->nominal, false, &fit, error));
+        WEFT_TRY(weft_axes_fit_run(&others, w->nominal, false, &fit, NULL, error));
         for (int i = 0; i < w->count; i++) {
             if (!weft_axes_held_out(&others, i))
                 continue;

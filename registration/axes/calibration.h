@@ -21,7 +21,7 @@ typedef struct weft_axes_report {
  * times log(6 shots) (Schwarz 1978), the best first.
  *
  * The line of a joint is free if its turns have three values that differ by half a degree; of fewer it is held as
- * `nominal` has it. Shots three times as far off as is usual, and more than 0.3 pixels, are left out, the worst first.
+ * `nominal` has it. Shots whose own place is three times as far off as is usual, and more than 0.3 pixels, are left out, the worst first.
  *
  * What is held out in turn is a fifth of the shots each: the terms are those of all, their numbers are not.
  *

@@ -166,6 +166,20 @@ static weft_code settle(work *w, bool find_scatter, weft_axes_fit *fit, weft_err
     return WEFT_OK;
 }
 
+static void list_apart(const weft_axes_choice *choice, const work *w, double *apart)
+{
+    int next = 0;
+    for (int i = 0; i < choice->count; i++) {
+        apart[i] = 0;
+        if (!weft_axes_fitted(choice, i))
+            continue;
+        const double *own = w->adjusted.own[next++];
+        for (int k = 0; k < WEFT_OWN_UNKNOWNS; k++)
+            apart[i] += own[k] * own[k] / WEFT_OWN_UNKNOWNS;
+        apart[i] = sqrt(apart[i]);
+    }
+}
+
 static void take_shots(const weft_axes_choice *choice, work *w)
 {
     for (int i = 0; i < choice->count; i++) {
@@ -175,7 +189,7 @@ static void take_shots(const weft_axes_choice *choice, work *w)
 }
 
 weft_code weft_axes_fit_run(const weft_axes_choice *choice, const weft_rig_poses *nominal, bool find_scatter,
-                            weft_axes_fit *fit, weft_error *error)
+                            weft_axes_fit *fit, double *apart, weft_error *error)
 {
     size_t count = (size_t)choice->count;
     work w = {.nominal = nominal,
@@ -191,6 +205,8 @@ weft_code weft_axes_fit_run(const weft_axes_choice *choice, const weft_rig_poses
     if (allocated)
         take_shots(choice, &w);
     weft_code code = allocated ? settle(&w, find_scatter, fit, error) : weft_fail_memory(error, "shots", count * 128);
+    if (code == WEFT_OK && apart)
+        list_apart(choice, &w, apart);
     free(w.shot);
     free(w.adjusted.own);
     free(w.adjusted.own_variance);

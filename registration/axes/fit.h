@@ -47,10 +47,11 @@ typedef struct weft_axes_choice {
 bool weft_axes_fitted(const weft_axes_choice *choice, int index);
 bool weft_axes_held_out(const weft_axes_choice *choice, int index);
 
-/* Adjusts the free terms. `fit` holds terms and scatter; the latter is found anew where `find_scatter`. Errors:
- * WEFT_BAD_INPUT where nothing fits; WEFT_SYSTEM. */
+/* Adjusts the free terms. `fit` holds terms and scatter; the latter is found anew where `find_scatter`. `apart` [count]
+ * may be NULL; it receives how far each shot is from its place in all, root mean square of its six numbers in units of the
+ * scatter; 0 for shots that are not fitted. Errors: WEFT_BAD_INPUT where nothing fits; WEFT_SYSTEM. */
 weft_code weft_axes_fit_run(const weft_axes_choice *choice, const weft_rig_poses *nominal, bool find_scatter,
-                            weft_axes_fit *fit, weft_error *error);
+                            weft_axes_fit *fit, double *apart, weft_error *error);
 
 /* Sum of the squared distances of the points of a shot from where `poses` put them, pixels^2; infinite where one is
  * behind the camera. Pure. */
