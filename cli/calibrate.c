@@ -35,8 +35,8 @@ static const weft_option option_table[] = {
     {0},
 };
 
-/* A direction that is better known than this is as good as the plan's. */
-static const double direction_limit_deg = 0.1;
+/* Lobes of glossy cloth are some degrees wide: a direction known better than this is as good as any. */
+static const double direction_limit_deg = 0.2;
 
 static weft_code check(void *values, weft_error *error)
 {
