@@ -5,8 +5,8 @@
 const weft_command_entry weft_commands[] = {
     {"Before photographs are taken by hand:", &weft_command_target},
     {NULL, &weft_command_lens},
-    {NULL, &weft_command_calibrate},
     {"Photographs and geometry to a dataset:", &weft_command_capture},
+    {NULL, &weft_command_calibrate},
     {NULL, &weft_command_hand},
     {NULL, &weft_command_simulate},
     {NULL, &weft_command_register},

@@ -47,6 +47,10 @@ expect_error 2 "needs photographs, --board BOARD" lens -o no.json --board plate:
 expect_error 2 "needs photographs, --board BOARD" lens one.jpg two.jpg -o no.json
 expect_error 2 "--board needs charuco:COLUMNSxROWS:SQUARE_MM,MARKER_MM" lens one.jpg -o no.json --board charuco:7x9:28
 expect_error 2 "would overwrite" lens one.jpg same.csv -o ./same.csv --board plate:50
+expect_error 2 "needs SESSION and -o POSES.json" calibrate -o no.json
+expect_error 2 "one session at a time" calibrate one two -o no.json
+expect_error 2 "would overwrite" calibrate session --plan same.csv -o ./same.csv
+expect_error 2 "--poses is of the virtual rig alone" capture --rig my.conf --poses rig.poses.json --sample scarf -o no
 expect_error 1 "there is no 'one.jpg'" lens one.jpg two.jpg -o no.json --board plate:50
 expect_error 2 "--size needs WxH" register session -o no.btf.h5 --size 64
 expect_error 2 "--tiles needs two numbers above 0" render --weave cloth.wv --tiles 0,3 -o no.png
