@@ -53,7 +53,7 @@ static weft_code free_lines(work *w, weft_error *error)
     weft_axes_fit *fit = &w->report->fit;
     int used = count_used(w), turning = 0;
     if (used < WEFT_AXES_FEWEST)
-        return weft_fail(error, WEFT_BAD_INPUT, "%d shots show the target, of %d: at least %d are needed", used,
+        return weft_fail(error, WEFT_BAD_INPUT, "the target is found in %d of %d shots: at least %d are needed", used,
                          w->count, WEFT_AXES_FEWEST);
     fit->terms = (weft_free_terms){0};
     fit->terms.free[WEFT_TERM_HOME] = true;

@@ -325,7 +325,7 @@ static void shots_that_tell_too_little_are_refused(void **state)
     weft_axes_report report;
     weft_error error = {0};
     assert_int_equal(weft_axes_calibrate(s.shot, 7, &s.nominal, false, &report, &error), WEFT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "7 shots show the target, of 7: at least 8"));
+    assert_non_null(strstr(error.message, "found in 7 of 7 shots: at least 8"));
     weft_axes_report_free(&report);
     for (int i = 0; i < SHOTS; i++)
         see(&s.world, degrees(30, 40), i, &s.shot[i]);
