@@ -20,13 +20,16 @@ enum { LENS_HELD, LENS_FREE };
 static const char *const lens_words[] = {"held", "free", NULL};
 
 static const weft_option option_table[] = {
-    {.argument = "SESSION", .is_required = true, .kind = WEFT_OPTION_INPUT,
+    {.argument = "SESSION",
+     .is_required = true,
+     .kind = WEFT_OPTION_INPUT,
      .offset = offsetof(calibrate_command, session)},
     {"output", 'o', "POSES.json", "Where the axes truly are", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(calibrate_command, output)},
     {"plan", .argument = "ubo81|FILE.csv",
-     .help = "The night that errors are expected for: the views of 81 directions (default), or those of a table as weft "
-             "capture takes it",
+     .help =
+         "The night that errors are expected for: the views of 81 directions (default), or those of a table as weft "
+         "capture takes it",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(calibrate_command, plan)},
     {"lens", .argument = "WHICH",
      .help = "Whether the lens stays as it is (held, default) or is found with the axes where the photographs tell it "
@@ -41,7 +44,8 @@ static const double direction_limit_deg = 0.2;
 static weft_code check(void *values, weft_error *error)
 {
     const calibrate_command *command = values;
-    return weft_is_same_file(command->session, command->output) || (command->plan && weft_is_same_file(command->plan, command->output))
+    return weft_is_same_file(command->session, command->output) ||
+                   (command->plan && weft_is_same_file(command->plan, command->output))
                ? weft_fail(error, WEFT_BAD_USAGE, "'%s' would overwrite what it is made from", command->output)
                : WEFT_OK;
 }
@@ -113,15 +117,17 @@ static void say_night(const weft_common_options *common, const night *n)
     const weft_expectation *e = &n->expectation;
     const weft_expected_pose *worst = &e->worst;
     if (n->unreachable > 0)
-        weft_command_say(common, "%d of the %d views of the plan were left aside: the axes of these shots do not reach "
-                                 "them",
+        weft_command_say(common,
+                         "%d of the %d views of the plan were left aside: the axes of these shots do not reach "
+                         "them",
                          n->unreachable, n->views);
     if (e->poses == 0)
         return;
     weft_command_say(common, "expected before the target is looked at, %d poses: %.3f texels of 64 median, %.3f worst",
                      e->poses, e->median_texels, worst->texels);
-    weft_command_say(common, "  the worst with turns of %.1f %.1f %.1f degrees: %.3f because the axes are known so well, "
-                             "%.3f because they do not repeat",
+    weft_command_say(common,
+                     "  the worst with turns of %.1f %.1f %.1f degrees: %.3f because the axes are known no better, "
+                     "%.3f because they do not repeat",
                      worst->turns.deg[0], worst->turns.deg[1], worst->turns.deg[2], worst->model_texels,
                      worst->scatter_texels);
     weft_command_say(common, "  the direction of a view: %.4f degrees at worst", weft_deg_of_rad(e->direction_rad));
@@ -169,11 +175,11 @@ static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_
         weft_json_append(&joints, pack_joint(file, k));
     for (int i = 0; i < report->not_told.count; i++)
         weft_json_append(&not_told, json_string(report->not_told.line[i]));
-    return json_pack("{ss si si sf sf sf sf sf so so si sf sf sf sf sb}", "event", "poses", "shots", sightings->count, "used", report->used,
-                     "held_out_rms_px", file->held_out_rms_px, "rms_px", file->rms_px, "point_px", file->point_px,
-                     "scatter_deg", weft_deg_of_rad(file->scatter_rad), "scatter_mm", file->scatter_mm, "joints", joints,
-                     "not_told", not_told, "poses", e->poses, "expected_median_texels", e->median_texels,
-                     "expected_worst_texels", e->worst.texels, "expected_direction_deg",
+    return json_pack("{ss si si sf sf sf sf sf so so si sf sf sf sf sb}", "event", "poses", "shots", sightings->count,
+                     "used", report->used, "held_out_rms_px", file->held_out_rms_px, "rms_px", file->rms_px, "point_px",
+                     file->point_px, "scatter_deg", weft_deg_of_rad(file->scatter_rad), "scatter_mm", file->scatter_mm,
+                     "joints", joints, "not_told", not_told, "poses", e->poses, "expected_median_texels",
+                     e->median_texels, "expected_worst_texels", e->worst.texels, "expected_direction_deg",
                      weft_deg_of_rad(e->direction_rad), "allowed_texels", n->allowed_texels, "good_enough",
                      n->finds && n->directs);
 }
@@ -258,7 +264,8 @@ const weft_command weft_command_calibrate = {
     .documentation =
         "Example: weft calibrate series/ -o rig.poses.json\n\n"
         "Finds the axes that turn camera and sample, and where the camera looks, from a session of about 20 "
-        "photographs of the target, taken from all over the reach of the axes (assets/plans/calibration.csv). Tells how "
+        "photographs of the target, taken from all over the reach of the axes (assets/plans/calibration.csv). Tells "
+        "how "
         "far off the poses of a night will be. The rig file names the result under 'poses'.",
     .options = option_table,
     .needs = "SESSION and -o POSES.json",

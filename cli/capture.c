@@ -40,8 +40,9 @@ static const weft_option option_table[] = {
     {"seed", .argument = "N", .help = "Start of the random numbers of the virtual rig (default: 1)",
      .kind = WEFT_OPTION_SEED, .offset = offsetof(capture_command, rig.seed)},
     {"poses", .argument = "POSES.json",
-     .help = "Where the axes of the virtual rig truly are, as weft calibrate found them; a rig of yours names its poses "
-             "in its file",
+     .help =
+         "Where the axes of the virtual rig truly are, as weft calibrate found them; a rig of yours names its poses "
+         "in its file",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, poses)},
     {"truth", .argument = "FILE.h5", .help = "Where the ground truth goes (default: SESSION.truth.h5)",
      .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(capture_command, truth.path)},

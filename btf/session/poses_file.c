@@ -137,9 +137,9 @@ static bool unpack_vector(json_t *json, double largest, weft_vec3 *vector)
 static bool unpack_joint_error(json_t *json, weft_joint_error *error)
 {
     const double rad = WEFT_PI / 180;
-    if (json && json_unpack(json, "{s?F s?F s?F s?F s?F}", "direction_deg", &error->direction_rad, "point_mm",
-                            &error->point_mm, "scale", &error->scale, "uneven_deg", &error->uneven_rad, "wobble_deg",
-                            &error->wobble_rad) != 0)
+    if (json &&
+        json_unpack(json, "{s?F s?F s?F s?F s?F}", "direction_deg", &error->direction_rad, "point_mm", &error->point_mm,
+                    "scale", &error->scale, "uneven_deg", &error->uneven_rad, "wobble_deg", &error->wobble_rad) != 0)
         return false;
     error->direction_rad *= rad;
     error->uneven_rad *= rad;
@@ -195,8 +195,8 @@ static weft_code unpack_joints(json_t *joints, const char *path, weft_poses_file
 
 static weft_code check_camera(const weft_camera *c, const char *path, weft_error *error)
 {
-    bool sound = c->width >= 1 && c->height >= 1 && c->width <= MAX_SIDE && c->height <= MAX_SIDE && c->fx > 0 &&
-                 c->fy > 0;
+    bool sound =
+        c->width >= 1 && c->height >= 1 && c->width <= MAX_SIDE && c->height <= MAX_SIDE && c->fx > 0 && c->fy > 0;
     for (int i = 0; i < WEFT_LENS_PARAMETERS; i++)
         sound = sound && fabs(weft_lens_parameter(c, i)) <= largest_coefficient;
     return sound ? WEFT_OK : weft_fail(error, WEFT_BAD_INPUT, "'%s': 'camera' is of no lens", path);

@@ -1,4 +1,5 @@
-/* The file of `weft calibrate`: where a rig truly stands, and how well that is known (docs/reference/poses-format.md). */
+/* The file of `weft calibrate`: where a rig truly stands, and how well that is known (docs/reference/poses-format.md).
+ */
 #ifndef WEFT_BTF_SESSION_POSES_FILE_H
 #define WEFT_BTF_SESSION_POSES_FILE_H
 
@@ -18,7 +19,7 @@ typedef struct weft_poses_file {
     double home_rotation_rad, home_translation_mm; /* standard errors, the largest of the components */
     double lens_error[WEFT_LENS_PARAMETERS];       /* 0: held */
     double scatter_rad, scatter_mm; /* standard deviation a component by which the plate differs from shot to shot */
-    double point_px;               /* standard deviation a coordinate of a point seen, within one shot */
+    double point_px;                /* standard deviation a coordinate of a point seen, within one shot */
     double rms_px, held_out_rms_px; /* distances of points from where the poses put them, in shots fitted and not */
 } weft_poses_file;
 

@@ -20,8 +20,8 @@ weft_pose weft_pose_of_motion(const weft_motion *motion)
     double s = angle < 1e-4 ? 1 - square / 6 : sin(angle) / angle;
     double c = angle < 1e-4 ? 0.5 - square / 24 : (1 - cos(angle)) / square;
     const double cross[3][3] = {{0, -w[2], w[1]}, {w[2], 0, -w[0]}, {-w[1], w[0], 0}};
-    weft_pose pose = {
-        .translation = weft_vec3_of(motion->translation[0], motion->translation[1], motion->translation[2])};
+    weft_pose pose = {.translation =
+                          weft_vec3_of(motion->translation[0], motion->translation[1], motion->translation[2])};
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
             pose.rotation[i][j] = (i == j) + s * cross[i][j] + c * (w[i] * w[j] - (i == j) * square);

@@ -1,12 +1,12 @@
 /* Where a rig truly stands: the axes that turn camera and sample, as `weft calibrate` finds them
  * (docs/reference/poses-format.md).
  *
- * Three joints, from the camera to the sample: theta of the camera, its phi, and phi of the sample. A joint is a line in
- * the frame of the plate, as it lies while all turns are 0. With turns q the plate is seen from
- *   home . E0(q0) . E1(q1) . E2(q2),    Ek(q) = the rotation about line k by q, with what the bearing adds to it
- * (a product of exponentials: Brockett 1984; Okamura & Park 1996). A turn is the angle that a position of the axis stands
- * for: what no axis turns has a turn all the same, and always the same. There is no frame but that of the plate, so that
- * nothing is told twice: the zero of an axis is in `home` and in the lines beyond it.
+ * Three joints, from the camera to the sample: theta of the camera, its phi, and phi of the sample. A joint is a line
+ * in the frame of the plate, as it lies while all turns are 0. With turns q the plate is seen from home . E0(q0) .
+ * E1(q1) . E2(q2),    Ek(q) = the rotation about line k by q, with what the bearing adds to it (a product of
+ * exponentials: Brockett 1984; Okamura & Park 1996). A turn is the angle that a position of the axis stands for: what
+ * no axis turns has a turn all the same, and always the same. There is no frame but that of the plate, so that nothing
+ * is told twice: the zero of an axis is in `home` and in the lines beyond it.
  *
  * All functions are pure. */
 #ifndef WEFT_BTF_SESSION_RIG_POSES_H
@@ -30,8 +30,8 @@ typedef struct weft_turns {
 
 /* A joint. Turned by q it rotates about its line by q (1 + scale) + uneven[0] (cos q - 1) + uneven[1] sin q. Then its
  * line leans by the small rotation vector x e1 + y e2 across it, where x + i y = w e^(-i q) + w' e^(2 i q) with w =
- * wobble[0] + i wobble[1], w' = wobble[2] + i wobble[3], less what that is at q = 0. (A lean that stands still, or turns
- * with the joint, is only another line: these are the lowest harmonics that are not.) */
+ * wobble[0] + i wobble[1], w' = wobble[2] + i wobble[3], less what that is at q = 0. (A lean that stands still, or
+ * turns with the joint, is only another line: these are the lowest harmonics that are not.) */
 typedef struct weft_joint {
     weft_vec3 direction; /* unit; turns are right-handed about it */
     weft_vec3 point;     /* of the line, nearest to the origin, mm */

@@ -65,8 +65,8 @@ typedef struct weft_session {
     weft_motion *pose;        /* [shot_count] where the rig is known to put the camera; NULL: as the view says */
 } weft_session;
 
-/* Where the rig promises the camera for a view: the pose of the first shot of it, or where nothing better is known, that
- * of a camera as set up. Pure. */
+/* Where the rig promises the camera for a view: the pose of the first shot of it, or where nothing better is known,
+ * that of a camera as set up. Pure. */
 weft_pose weft_session_pose(const weft_session *session, weft_angles view);
 
 /* Writes session.json atomically into session->folder, which must exist. Errors: WEFT_SYSTEM. */

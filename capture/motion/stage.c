@@ -321,8 +321,14 @@ void weft_stage_free(weft_stage *stage)
 
 weft_rig_stage weft_stage_for_rig(weft_stage *stage)
 {
-    return (weft_rig_stage){
-        .device = stage, .home = home, .move = move, .held = held, .stop = stop, .reach = reach, .turns = turns, .order = order};
+    return (weft_rig_stage){.device = stage,
+                            .home = home,
+                            .move = move,
+                            .held = held,
+                            .stop = stop,
+                            .reach = reach,
+                            .turns = turns,
+                            .order = order};
 }
 
 weft_rig_light weft_stage_light(weft_stage *stage)

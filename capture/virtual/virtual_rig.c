@@ -177,18 +177,16 @@ static weft_code open_devices(const weft_virtual_request *request, weft_virtual_
         free_devices(devices);
         return code;
     }
-    rig->rig = (weft_rig){.name = "virtual",
-                          .sample = weft_virtual_sample_name(&rig->sample),
-                          .identity = devices->identity,
-                          .settings = request->settings.rig,
-                          .calibration = weft_rig_settings_camera(&request->settings.rig),
-                          .noise = {devices->sensor.electrons_per_step, devices->sensor.read_noise},
-                          .camera = {devices, expose},
-                          .stage = {.device = devices,
-                                    .home = home,
-                                    .move = move,
-                                    .turns = request->settings.axes != 0 ? turns : NULL},
-                          .light = {devices, power_light}};
+    rig->rig = (weft_rig){
+        .name = "virtual",
+        .sample = weft_virtual_sample_name(&rig->sample),
+        .identity = devices->identity,
+        .settings = request->settings.rig,
+        .calibration = weft_rig_settings_camera(&request->settings.rig),
+        .noise = {devices->sensor.electrons_per_step, devices->sensor.read_noise},
+        .camera = {devices, expose},
+        .stage = {.device = devices, .home = home, .move = move, .turns = request->settings.axes != 0 ? turns : NULL},
+        .light = {devices, power_light}};
     return WEFT_OK;
 }
 

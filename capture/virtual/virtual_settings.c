@@ -34,15 +34,9 @@ static const weft_rig_setting table[] = {
 
 /* Sessions of rigs without axes say nothing of them, as they did before there were any. */
 static const weft_rig_setting axes_table[] = {
-    WHOLE(axes, 0, 0, 1),
-    REAL(axis_tilt_deg, 0, 0, 5),
-    REAL(axis_offset_mm, 0, 0, 50),
-    REAL(axis_zero_deg, 0, 0, 5),
-    REAL(axis_scale, 0, 0, 0.1),
-    REAL(axis_uneven_deg, 0, 0, 5),
-    REAL(axis_wobble_deg, 0, 0, 5),
-    REAL(aim_rotation_deg, 0, 0, 5),
-    REAL(aim_mm, 0, 0, 50),
+    WHOLE(axes, 0, 0, 1),           REAL(axis_tilt_deg, 0, 0, 5),    REAL(axis_offset_mm, 0, 0, 50),
+    REAL(axis_zero_deg, 0, 0, 5),   REAL(axis_scale, 0, 0, 0.1),     REAL(axis_uneven_deg, 0, 0, 5),
+    REAL(axis_wobble_deg, 0, 0, 5), REAL(aim_rotation_deg, 0, 0, 5), REAL(aim_mm, 0, 0, 50),
 };
 
 static void list_groups(weft_virtual_settings *settings, weft_setting_group groups[GROUP_COUNT])

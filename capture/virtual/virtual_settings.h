@@ -25,9 +25,9 @@ typedef struct weft_virtual_settings {
     double axis_uneven_deg;               /* amplitude of the errors of the scale, once a turn */
     double axis_wobble_deg;               /* amplitude of the lean of the bearing, once a turn; a third of it thrice */
     double aim_rotation_deg, aim_mm;      /* by which the camera is off on its arm */
-    double light_rotation_deg;                     /* standard deviation per axis, drawn anew for every move */
-    double light_power_drift;                      /* relative standard deviation, per exposure */
-    double timeout_probability;                    /* of an exposure that fails */
+    double light_rotation_deg;            /* standard deviation per axis, drawn anew for every move */
+    double light_power_drift;             /* relative standard deviation, per exposure */
+    double timeout_probability;           /* of an exposure that fails */
     /* The sample. */
     double tiles_x, tiles_y; /* of the weave, across the opening; 0 = chosen by the weave */
     double cloth_noise;      /* 1 = with the noise of the weave, 0 = without */

@@ -23,12 +23,12 @@ typedef struct weft_adjustment {
 
 /* All allocated by the caller. */
 typedef struct weft_adjusted {
-    double *shared;                         /* [shared]; in: the start */
-    double (*own)[WEFT_OWN_UNKNOWNS];       /* [groups]; in: the start */
-    double *covariance;                     /* [shared][shared] */
+    double *shared;                            /* [shared]; in: the start */
+    double (*own)[WEFT_OWN_UNKNOWNS];          /* [groups]; in: the start */
+    double *covariance;                        /* [shared][shared] */
     double (*own_variance)[WEFT_OWN_UNKNOWNS]; /* [groups] */
-    double squares; /* of the residuals and of the unknowns: minus twice the logarithm of the probability, of unknowns of
-                       groups that are the best for the shared ones */
+    double squares; /* of the residuals and of the unknowns: minus twice the logarithm of the probability, of unknowns
+                       of groups that are the best for the shared ones */
 } weft_adjusted;
 
 /* Minimises the sum of squares of residuals and unknowns (Levenberg and Marquardt; derivatives by differences), by

@@ -16,12 +16,13 @@ typedef struct weft_axes_report {
     weft_lines not_told; /* what was held as specified, and why */
 } weft_axes_report;
 
-/* Adjusts home and lines, then what else makes the shots more probable: scale, unevenness and wobble of each joint, and,
- * where `free_lens`, the lens. A term is taken if it lowers minus twice the log probability by more than its numbers
- * times log(6 shots) (Schwarz 1978), the best first.
+/* Adjusts home and lines, then what else makes the shots more probable: scale, unevenness and wobble of each joint,
+ * and, where `free_lens`, the lens. A term is taken if it lowers minus twice the log probability by more than its
+ * numbers times log(6 shots) (Schwarz 1978), the best first.
  *
  * The line of a joint is free if its turns have three values that differ by half a degree; of fewer it is held as
- * `nominal` has it. Shots whose own place is three times as far off as is usual, and more than 0.3 pixels, are left out, the worst first.
+ * `nominal` has it. Shots whose own place is three times as far off as is usual, and more than 0.3 pixels, are left
+ * out, the worst first.
  *
  * What is held out in turn is a fifth of the shots each: the terms are those of all, their numbers are not.
  *

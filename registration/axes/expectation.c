@@ -8,8 +8,8 @@ enum { GRID = 5, PLACES = GRID * GRID };
 /* Of a standard deviation beforehand. */
 static const double step = 1e-4;
 
-/* What a pose shows: where on the plate the pixels lie that another pose sees the places of a grid in, and the direction
- * that it is seen from. */
+/* What a pose shows: where on the plate the pixels lie that another pose sees the places of a grid in, and the
+ * direction that it is seen from. */
 typedef struct shown {
     double mm[PLACES][2], direction[3];
 } shown;

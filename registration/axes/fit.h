@@ -20,7 +20,7 @@ typedef struct weft_axes_shot {
     const char *name;
     weft_turns turns;
     weft_axes_point point[WEFT_AXES_POINTS];
-    char left_out[160];         /* why; "": it is used */
+    char left_out[160]; /* why; "": it is used */
 } weft_axes_shot;
 
 /* Standard deviations: of the plate's own place a component, and of a point a coordinate. */
@@ -48,8 +48,8 @@ bool weft_axes_fitted(const weft_axes_choice *choice, int index);
 bool weft_axes_held_out(const weft_axes_choice *choice, int index);
 
 /* Adjusts the free terms. `fit` holds terms and scatter; the latter is found anew where `find_scatter`. `apart` [count]
- * may be NULL; it receives how far each shot is from its place in all, root mean square of its six numbers in units of the
- * scatter; 0 for shots that are not fitted. Errors: WEFT_BAD_INPUT where nothing fits; WEFT_SYSTEM. */
+ * may be NULL; it receives how far each shot is from its place in all, root mean square of its six numbers in units of
+ * the scatter; 0 for shots that are not fitted. Errors: WEFT_BAD_INPUT where nothing fits; WEFT_SYSTEM. */
 weft_code weft_axes_fit_run(const weft_axes_choice *choice, const weft_rig_poses *nominal, bool find_scatter,
                             weft_axes_fit *fit, double *apart, weft_error *error);
 

@@ -13,7 +13,8 @@ weft_term weft_term_of(int index)
 
 int weft_term_index(weft_term_kind kind, int joint)
 {
-    return (int)kind < SHARED_TERMS ? (int)kind : SHARED_TERMS + TERMS_OF_JOINT * joint + (int)kind - (int)WEFT_TERM_LINE;
+    return (int)kind < SHARED_TERMS ? (int)kind
+                                    : SHARED_TERMS + TERMS_OF_JOINT * joint + (int)kind - (int)WEFT_TERM_LINE;
 }
 
 int weft_term_numbers(weft_term_kind kind)

@@ -5,10 +5,10 @@
 #include "btf/session/rig_poses.h"
 
 typedef enum weft_term_kind {
-    WEFT_TERM_HOME,   /* where the camera is when all turns are 0: 6 */
-    WEFT_TERM_LENS,   /* fx, fy, cx, cy: 4. (The target is in the middle of every photograph: it tells no distortion.) */
-    WEFT_TERM_LINE,   /* of a joint: its direction, and where it is: 4 */
-    WEFT_TERM_SCALE,  /* 1 */
+    WEFT_TERM_HOME,  /* where the camera is when all turns are 0: 6 */
+    WEFT_TERM_LENS,  /* fx, fy, cx, cy: 4. (The target is in the middle of every photograph: it tells no distortion.) */
+    WEFT_TERM_LINE,  /* of a joint: its direction, and where it is: 4 */
+    WEFT_TERM_SCALE, /* 1 */
     WEFT_TERM_UNEVEN, /* 2 */
     WEFT_TERM_WOBBLE, /* 4 */
     WEFT_TERM_KINDS
@@ -37,8 +37,8 @@ typedef struct weft_free_terms {
 int weft_unknown_count(const weft_free_terms *terms);
 int weft_unknown_first(const weft_free_terms *terms, int index);
 
-/* How far a number of a term is from its specification in rigs that were built with a ruler: standard deviation. Unknowns
- * are in this unit. rad, mm, pixels or none. */
+/* How far a number of a term is from its specification in rigs that were built with a ruler: standard deviation.
+ * Unknowns are in this unit. rad, mm, pixels or none. */
 double weft_term_unit(const weft_camera *camera, weft_term_kind kind, int number);
 
 /* The rig with those unknowns. Pure. */

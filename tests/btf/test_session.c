@@ -111,7 +111,8 @@ static void places_of_the_axes_survive_the_round_trip(void **state)
     weft_error error = {0};
     weft_session written = example(), read;
     weft_turns turns[SHOTS] = {{{75, -15, 0}}, {{75, -15, 0}}, {{75.25, -15, 3}}};
-    weft_motion pose[SHOTS] = {{{0.1, 0.2, 0.3}, {1, 2, 1000}}, {{0.1, 0.2, 0.3}, {1, 2, 1000}}, {{0, 0, 0}, {0, 0, 9}}};
+    weft_motion pose[SHOTS] = {
+        {{0.1, 0.2, 0.3}, {1, 2, 1000}}, {{0.1, 0.2, 0.3}, {1, 2, 1000}}, {{0, 0, 0}, {0, 0, 9}}};
     assert_int_equal(weft_session_create(&written, &error), WEFT_OK);
     assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
     assert_null(read.turns);

@@ -96,9 +96,9 @@ static double angle_deg(weft_vec3 a, weft_vec3 b)
 }
 
 typedef struct errors {
-    double line_deg[2];          /* of the axes of theta and phi */
-    double view_deg, texels;     /* root mean squares over the views of ubo81, of poses without scatter */
-    double worst_deg;            /* of a view's direction */
+    double line_deg[2];                   /* of the axes of theta and phi */
+    double view_deg, texels;              /* root mean squares over the views of ubo81, of poses without scatter */
+    double worst_deg;                     /* of a view's direction */
     double expected_texels, expected_deg; /* the same root mean squares, as calibration expects them */
 } errors;
 
@@ -246,8 +246,8 @@ static void bearings_are_found_where_they_are_told(void **state)
                   wobble_deg, e.view_deg);
     assert_true(fabs(fabs(phi->scale) - 0.002) < 0.0003);
     assert_true(fabs(uneven_deg - 0.1) < 0.03);
-    /* A lean to and fro in one plane, of the part that carries the joint, is two that go round, of half of it: one of them
-     * is only another line, the other goes round twice for the part that is carried. */
+    /* A lean to and fro in one plane, of the part that carries the joint, is two that go round, of half of it: one of
+     * them is only another line, the other goes round twice for the part that is carried. */
     assert_true(fabs(wobble_deg - 0.05) < 0.02);
     assert_true(e.view_deg < 0.05);
     /* An axis that turns by 75 degrees says little of what comes once a turn, and that is told. */

@@ -148,15 +148,16 @@ static outcome register_night(const char *name)
     o.reflectance = weft_quantile(pool, count, 0.5);
     o.failed = registration.failed_stays;
     for (int stay = 0; stay < STAYS; stay++) {
-        double angle = angle_to_truth_deg(dataset, registration.survey.stay[stay].stay,
-                                          registration.survey.stay[stay].view);
+        double angle =
+            angle_to_truth_deg(dataset, registration.survey.stay[stay].stay, registration.survey.stay[stay].view);
         o.view_deg += angle * angle / STAYS;
         o.shift_mm = fmax(o.shift_mm, registration.pose[stay].shift_mm);
     }
     o.view_deg = sqrt(o.view_deg);
-    print_message("%s: %d of %d views failed, reflectance off by %.2f %%, views by %.3f degrees, target %.2f mm from the "
-                  "promise\n",
-                  name, o.failed, STAYS, 100 * o.reflectance, o.view_deg, o.shift_mm);
+    print_message(
+        "%s: %d of %d views failed, reflectance off by %.2f %%, views by %.3f degrees, target %.2f mm from the "
+        "promise\n",
+        name, o.failed, STAYS, 100 * o.reflectance, o.view_deg, o.shift_mm);
     free(pool);
     truth_errors_free(&errors);
     weft_dataset_close(dataset);
@@ -198,8 +199,8 @@ static void the_axes_as_specified_would_not_do(void **state)
         weft_pose there = weft_virtual_world_pose(&c.rig.world, view, shot);
         weft_pose specified = weft_pose_of_view(view, c.night.camera_distance_mm);
         /* Of the middle of the target, in the plane of the sensor. */
-        worst = fmax(worst, hypot(there.translation.x - specified.translation.x,
-                                  there.translation.y - specified.translation.y));
+        worst = fmax(
+            worst, hypot(there.translation.x - specified.translation.x, there.translation.y - specified.translation.y));
     }
     assert_int_equal(c.report.used, c.sightings.count);
     assert_true(worst > settings.limits.tolerance_mm);
