@@ -51,7 +51,7 @@ static void see(const weft_virtual_world *world, weft_angles view, int stay, wef
     for (int i = 0; i < WEFT_AXES_POINTS; i++) {
         double x = i % 2 ? 27 : -27, y = i / 2 ? 27 : -27;
         weft_pixel at = weft_camera_distort(&world->camera, weft_homography_apply(&map, x, y));
-        weft_vec3 noise = weft_random_normal3(world->seed, WEFT_RANDOM_NOISE, (uint64_t)(stay * 16 + i));
+        weft_vec3 noise = weft_random_normal3(world->seed, WEFT_RANDOM_NOISE, 16 * (uint64_t)stay + (uint64_t)i);
         shot->point[i] = (weft_axes_point){{x, y}, {at.x + 0.01 * noise.x, at.y + 0.01 * noise.y}};
     }
 }
