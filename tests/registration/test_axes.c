@@ -78,16 +78,40 @@ static weft_virtual_world at_rest(const weft_virtual_world *world)
     return rest;
 }
 
-/* The line that the plate turns about between two poses is that of the axis: its direction, from the poses alone. */
-static weft_vec3 true_direction(const weft_virtual_world *rest, weft_angles from, weft_angles to)
+/* What brings the plate from where one pose sees it to where another does: a turn about the line of the axis. */
+static weft_pose true_turn(const weft_virtual_world *rest, weft_angles from, weft_angles to)
 {
-    weft_pose a = weft_virtual_world_pose(rest, from, 0), b = weft_virtual_world_pose(rest, to, 0);
-    double r[3][3] = {{0}};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++)
-                r[i][j] += a.rotation[k][i] * b.rotation[k][j];
+    weft_pose a = weft_virtual_world_pose(rest, from, 0), b = weft_virtual_world_pose(rest, to, 0),
+              turn = {{{0}}, {0, 0, 0}};
+    double shift[3] = {b.translation.x - a.translation.x, b.translation.y - a.translation.y,
+                       b.translation.z - a.translation.z};
+    double back[3] = {0};
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            back[i] += a.rotation[k][i] * shift[k];
+            for (int j = 0; j < 3; j++)
+                turn.rotation[i][j] += a.rotation[k][i] * b.rotation[k][j];
+        }
+    }
+    turn.translation = (weft_vec3){back[0], back[1], back[2]};
+    return turn;
+}
+
+static weft_vec3 direction_of(const weft_pose *turn)
+{
+    const double(*r)[3] = turn->rotation;
     return weft_unit((weft_vec3){r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]});
+}
+
+/* How far a turn moves a point, for a turn of one rad: its distance from the line. */
+static double off_line_mm(const weft_pose *turn, weft_vec3 point)
+{
+    const double(*r)[3] = turn->rotation;
+    weft_vec3 there = {r[0][0] * point.x + r[0][1] * point.y + r[0][2] * point.z,
+                       r[1][0] * point.x + r[1][1] * point.y + r[1][2] * point.z,
+                       r[2][0] * point.x + r[2][1] * point.y + r[2][2] * point.z};
+    double angle = acos((r[0][0] + r[1][1] + r[2][2] - 1) / 2);
+    return weft_length(weft_subtract(weft_add(there, turn->translation), point)) / (2 * sin(angle / 2));
 }
 
 static double angle_deg(weft_vec3 a, weft_vec3 b)
@@ -96,7 +120,7 @@ static double angle_deg(weft_vec3 a, weft_vec3 b)
 }
 
 typedef struct errors {
-    double line_deg[2];                   /* of the axes of theta and phi */
+    double line_deg[2], line_mm[2];       /* of the axes of theta and phi */
     double view_deg, texels;              /* root mean squares over the views of ubo81, of poses without scatter */
     double worst_deg;                     /* of a view's direction */
     double expected_texels, expected_deg; /* the same root mean squares, as calibration expects them */
@@ -125,8 +149,12 @@ static errors compare(const series *s, const weft_axes_report *report)
     errors e = {0};
     weft_axes_fit still = report->fit;
     still.scatter.rotation_rad = still.scatter.translation_mm = 0;
-    e.line_deg[0] = angle_deg(true_direction(&rest, degrees(0, 0), degrees(60, 0)), found->joint[0].direction);
-    e.line_deg[1] = angle_deg(true_direction(&rest, degrees(0, 0), degrees(0, 90)), found->joint[1].direction);
+    const weft_pose turn[2] = {true_turn(&rest, degrees(0, 0), degrees(60, 0)),
+                               true_turn(&rest, degrees(0, 0), degrees(0, 90))};
+    for (int k = 0; k < 2; k++) {
+        e.line_deg[k] = angle_deg(direction_of(&turn[k]), found->joint[k].direction);
+        e.line_mm[k] = off_line_mm(&turn[k], found->joint[k].point);
+    }
     for (int i = 0; i < WEFT_UBO81_COUNT; i++) {
         weft_angles view = weft_ubo81_angles(i);
         weft_turns turns = weft_turns_of_view(view);
@@ -168,6 +196,8 @@ static errors calibrate_seeds(const weft_virtual_settings *settings, int seeds, 
         errors e = compare(&s, &report);
         sum.line_deg[0] += e.line_deg[0] * e.line_deg[0] / seeds;
         sum.line_deg[1] += e.line_deg[1] * e.line_deg[1] / seeds;
+        sum.line_mm[0] = fmax(sum.line_mm[0], e.line_mm[0]);
+        sum.line_mm[1] = fmax(sum.line_mm[1], e.line_mm[1]);
         sum.view_deg += e.view_deg * e.view_deg / seeds;
         sum.texels += e.texels * e.texels / seeds;
         sum.expected_texels += e.expected_texels * e.expected_texels / seeds;
@@ -182,10 +212,11 @@ static errors calibrate_seeds(const weft_virtual_settings *settings, int seeds, 
     sum.texels = sqrt(sum.texels);
     sum.expected_texels = sqrt(sum.expected_texels);
     sum.expected_deg = sqrt(sum.expected_deg);
-    print_message("%s: lines %.4f %.4f degrees; views %.4f (expected %.4f), worst of all %.4f degrees; %.4f texels "
-                  "(expected %.4f)\n",
-                  name, sum.line_deg[0], sum.line_deg[1], sum.view_deg, sum.expected_deg, sum.worst_deg, sum.texels,
-                  sum.expected_texels);
+    print_message(
+        "%s: lines %.4f %.4f degrees, %.3f %.3f mm; views %.4f (expected %.4f), worst of all %.4f degrees; %.4f texels "
+        "(expected %.4f)\n",
+        name, sum.line_deg[0], sum.line_deg[1], sum.line_mm[0], sum.line_mm[1], sum.view_deg, sum.expected_deg,
+        sum.worst_deg, sum.texels, sum.expected_texels);
     return sum;
 }
 
@@ -199,6 +230,7 @@ static void lines_are_found(void **state)
     s.stay_rotation_deg = s.stay_translation_mm = 0;
     errors still = calibrate_seeds(&s, 2, "without scatter");
     assert_true(still.line_deg[0] < 0.006 && still.line_deg[1] < 0.003);
+    assert_true(still.line_mm[0] < 0.05 && still.line_mm[1] < 0.02);
     assert_true(still.view_deg < 0.005 && still.texels < 0.01);
     s.stay_rotation_deg = 0.02;
     s.stay_translation_mm = 0.05;
@@ -307,7 +339,8 @@ static void a_turntable_is_found(void **state)
     }
     weft_axes_report report = calibrate(&s);
     weft_virtual_world rest = at_rest(&s.world);
-    weft_vec3 truth = weft_scale(true_direction(&rest, degrees(0, 0), degrees(0, 90)), -1);
+    weft_pose turn = true_turn(&rest, degrees(0, 0), degrees(0, 90));
+    weft_vec3 truth = weft_scale(direction_of(&turn), -1);
     assert_true(angle_deg(truth, report.file.poses.joint[WEFT_SAMPLE_PHI].direction) < 0.005);
     assert_true(report.file.error[WEFT_CAMERA_PHI].direction_rad == 0);
     assert_string_equal(report.not_told.line[0], "camera phi does not turn in these shots: its line is as specified");
