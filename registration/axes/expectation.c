@@ -149,6 +149,17 @@ static double wrapped(double deg)
     return deg - 360 * round(deg / 360);
 }
 
+/* By whole turns to the middle of where a joint stood in the series. */
+static double turned_to_series(const weft_axes_shot *shot, int count, int joint, double deg)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < count; i++) {
+        low = fmin(low, shot[i].turns.deg[joint]);
+        high = fmax(high, shot[i].turns.deg[joint]);
+    }
+    return (low + high) / 2 + wrapped(deg - (low + high) / 2);
+}
+
 bool weft_axes_turns_like(const weft_axes_shot *shot, int count, weft_angles view, weft_turns *turns)
 {
     double theta_deg = weft_deg_of_rad(view.theta_rad), phi_deg = weft_deg_of_rad(view.phi_rad);
@@ -156,9 +167,11 @@ bool weft_axes_turns_like(const weft_axes_shot *shot, int count, weft_angles vie
     if (turned_in(shot, count, WEFT_CAMERA_THETA))
         turns->deg[WEFT_CAMERA_THETA] = theta_deg;
     if (turned_in(shot, count, WEFT_CAMERA_PHI))
-        turns->deg[WEFT_CAMERA_PHI] = wrapped(phi_deg + turns->deg[WEFT_SAMPLE_PHI]);
+        turns->deg[WEFT_CAMERA_PHI] =
+            turned_to_series(shot, count, WEFT_CAMERA_PHI, phi_deg + turns->deg[WEFT_SAMPLE_PHI]);
     else if (turned_in(shot, count, WEFT_SAMPLE_PHI))
-        turns->deg[WEFT_SAMPLE_PHI] = wrapped(turns->deg[WEFT_CAMERA_PHI] - phi_deg);
+        turns->deg[WEFT_SAMPLE_PHI] =
+            turned_to_series(shot, count, WEFT_SAMPLE_PHI, turns->deg[WEFT_CAMERA_PHI] - phi_deg);
     bool same_theta = fabs(turns->deg[WEFT_CAMERA_THETA] - theta_deg) <= same_deg;
     double phi_off = wrapped(turns->deg[WEFT_CAMERA_PHI] - turns->deg[WEFT_SAMPLE_PHI] - phi_deg);
     return same_theta && (fabs(phi_off) <= same_deg || theta_deg < same_deg);

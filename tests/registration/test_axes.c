@@ -347,6 +347,12 @@ static void a_turntable_is_found(void **state)
     weft_turns turns;
     assert_true(weft_axes_turns_like(s.shot, SHOTS, degrees(50, 100), &turns));
     assert_true(fabs(turns.deg[WEFT_CAMERA_THETA] - 50) < 1e-9 && fabs(turns.deg[WEFT_SAMPLE_PHI] + 100) < 1e-9);
+    /* A turntable that goes from 0 to 360 stands at 290 where another stands at -70. */
+    for (int i = 0; i < SHOTS; i++)
+        s.shot[i].turns.deg[WEFT_SAMPLE_PHI] += 180;
+    assert_true(weft_axes_turns_like(s.shot, SHOTS, degrees(50, 70), &turns));
+    assert_true(fabs(turns.deg[WEFT_SAMPLE_PHI] - 290) < 1e-9);
+    assert_false(weft_axes_turns_like(s.shot, 1, degrees(50, 70), &turns));
     weft_axes_report_free(&report);
 }
 
