@@ -40,7 +40,7 @@ weft_code weft_meter_make(const weft_session *session, weft_angles view, weft_me
     *meter = (weft_meter){.opening = malloc(pixels * sizeof(int)), .white = malloc(pixels * sizeof(int))};
     if (!meter->opening || !meter->white)
         return weft_fail_memory(error, "light meter", 2 * pixels * sizeof(int));
-    weft_pose pose = weft_pose_of_view(view, session->camera_distance_mm);
+    weft_pose pose = weft_session_pose(session, view);
     weft_homography to_pixels = weft_homography_of_pose(camera, &pose);
     weft_homography to_plate = weft_homography_inverse(&to_pixels);
     for (int y = 0; y < camera->height; y++) {

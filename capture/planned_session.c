@@ -12,7 +12,7 @@ static weft_code describe(const char *folder, const weft_rig *rig, weft_session 
     session->rig = strdup(rig->name);
     session->sample = strdup(rig->sample);
     session->rig_settings = strdup(rig->identity);
-    session->camera = rig->calibration;
+    session->camera = rig->poses ? rig->poses->camera : rig->calibration;
     session->camera_distance_mm = settings->camera_distance_mm;
     session->light_distance_mm = settings->light_distance_mm;
     session->bits = (int)settings->bits;
@@ -32,6 +32,27 @@ static weft_code reach_all(const weft_plan *plan, const weft_rig_stage *stage, w
     return WEFT_OK;
 }
 
+/* Where the axes stand, and where that puts the camera. */
+static weft_code place_all(const weft_rig *rig, weft_session *session, weft_error *error)
+{
+    size_t count = (size_t)session->shot_count;
+    if (!rig->stage.turns)
+        return rig->poses ? weft_fail(error, WEFT_BAD_INPUT, "the rig has no axes that calibrated poses could be of")
+                          : WEFT_OK;
+    session->turns = calloc(count, sizeof *session->turns);
+    session->pose = rig->poses ? calloc(count, sizeof *session->pose) : NULL;
+    if (!session->turns || (rig->poses && !session->pose))
+        return weft_fail_memory(error, "plan", count * sizeof *session->pose);
+    for (size_t i = 0; i < count; i++) {
+        WEFT_TRY(rig->stage.turns(rig->stage.device, &session->shot[i], &session->turns[i], error));
+        if (rig->poses) {
+            weft_pose pose = weft_rig_poses_at(rig->poses, &session->turns[i]);
+            session->pose[i] = weft_motion_of_pose(&pose);
+        }
+    }
+    return WEFT_OK;
+}
+
 /* Takes the shots of the plan. */
 static weft_code adopt_plan(const char *name, const weft_rig *rig, weft_session *session, weft_error *error)
 {
@@ -41,6 +62,7 @@ static weft_code adopt_plan(const char *name, const weft_rig *rig, weft_session 
     session->shot_count = plan.shot_count;
     session->shot = plan.shot;
     WEFT_TRY(reach_all(&plan, &rig->stage, error));
+    WEFT_TRY(place_all(rig, session, error));
     session->record = calloc((size_t)plan.shot_count, sizeof *session->record);
     return session->record ? WEFT_OK : weft_fail_memory(error, "plan", (size_t)plan.shot_count * sizeof(weft_shot));
 }

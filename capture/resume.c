@@ -136,6 +136,21 @@ static bool same_colour(const weft_colour *a, const weft_colour *b)
     return same;
 }
 
+/* Whether both know, or do not know, where the rig puts the camera, and put it there. */
+static bool same_poses(const weft_session *a, const weft_session *b)
+{
+    if (!a->pose || !b->pose)
+        return !a->pose && !b->pose;
+    for (int i = 0; i < a->shot_count; i++) {
+        for (int k = 0; k < 3; k++) {
+            if (!nearly(a->pose[i].rotation[k], b->pose[i].rotation[k]) ||
+                !nearly(a->pose[i].translation[k], b->pose[i].translation[k]))
+                return false;
+        }
+    }
+    return true;
+}
+
 static weft_code check_same(const weft_session *wanted, const weft_session *found, weft_error *error)
 {
     if (strcmp(wanted->rig, found->rig) != 0)
@@ -152,6 +167,10 @@ static weft_code check_same(const weft_session *wanted, const weft_session *foun
     if (wanted->colour.terms > 0 && !same_colour(&wanted->colour, &found->colour))
         return weft_fail(error, WEFT_BAD_INPUT,
                          "session '%s' was begun with another colour: go on without one, and give it to weft register",
+                         wanted->folder);
+    if (!same_poses(wanted, found))
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "session '%s' was begun with other poses of the rig; repeat them or choose another folder",
                          wanted->folder);
     return WEFT_OK;
 }

@@ -43,6 +43,9 @@ typedef struct weft_rig_stage {
     /* Whether the stage can take up the pose of a shot; may send the light to where one of its lamps is. Pure. NULL: it
      * can take up any. Errors: WEFT_BAD_INPUT naming the axis that cannot. */
     weft_code (*reach)(void *device, weft_shot *shot, weft_error *error);
+    /* Where the axes of camera and sample stand for a shot that it can take up. Pure. NULL: it has none that are known.
+     * Errors: those of reach. */
+    weft_code (*turns)(void *device, const weft_shot *shot, weft_turns *turns, weft_error *error);
     /* Sorts `count` numbers of shots so that the stage is through with them soon. Moves nothing. NULL: they are taken
      * in the order of the plan, and nothing is known of the time. Errors: WEFT_SYSTEM. */
     weft_code (*order)(void *device, const weft_shot *shot, int count, int *numbers, weft_stage_estimate *estimate,
@@ -62,6 +65,7 @@ typedef struct weft_rig {
                              goes on only where all its values are the same */
     weft_rig_settings settings;    /* set-up and exposure */
     weft_camera calibration;       /* of the camera */
+    const weft_rig_poses *poses;   /* where the axes truly are, with the camera that goes with them; NULL: not known */
     weft_sensor_noise noise;       /* of a raw value */
     double seconds_per_photograph; /* beyond moving, as the operator knows it; 0: a rehearsal measures it on one */
     weft_rig_camera camera;

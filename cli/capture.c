@@ -1,5 +1,6 @@
 #include "capture/capture.h"
 #include "base/text/json_text.h"
+#include "btf/session/poses_file.h"
 #include "capture/laboratory/laboratory.h"
 #include "capture/virtual/ground_truth.h"
 #include "cli/arguments.h"
@@ -19,6 +20,7 @@ typedef struct capture_command {
     weft_truth_request truth;
     const char *rig_file; /* "virtual" or NULL: the virtual rig as it stands */
     const char *colour;   /* file */
+    const char *poses;    /* NULL: where the axes truly are is not known */
     bool dry_run, check;
 } capture_command;
 
@@ -38,6 +40,11 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, request.plan)},
     {"seed", .argument = "N", .help = "Start of the random numbers of the virtual rig (default: 1)",
      .kind = WEFT_OPTION_SEED, .offset = offsetof(capture_command, rig.seed)},
+    {"poses", .argument = "POSES.json",
+     .help =
+         "Where the axes of the virtual rig truly are, as weft calibrate found them; a rig of yours names its poses "
+         "in its file",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, poses)},
     {"truth", .argument = "FILE.h5", .help = "Where the ground truth goes (default: SESSION.truth.h5)",
      .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(capture_command, truth.path)},
     {"truth-size", .argument = "N", .help = "Texels along a side of the truth (default: 64)", .kind = WEFT_OPTION_WHOLE,
@@ -275,9 +282,13 @@ static weft_code take_session(const capture_command *command, weft_rig *rig, con
 static weft_code capture_with_virtual_rig(capture_command *command, weft_error *error)
 {
     weft_virtual_rig rig;
+    weft_poses_file poses;
+    if (command->poses)
+        WEFT_TRY(weft_poses_read(command->poses, &poses, error));
     if (command->rig_file && strcmp(command->rig_file, "virtual") != 0)
         WEFT_TRY(weft_virtual_settings_read(command->rig_file, &command->rig.settings, error));
     WEFT_TRY(weft_virtual_rig_open(&command->rig, &rig, error));
+    rig.rig.poses = command->poses ? &poses.poses : NULL;
     weft_code code = command->dry_run ? rehearse(command, &rig.rig, rig.warning, error)
                      : command->check ? check_rig(command, &rig.rig, NULL, error)
                                       : take_session(command, &rig.rig, &rig, error);
@@ -295,6 +306,9 @@ static weft_code capture_with_laboratory(const capture_command *command, weft_er
     weft_laboratory *laboratory;
     if (command->truth.path)
         return weft_fail(error, WEFT_BAD_USAGE, "--truth is of the virtual rig alone");
+    if (command->poses)
+        return weft_fail(error, WEFT_BAD_USAGE, "--poses is of the virtual rig alone: name them in '%s'",
+                         command->rig_file);
     WEFT_TRY(weft_laboratory_open(&request, &laboratory, error));
     weft_rig *rig = weft_laboratory_rig(laboratory);
     weft_code code = command->dry_run ? rehearse(command, rig, "", error) : weft_laboratory_connect(laboratory, error);

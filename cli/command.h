@@ -32,7 +32,7 @@ extern const weft_command weft_command_tile, weft_command_relief, weft_command_b
 extern const weft_command weft_command_render, weft_command_play, weft_command_compare, weft_command_tradeoff,
     weft_command_eval;
 extern const weft_command weft_command_info, weft_command_verify, weft_command_target, weft_command_lens,
-    weft_command_colour;
+    weft_command_colour, weft_command_calibrate;
 
 /* All of them, in the order of `weft --help`; the last has no command. */
 typedef struct weft_command_entry {

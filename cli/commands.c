@@ -7,6 +7,7 @@ const weft_command_entry weft_commands[] = {
     {NULL, &weft_command_lens},
     {NULL, &weft_command_colour},
     {"Photographs and geometry to a dataset:", &weft_command_capture},
+    {NULL, &weft_command_calibrate},
     {NULL, &weft_command_hand},
     {NULL, &weft_command_simulate},
     {NULL, &weft_command_register},

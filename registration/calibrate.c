@@ -71,7 +71,7 @@ static weft_code locate(court *c, witness *w, weft_error *error)
 {
     const weft_pose_limits *limits = &c->registration->settings.limits;
     weft_angles view = c->registration->survey.view[w->some.view];
-    weft_pose promised_pose = weft_pose_of_view(view, c->session->camera_distance_mm);
+    weft_pose promised_pose = weft_session_pose(c->session, view);
     weft_homography promised = weft_homography_of_pose(&c->session->camera, &promised_pose);
     weft_marker_start markers;
     weft_view_pose pose;

@@ -76,6 +76,15 @@ static weft_code check_session(const weft_session *session, const weft_registrat
     return check_shots(session, error);
 }
 
+/* Where a view is known to be seen from; where it is not, the angles of the plan to the last bit. */
+static weft_vec3 view_direction(const weft_session *session, weft_angles view)
+{
+    if (!session->pose)
+        return weft_direction_of_angles(view);
+    weft_pose pose = weft_session_pose(session, view);
+    return weft_unit(weft_pose_camera_position(&pose));
+}
+
 static weft_code describe_dataset(const weft_session *session, const weft_registration *registration,
                                   weft_dataset_layout *layout, weft_error *error)
 {
@@ -93,7 +102,7 @@ static weft_code describe_dataset(const weft_session *session, const weft_regist
         layout->view_of_image[shot] = survey->view_of_shot[shot];
     }
     for (int view = 0; view < survey->view_count; view++)
-        layout->view[view] = weft_direction_of_angles(survey->view[view]);
+        layout->view[view] = view_direction(session, survey->view[view]);
     return WEFT_OK;
 }
 
@@ -103,7 +112,7 @@ static weft_code find_and_rectify(work *w, int stay, const weft_photographs *pho
     weft_registration *registration = w->rectifier.registration;
     weft_view_pose *pose = &registration->pose[stay];
     weft_pose promised_pose =
-        weft_pose_of_view(registration->survey.view[registration->survey.stay[stay].view], session->camera_distance_mm);
+        weft_session_pose(session, registration->survey.view[registration->survey.stay[stay].view]);
     weft_homography promised = weft_homography_of_pose(&session->camera, &promised_pose);
     WEFT_TRY(weft_pose_find(&w->sight, &session->target, photographs->average, &promised, w->point_spread,
                             &registration->settings.limits, pose, w->fitted, error));

@@ -38,14 +38,29 @@ static json_t *pack_angles(weft_angles a)
     return json_pack("[ff]", weft_deg_of_rad(a.theta_rad), weft_deg_of_rad(a.phi_rad));
 }
 
+static json_t *pack_shot(const weft_session *session, int index)
+{
+    const weft_shot *shot = &session->shot[index];
+    json_t *json = json_pack("{so so so}", "light", pack_angles(shot->light), "view", pack_angles(shot->view),
+                             "light_driven", pack_angles(shot->light_driven));
+    if (session->turns) {
+        const double *deg = session->turns[index].deg;
+        weft_json_put(&json, "turns_deg", json_pack("[fff]", deg[0], deg[1], deg[2]));
+    }
+    if (session->pose) {
+        const double *w = session->pose[index].rotation, *t = session->pose[index].translation;
+        weft_json_put(&json, "pose",
+                      json_pack("[ffffff]", weft_deg_of_rad(w[0]), weft_deg_of_rad(w[1]), weft_deg_of_rad(w[2]), t[0],
+                                t[1], t[2]));
+    }
+    return json;
+}
+
 static json_t *pack_plan(const weft_session *session)
 {
     json_t *plan = json_array();
-    for (int i = 0; plan && i < session->shot_count; i++) {
-        const weft_shot *shot = &session->shot[i];
-        weft_json_append(&plan, json_pack("{so so so}", "light", pack_angles(shot->light), "view",
-                                          pack_angles(shot->view), "light_driven", pack_angles(shot->light_driven)));
-    }
+    for (int i = 0; plan && i < session->shot_count; i++)
+        weft_json_append(&plan, pack_shot(session, i));
     return plan;
 }
 
@@ -114,6 +129,47 @@ static bool unpack_shot(json_t *json, weft_shot *shot)
            unpack_angles(json_object_get(json, "light_driven"), &shot->light_driven);
 }
 
+/* Turns of 10^4 degrees and places 10^6 mm away are of no rig. */
+static const double largest_turn_deg = 1e4, largest_mm = 1e6;
+
+static bool unpack_turns(json_t *json, weft_turns *turns)
+{
+    double *deg = turns->deg;
+    return json_unpack(json, "[FFF!]", &deg[0], &deg[1], &deg[2]) == 0 && fabs(deg[0]) <= largest_turn_deg &&
+           fabs(deg[1]) <= largest_turn_deg && fabs(deg[2]) <= largest_turn_deg;
+}
+
+static bool unpack_pose(json_t *json, weft_motion *pose)
+{
+    double *w = pose->rotation, *t = pose->translation;
+    bool sound = json_unpack(json, "[FFFFFF!]", &w[0], &w[1], &w[2], &t[0], &t[1], &t[2]) == 0;
+    for (int i = 0; sound && i < 3; i++) {
+        sound = fabs(w[i]) <= 361 && fabs(t[i]) <= largest_mm;
+        w[i] = weft_rad_of_deg(w[i]);
+    }
+    return sound;
+}
+
+/* What only some rigs know: of all shots or of none, as the first has it. */
+static weft_code unpack_places(json_t *plan, const char *path, weft_session *session, weft_error *error)
+{
+    size_t count = (size_t)session->shot_count;
+    bool turns = json_object_get(json_array_get(plan, 0), "turns_deg");
+    bool poses = json_object_get(json_array_get(plan, 0), "pose");
+    session->turns = turns ? calloc(count, sizeof *session->turns) : NULL;
+    session->pose = poses ? calloc(count, sizeof *session->pose) : NULL;
+    if ((turns && !session->turns) || (poses && !session->pose))
+        return weft_fail_memory(error, "plan", count * sizeof *session->pose);
+    for (size_t i = 0; i < count; i++) {
+        json_t *shot = json_array_get(plan, i);
+        if (turns && !unpack_turns(json_object_get(shot, "turns_deg"), &session->turns[i]))
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'turns_deg' of shot %zu of the plan cannot be", path, i);
+        if (poses && !unpack_pose(json_object_get(shot, "pose"), &session->pose[i]))
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'pose' of shot %zu of the plan cannot be", path, i);
+    }
+    return WEFT_OK;
+}
+
 static weft_code unpack_plan(json_t *plan, const char *path, weft_session *session, weft_error *error)
 {
     size_t count = json_array_size(plan);
@@ -130,7 +186,7 @@ static weft_code unpack_plan(json_t *plan, const char *path, weft_session *sessi
         if (!unpack_shot(json_array_get(plan, i), &session->shot[i]))
             return weft_json_fail(error, WEFT_BAD_INPUT, "'%s': shot %zu of the plan is malformed", path, i);
     }
-    return WEFT_OK;
+    return unpack_places(plan, path, session, error);
 }
 
 static bool is_reflectance(double value)
@@ -235,7 +291,19 @@ void weft_session_free(weft_session *session)
     free(session->rig_settings);
     free(session->shot);
     free(session->record);
+    free(session->turns);
+    free(session->pose);
     *session = (weft_session){0};
+}
+
+weft_pose weft_session_pose(const weft_session *session, weft_angles view)
+{
+    for (int i = 0; session->pose && i < session->shot_count; i++) {
+        const weft_angles *shown = &session->shot[i].view;
+        if (shown->theta_rad == view.theta_rad && shown->phi_rad == view.phi_rad)
+            return weft_pose_of_motion(&session->pose[i]);
+    }
+    return weft_pose_of_view(view, session->camera_distance_mm);
 }
 
 static int whole_degrees(weft_real rad)

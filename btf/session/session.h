@@ -7,8 +7,8 @@
 #define WEFT_BTF_SESSION_SESSION_H
 
 #include "base/status.h"
-#include "btf/session/camera.h"
 #include "btf/session/colour.h"
+#include "btf/session/rig_poses.h"
 #include "btf/session/target.h"
 
 #include <stdbool.h>
@@ -63,7 +63,13 @@ typedef struct weft_session {
     int shot_count;
     weft_shot *shot;          /* [shot_count], in the order of the plan */
     weft_shot_record *record; /* [shot_count] */
+    weft_turns *turns;        /* [shot_count] of the axes of camera and sample; NULL: not known */
+    weft_motion *pose;        /* [shot_count] where the rig is known to put the camera; NULL: as the view says */
 } weft_session;
+
+/* Where the rig promises the camera for a view: the pose of the first shot of it, or where nothing better is known,
+ * that of a camera as set up. Pure. */
+weft_pose weft_session_pose(const weft_session *session, weft_angles view);
 
 /* Writes session.json atomically into session->folder, which must exist. Errors: WEFT_SYSTEM. */
 weft_code weft_session_create(const weft_session *session, weft_error *error);

@@ -146,12 +146,16 @@ weft_code weft_axes_solve(const weft_axes *axes, weft_angles view, weft_angles l
     return code;
 }
 
+double weft_axes_angle(const weft_axes *axes, const weft_axis_positions *positions, weft_body body, weft_turn turn)
+{
+    int k = weft_axes_find(axes, body, turn);
+    return k < 0 ? axes->fixed_deg[body][turn]
+                 : (positions->deg[k] - axes->axis[k].zero_deg) * (axes->axis[k].reversed ? -1 : 1);
+}
+
 weft_angles weft_axes_light_on_sample(const weft_axes *axes, const weft_axis_positions *positions, weft_angles lamp)
 {
-    int k = weft_axes_find(axes, WEFT_BODY_SAMPLE, WEFT_TURN_PHI);
-    double turn = axes->fixed_deg[WEFT_BODY_SAMPLE][WEFT_TURN_PHI];
-    if (k >= 0)
-        turn = (positions->deg[k] - axes->axis[k].zero_deg) * (axes->axis[k].reversed ? -1 : 1);
+    double turn = weft_axes_angle(axes, positions, WEFT_BODY_SAMPLE, WEFT_TURN_PHI);
     double phi_deg = weft_deg_of_rad(lamp.phi_rad) - turn;
     return (weft_angles){lamp.theta_rad, weft_rad_of_deg(phi_deg - 360 * floor(phi_deg / 360))};
 }

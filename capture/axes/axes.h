@@ -59,6 +59,9 @@ weft_code weft_axes_check(const weft_axes *axes, const char *path, weft_error *e
 weft_code weft_axes_solve(const weft_axes *axes, weft_angles view, weft_angles light, weft_axis_positions *positions,
                           weft_error *error);
 
+/* The angle that the axis of a body stands for where it is, unwrapped; the fixed angle where no axis turns it. Pure. */
+double weft_axes_angle(const weft_axes *axes, const weft_axis_positions *positions, weft_body body, weft_turn turn);
+
 /* Where light from a lamp of the laboratory falls from, on the sample as it is turned. */
 weft_angles weft_axes_light_on_sample(const weft_axes *axes, const weft_axis_positions *positions, weft_angles lamp);
 

@@ -3,6 +3,7 @@
 #include "base/text/csv.h"
 #include "base/text/json_text.h"
 #include "btf/session/lens.h"
+#include "btf/session/poses_file.h"
 #include "capture/camera/folder_camera.h"
 #include "capture/camera/tethered_camera.h"
 #include "capture/camera/video_camera.h"
@@ -29,6 +30,7 @@ struct weft_laboratory {
     weft_folder_camera *folder;
     weft_video_camera *video;
     weft_tethered_camera *tethered;
+    weft_poses_file poses;
     weft_rig rig;
 };
 
@@ -40,6 +42,22 @@ static weft_code read_lens(weft_laboratory *lab, weft_error *error)
     WEFT_TRY(weft_rig_file_beside(&lab->file, lab->file.camera.lens, lab->lens, sizeof lab->lens, error));
     WEFT_TRY(weft_lens_read(lab->lens, &lens, error));
     lab->rig.calibration = lens.camera;
+    return WEFT_OK;
+}
+
+/* Poses go with the size of the photographs that they were found in. */
+static weft_code read_poses(weft_laboratory *lab, weft_error *error)
+{
+    char path[PATH_MAX];
+    const weft_camera *lens = &lab->rig.calibration, *camera = &lab->poses.poses.camera;
+    if (!lab->file.poses[0])
+        return WEFT_OK;
+    WEFT_TRY(weft_rig_file_beside(&lab->file, lab->file.poses, path, sizeof path, error));
+    WEFT_TRY(weft_poses_read(path, &lab->poses, error));
+    if (camera->width != lens->width || camera->height != lens->height)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is for photographs of %d x %d pixels, the lens is for %d x %d",
+                         path, camera->width, camera->height, lens->width, lens->height);
+    lab->rig.poses = &lab->poses.poses;
     return WEFT_OK;
 }
 
@@ -177,6 +195,7 @@ static weft_code prepare(weft_laboratory *lab, weft_error *error)
 {
     WEFT_TRY(weft_rig_file_read(lab->request.rig_file, &lab->file, error));
     WEFT_TRY(read_lens(lab, error));
+    WEFT_TRY(read_poses(lab, error));
     WEFT_TRY(read_lamps(lab, error));
     weft_rig_settings settings = settings_of(&lab->file, &lab->rig.calibration);
     WEFT_TRY(weft_rig_settings_check(&settings, lab->file.path, error));

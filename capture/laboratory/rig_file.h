@@ -50,6 +50,7 @@ typedef struct weft_camera_description {
 typedef struct weft_rig_file {
     char path[WEFT_RIG_TEXT_SIZE];
     char name[WEFT_RIG_TEXT_SIZE];
+    char poses[WEFT_RIG_TEXT_SIZE]; /* where its axes truly are, beside the rig file; empty: not known */
     double opening_mm;
     weft_axes axes;
     weft_stage_description stage;

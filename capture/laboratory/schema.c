@@ -41,6 +41,7 @@ static const char *const value_words[] = {"linear", "srgb", NULL};
 static const weft_rig_key file_keys[] = {
     {.name = "name", .kind = WEFT_KEY_TEXT, .offset = offsetof(weft_rig_file, name), .required = true},
     NEEDED(weft_rig_file, opening_mm, 1, 1000),
+    TEXT(weft_rig_file, poses, ""),
 };
 
 static const weft_rig_key axis_keys[] = {

@@ -77,6 +77,17 @@ static weft_code reach(void *device, weft_shot *shot, weft_error *error)
     return code == WEFT_OK ? WEFT_OK : fail_shot(shot, error);
 }
 
+static weft_code turns(void *device, const weft_shot *shot, weft_turns *at, weft_error *error)
+{
+    const weft_axes *axes = ((weft_stage *)device)->parts.axes;
+    weft_axis_positions positions;
+    WEFT_TRY(weft_axes_solve(axes, shot->view, shot->light_driven, &positions, error));
+    at->deg[WEFT_CAMERA_THETA] = weft_axes_angle(axes, &positions, WEFT_BODY_CAMERA, WEFT_TURN_THETA);
+    at->deg[WEFT_CAMERA_PHI] = weft_axes_angle(axes, &positions, WEFT_BODY_CAMERA, WEFT_TURN_PHI);
+    at->deg[WEFT_SAMPLE_PHI] = weft_axes_angle(axes, &positions, WEFT_BODY_SAMPLE, WEFT_TURN_PHI);
+    return WEFT_OK;
+}
+
 static weft_code order_poses(const weft_stage *stage, const weft_shot *shot, int count, int *numbers,
                              weft_axis_positions *pose, weft_stage_estimate *estimate, weft_error *error)
 {
@@ -310,8 +321,14 @@ void weft_stage_free(weft_stage *stage)
 
 weft_rig_stage weft_stage_for_rig(weft_stage *stage)
 {
-    return (weft_rig_stage){
-        .device = stage, .home = home, .move = move, .held = held, .stop = stop, .reach = reach, .order = order};
+    return (weft_rig_stage){.device = stage,
+                            .home = home,
+                            .move = move,
+                            .held = held,
+                            .stop = stop,
+                            .reach = reach,
+                            .turns = turns,
+                            .order = order};
 }
 
 weft_rig_light weft_stage_light(weft_stage *stage)

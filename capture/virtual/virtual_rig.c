@@ -82,6 +82,14 @@ static weft_code move(void *device, weft_angles view, weft_angles light, bool *m
     return WEFT_OK;
 }
 
+static weft_code turns(void *device, const weft_shot *shot, weft_turns *at, weft_error *error)
+{
+    (void)device;
+    (void)error;
+    *at = weft_turns_of_view(shot->view);
+    return WEFT_OK;
+}
+
 /* ---- Light ---- */
 
 static weft_code power_light(void *device, bool on, weft_error *error)
@@ -169,15 +177,16 @@ static weft_code open_devices(const weft_virtual_request *request, weft_virtual_
         free_devices(devices);
         return code;
     }
-    rig->rig = (weft_rig){.name = "virtual",
-                          .sample = weft_virtual_sample_name(&rig->sample),
-                          .identity = devices->identity,
-                          .settings = request->settings.rig,
-                          .calibration = weft_rig_settings_camera(&request->settings.rig),
-                          .noise = {devices->sensor.electrons_per_step, devices->sensor.read_noise},
-                          .camera = {devices, expose},
-                          .stage = {.device = devices, .home = home, .move = move},
-                          .light = {devices, power_light}};
+    rig->rig = (weft_rig){
+        .name = "virtual",
+        .sample = weft_virtual_sample_name(&rig->sample),
+        .identity = devices->identity,
+        .settings = request->settings.rig,
+        .calibration = weft_rig_settings_camera(&request->settings.rig),
+        .noise = {devices->sensor.electrons_per_step, devices->sensor.read_noise},
+        .camera = {devices, expose},
+        .stage = {.device = devices, .home = home, .move = move, .turns = request->settings.axes != 0 ? turns : NULL},
+        .light = {devices, power_light}};
     return WEFT_OK;
 }
 

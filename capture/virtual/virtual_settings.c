@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { GROUP_COUNT = 2 };
+enum { GROUP_COUNT = 3 };
 
 #define REAL(name, value, low, high) WEFT_SETTING(weft_virtual_settings, name, value, low, high, false)
 #define WHOLE(name, value, low, high) WEFT_SETTING(weft_virtual_settings, name, value, low, high, true)
@@ -32,10 +32,18 @@ static const weft_rig_setting table[] = {
     WHOLE(bounces, 3, 0, WEFT_STITCH_SAMPLE_MAX_BOUNCES),
 };
 
+/* Sessions of rigs without axes say nothing of them, as they did before there were any. */
+static const weft_rig_setting axes_table[] = {
+    WHOLE(axes, 0, 0, 1),           REAL(axis_tilt_deg, 0, 0, 5),    REAL(axis_offset_mm, 0, 0, 50),
+    REAL(axis_zero_deg, 0, 0, 5),   REAL(axis_scale, 0, 0, 0.1),     REAL(axis_uneven_deg, 0, 0, 5),
+    REAL(axis_wobble_deg, 0, 0, 5), REAL(aim_rotation_deg, 0, 0, 5), REAL(aim_mm, 0, 0, 50),
+};
+
 static void list_groups(weft_virtual_settings *settings, weft_setting_group groups[GROUP_COUNT])
 {
     groups[0] = weft_rig_settings_group(&settings->rig);
     groups[1] = (weft_setting_group){table, sizeof table / sizeof *table, settings};
+    groups[2] = (weft_setting_group){axes_table, sizeof axes_table / sizeof *axes_table, settings};
 }
 
 weft_virtual_settings weft_virtual_settings_default(void)
@@ -65,7 +73,7 @@ char *weft_virtual_settings_text(const weft_virtual_settings *settings, uint64_t
     json_t *root =
         json_pack("{sI so sI}", "seed", (json_int_t)seed, "sample_file",
                   weft_json_text(sample_file, strlen(sample_file)), "sample_crc32", (json_int_t)sample_crc32);
-    for (int i = 0; root && i < GROUP_COUNT; i++)
+    for (int i = 0; root && i < GROUP_COUNT - (copy.axes == 0); i++)
         weft_setting_group_write(&groups[i], &root);
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     json_decref(root);

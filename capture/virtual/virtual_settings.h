@@ -19,9 +19,15 @@ typedef struct weft_virtual_settings {
     double k1_error; /* relative */
     double mounting_rotation_deg, mounting_translation_mm;
     double stay_rotation_deg, stay_translation_mm; /* standard deviation per axis, drawn anew for every stay */
-    double light_rotation_deg;                     /* standard deviation per axis, drawn anew for every move */
-    double light_power_drift;                      /* relative standard deviation, per exposure */
-    double timeout_probability;                    /* of an exposure that fails */
+    double axes; /* 1 = an arm on a ring turns the camera, with what follows; 0 = it is wherever it is sent */
+    double axis_tilt_deg, axis_offset_mm; /* by which the line of each axis is off */
+    double axis_zero_deg, axis_scale;     /* of the scale of each axis: its zero, and its length, relative */
+    double axis_uneven_deg;               /* amplitude of the errors of the scale, once a turn */
+    double axis_wobble_deg;               /* amplitude of the lean of the bearing, once a turn; a third of it thrice */
+    double aim_rotation_deg, aim_mm;      /* by which the camera is off on its arm */
+    double light_rotation_deg;            /* standard deviation per axis, drawn anew for every move */
+    double light_power_drift;             /* relative standard deviation, per exposure */
+    double timeout_probability;           /* of an exposure that fails */
     /* The sample. */
     double tiles_x, tiles_y; /* of the weave, across the opening; 0 = chosen by the weave */
     double cloth_noise;      /* 1 = with the noise of the weave, 0 = without */

@@ -1,5 +1,6 @@
 #include "capture/virtual/world.h"
 
+#include "capture/virtual/goniometer.h"
 #include "capture/virtual/random.h"
 
 static weft_vec3 apply(const weft_pose *pose, weft_vec3 p)
@@ -70,7 +71,8 @@ weft_pose weft_virtual_world_pose(const weft_virtual_world *world, weft_angles v
     weft_vec3 shift = weft_random_normal3(world->seed, WEFT_RANDOM_STAY, index + 1);
     weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->stay_rotation_deg)),
                                       weft_scale(shift, s->stay_translation_mm));
-    weft_pose nominal = weft_pose_of_view(view, s->rig.camera_distance_mm);
+    weft_pose nominal = s->axes != 0 ? weft_virtual_goniometer_pose(s, world->seed, view)
+                                     : weft_pose_of_view(view, s->rig.camera_distance_mm);
     weft_pose in_rig = compose(&nominal, &error);
     return compose(&in_rig, &world->mounting);
 }

@@ -104,6 +104,37 @@ static void session_survives_the_round_trip(void **state)
     weft_session_free(&read);
 }
 
+/* Turns and poses are of all shots, or of none. */
+static void places_of_the_axes_survive_the_round_trip(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    weft_session written = example(), read;
+    weft_turns turns[SHOTS] = {{{75, -15, 0}}, {{75, -15, 0}}, {{75.25, -15, 3}}};
+    weft_motion pose[SHOTS] = {
+        {{0.1, 0.2, 0.3}, {1, 2, 1000}}, {{0.1, 0.2, 0.3}, {1, 2, 1000}}, {{0, 0, 0}, {0, 0, 9}}};
+    assert_int_equal(weft_session_create(&written, &error), WEFT_OK);
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
+    assert_null(read.turns);
+    assert_null(read.pose);
+    weft_pose by_view = weft_session_pose(&read, read.shot[0].view);
+    assert_true(fabs(weft_length(weft_pose_camera_position(&by_view)) - 1000) < 1e-9);
+    weft_session_free(&read);
+    written.turns = turns;
+    written.pose = pose;
+    assert_int_equal(weft_session_create(&written, &error), WEFT_OK);
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
+    assert_true(read.turns[2].deg[0] == 75.25 && read.turns[2].deg[2] == 3);
+    assert_true(fabs(read.pose[1].rotation[2] - 0.3) < 1e-15 && read.pose[1].translation[2] == 1000);
+    weft_pose known = weft_session_pose(&read, read.shot[0].view);
+    assert_true(known.translation.y == 2);
+    weft_session_free(&read);
+    pose[1].translation[0] = 1e7;
+    assert_int_equal(weft_session_create(&written, &error), WEFT_OK);
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "'pose' of shot 1 of the plan cannot be"));
+}
+
 static void a_sample_whose_name_is_not_utf_8_is_described_all_the_same(void **state)
 {
     (void)state;
@@ -218,6 +249,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(session_survives_the_round_trip),
+        cmocka_unit_test(places_of_the_axes_survive_the_round_trip),
         cmocka_unit_test(a_sample_whose_name_is_not_utf_8_is_described_all_the_same),
         cmocka_unit_test(journal_gives_back_what_was_appended),
         cmocka_unit_test(cut_last_line_is_forgotten_and_overwritten),

@@ -213,6 +213,47 @@ static void another_rig_does_not_continue_a_session(void **state)
     remove_session();
 }
 
+/* An arm whose scale begins at 10 degrees. */
+static weft_code turns(void *device, const weft_shot *shot, weft_turns *at, weft_error *error)
+{
+    (void)device;
+    (void)error;
+    *at = (weft_turns){{weft_deg_of_rad(shot->view.theta_rad) + 10, weft_deg_of_rad(shot->view.phi_rad), 0}};
+    return WEFT_OK;
+}
+
+/* Where the stage turns to, and where that is known to put the camera. */
+static void the_session_knows_where_the_axes_put_the_camera(void **state)
+{
+    (void)state;
+    bench b = {0};
+    weft_rig rig = rig_of(&b);
+    weft_rig_poses poses = weft_rig_poses_nominal(&rig.calibration, 500);
+    weft_capture_summary summary;
+    weft_session session;
+    weft_error error = {0};
+    rig.poses = &poses;
+    poses.camera.fx = 450;
+    assert_int_equal(run(&rig, &summary, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "no axes that calibrated poses could be of"));
+    rig.stage.turns = turns;
+    assert_int_equal(run(&rig, &summary, NULL), WEFT_OK);
+    assert_int_equal(weft_session_open("session", &session, NULL), WEFT_OK);
+    assert_float_equal(session.camera.fx, 450, 0);
+    assert_float_equal(session.turns[2].deg[WEFT_CAMERA_THETA], 50, 1e-9);
+    weft_pose there = weft_session_pose(&session, session.shot[2].view);
+    weft_angles seen_from = weft_pose_view(&there);
+    assert_float_equal(weft_deg_of_rad(seen_from.theta_rad), 50, 1e-6);
+    weft_session_free(&session);
+    poses.joint[0].scale = 0.001;
+    assert_int_equal(run(&rig, &summary, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "begun with other poses of the rig"));
+    rig.poses = NULL;
+    assert_int_equal(run(&rig, &summary, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "begun with other poses of the rig"));
+    remove_session();
+}
+
 static void a_photograph_during_which_the_stage_moved_is_taken_again(void **state)
 {
     (void)state;
@@ -308,6 +349,7 @@ int main(void)
         cmocka_unit_test(the_stage_is_homed_once_and_told_how_many_stays_there_were),
         cmocka_unit_test(a_stage_that_cannot_be_homed_ends_the_run_with_its_message),
         cmocka_unit_test(another_rig_does_not_continue_a_session),
+        cmocka_unit_test(the_session_knows_where_the_axes_put_the_camera),
         cmocka_unit_test(a_photograph_during_which_the_stage_moved_is_taken_again),
         cmocka_unit_test(a_stage_that_never_keeps_still_ends_the_run),
         cmocka_unit_test(whatever_fails_the_axes_stop_and_the_light_goes_off),

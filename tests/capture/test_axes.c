@@ -77,6 +77,11 @@ static void assert_pose(const weft_axes *axes, weft_angles view, weft_angles lig
     weft_vec3 camera = seen_from(axes, &p, WEFT_BODY_CAMERA), lamp = seen_from(axes, &p, WEFT_BODY_LIGHT);
     assert_true(weft_length(weft_subtract(camera, weft_direction_of_angles(view))) < 1e-9);
     assert_true(weft_length(weft_subtract(lamp, weft_direction_of_angles(light))) < 1e-9);
+    for (int i = 0; i < WEFT_BODY_COUNT * WEFT_TURN_COUNT; i++) {
+        weft_body body = (weft_body)(i / WEFT_TURN_COUNT);
+        weft_turn turn = (weft_turn)(i % WEFT_TURN_COUNT);
+        assert_true(fabs(weft_axes_angle(axes, &p, body, turn) - angle_of(axes, &p, body, turn)) < 1e-9);
+    }
 }
 
 static void every_pair_of_ubo81_stands_where_it_should(void **state)

@@ -52,7 +52,7 @@ expect_completed() {
     [ "$got" = "$wanted " ] || fail "'$*' becomes '$got', not '$wanted'"
     passed=$((passed + 1))
 }
-expect_completed "capture colour compare compress" c
+expect_completed "calibrate capture colour compare compress" c
 expect_completed "--layers --levels --light-table --lobes" compress --l
 expect_completed "given off on" compress silk.btf.h5 --frames = ""
 expect_completed "off on" compress silk.btf.h5 --frames = o

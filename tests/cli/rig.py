@@ -3,6 +3,7 @@
 Usage: rig.py WEFT ASSETS; in a scratch folder. Stands in for both: answers the questions, and drops the photographs.
 """
 import json
+import math
 import os
 import re
 import shutil
@@ -32,6 +33,23 @@ def prepare():
     write("plan.csv", "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n" +
           "".join("%g,%g,%g,%g\n" % row for row in PLAN))
     os.makedirs("incoming", exist_ok=True)
+
+
+def matrix(degrees):
+    """The rotation by a vector (Rodrigues)."""
+    w = [math.radians(d) for d in degrees]
+    angle = math.hypot(*w)
+    x, y, z = (v / angle for v in w)
+    c, s = math.cos(angle), math.sin(angle)
+    return [[c + x * x * (1 - c), x * y * (1 - c) - z * s, x * z * (1 - c) + y * s],
+            [y * x * (1 - c) + z * s, c + y * y * (1 - c), y * z * (1 - c) - x * s],
+            [z * x * (1 - c) - y * s, z * y * (1 - c) + x * s, c + z * z * (1 - c)]]
+
+
+def rotation_vector(rows):
+    angle = math.acos((rows[0][0] + rows[1][1] + rows[2][2] - 1) / 2)
+    across = [rows[2][1] - rows[1][2], rows[0][2] - rows[2][0], rows[1][0] - rows[0][1]]
+    return [math.degrees(angle) * v / (2 * math.sin(angle)) for v in across]
 
 
 def photograph(number):
@@ -85,6 +103,8 @@ def check_poses(taken, lines):
         for name, angle in wanted.items():
             assert abs((axes[name] - angle + 180) % 360 - 180) < 0.01, (axes, shot)
         assert line["exposure_s"] == 0.25, line
+        for name, turn in zip(("camera elevation", "camera azimuth"), shot["turns_deg"]):
+            assert abs(axes[name] - turn) < 0.01, (axes, shot)
         name = "tl%03d_pl%03d_tv%03d_pv%03d" % tuple(round(a) for a in shot["light"] + shot["view"])
         folder = "session/" + name[12:]
         original = open(f"{folder}/{name}.original.pgm", "rb").read()
@@ -111,6 +131,35 @@ shutil.rmtree("session")
 code, _, taken, err = run()
 assert code == 0 and len(taken) == len(PLAN), err
 check_poses(taken, journal())
+
+# A rig whose axes are known: a camera that sits 2 degrees too low on its arm, and a file of another camera.
+shutil.rmtree("session")
+joint = {"point_mm": [0, 0, 0], "scale": 0, "uneven_deg": [0, 0], "wobble_deg": [0, 0, 0, 0]}
+joints = [dict(joint, turns=turns, direction=direction) for turns, direction in
+          (("camera theta", [0, -1, 0]), ("camera phi", [0, 0, -1]), ("sample phi", [0, 0, 1]))]
+# Of a camera at the zenith: x of its picture is y of the plate, y is x. With 2 degrees more about y of the plate:
+tilt = math.radians(2)
+rows = [[0, 1, 0], [math.cos(tilt), 0, -math.sin(tilt)], [-math.sin(tilt), 0, -math.cos(tilt)]]
+poses = {"weft_poses": 1, "camera": {key: LENS[key] for key in ("width", "height", "fx", "fy", "cx", "cy", "k1", "k2",
+                                                              "vignetting")},
+         "home": {"rotation_deg": rotation_vector(rows), "translation_mm": [0, 0, 500]}, "joints": joints}
+write("rig.poses.json", json.dumps(poses))
+write("rig.conf", open("rig.conf", encoding="ascii").read().replace("opening_mm = 40", 'opening_mm = 40\nposes = "rig.poses.json"'))
+code, _, taken, err = run()
+assert code == 0 and len(taken) == len(PLAN), err
+for shot in json.load(open("session/session.json", encoding="ascii"))["plan"]:
+    row = matrix(shot["pose"][:3])
+    camera = [-sum(row[k][i] * shot["pose"][3 + k] for k in range(3)) for i in range(3)]
+    theta = math.degrees(math.acos(camera[2] / 500))
+    assert abs(theta - shot["view"][0] - 2) < 1e-6, (camera, shot)
+poses["camera"]["width"] = 97
+write("rig.poses.json", json.dumps(poses))
+code, _, _, err = run()
+assert code == 1 and "is for photographs of 97 x 96 pixels" in err, err
+write("rig.conf", open("rig.conf", encoding="ascii").read().replace('poses = "rig.poses.json"', ""))
+shutil.rmtree("session")
+code, _, taken, err = run()
+assert code == 0, err
 
 # The settings of the rig are part of the session.
 write("rig.conf", open("rig.conf", encoding="ascii").read().replace('name = "folder', 'name = "another folder'))

@@ -20,6 +20,11 @@ const short_memory_job short_memory_inputs[] = {
      1,
      {"capture", "--rig", "rig.json", "--sample", "plain.wv", "--plan", "plan.csv", "-o", "session", "--truth-images",
       "1", "--truth-size", "4"}},
+    {"series",
+     ALL_OR_NOTHING,
+     1,
+     {"capture", "--rig", "axes.json", "--sample", "plain.wv", "--plan", "series.csv", "-o", "series", "--truth-images",
+      "1", "--truth-size", "4"}},
     {"knit",
      ALL_OR_NOTHING,
      1,
@@ -80,6 +85,10 @@ const short_memory_job short_memory_jobs[] = {
      64,
      {"photographs", IN "taken", "-o", "felt.btf.h5", "--size", "8x8", "--lights", IN "taken.lp", "--report",
       "report"}},
+    {"calibrate",
+     ALL_OR_NOTHING,
+     64,
+     {"calibrate", IN "series", "-o", "poses.json", "--plan", IN "one.csv", "--lens", "free"}},
     {"lens", ALL_OR_NOTHING, 8, {"lens", IN "taken", "--board", "plate:50", "-o", "lens.json"}},
     {"colour", ALL_OR_NOTHING, 8, {"colour", IN "chart.exr", "-o", "colour.json", "--model", "linear"}},
     {"compress", GOES_ON, 4, {"compress", IN "small.btf.h5", "-o", "small.weft", "--lobes", "1"}},
@@ -229,6 +238,11 @@ void short_memory_write_inputs(void)
                            "0,0,0,0\n40,60,30,90\n");
     write_text("rig.json", "{\"rig\": \"virtual\", \"width_px\": 208, \"height_px\": 208, \"focal_length_px\": 960,"
                            " \"samples_per_pixel\": 1, \"bounces\": 1}");
+    write_text("axes.json", "{\"rig\": \"virtual\", \"width_px\": 144, \"height_px\": 144, \"focal_length_px\": 660,"
+                            " \"samples_per_pixel\": 2, \"axes\": 1, \"axis_tilt_deg\": 0.2}");
+    write_text("series.csv", "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n"
+                             "30,60,0,0\n30,60,20,0\n30,60,20,120\n30,60,20,240\n"
+                             "30,60,40,0\n30,60,40,120\n30,60,40,240\n30,60,60,180\n");
     write_text("coarse.stitch", STITCH_TEXT);
     write_text("plain.wv", weave_text);
 }

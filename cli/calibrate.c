@@ -1,0 +1,275 @@
+#include "base/atomic_file.h"
+#include "base/text/json_text.h"
+#include "capture/plan.h"
+#include "cli/arguments.h"
+#include "registration/axes/expectation.h"
+#include "registration/axes/sightings.h"
+#include "registration/registration.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct calibrate_command {
+    weft_common_options common;
+    const char *session, *output, *plan;
+    int lens;
+} calibrate_command;
+
+enum { LENS_HELD, LENS_FREE };
+
+static const char *const lens_words[] = {"held", "free", NULL};
+
+static const weft_option option_table[] = {
+    {.argument = "SESSION",
+     .is_required = true,
+     .kind = WEFT_OPTION_INPUT,
+     .offset = offsetof(calibrate_command, session)},
+    {"output", 'o', "POSES.json", "Where the axes truly are", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
+     .offset = offsetof(calibrate_command, output)},
+    {"plan", .argument = "ubo81|FILE.csv",
+     .help =
+         "The night that errors are expected for: the views of 81 directions (default), or those of a table as weft "
+         "capture takes it",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(calibrate_command, plan)},
+    {"lens", .argument = "WHICH",
+     .help = "Whether the lens stays as it is (held, default) or is found with the axes where the photographs tell it "
+             "(free)",
+     .kind = WEFT_OPTION_CHOICE, .offset = offsetof(calibrate_command, lens), .words = lens_words},
+    {0},
+};
+
+/* Lobes of glossy cloth are some degrees wide: a direction known better than this is as good as any. */
+static const double direction_limit_deg = 0.2;
+
+static weft_code check(void *values, weft_error *error)
+{
+    const calibrate_command *command = values;
+    return weft_is_same_file(command->session, command->output) ||
+                   (command->plan && weft_is_same_file(command->plan, command->output))
+               ? weft_fail(error, WEFT_BAD_USAGE, "'%s' would overwrite what it is made from", command->output)
+               : WEFT_OK;
+}
+
+/* ---- The night ---- */
+
+typedef struct night {
+    weft_expectation expectation;
+    int views, unreachable; /* of the plan */
+    double allowed_texels;  /* as far as registration looks */
+    bool finds, directs;    /* whether it will find the target, and directions are well enough known */
+} night;
+
+static bool is_new_view(const weft_plan *plan, int shot)
+{
+    /* Shots of one view follow each other. */
+    const weft_angles *now = &plan->shot[shot].view, *before = shot > 0 ? &plan->shot[shot - 1].view : NULL;
+    return !before || now->theta_rad != before->theta_rad || now->phi_rad != before->phi_rad;
+}
+
+static int list_turns(const weft_axes_sightings *sightings, const weft_plan *plan, weft_turns *turns, night *n)
+{
+    int count = 0;
+    for (int shot = 0; shot < plan->shot_count; shot++) {
+        if (!is_new_view(plan, shot))
+            continue;
+        n->views++;
+        if (weft_axes_turns_like(sightings->shot, sightings->count, plan->shot[shot].view, &turns[count]))
+            count++;
+    }
+    n->unreachable = n->views - count;
+    return count;
+}
+
+static weft_code expect(const weft_session *session, const weft_axes_sightings *sightings, const weft_plan *plan,
+                        const weft_axes_fit *fit, const weft_rig_poses *nominal, night *n, weft_error *error)
+{
+    weft_registration_settings settings = weft_registration_defaults(session);
+    double opening_mm = session->target.opening_mm;
+    weft_turns *turns = calloc((size_t)plan->shot_count, sizeof *turns);
+    if (!turns)
+        return weft_fail_memory(error, "plan", (size_t)plan->shot_count * sizeof *turns);
+    int count = list_turns(sightings, plan, turns, n);
+    weft_code code = weft_axes_expect(fit, nominal, opening_mm, settings.width, turns, count, &n->expectation, error);
+    free(turns);
+    n->allowed_texels = settings.limits.tolerance_mm * settings.width / opening_mm;
+    n->finds = 3 * n->expectation.worst.texels < n->allowed_texels;
+    n->directs = weft_deg_of_rad(n->expectation.direction_rad) < direction_limit_deg;
+    return code;
+}
+
+/* ---- Words ---- */
+
+static void say_lines(const weft_common_options *common, const char *before, const weft_lines *lines)
+{
+    for (int i = 0; i < lines->count; i++)
+        weft_command_say(common, "%s%s", before, lines->line[i]);
+}
+
+static void say_left_out(const weft_common_options *common, const weft_axes_sightings *sightings)
+{
+    for (int i = 0; i < sightings->count; i++)
+        if (sightings->shot[i].left_out[0])
+            weft_command_say(common, "left out %s: %s", sightings->shot[i].name, sightings->shot[i].left_out);
+}
+
+static void say_night(const weft_common_options *common, const night *n)
+{
+    const weft_expectation *e = &n->expectation;
+    const weft_expected_pose *worst = &e->worst;
+    if (n->unreachable > 0)
+        weft_command_say(common,
+                         "%d of the %d views of the plan were left aside: the axes of these shots do not reach "
+                         "them",
+                         n->unreachable, n->views);
+    if (e->poses == 0)
+        return;
+    weft_command_say(common, "expected before the target is looked at, %d poses: %.3f texels of 64 median, %.3f worst",
+                     e->poses, e->median_texels, worst->texels);
+    weft_command_say(common,
+                     "  the worst with turns of %.1f %.1f %.1f degrees: %.3f because the axes are known no better, "
+                     "%.3f because they do not repeat",
+                     worst->turns.deg[0], worst->turns.deg[1], worst->turns.deg[2], worst->model_texels,
+                     worst->scatter_texels);
+    weft_command_say(common, "  the direction of a view: %.4f degrees at worst", weft_deg_of_rad(e->direction_rad));
+    if (n->finds && n->directs)
+        weft_command_say(common, "good enough: registration looks %.0f texels far", n->allowed_texels);
+    else if (worst->scatter_texels > worst->model_texels)
+        weft_command_say(common, "NOT good enough: the axes do not repeat; look for play, raise backlash_deg and "
+                                 "settle_s in the rig file, and fasten the target");
+    else
+        weft_command_say(common, "NOT good enough: the shots do not tell the axes; take more, over the whole reach of "
+                                 "every axis");
+}
+
+static void say_poses(const calibrate_command *command, const weft_axes_sightings *sightings,
+                      const weft_axes_report *report, const night *n)
+{
+    const weft_common_options *common = &command->common;
+    const weft_poses_file *file = &report->file;
+    weft_command_say(common,
+                     "%s: %d of %d shots; points are %.3f pixels off in shots that were not fitted, %.3f in those "
+                     "that were (RMS)",
+                     command->output, report->used, sightings->count, file->held_out_rms_px, file->rms_px);
+    say_lines(common, "  ", &report->told);
+    say_lines(common, "not told: ", &report->not_told);
+    weft_command_say(common, "not told: the axes of the light are not seen by the camera; they stay as specified");
+    say_night(common, n);
+}
+
+static json_t *pack_joint(const weft_poses_file *file, int k)
+{
+    const weft_joint_error *e = &file->error[k];
+    const weft_joint *joint = &file->poses.joint[k];
+    return json_pack("{ss s[fff] s[fff] sf sf sf}", "turns", weft_joint_text[k], "direction", joint->direction.x,
+                     joint->direction.y, joint->direction.z, "point_mm", joint->point.x, joint->point.y, joint->point.z,
+                     "scale", joint->scale, "direction_error_deg", weft_deg_of_rad(e->direction_rad), "point_error_mm",
+                     e->point_mm);
+}
+
+static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_report *report, const night *n)
+{
+    const weft_poses_file *file = &report->file;
+    const weft_expectation *e = &n->expectation;
+    json_t *joints = json_array(), *not_told = json_array();
+    for (int k = 0; k < WEFT_JOINTS; k++)
+        weft_json_append(&joints, pack_joint(file, k));
+    for (int i = 0; i < report->not_told.count; i++)
+        weft_json_append(&not_told, json_string(report->not_told.line[i]));
+    return json_pack("{ss si si sf sf sf sf sf so so si sf sf sf sf sb}", "event", "poses", "shots", sightings->count,
+                     "used", report->used, "held_out_rms_px", file->held_out_rms_px, "rms_px", file->rms_px, "point_px",
+                     file->point_px, "scatter_deg", weft_deg_of_rad(file->scatter_rad), "scatter_mm", file->scatter_mm,
+                     "joints", joints, "not_told", not_told, "poses", e->poses, "expected_median_texels",
+                     e->median_texels, "expected_worst_texels", e->worst.texels, "expected_direction_deg",
+                     weft_deg_of_rad(e->direction_rad), "allowed_texels", n->allowed_texels, "good_enough",
+                     n->finds && n->directs);
+}
+
+/* ---- Running ---- */
+
+static weft_code write_poses(const calibrate_command *command, const weft_axes_sightings *sightings,
+                             const weft_axes_report *report, weft_error *error)
+{
+    weft_poses_shot *shot = calloc((size_t)sightings->count, sizeof *shot);
+    if (!shot)
+        return weft_fail_memory(error, "shots", (size_t)sightings->count * sizeof *shot);
+    for (int i = 0; i < sightings->count; i++) {
+        const weft_axes_shot *s = &sightings->shot[i];
+        shot[i] = (weft_poses_shot){s->name, s->left_out[0] ? s->left_out : NULL};
+    }
+    weft_code code = weft_poses_write(command->output, &report->file, shot, sightings->count,
+                                      (const char *const *)report->not_told.line, report->not_told.count, error);
+    free(shot);
+    return code;
+}
+
+static weft_code finish(const calibrate_command *command, const weft_session *session,
+                        const weft_axes_sightings *sightings, const weft_plan *plan, const weft_rig_poses *nominal,
+                        const weft_axes_report *report, weft_error *error)
+{
+    night n = {0};
+    WEFT_TRY(expect(session, sightings, plan, &report->fit, nominal, &n, error));
+    WEFT_TRY(write_poses(command, sightings, report, error));
+    say_poses(command, sightings, report, &n);
+    json_t *event = pack_poses(sightings, report, &n);
+    char *line = event ? json_dumps(event, JSON_COMPACT) : NULL;
+    json_decref(event);
+    if (!line)
+        return weft_fail_memory(error, "event", 0);
+    weft_command_event(&command->common, line);
+    free(line);
+    return WEFT_OK;
+}
+
+static weft_code calibrate(const calibrate_command *command, const weft_session *session, const weft_plan *plan,
+                           weft_error *error)
+{
+    weft_progress progress = weft_command_progress(&command->common);
+    weft_rig_poses nominal = weft_rig_poses_nominal(&session->camera, session->camera_distance_mm);
+    weft_axes_sightings sightings;
+    weft_axes_report report;
+    WEFT_TRY(weft_axes_sightings_read(session, &progress, &sightings, error));
+    weft_code code =
+        weft_axes_calibrate(sightings.shot, sightings.count, &nominal, command->lens == LENS_FREE, &report, error);
+    say_left_out(&command->common, &sightings);
+    if (code == WEFT_OK)
+        code = finish(command, session, &sightings, plan, &nominal, &report, error);
+    weft_axes_report_free(&report);
+    weft_axes_sightings_free(&sightings);
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    calibrate_command command = {.plan = "ubo81"};
+    weft_session session;
+    weft_plan plan;
+    weft_error error = {0};
+    weft_arguments_parse(&weft_command_calibrate, argc, argv, &command);
+    weft_code code = weft_plan_read(command.plan, &plan, &error);
+    if (code == WEFT_OK) {
+        code = weft_session_open(command.session, &session, &error);
+        if (code == WEFT_OK) {
+            code = calibrate(&command, &session, &plan, &error);
+            weft_session_free(&session);
+        }
+        weft_plan_free(&plan);
+    }
+    return weft_command_exit("calibrate", &command.common, code, &error);
+}
+
+const weft_command weft_command_calibrate = {
+    .name = "calibrate",
+    .summary = "find out where the axes of a rig truly are",
+    .usage = "SESSION -o POSES.json",
+    .documentation =
+        "Example: weft calibrate series/ -o rig.poses.json\n\n"
+        "Finds the axes that turn camera and sample, and where the camera looks, from a session of about 20 "
+        "photographs of the target, taken from all over the reach of the axes (assets/plans/calibration.csv). Tells "
+        "how "
+        "far off the poses of a night will be. The rig file names the result under 'poses'.",
+    .options = option_table,
+    .needs = "SESSION and -o POSES.json",
+    .surplus = "one session at a time",
+    .check = check,
+    .run = run,
+};

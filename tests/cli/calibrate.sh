@@ -1,0 +1,58 @@
+#!/bin/sh
+# The axes of a rig out of a series of small photographs, and a capture that knows them. Usage: calibrate.sh WEFT ASSETS PYTHON
+set -eu
+weft=$1
+assets=$2
+python=$3
+. "$(dirname "$0")/expect.sh"
+scratch=$(mktemp -d "$PWD/calibrate-XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+weave="$assets/weaves/polyester_lining.wv"
+cat >off.json <<'JSON'
+{"rig": "virtual", "width_px": 176, "height_px": 176, "focal_length_px": 810, "samples_per_pixel": 4, "axes": 1,
+ "axis_tilt_deg": 0.5, "axis_zero_deg": 0.5, "aim_rotation_deg": 0.3}
+JSON
+sed -n '1,12p' "$assets/plans/calibration.csv" >plan.csv
+expect_ok capture --rig off.json --sample "$weave" --plan plan.csv --truth-images 1 --truth-size 4 -o series
+
+# What cannot be used is named and left out; the rest is enough. Words and figures, as events.
+truncate -s 20000 series/tv000_pv000/*.tif
+convert -size 176x176 xc:gray -depth 16 -type TrueColor series/tv020_pv030/tl030_pl150_tv020_pv030.tif
+expect_ok calibrate series --plan plan.csv --json -o rig.poses.json
+"$python" - out.log <<'PYTHON' || fail "the events are not what they should be"
+import json, sys
+events = [json.loads(line) for line in open(sys.argv[1])]
+notes = "\n".join(e["text"] for e in events if e["event"] == "note")
+for words in ("left out tv000_pv000/", "left out tv020_pv030/", "the target", "9 of 11 shots",
+              "expected before the target is looked at, 11 poses", "axes of the light are not seen"):
+    assert words in notes, (words, notes)
+poses = [e for e in events if e["event"] == "poses"][0]
+assert poses["used"] == 9 and poses["shots"] == 11 and poses["poses"] == 11, poses
+assert 0 < poses["held_out_rms_px"] < 1.5 and poses["expected_worst_texels"] >= poses["expected_median_texels"] > 0
+file = json.load(open("rig.poses.json"))
+assert len(file["left_out"]) == 2 and len(file["used"]) == 9
+PYTHON
+
+# A capture that knows them records where they put the camera, and goes on with the same alone.
+printf '%s\n' theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg 30,0,0,0 >one.csv
+expect_ok capture --rig off.json --sample "$weave" --plan one.csv --poses rig.poses.json --truth-images 1 --truth-size 4 -o night
+grep -q '"pose"' night/session.json || fail "the session does not know the poses"
+expect_error 1 "begun with other poses" capture --rig off.json --sample "$weave" --plan one.csv -o night
+
+# What cannot be.
+sed 's/"weft_poses": 1/"weft_poses": 3/' rig.poses.json >new.poses.json
+expect_error 1 "poses of version 3" capture --rig off.json --sample "$weave" --poses new.poses.json -o no
+head -c 300 rig.poses.json >cut.poses.json
+expect_error 1 cut.poses.json capture --rig off.json --sample "$weave" --poses cut.poses.json -o no
+expect_error 1 absent calibrate absent -o no.poses.json
+expect_error 1 "the target is found in 1 of 1 shots: at least 8 are needed" calibrate night -o no.poses.json
+sed 's/"axes": 1,/"axes": 0,/' off.json >flat.json
+expect_error 1 "no axes that calibrated poses" capture --rig flat.json --sample "$weave" --plan plan.csv --poses rig.poses.json -o no
+expect_ok capture --sample "$weave" --rig flat.json --plan one.csv --truth-images 1 --truth-size 4 -o flat
+expect_error 1 "does not say where its axes stood" calibrate flat -o no.poses.json
+expect_error 1 absent.csv calibrate series --plan absent.csv -o no.poses.json
+expect_no_file no
+expect_no_file no.poses.json
+echo sound
