@@ -11,10 +11,10 @@
 #include <string.h>
 
 /* Layers learn from 512 texels, which are to be there. */
-enum { SIDE = 12, LAYERS_SIDE = 24, HEIGHTS_SIDE = 48, BLOCK_SIDE = 64 };
+enum { SIDE = 12, LAYERS_SIDE = 24, SURFACE_SIDE = 48, BLOCK_SIDE = 64 };
 
-/* Of the excerpt, at most; of one with heights, whose texels see each other. */
-static const long most_samples = 1L << 22, most_samples_with_heights = 1L << 23;
+/* Of the excerpt, at most; of one with a surface, whose texels see each other. */
+static const long most_samples = 1L << 22, most_samples_with_surface = 1L << 23;
 
 /* Of all splits, that a certificate is made of: the share of 95 % is known to 0.001 by so many. */
 static const size_t most_residuals = 1 << 16;
@@ -77,9 +77,7 @@ typedef struct measuring {
     weft_compress_options options; /* of the fits without some images */
     const char *scratch_path;
     weft_excerpt excerpt;
-    weft_predicted_window window;
-    weft_dataset_heights surface; /* that layers may be seen through; else none */
-    double size_mm[2];            /* of the dataset */
+    bool asks_heights; /* of layers, whether they are to be seen through the surface of the excerpt */
     weft_splits splits;
     weft_compress_model whole_model; /* that all images carry, and its lobes */
     int whole_lobes;
@@ -106,6 +104,7 @@ static weft_code fit_without(const measuring *work, const uint8_t *held, weft_ma
 /* What one split says. */
 typedef struct answers {
     weft_asked_samples material, fitted, photographs;
+    weft_asked_samples photographs_flat;              /* where `photographs` are seen through a surface */
     weft_asked_samples moved;                         /* the material, its stored numbers moved by a step each */
     weft_asked_samples flat, flat_fitted, flat_moved; /* without heights, where `material` is with them */
 } answers;
@@ -115,46 +114,36 @@ static void free_answers(answers *said)
     weft_asked_samples_free(&said->material);
     weft_asked_samples_free(&said->fitted);
     weft_asked_samples_free(&said->photographs);
+    weft_asked_samples_free(&said->photographs_flat);
     weft_asked_samples_free(&said->moved);
     weft_asked_samples_free(&said->flat);
     weft_asked_samples_free(&said->flat_fitted);
     weft_asked_samples_free(&said->flat_moved);
 }
 
-static weft_code ask_material(const measuring *work, const weft_trial *trial, const weft_material *material,
-                              weft_asked_samples *held, weft_asked_samples *fitted, weft_error *error)
+static weft_code ask_material(const weft_trial *trial, const weft_material *material, weft_asked_samples *held,
+                              weft_asked_samples *fitted, weft_error *error)
 {
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_window(&trial->excerpt->layout, &work->window, material, &predictor, error));
+    WEFT_TRY(weft_predictor_of_window(&trial->excerpt->layout, &trial->excerpt->window, material, &predictor, error));
     weft_code code = weft_trial_ask(trial, predictor, held, fitted, error);
     weft_predictor_free(predictor);
     return code;
 }
 
-static weft_code give_heights(const measuring *work, weft_material *material, weft_error *error)
-{
-    const weft_dataset_heights *surface = &work->surface;
-    weft_material_heights *heights;
-    WEFT_TRY(weft_material_heights_create(surface->value, surface->width, surface->height, surface->level_count,
-                                          work->size_mm, &heights, error));
-    weft_material_take_heights(material, heights);
-    return WEFT_OK;
-}
-
 /* What storage does to it. The material is another one afterwards, without heights. */
-static weft_code ask_moved(const measuring *work, const weft_trial *trial, weft_material *material, answers *said,
-                           weft_error *error)
+static weft_code ask_moved(const weft_trial *trial, weft_material *material, answers *said, weft_error *error)
 {
     weft_trial held_alone = *trial;
     weft_asked_samples none = {0};
     held_alone.fitted_count = 0;
     weft_material_move_by_steps(material);
-    weft_code code = ask_material(work, &held_alone, material, &said->moved, &none, error);
+    weft_code code = ask_material(&held_alone, material, &said->moved, &none, error);
     weft_asked_samples_free(&none);
     if (code != WEFT_OK || !material->heights)
         return code;
     weft_material_take_heights(material, NULL);
-    code = ask_material(work, &held_alone, material, &said->flat_moved, &none, error);
+    code = ask_material(&held_alone, material, &said->flat_moved, &none, error);
     weft_asked_samples_free(&none);
     return code;
 }
@@ -162,13 +151,15 @@ static weft_code ask_moved(const measuring *work, const weft_trial *trial, weft_
 static weft_code ask(const measuring *work, const weft_trial *trial, weft_material *material, answers *said,
                      weft_error *error)
 {
-    if (work->surface.value && material->layers) {
-        WEFT_TRY(ask_material(work, trial, material, &said->flat, &said->flat_fitted, error));
-        WEFT_TRY(give_heights(work, material, error));
+    if (work->asks_heights && material->layers) {
+        WEFT_TRY(ask_material(trial, material, &said->flat, &said->flat_fitted, error));
+        WEFT_TRY(weft_excerpt_give_heights(&work->excerpt, material, error));
     }
-    WEFT_TRY(ask_material(work, trial, material, &said->material, &said->fitted, error));
-    WEFT_TRY(ask_moved(work, trial, material, said, error));
-    return weft_trial_ask_photographs(trial, &said->photographs, error);
+    WEFT_TRY(ask_material(trial, material, &said->material, &said->fitted, error));
+    WEFT_TRY(ask_moved(trial, material, said, error));
+    if (weft_excerpt_has_surface(&work->excerpt))
+        WEFT_TRY(weft_trial_ask_photographs(trial, false, &said->photographs_flat, error));
+    return weft_trial_ask_photographs(trial, weft_excerpt_has_surface(&work->excerpt), &said->photographs, error);
 }
 
 /* Relative RMSE with and without heights where both are known; `with` says of fewer samples, in the same order. */
@@ -227,6 +218,11 @@ static weft_code take_answers(measuring *work, const answers *said, weft_error *
     WEFT_TRY(weft_error_summary_of(said->fitted.value, said->fitted.count, &fitted, error));
     take_errors(&material, &work->material_taken, &work->result->material);
     take_errors(&photographs, &work->photographs_taken, &work->result->photographs);
+    if (said->photographs_flat.value) {
+        double error_of[2];
+        compare_with_flat(&said->photographs, &said->photographs_flat, error_of);
+        work->result->photographs_flat += error_of[1] / work->measured_count;
+    }
     take_into_mean(&fitted, &work->fitted_taken, &work->result->fitted);
     return take_flat(work, said, error);
 }
@@ -280,6 +276,7 @@ static weft_code measure_split(measuring *work, int split, weft_error *error)
     if (code == WEFT_OK)
         code = take_answers(work, &said, error);
     weft_asked_samples_free(&said.photographs);
+    weft_asked_samples_free(&said.photographs_flat);
     malloc_trim(0);
     if (code == WEFT_OK)
         code = take_residuals(work, split, &said, error);
@@ -302,13 +299,12 @@ static int fewest_kept(const weft_splits *splits)
     return fewest;
 }
 
-/* What a view sees of a surface lies in other texels than its own. */
-static weft_code read_with_heights(weft_dataset *dataset, measuring *work, weft_error *error)
+int weft_hold_out_surface_side(int image_count)
 {
-    int side = HEIGHTS_SIDE;
-    while (side > 1 && (long)side * side * work->splits.image_count > most_samples_with_heights)
+    int side = SURFACE_SIDE;
+    while (side > 1 && (long)side * side * image_count > most_samples_with_surface)
         side--;
-    return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, side, &work->excerpt, error);
+    return side;
 }
 
 static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error *error)
@@ -320,8 +316,9 @@ static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error
     work->spacing = 1;
     if (weft_compress_plan(&others, &work->options, &lobes) == WEFT_COMPRESS_SPARSE)
         return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &work->excerpt, error);
-    if (work->surface.value)
-        return read_with_heights(dataset, work, error);
+    if (weft_dataset_has_surface(dataset))
+        return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, weft_hold_out_surface_side(layout->image_count),
+                                 &work->excerpt, error);
     weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
     int side = work->options.layer_count > 0 ? LAYERS_SIDE : SIDE;
     while (side > 1 && (long)side * side * layout->image_count > most_samples)
@@ -382,7 +379,7 @@ static weft_code measure_splits(weft_dataset *dataset, measuring *work, const we
     WEFT_TRY(read_excerpt(dataset, work, error));
     WEFT_TRY(
         weft_compress_share_budget(layout, &work->excerpt.layout, work->given, &work->options.budget_bytes, error));
-    work->window = (weft_predicted_window){work->excerpt.first_x, work->excerpt.first_y, layout->width, layout->height};
+    work->asks_heights = work->given->heights && weft_excerpt_has_surface(&work->excerpt);
     describe(layout, work);
     work->whole_model = weft_compress_plan(layout, &work->options, &work->whole_lobes);
     for (int s = 0; s < work->measured_count; s++) {
@@ -409,14 +406,10 @@ weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_optio
     weft_code code = weft_splits_create(weft_dataset_get_layout(dataset), 0, most, &work.splits, error);
     bool each = work.splits.kind == WEFT_SPLIT_EACH;
     work.measured_count = each || split_count > work.splits.count ? work.splits.count : split_count;
-    if (code == WEFT_OK && options->heights && options->layer_count > 0)
-        code = weft_dataset_read_surface(dataset, &work.surface, error);
-    weft_dataset_size_mm(weft_dataset_get_layout(dataset), work.size_mm);
     if (code == WEFT_OK)
         code = measure_splits(dataset, &work, progress, error);
     free_residuals(&work.residuals);
     free_residuals(&work.flat_residuals);
-    weft_dataset_heights_free(&work.surface);
     weft_excerpt_free(&work.excerpt);
     weft_splits_free(&work.splits);
     /* What is free is given back to the system, so that the fit of the whole has room. */

@@ -171,13 +171,13 @@ weft_code weft_trial_ask(const weft_trial *trial, const weft_predictor *predicto
     return WEFT_OK;
 }
 
-weft_code weft_trial_ask_photographs(const weft_trial *trial, weft_asked_samples *held, weft_error *error)
+weft_code weft_trial_ask_photographs(const weft_trial *trial, bool through, weft_asked_samples *held, weft_error *error)
 {
     weft_interpolation *interpolation = NULL;
     *held = (weft_asked_samples){0};
     WEFT_TRY(allocate(trial->excerpt, trial->held_count, held, error));
-    WEFT_TRY(
-        weft_interpolation_create(trial->excerpt, trial->held, trial->image, trial->held_count, &interpolation, error));
+    WEFT_TRY(weft_interpolation_create(trial->excerpt, trial->held, trial->image, trial->held_count, through,
+                                       &interpolation, error));
     weft_code code = ask_texels(trial, NULL, interpolation, held, NULL, error);
     weft_interpolation_free(interpolation);
     drop_empty_slots(held);

@@ -38,7 +38,9 @@ weft_code weft_trial_ask(const weft_trial *trial, const weft_predictor *predicto
                          weft_asked_samples *fitted, weft_error *error);
 
 /* What the photographs that are not held out say of those that are (study/hold_out/interpolation.h), where they say
- * anything. The caller frees it, also on failure. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_trial_ask_photographs(const weft_trial *trial, weft_asked_samples *held, weft_error *error);
+ * anything; `through`: seen through the surface of the excerpt, which has one. The caller frees it, also on failure.
+ * Errors: those of weft_interpolation_create. */
+weft_code weft_trial_ask_photographs(const weft_trial *trial, bool through, weft_asked_samples *held,
+                                     weft_error *error);
 
 #endif

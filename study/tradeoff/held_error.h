@@ -41,7 +41,8 @@ typedef struct weft_held_bench weft_held_bench;
 /* Reads at most side x side texels of the kind; `split` says which directions are held out: others for other numbers
  * (study/hold_out/split.h). Pictures are compared where texels are neighbours (WEFT_EXCERPT_BLOCK). Files are written
  * to the folder of `scratch_path`, which must outlive the bench, nameless once they are complete. The caller frees.
- * Errors: those of weft_splits_create and of reading. */
+ * Of a dataset with a surface the kind is to be WEFT_EXCERPT_BLOCK; all models are then asked for those samples alone
+ * that are known through it. Errors: those of weft_splits_create and of reading. */
 weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, uint64_t split,
                                  const char *scratch_path, weft_held_bench **result, weft_error *error);
 void weft_held_bench_free(weft_held_bench *bench);

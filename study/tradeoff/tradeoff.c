@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/clock.h"
+#include "study/hold_out/hold_out.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -40,8 +41,8 @@ static weft_code study_model(studying *work, const weft_priced_model *model, wef
 static weft_code study_models(studying *work, weft_error *error)
 {
     weft_priced_model model[WEFT_PRICED_MOST];
-    int count =
-        weft_priced_models_list(weft_dataset_get_layout(work->dataset), weft_dataset_has_opacity(work->dataset), model);
+    const weft_priced_dataset parts = weft_priced_dataset_of(work->dataset);
+    int count = weft_priced_models_list(weft_dataset_get_layout(work->dataset), &parts, model);
     for (int i = 0; i < count; i++)
         work->work_total += model[i].work;
     for (int i = 0; i < count; i++) {
@@ -55,14 +56,25 @@ static weft_code study_models(studying *work, weft_error *error)
 
 /* ---- Choices ---- */
 
+static double error_of(const weft_tradeoff_row *row)
+{
+    return row->measured.held[WEFT_SAMPLES_ALL].relative_rmse;
+}
+
+/* A row through heights comes right after the same without. */
+static bool may_be_chosen(const weft_tradeoff_row *row)
+{
+    bool is_through = row->model.family == WEFT_PRICED_LAYERS && row->model.options.heights;
+    return row->model.arguments[0] && (!is_through || weft_priced_heights_are_kept(error_of(row - 1), error_of(row)));
+}
+
 static void choose(weft_tradeoff *result)
 {
     weft_offer offer[WEFT_PRICED_MOST];
     size_t count = (size_t)result->row_count;
     for (size_t i = 0; i < count; i++) {
         const weft_tradeoff_row *row = &result->row[i];
-        offer[i] = (weft_offer){row->price.bytes, row->measured.held[WEFT_SAMPLES_ALL].relative_rmse,
-                                row->model.arguments[0] != 0};
+        offer[i] = (weft_offer){row->price.bytes, error_of(row), may_be_chosen(row)};
     }
     for (size_t i = 0; i < count; i++)
         result->row[i].is_beaten = weft_offer_is_beaten(offer, count, i);
@@ -99,6 +111,13 @@ static void describe(studying *work)
     snprintf(result->renderer, sizeof result->renderer, "%s", weft_price_shop_renderer(work->shop));
 }
 
+/* What is seen through a surface wants more neighbours. */
+static int measured_side(const weft_dataset *dataset)
+{
+    int images = weft_dataset_get_layout(dataset)->image_count;
+    return weft_dataset_has_surface(dataset) ? weft_hold_out_surface_side(images) : MEASURED_SIDE;
+}
+
 static weft_code study(studying *work, const char *dataset_path, const char *folder, weft_error *error)
 {
     WEFT_TRY(weft_dataset_open(dataset_path, &work->dataset, error));
@@ -107,8 +126,8 @@ static weft_code study(studying *work, const char *dataset_path, const char *fol
         work->scratch_path = NULL;
         return weft_fail_memory(error, "path", strlen(folder));
     }
-    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_EXCERPT_BLOCK, MEASURED_SIDE, 0, work->scratch_path,
-                                    &work->bench, error));
+    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_EXCERPT_BLOCK, measured_side(work->dataset), 0,
+                                    work->scratch_path, &work->bench, error));
     WEFT_TRY(weft_price_shop_open(work->dataset, FITTED_SIDE, work->scratch_path, work->progress, &work->shop, error));
     describe(work);
     WEFT_TRY(study_models(work, error));
