@@ -172,6 +172,70 @@ void weft_excerpt_free(weft_excerpt *excerpt)
     *excerpt = (weft_excerpt){0};
 }
 
+/* ---- A part ---- */
+
+weft_texel_block weft_excerpt_middle(const weft_excerpt *excerpt, int side)
+{
+    const weft_dataset_layout *layout = &excerpt->layout;
+    int width = weft_smaller(side, layout->width), height = weft_smaller(side, layout->height);
+    return (weft_texel_block){(layout->width - width) / 2, (layout->height - height) / 2, width, height};
+}
+
+/* Of `each` bytes a texel; NULL of NULL. */
+static weft_code crop_array(const weft_excerpt *excerpt, const weft_texel_block *block, size_t each, const void *whole,
+                            void **result, weft_error *error)
+{
+    size_t row = (size_t)block->width * each, bytes = row * (size_t)block->height;
+    if (!whole)
+        return WEFT_OK;
+    *result = malloc(bytes);
+    if (!*result)
+        return weft_fail_memory(error, "texels", bytes);
+    for (int y = 0; y < block->height; y++) {
+        size_t first = (size_t)(block->y + y) * (size_t)excerpt->layout.width + (size_t)block->x;
+        memcpy((char *)*result + (size_t)y * row, (const char *)whole + first * each, row);
+    }
+    return WEFT_OK;
+}
+
+static weft_code crop(const weft_excerpt *excerpt, const weft_texel_block *block, weft_excerpt *result,
+                      weft_error *error)
+{
+    size_t images = (size_t)excerpt->layout.image_count, views = (size_t)excerpt->layout.view_count;
+    const texel_choice choice = {.width = excerpt->layout.width,
+                                 .height = excerpt->layout.height,
+                                 .columns = block->width,
+                                 .rows = block->height,
+                                 .stride = 1};
+    void *samples = NULL, *mask = NULL, *opacity = NULL, *frames = NULL;
+    weft_code code = make_layout(&excerpt->layout, &choice, &result->layout, error);
+    if (code == WEFT_OK)
+        code = crop_array(excerpt, block, 3 * images * sizeof(weft_half), excerpt->samples, &samples, error);
+    if (code == WEFT_OK)
+        code = crop_array(excerpt, block, images, excerpt->mask, &mask, error);
+    if (code == WEFT_OK)
+        code = crop_array(excerpt, block, views * sizeof(float), excerpt->opacity, &opacity, error);
+    if (code == WEFT_OK)
+        code = crop_array(excerpt, block, 6 * sizeof(float), excerpt->frames, &frames, error);
+    result->samples = samples;
+    result->mask = mask;
+    result->opacity = opacity;
+    result->frames = frames;
+    return code;
+}
+
+weft_code weft_excerpt_crop(const weft_excerpt *excerpt, const weft_texel_block *block, weft_excerpt *result,
+                            weft_error *error)
+{
+    *result = (weft_excerpt){.window = excerpt->window};
+    result->window.x += block->x;
+    result->window.y += block->y;
+    weft_code code = crop(excerpt, block, result, error);
+    if (code != WEFT_OK)
+        weft_excerpt_free(result);
+    return code;
+}
+
 /* ---- The surface ---- */
 
 bool weft_excerpt_has_surface(const weft_excerpt *excerpt)

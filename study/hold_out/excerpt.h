@@ -27,6 +27,19 @@ typedef struct weft_excerpt {
     float *frames;                /* [height][width][2][3]; NULL where the dataset has none */
 } weft_excerpt;
 
+/* A rectangle of texels. */
+typedef struct weft_texel_block {
+    int x, y, width, height;
+} weft_texel_block;
+
+/* At most side x side texels in the middle of the excerpt. Pure. */
+weft_texel_block weft_excerpt_middle(const weft_excerpt *excerpt, int side);
+
+/* Copies some texels of a far excerpt, without the surface. The caller frees *result. Errors: WEFT_SYSTEM for memory.
+ */
+weft_code weft_excerpt_crop(const weft_excerpt *excerpt, const weft_texel_block *block, weft_excerpt *result,
+                            weft_error *error);
+
 /* Whether the excerpt is seen through heights. Pure. */
 bool weft_excerpt_has_surface(const weft_excerpt *excerpt);
 

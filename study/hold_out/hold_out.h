@@ -43,9 +43,9 @@ typedef struct weft_hold_out {
     weft_certificate certificate;    /* an interval for any pixel, at 0.95 */
 } weft_hold_out;
 
-/* Along each side of the block of texels that is measured of a dataset with a surface: 48, or fewer of very many
- * images. What a view saw beyond the block is not known, and steep views see furthest: the smaller it is, the less
- * counts what they see. Pure. */
+/* Along each side of the block of texels that is read of a dataset with a surface: 64, or fewer of very many images.
+ * What a view saw beyond the block is not known, and steep views see furthest: of a part of a material less counts what
+ * they see. Pure. */
 int weft_hold_out_surface_side(int image_count);
 
 /* Fits some texels with `options` to the images that a split leaves, for each of up to `split_count` splits, and

@@ -4,6 +4,7 @@
 #include "compress/compress.h"
 #include "study/error/coverage.h"
 #include "study/hold_out/certify.h"
+#include "study/hold_out/hold_out.h"
 #include "study/tradeoff/held_pictures.h"
 #include "study/tradeoff/variant.h"
 
@@ -22,6 +23,8 @@ struct weft_held_bench {
     const char *scratch_path;
     char *material_path;
     weft_excerpt excerpt;
+    weft_texel_block asked; /* of the excerpt, in its middle: less than all where it has a surface */
+    weft_excerpt alone;     /* these, to which lobes are fitted where it has a surface; else nothing */
     weft_splits splits;
     int split_count; /* that are measured: the first ones */
     bool has_pictures;
@@ -115,7 +118,13 @@ static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side
     bench->split_count = 1;
     if (bench->splits.kind == WEFT_SPLIT_EACH)
         bench->split_count = bench->splits.count < MOST_SPLITS ? bench->splits.count : MOST_SPLITS;
-    WEFT_TRY(weft_excerpt_read(dataset, kind, side, &bench->excerpt, error));
+    bool has_surface = weft_dataset_has_surface(dataset);
+    int images = weft_dataset_get_layout(dataset)->image_count;
+    WEFT_TRY(weft_excerpt_read(dataset, kind, has_surface ? weft_hold_out_surface_side(images) : side, &bench->excerpt,
+                               error));
+    bench->asked = weft_excerpt_middle(&bench->excerpt, side);
+    if (has_surface)
+        WEFT_TRY(weft_excerpt_crop(&bench->excerpt, &bench->asked, &bench->alone, error));
     return mark_samples(bench, error);
 }
 
@@ -148,6 +157,7 @@ void weft_held_bench_free(weft_held_bench *bench)
         return;
     forget_fit(bench);
     weft_excerpt_free(&bench->excerpt);
+    weft_excerpt_free(&bench->alone);
     weft_splits_free(&bench->splits);
     free(bench->kinds);
     for (int s = 0; s < MOST_SPLITS; s++)
@@ -156,9 +166,9 @@ void weft_held_bench_free(weft_held_bench *bench)
     free(bench);
 }
 
-const weft_excerpt *weft_held_bench_texels(const weft_held_bench *bench)
+long weft_held_bench_texels(const weft_held_bench *bench)
 {
-    return &bench->excerpt;
+    return (long)bench->asked.width * bench->asked.height;
 }
 
 const weft_splits *weft_held_bench_splits(const weft_held_bench *bench)
@@ -200,6 +210,17 @@ static weft_code make_masks(const weft_held_bench *bench, const weft_priced_mode
     return WEFT_OK;
 }
 
+/* Lobes need no neighbours. */
+static bool is_fitted_alone(const weft_held_bench *bench, const weft_priced_model *model)
+{
+    return bench->alone.samples && model->options.layer_count == 0;
+}
+
+static const weft_excerpt *fitted_excerpt(const weft_held_bench *bench, const weft_priced_model *model)
+{
+    return is_fitted_alone(bench, model) ? &bench->alone : &bench->excerpt;
+}
+
 static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *model, const uint8_t *unseen,
                            weft_material *material, weft_error *error)
 {
@@ -208,7 +229,7 @@ static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *mode
     weft_compress_options options = model->options;
     options.levels = bench->has_pictures; /* fewer texels come from there */
     options.heights = false;              /* those of the whole dataset are given afterwards */
-    WEFT_TRY(weft_excerpt_write(&bench->excerpt, unseen, bench->scratch_path, &others, error));
+    WEFT_TRY(weft_excerpt_write(fitted_excerpt(bench, model), unseen, bench->scratch_path, &others, error));
     weft_code code = weft_compress(others, &options, NULL, material, &report, error);
     weft_dataset_close(others);
     if (code == WEFT_OK)
@@ -219,8 +240,8 @@ static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *mode
 static weft_code make_predictor(const weft_held_bench *bench, const weft_priced_model *model,
                                 const weft_material *material, weft_predictor **predictor, weft_error *error)
 {
-    const weft_dataset_layout *layout = &bench->excerpt.layout;
-    const weft_predicted_window *window = &bench->excerpt.window;
+    const weft_dataset_layout *layout = &fitted_excerpt(bench, model)->layout;
+    const weft_predicted_window *window = &fitted_excerpt(bench, model)->window;
     return model->fewer_texels ? weft_predictor_of_coarser_material(layout, window, material, predictor, error)
                                : weft_predictor_of_window(layout, window, material, predictor, error);
 }
@@ -409,6 +430,8 @@ static weft_code measure_split(weft_held_bench *bench, const weft_priced_model *
     weft_code code = make_masks(bench, model, split, &masks, error);
     if (code == WEFT_OK)
         code = weft_trial_create(&bench->excerpt, weft_splits_held(&bench->splits, split), masks.next, &trial, error);
+    trial.asked = bench->asked;
+    trial.predicts_asked = is_fitted_alone(bench, model);
     if (code == WEFT_OK)
         code = ask_model(bench, model, split, &trial, masks.unseen, &answer, &measured->weight, error);
     if (code == WEFT_OK)

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ERROR_SIDE = 24, SIZE_SIDE = 32, SPLIT = 1 /* the measurement begins with 0 */ };
+enum { ERROR_SIDE = 24, SURFACE_SIDE = 32, SIZE_SIDE = 32, SPLIT = 1 /* the measurement begins with 0 */ };
 
 /* ---- The models ---- */
 
@@ -83,10 +83,10 @@ static weft_excerpt_kind choose_texels(const choosing *work)
     return layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
 }
 
+/* In the middle of a block where the dataset has a surface: there they are to be like what is measured afterwards. */
 static int choose_side(const weft_dataset *dataset)
 {
-    int images = weft_dataset_get_layout(dataset)->image_count;
-    return weft_dataset_has_surface(dataset) ? weft_hold_out_surface_side(images) : ERROR_SIDE;
+    return weft_dataset_has_surface(dataset) ? SURFACE_SIDE : ERROR_SIDE;
 }
 
 static weft_code measure(choosing *work, weft_error *error)

@@ -17,7 +17,7 @@ typedef struct weft_preset_prediction {
 
 /* Chooses among the models that weft compress makes (study/tradeoff/choice.h), without those of a light table, which
  * take many times as long and are seldom worth it. Fits each to at most 24 x 24 texels, or of a dataset with a surface
- * to as many as the measurement afterwards, without the images of a split
+ * to 32 x 32, without the images of a split
  * that the measurement afterwards does not begin with (study/hold_out/split.h), and the one that is chosen to a block
  * of at most 32 x 32 neighbours with all images, which says how large it will be. *options gets lobes, tables, frames,
  * layers and whether through heights, and keeps all else. Writes to the folder of `scratch_path`; nothing is left

@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "base/clock.h"
-#include "study/hold_out/hold_out.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -91,7 +90,6 @@ static void describe(studying *work)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
     const weft_splits *splits = weft_held_bench_splits(work->bench);
-    const weft_excerpt *texels = weft_held_bench_texels(work->bench);
     weft_tradeoff *result = work->result;
     result->width = layout->width;
     result->height = layout->height;
@@ -103,19 +101,12 @@ static void describe(studying *work)
     result->light_count = splits->light_count;
     for (int i = 0; i < splits->image_count; i++)
         result->image_held_count += weft_splits_held(splits, 0)[i] != 0;
-    result->measured_texels = (long)texels->layout.width * texels->layout.height;
+    result->measured_texels = weft_held_bench_texels(work->bench);
     result->fitted_texels = weft_price_shop_texels(work->shop);
     result->texels = (long)layout->width * layout->height;
     result->threads = omp_get_max_threads();
     snprintf(result->why_not_drawn, sizeof result->why_not_drawn, "%s", weft_price_shop_why_not_drawn(work->shop));
     snprintf(result->renderer, sizeof result->renderer, "%s", weft_price_shop_renderer(work->shop));
-}
-
-/* What is seen through a surface wants more neighbours. */
-static int measured_side(const weft_dataset *dataset)
-{
-    int images = weft_dataset_get_layout(dataset)->image_count;
-    return weft_dataset_has_surface(dataset) ? weft_hold_out_surface_side(images) : MEASURED_SIDE;
 }
 
 static weft_code study(studying *work, const char *dataset_path, const char *folder, weft_error *error)
@@ -126,8 +117,8 @@ static weft_code study(studying *work, const char *dataset_path, const char *fol
         work->scratch_path = NULL;
         return weft_fail_memory(error, "path", strlen(folder));
     }
-    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_EXCERPT_BLOCK, measured_side(work->dataset), 0,
-                                    work->scratch_path, &work->bench, error));
+    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_EXCERPT_BLOCK, MEASURED_SIDE, 0, work->scratch_path,
+                                    &work->bench, error));
     WEFT_TRY(weft_price_shop_open(work->dataset, FITTED_SIDE, work->scratch_path, work->progress, &work->shop, error));
     describe(work);
     WEFT_TRY(study_models(work, error));
