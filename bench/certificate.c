@@ -1,6 +1,7 @@
 /* Whether the certificate of a material covers what it says, on directions that neither the fit nor the certificate
  * has seen: `bench_certificate NAME.btf.h5 lobes|layers`. A further split of the dataset is left out of both; of fewer
- * than 24 images each in turn. Prints one row of comma-separated values a level. */
+ * than 24 images each in turn. Layers are seen through the heights of the dataset where weft compress keeps them.
+ * Prints one row of comma-separated values a level. */
 #include "study/error/coverage.h"
 #include "study/hold_out/hold_out.h"
 #include "study/hold_out/residuals.h"
@@ -17,6 +18,7 @@ typedef struct testing {
     weft_compress_options options;
     weft_excerpt excerpt;
     weft_splits splits;
+    bool through_heights; /* the last fit */
     size_t count[SHOWN_LEVELS];
     weft_covered *covered[SHOWN_LEVELS];
 } testing;
@@ -49,7 +51,7 @@ static weft_code ask(testing *t, const uint8_t *held, const weft_material *mater
     weft_residuals residuals = {0};
     weft_code code = weft_trial_create(&t->excerpt, held, held, &trial, error);
     if (code == WEFT_OK)
-        code = weft_predictor_of_material(&t->excerpt.layout, material, &predictor, error);
+        code = weft_predictor_of_window(&t->excerpt.layout, &t->excerpt.window, material, &predictor, error);
     if (code == WEFT_OK)
         code = weft_trial_ask(&trial, predictor, &asked, &none, error);
     if (code == WEFT_OK)
@@ -71,11 +73,16 @@ static weft_code test_split(testing *t, int split, weft_error *error)
     weft_dataset *others;
     weft_hold_out result;
     weft_material material = {0};
-    WEFT_TRY(weft_excerpt_write(&t->excerpt, held, "bench-certificate.btf.h5", &others, error));
+    WEFT_TRY(weft_excerpt_write_with_surface(&t->excerpt, held, "bench-certificate.btf.h5", &others, error));
     weft_compress_options options = weft_compress_settle(&t->options, others);
     weft_code code = weft_hold_out_measure(others, &options, 1, "bench-certificate-split.btf.h5", NULL, &result, error);
     if (code == WEFT_OK)
         code = weft_compress(others, &options, NULL, &material, NULL, error);
+    t->through_heights = code == WEFT_OK && result.heights.used;
+    if (t->through_heights)
+        code = weft_excerpt_give_heights(&t->excerpt, &material, error);
+    else
+        weft_material_take_heights(&material, NULL);
     if (code == WEFT_OK)
         code = ask(t, held, &material, &result.certificate, error);
     weft_material_free(&material);
@@ -98,9 +105,9 @@ static weft_code say(const testing *t, weft_error *error)
     for (int level = 0; level < SHOWN_LEVELS && t->count[level] > 0; level++) {
         weft_coverage coverage;
         WEFT_TRY(weft_coverage_of(t->covered[level], t->count[level], &coverage, error));
-        printf("%s,%s,%d,%ld,%.2f,%.1f,%.1f,%.3f,%.3f", t->name, t->model, level, coverage.all.count,
-               100 * coverage.all.covered, 100 * coverage.dark.covered, 100 * coverage.bright.covered,
-               coverage.all.width, coverage.even_width);
+        printf("%s,%s%s,%d,%ld,%.2f,%.1f,%.1f,%.3f,%.3f", t->name, t->model,
+               t->through_heights ? " through heights" : "", level, coverage.all.count, 100 * coverage.all.covered,
+               100 * coverage.dark.covered, 100 * coverage.bright.covered, coverage.all.width, coverage.even_width);
         say_shares(coverage.by_view);
         say_shares(coverage.by_light);
         printf("\n");

@@ -67,11 +67,14 @@ static void say_error(const weft_common_options *common, const char *model, cons
     weft_command_event(common, event);
 }
 
-static void say_truth_error(const weft_common_options *common, const weft_truth_scene *scene, int light, int model)
+static void say_truth_error(const weft_common_options *common, const weft_truth_scene *scene, int light, int model,
+                            bool flat)
 {
     static const char *const name[WEFT_TRUTH_LIGHTS] = {"all", "near"};
-    const weft_truth_error *e = &scene->under[light].error[model];
-    const char *what = weft_truth_model_name((weft_truth_model)model);
+    const weft_truth_pictures *under = &scene->under[light];
+    const weft_truth_error *e = flat ? &under->flat[model] : &under->error[model];
+    char what[64];
+    snprintf(what, sizeof what, "%s%s", weft_truth_model_name((weft_truth_model)model), flat ? " without heights" : "");
     weft_command_say(common, "%s, %s light, %s against truth: relative RMSE %.4f, PSNR %.2f dB, of blocks %.4f",
                      scene->caption, name[light], what, e->error.relative_rmse, e->error.psnr_db,
                      e->block_relative_rmse);
@@ -93,7 +96,8 @@ static void say_truth(const weft_common_options *common, const weft_traced_truth
     for (int i = 0; truth->drawn && i < WEFT_TRUTH_SCENE_COUNT; i++)
         for (int light = 0; light < WEFT_TRUTH_LIGHTS; light++)
             for (int model = 0; model < WEFT_TRUTH_TRACED; model++)
-                say_truth_error(common, &truth->scene[i], light, model);
+                for (int flat = 0; flat <= truth->has_heights[model]; flat++)
+                    say_truth_error(common, &truth->scene[i], light, model, flat);
 }
 
 static void say_weave(const weft_common_options *common, const weft_comparison *comparison)

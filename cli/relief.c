@@ -2,6 +2,7 @@
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
 #include "cli/arguments.h"
+#include "relief/move.h"
 #include "relief/page.h"
 #include "relief/surface.h"
 
@@ -11,6 +12,7 @@
 typedef struct relief_command {
     weft_common_options common;
     const char *input, *output, *report, *obj, *normal;
+    bool move;
     weft_relief_options options;
 } relief_command;
 
@@ -47,6 +49,10 @@ static const weft_option option_table[] = {
     {"repeat", .argument = "WHICH",
      .help = "Whether the material continues at its opposite border: on, off, or auto (default), by how well they fit",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(relief_command, options.repeat), .words = repeat_words},
+    {"move", .argument = "on|off",
+     .help = "Move the texels of OTHER.btf.h5 onto the plane that is found, for models that see no heights, such as "
+             "lobes (default: off)",
+     .kind = WEFT_OPTION_SWITCH, .offset = offsetof(relief_command, move)},
     {0},
 };
 
@@ -94,6 +100,8 @@ static void say_report(const relief_command *command, const weft_relief_report *
     if (event)
         weft_command_event(common, event);
     free(event);
+    if (command->move && report->verdict != WEFT_RELIEF_NOTHING)
+        weft_command_say(common, "texels    moved by %.3f mm, onto that plane", report->plane_mm);
     weft_command_say(common, "%s: written", output);
 }
 
@@ -124,11 +132,39 @@ static weft_code keep(const relief_command *command, const weft_relief_report *r
     return code;
 }
 
+/* The same dataset on the plane that was found, from where its heights count then. */
+static weft_code move(const relief_command *command, const weft_relief_report *report, weft_error *error)
+{
+    bool has_heights = report->verdict == WEFT_RELIEF_HEIGHTS;
+    weft_dataset_heights heights = {report->width, report->height, report->levels_used, NULL};
+    const weft_move how = {report->plane_mm, report->repeats, has_heights ? &heights : NULL};
+    weft_progress progress = weft_command_progress(&command->common);
+    size_t count = (size_t)report->width * (size_t)report->height;
+    weft_dataset *dataset;
+    json_t *made = pack_report(report);
+    weft_json_put(&made, "moved", json_true());
+    heights.value = malloc(count * sizeof *heights.value);
+    weft_code code = made && heights.value ? weft_dataset_open(command->input, &dataset, error)
+                                           : weft_fail_memory(error, "heights", count * sizeof *heights.value);
+    for (size_t i = 0; code == WEFT_OK && i < count; i++)
+        heights.value[i] = report->height_mm_of[i] - (float)report->plane_mm;
+    if (code == WEFT_OK) {
+        code = weft_relief_move(dataset, &how, command->output, json_incref(made), &progress, error);
+        weft_dataset_close(dataset);
+    }
+    weft_dataset_heights_free(&heights);
+    json_decref(made);
+    if (code == WEFT_OK)
+        say_report(command, report, command->output);
+    return code;
+}
+
 static weft_code write_results(const relief_command *command, weft_relief_report *report, weft_error *error)
 {
     if (command->report)
         WEFT_TRY(weft_relief_page_write(command->report, command->input, report, error));
-    WEFT_TRY(keep(command, report, error));
+    bool moves = command->move && report->verdict != WEFT_RELIEF_NOTHING;
+    WEFT_TRY(moves ? move(command, report, error) : keep(command, report, error));
     const weft_dataset_heights surface = {report->width, report->height, 1, report->height_mm_of};
     double plane = report->verdict == WEFT_RELIEF_PLANE ? report->plane_mm : 0;
     for (int i = 0; report->verdict != WEFT_RELIEF_HEIGHTS && i < surface.width * surface.height; i++)
@@ -145,6 +181,14 @@ static weft_code estimate(const relief_command *command, weft_relief_report *rep
     weft_code code = weft_relief_estimate(dataset, &command->options, &progress, report, error);
     weft_dataset_close(dataset);
     return code;
+}
+
+static weft_code check(void *values, weft_error *error)
+{
+    const relief_command *command = values;
+    if (command->move && (!command->output || weft_is_same_file(command->input, command->output)))
+        return weft_fail(error, WEFT_BAD_USAGE, "--move writes another dataset: give its name with -o");
+    return WEFT_OK;
 }
 
 static int run(int argc, char **argv)
@@ -172,5 +216,6 @@ const weft_command weft_command_relief = {
     .options = option_table,
     .needs = "NAME.btf.h5",
     .surplus = "one dataset at a time",
+    .check = check,
     .run = run,
 };

@@ -140,6 +140,9 @@ void weft_dataset_heights_free(weft_dataset_heights *heights);
  * neither, or near lights and views. Errors and ownership as above. */
 weft_code weft_dataset_read_surface(weft_dataset *dataset, weft_dataset_heights *surface, weft_error *error);
 
+/* Whether weft_dataset_read_surface finds one. */
+bool weft_dataset_has_surface(const weft_dataset *dataset);
+
 /* ---- Writing ---- */
 
 /* Takes whole images in any order, spools them to a scratch file beside the target, and turns them
@@ -162,6 +165,11 @@ weft_code weft_dataset_writer_put_opacity(weft_dataset_writer *writer, const flo
 /* Optional, once: frames [height][width][2][3] as weft_dataset_read_frames gives them, copied. Errors: WEFT_BAD_INPUT
  * for one that is none, WEFT_SYSTEM. */
 weft_code weft_dataset_writer_put_frames(weft_dataset_writer *writer, const float *frames, weft_error *error);
+
+/* Optional, once: heights of the surface, copied. Errors: WEFT_BAD_INPUT for some that a reader would refuse,
+ * WEFT_SYSTEM. */
+weft_code weft_dataset_writer_put_heights(weft_dataset_writer *writer, const weft_dataset_heights *heights,
+                                          weft_error *error);
 
 /* Optional: a figure of every image [image_count], copied; replaces that of the layout. Errors: WEFT_BAD_INPUT for one
  * that is not finite or negative, or weights that are all 0; WEFT_SYSTEM. */

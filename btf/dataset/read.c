@@ -172,16 +172,19 @@ static weft_code plane_as_heights(const weft_dataset_layout *layout, weft_datase
     return WEFT_OK;
 }
 
-weft_code weft_dataset_read_surface(weft_dataset *dataset, weft_dataset_heights *surface, weft_error *error)
+bool weft_dataset_has_surface(const weft_dataset *dataset)
 {
     const weft_dataset_layout *layout = &dataset->layout;
+    return layout->distance == WEFT_FAR && (weft_dataset_has_heights(dataset) || layout->plane_mm != 0);
+}
+
+weft_code weft_dataset_read_surface(weft_dataset *dataset, weft_dataset_heights *surface, weft_error *error)
+{
     *surface = (weft_dataset_heights){0};
-    if (layout->distance == WEFT_NEAR)
+    if (!weft_dataset_has_surface(dataset))
         return WEFT_OK;
-    WEFT_TRY(weft_dataset_read_heights(dataset, surface, error));
-    if (surface->value || layout->plane_mm == 0)
-        return WEFT_OK;
-    return plane_as_heights(layout, surface, error);
+    return weft_dataset_has_heights(dataset) ? weft_dataset_read_heights(dataset, surface, error)
+                                             : plane_as_heights(&dataset->layout, surface, error);
 }
 
 void weft_dataset_heights_free(weft_dataset_heights *heights)

@@ -19,6 +19,7 @@ struct weft_dataset_writer {
     weft_atomic_file file;
     weft_scratch scratch;
     float *opacity, *frames; /* NULL where none were put */
+    weft_dataset_heights heights;
 };
 
 static weft_code copy_layout(weft_dataset_layout *copy, const weft_dataset_layout *layout, weft_error *error)
@@ -106,6 +107,21 @@ weft_code weft_dataset_writer_put_frames(weft_dataset_writer *writer, const floa
     if (!writer->frames)
         return weft_fail_memory(error, "frames", bytes);
     memcpy(writer->frames, frames, bytes);
+    return WEFT_OK;
+}
+
+weft_code weft_dataset_writer_put_heights(weft_dataset_writer *writer, const weft_dataset_heights *heights,
+                                          weft_error *error)
+{
+    size_t bytes = (size_t)heights->width * (size_t)heights->height * sizeof *heights->value;
+    WEFT_TRY(weft_dataset_heights_check(&writer->layout, heights, writer->path, WEFT_BAD_INPUT, error));
+    weft_dataset_heights_free(&writer->heights);
+    float *value = malloc(bytes);
+    if (!value)
+        return weft_fail_memory(error, "heights", bytes);
+    memcpy(value, heights->value, bytes);
+    writer->heights = *heights;
+    writer->heights.value = value;
     return WEFT_OK;
 }
 
@@ -226,6 +242,8 @@ static weft_code fill(const weft_dataset_writer *writer, const weft_dataset_file
         WEFT_TRY(weft_dataset_file_write_opacity(file, &writer->layout, writer->opacity, error));
     if (writer->frames)
         WEFT_TRY(weft_dataset_file_write_frames(file, &writer->layout, writer->frames, error));
+    if (writer->heights.value)
+        WEFT_TRY(weft_dataset_file_write_relief(file, writer->layout.plane_mm, &writer->heights, error));
     WEFT_TRY(weft_dataset_file_write_figures(file, &writer->layout, error));
     return weft_dataset_file_write_provenance(file, provenance, error);
 }
@@ -260,6 +278,7 @@ void weft_dataset_writer_abandon(weft_dataset_writer *writer)
     weft_dataset_layout_free(&writer->layout);
     free(writer->opacity);
     free(writer->frames);
+    weft_dataset_heights_free(&writer->heights);
     free(writer->path);
     free(writer);
 }

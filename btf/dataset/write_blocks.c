@@ -89,6 +89,19 @@ weft_code weft_dataset_block_writer_put_opacity(weft_dataset_block_writer *write
     return weft_dataset_file_write_opacity(&writer->file, writer->layout, opacity, error);
 }
 
+weft_code weft_dataset_block_writer_put_frames(weft_dataset_block_writer *writer, const float *frames,
+                                               weft_error *error)
+{
+    return weft_dataset_file_write_frames(&writer->file, writer->layout, frames, error);
+}
+
+weft_code weft_dataset_block_writer_put_heights(weft_dataset_block_writer *writer, const weft_dataset_heights *heights,
+                                                weft_error *error)
+{
+    WEFT_TRY(weft_dataset_heights_check(writer->layout, heights, writer->path, WEFT_BAD_INPUT, error));
+    return weft_dataset_file_write_relief(&writer->file, writer->layout->plane_mm, heights, error);
+}
+
 static weft_code finish(weft_dataset_block_writer *writer, const char *provenance, weft_error *error)
 {
     WEFT_TRY(weft_dataset_provenance_check(provenance, writer->path, WEFT_BAD_USAGE, error));

@@ -26,6 +26,14 @@ weft_code weft_dataset_block_writer_put(weft_dataset_block_writer *writer, int x
 weft_code weft_dataset_block_writer_put_opacity(weft_dataset_block_writer *writer, const float *opacity,
                                                 weft_error *error);
 
+/* Optional, once: frames [height][width][2][3] of the whole material. Errors: WEFT_SYSTEM. */
+weft_code weft_dataset_block_writer_put_frames(weft_dataset_block_writer *writer, const float *frames,
+                                               weft_error *error);
+
+/* Optional, once: heights of the surface. Errors: WEFT_BAD_INPUT for some that a reader would refuse, WEFT_SYSTEM. */
+weft_code weft_dataset_block_writer_put_heights(weft_dataset_block_writer *writer, const weft_dataset_heights *heights,
+                                                weft_error *error);
+
 /* Writes the file under its final name (atomically) and frees the writer, also on failure. `provenance` is JSON text.
  */
 weft_code weft_dataset_block_writer_finish(weft_dataset_block_writer *writer, const char *provenance,

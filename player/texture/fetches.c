@@ -1,5 +1,7 @@
 #include "player/texture/fetches.h"
 
+#include "reflectance/relief/relief.h"
+
 enum { LEVELS = 2, CORNERS = 3 /* of a triangle of directions */, BILINEAR = 4, TRILINEAR = 8 };
 
 /* Eight texels of packed words and three entries of each table (player/texture/material_texture.h). */
@@ -26,14 +28,36 @@ static weft_fetches of_layers(const weft_material *material)
     return fetches;
 }
 
+/* A march that takes all of its steps, in half floats, and of each of three views its slope and what it sees of the
+ * point (reflectance/relief/relief.glsl). */
+static weft_fetches of_march(void)
+{
+    int steps = 1 + WEFT_RELIEF_STEPS + WEFT_RELIEF_BISECTIONS;
+    return (weft_fetches){steps + 2 * CORNERS, BILINEAR * steps * (int)sizeof(weft_half) + CORNERS * (8 + BILINEAR)};
+}
+
+/* The same coefficients, bounds and opacity at each of three places, with the factors of one view node. */
+static weft_fetches of_layers_through_heights(const weft_material *material)
+{
+    int groups = material->layers->layer_count / WEFT_LAYERS_GROUP, coefficients = LEVELS * groups,
+        factors = 3 * groups, opacity = weft_material_has_holes(material) ? LEVELS * BILINEAR : 0;
+    weft_fetches fetches = of_march();
+    fetches.reads += CORNERS * (coefficients + factors + 2 + opacity);
+    fetches.bytes += CORNERS * (4 * BILINEAR * coefficients + 8 * BILINEAR * factors + 4 + 16 + 4 * opacity);
+    return fetches;
+}
+
 weft_fetches weft_fetches_of_material(const weft_material *material)
 {
-    return material->layers ? of_layers(material) : of_lobes(material);
+    if (!material->layers)
+        return of_lobes(material);
+    return material->heights ? of_layers_through_heights(material) : of_layers(material);
 }
 
 /* Three lights of each of three views (player/draw/shaders/raw.glsl). */
-weft_fetches weft_fetches_of_raw(void)
+weft_fetches weft_fetches_of_raw(bool through_heights)
 {
     int reads = CORNERS * CORNERS * LEVELS;
-    return (weft_fetches){reads, reads * BILINEAR * 3 * (int)sizeof(weft_half)};
+    weft_fetches fetches = through_heights ? of_march() : (weft_fetches){0};
+    return (weft_fetches){fetches.reads + reads, fetches.bytes + reads * BILINEAR * 3 * (int)sizeof(weft_half)};
 }

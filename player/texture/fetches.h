@@ -10,10 +10,11 @@ typedef struct weft_fetches {
     int reads, bytes;
 } weft_fetches;
 
-/* Of a material: of its layers where it has some, else of lobes and tables. Pure. */
+/* Of a material: of its layers where it has some, through its heights where it has those, else of lobes and tables.
+ * Pure. */
 weft_fetches weft_fetches_of_material(const weft_material *material);
 
 /* Of a dataset in mode raw, as half floats. Pure. */
-weft_fetches weft_fetches_of_raw(void);
+weft_fetches weft_fetches_of_raw(bool through_heights);
 
 #endif

@@ -126,6 +126,7 @@ static weft_code draw_all(weft_player *player, const weft_scenes_request *reques
                           weft_scenes *scenes, weft_error *error)
 {
     scenes->width = scenes->height = request->side;
+    scenes->has_heights = weft_dataset_has_surface(request->dataset);
     scenes->near_lights = weft_dataset_get_layout(request->dataset)->distance == WEFT_NEAR;
     snprintf(scenes->renderer, sizeof scenes->renderer, "%s", weft_gl_renderer());
     WEFT_TRY(set_models(player, request, progress, scenes, error));

@@ -29,6 +29,7 @@ typedef struct weft_scenes {
     char renderer[128]; /* name of the OpenGL driver's renderer */
     bool has[WEFT_SCENE_MODELS];
     int width, height;                  /* of the pictures, pixels */
+    bool has_heights;                   /* the dataset is drawn through its heights */
     bool near_lights;                   /* the dataset is then drawn with the directions of its centre */
     int skipped_levels;                 /* finest levels of the dataset that did not fit into graphics memory */
     double frame_ms[WEFT_SCENE_MODELS]; /* of the first scene; 0 for BARD, which is drawn as raw is */

@@ -110,30 +110,13 @@ static void predict_by_layers(const weft_predictor *predictor, int x, int y, con
 
 /* ---- Layers through heights ---- */
 
-/* Of a coordinate of the whole in the window, whose own coordinate begins at its first texel; NaN beyond the middles of
- * its outermost ones. A window that is the whole repeats. */
-static weft_real coordinate_in_window(weft_real whole, int first, int count, int texels)
-{
-    if (count == texels)
-        return whole;
-    weft_real place = (whole - floor(whole)) * texels - first;
-    bool inside = place >= (weft_real)0.5 && place <= count - (weft_real)0.5;
-    return inside ? place / count : (weft_real)NAN;
-}
-
 /* The taps of a view from texel (x, y), in coordinates of the window. */
 static void find_taps(const weft_predictor *predictor, int view, int x, int y, weft_relief_tap tap[3])
 {
     const weft_dataset_layout *layout = predictor->layout;
-    const weft_predicted_window *window = &predictor->window;
     const weft_barycentric *around = &predictor->around[view];
-    weft_real u = (window->x + x + (weft_real)0.5) / window->whole_width;
-    weft_real v = 1 - (window->y + y + (weft_real)0.5) / window->whole_height;
-    weft_relief_taps(&predictor->relief.relief, 1, u, v, layout->view[view], around->index, around->weight, tap);
-    for (int i = 0; i < 3; i++) {
-        tap[i].u = coordinate_in_window(tap[i].u, window->x, layout->width, window->whole_width);
-        tap[i].v = 1 - coordinate_in_window(1 - tap[i].v, window->y, layout->height, window->whole_height);
-    }
+    weft_window_taps(&predictor->relief.relief, &predictor->window, layout->width, layout->height, x, y,
+                     layout->view[view], around->index, around->weight, tap);
 }
 
 static weft_rgb sample_taps(const weft_predictor *predictor, const weft_relief_tap tap[3], const float *factor,
@@ -278,18 +261,17 @@ static void predict_by_coarser(const weft_predictor *predictor, int x, int y, co
     }
 }
 
-weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, const weft_material *material,
-                                             weft_predictor **result, weft_error *error)
+weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, const weft_predicted_window *window,
+                                             const weft_material *material, weft_predictor **result, weft_error *error)
 {
     WEFT_TRY(create(layout, predict_by_coarser, result, error));
     (*result)->material = material;
+    (*result)->window = *window;
     weft_code code = weft_table_directions_create(material, &(*result)->directions, error);
     if (code == WEFT_OK && material->layers)
         code = weft_layer_maps_create(material->layers, &(*result)->maps, error);
-    if (code == WEFT_OK && material->layers && material->heights)
-        code = weft_layer_maps_keep_views(&(*result)->maps, error);
-    if (code == WEFT_OK)
-        code = weft_material_relief_create(material, &(*result)->relief, error);
+    if (code == WEFT_OK && material->layers && material->heights && layout->distance == WEFT_FAR)
+        code = prepare_heights(*result, error);
     if (code != WEFT_OK)
         weft_predictor_free(*result);
     return code;

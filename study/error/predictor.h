@@ -7,6 +7,7 @@
 #include "btf/material/material.h"
 #include "reflectance/microcylinder/microcylinder.h"
 #include "reflectance/weave/weave.h"
+#include "study/error/window.h"
 
 typedef struct weft_predictor weft_predictor;
 
@@ -19,21 +20,15 @@ typedef struct weft_predictor weft_predictor;
 weft_code weft_predictor_of_material(const weft_dataset_layout *layout, const weft_material *material,
                                      weft_predictor **result, weft_error *error);
 
-/* Where the texels of a dataset lie in a larger one. */
-typedef struct weft_predicted_window {
-    int x, y;                      /* the first */
-    int whole_width, whole_height; /* texels */
-} weft_predicted_window;
-
 /* The same of a dataset that is a window of another, whose heights the material has. What some view saw beyond the
  * window is not known: NaN. */
 weft_code weft_predictor_of_window(const weft_dataset_layout *layout, const weft_predicted_window *window,
                                    const weft_material *material, weft_predictor **result, weft_error *error);
 
 /* A material of fewer texels over the same area, as the player shows it at the centres of the texels of the dataset:
- * interpolated between its own, which repeat. Errors: WEFT_SYSTEM. */
-weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, const weft_material *material,
-                                             weft_predictor **result, weft_error *error);
+ * interpolated between its own, which repeat; through its heights where it has those. Errors: WEFT_SYSTEM. */
+weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, const weft_predicted_window *window,
+                                             const weft_material *material, weft_predictor **result, weft_error *error);
 
 /* A weave without its noise, laid on the material; a texel is the mean of 4 x 4 points. The weave stays the caller's.
  */

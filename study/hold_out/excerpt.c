@@ -144,7 +144,8 @@ weft_code weft_excerpt_read(weft_dataset *dataset, weft_excerpt_kind kind, int s
 {
     const weft_dataset_layout *source = weft_dataset_get_layout(dataset);
     texel_choice choice = choose_texels(source, kind, side);
-    *excerpt = (weft_excerpt){.first_x = choice.first_x, .first_y = choice.first_y};
+    *excerpt = (weft_excerpt){.window = {choice.first_x, choice.first_y, source->width, source->height}};
+    weft_dataset_size_mm(source, excerpt->whole_mm);
     weft_code code = make_layout(source, &choice, &excerpt->layout, error);
     if (code == WEFT_OK)
         code = read_samples(dataset, &choice, excerpt, error);
@@ -153,6 +154,8 @@ weft_code weft_excerpt_read(weft_dataset *dataset, weft_excerpt_kind kind, int s
                             error);
     if (code == WEFT_OK && weft_dataset_has_frames(dataset))
         code = read_numbers(dataset, &choice, weft_dataset_read_frames, 6, &excerpt->frames, error);
+    if (code == WEFT_OK && kind == WEFT_EXCERPT_BLOCK)
+        code = weft_dataset_read_surface(dataset, &excerpt->surface, error);
     if (code != WEFT_OK)
         weft_excerpt_free(excerpt);
     return code;
@@ -165,7 +168,129 @@ void weft_excerpt_free(weft_excerpt *excerpt)
     free(excerpt->mask);
     free(excerpt->opacity);
     free(excerpt->frames);
+    weft_dataset_heights_free(&excerpt->surface);
     *excerpt = (weft_excerpt){0};
+}
+
+/* ---- A part ---- */
+
+weft_texel_block weft_excerpt_middle(const weft_excerpt *excerpt, int side)
+{
+    const weft_dataset_layout *layout = &excerpt->layout;
+    int width = weft_smaller(side, layout->width), height = weft_smaller(side, layout->height);
+    return (weft_texel_block){(layout->width - width) / 2, (layout->height - height) / 2, width, height};
+}
+
+/* Of `each` bytes a texel; NULL of NULL. */
+static weft_code crop_array(const weft_excerpt *excerpt, const weft_texel_block *block, size_t each, const void *whole,
+                            void **result, weft_error *error)
+{
+    size_t row = (size_t)block->width * each, bytes = row * (size_t)block->height;
+    if (!whole)
+        return WEFT_OK;
+    *result = malloc(bytes);
+    if (!*result)
+        return weft_fail_memory(error, "texels", bytes);
+    for (int y = 0; y < block->height; y++) {
+        size_t first = (size_t)(block->y + y) * (size_t)excerpt->layout.width + (size_t)block->x;
+        memcpy((char *)*result + (size_t)y * row, (const char *)whole + first * each, row);
+    }
+    return WEFT_OK;
+}
+
+static weft_code crop(const weft_excerpt *excerpt, const weft_texel_block *block, weft_excerpt *result,
+                      weft_error *error)
+{
+    size_t images = (size_t)excerpt->layout.image_count, views = (size_t)excerpt->layout.view_count;
+    const texel_choice choice = {.width = excerpt->layout.width,
+                                 .height = excerpt->layout.height,
+                                 .columns = block->width,
+                                 .rows = block->height,
+                                 .stride = 1};
+    void *samples = NULL, *mask = NULL, *opacity = NULL, *frames = NULL;
+    weft_code code = make_layout(&excerpt->layout, &choice, &result->layout, error);
+    if (code == WEFT_OK)
+        code = crop_array(excerpt, block, 3 * images * sizeof(weft_half), excerpt->samples, &samples, error);
+    if (code == WEFT_OK)
+        code = crop_array(excerpt, block, images, excerpt->mask, &mask, error);
+    if (code == WEFT_OK)
+        code = crop_array(excerpt, block, views * sizeof(float), excerpt->opacity, &opacity, error);
+    if (code == WEFT_OK)
+        code = crop_array(excerpt, block, 6 * sizeof(float), excerpt->frames, &frames, error);
+    result->samples = samples;
+    result->mask = mask;
+    result->opacity = opacity;
+    result->frames = frames;
+    return code;
+}
+
+weft_code weft_excerpt_crop(const weft_excerpt *excerpt, const weft_texel_block *block, weft_excerpt *result,
+                            weft_error *error)
+{
+    *result = (weft_excerpt){.window = excerpt->window};
+    result->window.x += block->x;
+    result->window.y += block->y;
+    weft_code code = crop(excerpt, block, result, error);
+    if (code != WEFT_OK)
+        weft_excerpt_free(result);
+    return code;
+}
+
+/* ---- The surface ---- */
+
+bool weft_excerpt_has_surface(const weft_excerpt *excerpt)
+{
+    return excerpt->surface.value != NULL;
+}
+
+weft_code weft_excerpt_give_heights(const weft_excerpt *excerpt, weft_material *material, weft_error *error)
+{
+    const weft_dataset_heights *surface = &excerpt->surface;
+    weft_material_heights *heights;
+    WEFT_TRY(weft_material_heights_create(surface->value, surface->width, surface->height, surface->level_count,
+                                          excerpt->whole_mm, &heights, error));
+    weft_material_take_heights(material, heights);
+    return WEFT_OK;
+}
+
+/* The places above the texels of the block. */
+static weft_code crop_surface(const weft_excerpt *excerpt, weft_dataset_heights *cropped, weft_error *error)
+{
+    const weft_dataset_heights *whole = &excerpt->surface;
+    const weft_predicted_window *window = &excerpt->window;
+    int across = whole->width / window->whole_width, down = whole->height / window->whole_height;
+    *cropped = (weft_dataset_heights){.width = across * excerpt->layout.width,
+                                      .height = down * excerpt->layout.height,
+                                      .level_count = whole->level_count};
+    size_t row = (size_t)cropped->width;
+    cropped->value = malloc(row * (size_t)cropped->height * sizeof *cropped->value);
+    if (!cropped->value)
+        return weft_fail_memory(error, "heights", row * (size_t)cropped->height * sizeof *cropped->value);
+    for (size_t y = 0; y < (size_t)cropped->height; y++)
+        memcpy(cropped->value + y * row,
+               whole->value + ((size_t)(down * window->y) + y) * (size_t)whole->width + (size_t)(across * window->x),
+               row * sizeof *cropped->value);
+    return WEFT_OK;
+}
+
+/* A dataset refuses what lies further from it than it is wide. */
+static bool is_too_deep(const weft_excerpt *excerpt)
+{
+    double size_mm[2], most = 0;
+    weft_dataset_size_mm(&excerpt->layout, size_mm);
+    for (size_t i = 0; i < (size_t)excerpt->surface.width * (size_t)excerpt->surface.height; i++)
+        most = fmax(most, fabs((double)excerpt->surface.value[i]));
+    return most > fmin(size_mm[0], size_mm[1]);
+}
+
+static weft_code put_surface(const weft_excerpt *excerpt, weft_dataset_writer *writer, weft_error *error)
+{
+    weft_dataset_heights cropped;
+    weft_code code = crop_surface(excerpt, &cropped, error);
+    if (code == WEFT_OK)
+        code = weft_dataset_writer_put_heights(writer, &cropped, error);
+    weft_dataset_heights_free(&cropped);
+    return code;
 }
 
 /* ---- Without some images ---- */
@@ -274,15 +399,26 @@ static weft_code put_all(const weft_excerpt *excerpt, const kept_images *kept, w
     return excerpt->frames ? weft_dataset_writer_put_frames(writer, excerpt->frames, error) : WEFT_OK;
 }
 
-static weft_code write_kept(const weft_excerpt *excerpt, const kept_images *kept, const char *path, weft_error *error)
+/* A plane is one height, which is not cropped. */
+static bool is_plane(const weft_dataset_heights *surface)
+{
+    return surface->width == 1 && surface->height == 1;
+}
+
+static weft_code write_kept(const weft_excerpt *excerpt, const kept_images *kept, bool with_surface, const char *path,
+                            weft_error *error)
 {
     weft_dataset_layout layout = {0};
     weft_dataset_writer *writer = NULL;
     weft_code code = make_kept_layout(&excerpt->layout, kept, &layout, error);
+    if (with_surface && is_plane(&excerpt->surface))
+        layout.plane_mm = (double)excerpt->surface.value[0];
     if (code == WEFT_OK)
         code = weft_dataset_writer_create(path, &layout, &writer, error);
     if (code == WEFT_OK)
         code = put_all(excerpt, kept, writer, error);
+    if (code == WEFT_OK && with_surface && !is_plane(&excerpt->surface))
+        code = put_surface(excerpt, writer, error);
     if (code == WEFT_OK)
         code = weft_dataset_writer_finish(writer, NULL, error);
     else
@@ -291,17 +427,30 @@ static weft_code write_kept(const weft_excerpt *excerpt, const kept_images *kept
     return code;
 }
 
-weft_code weft_excerpt_write(const weft_excerpt *excerpt, const uint8_t *held_out, const char *path,
-                             weft_dataset **result, weft_error *error)
+static weft_code write_and_open(const weft_excerpt *excerpt, const uint8_t *held_out, bool with_surface,
+                                const char *path, weft_dataset **result, weft_error *error)
 {
     kept_images kept;
     weft_code code = find_kept(&excerpt->layout, held_out, &kept, error);
     if (code == WEFT_OK)
-        code = write_kept(excerpt, &kept, path, error);
+        code = write_kept(excerpt, &kept, with_surface, path, error);
     if (code == WEFT_OK) {
         code = weft_dataset_open(path, result, error);
         unlink(path);
     }
     free_kept(&kept);
     return code;
+}
+
+weft_code weft_excerpt_write(const weft_excerpt *excerpt, const uint8_t *held_out, const char *path,
+                             weft_dataset **result, weft_error *error)
+{
+    return write_and_open(excerpt, held_out, false, path, result, error);
+}
+
+weft_code weft_excerpt_write_with_surface(const weft_excerpt *excerpt, const uint8_t *held_out, const char *path,
+                                          weft_dataset **result, weft_error *error)
+{
+    bool has_surface = weft_excerpt_has_surface(excerpt) && !is_too_deep(excerpt);
+    return write_and_open(excerpt, held_out, has_surface, path, result, error);
 }

@@ -11,10 +11,11 @@
 #include <string.h>
 
 /* Layers learn from 512 texels, which are to be there. */
-enum { SIDE = 12, LAYERS_SIDE = 24, HEIGHTS_SIDE = 48, BLOCK_SIDE = 64 };
+enum { SIDE = 12, LAYERS_SIDE = 24, SURFACE_SIDE = 64, ASKED_SIDE = 48, BLOCK_SIDE = 64 };
 
-/* Of the excerpt, at most; of one with heights, whose texels see each other. */
-static const long most_samples = 1L << 22, most_samples_with_heights = 1L << 23;
+/* Of the excerpt, at most; of one with a surface, whose texels see each other, and of those of its texels that are
+ * asked for. */
+static const long most_samples = 1L << 22, most_samples_with_surface = 1L << 25, most_samples_asked = 1L << 23;
 
 /* Of all splits, that a certificate is made of: the share of 95 % is known to 0.001 by so many. */
 static const size_t most_residuals = 1 << 16;
@@ -77,9 +78,9 @@ typedef struct measuring {
     weft_compress_options options; /* of the fits without some images */
     const char *scratch_path;
     weft_excerpt excerpt;
-    weft_predicted_window window;
-    weft_dataset_heights surface; /* that layers may be seen through; else none */
-    double size_mm[2];            /* of the dataset */
+    weft_texel_block asked; /* of an excerpt with a surface */
+    weft_excerpt alone;     /* these, where they are fitted alone; else nothing */
+    bool asks_heights;      /* of layers, whether they are to be seen through the surface of the excerpt */
     weft_splits splits;
     weft_compress_model whole_model; /* that all images carry, and its lobes */
     int whole_lobes;
@@ -93,11 +94,16 @@ typedef struct measuring {
     weft_hold_out *result;
 } measuring;
 
+static const weft_excerpt *fitted_excerpt(const measuring *work)
+{
+    return work->alone.samples ? &work->alone : &work->excerpt;
+}
+
 static weft_code fit_without(const measuring *work, const uint8_t *held, weft_material *material,
                              weft_compress_report *report, weft_error *error)
 {
     weft_dataset *others;
-    WEFT_TRY(weft_excerpt_write(&work->excerpt, held, work->scratch_path, &others, error));
+    WEFT_TRY(weft_excerpt_write(fitted_excerpt(work), held, work->scratch_path, &others, error));
     weft_code code = weft_compress(others, &work->options, NULL, material, report, error);
     weft_dataset_close(others);
     return code;
@@ -106,6 +112,7 @@ static weft_code fit_without(const measuring *work, const uint8_t *held, weft_ma
 /* What one split says. */
 typedef struct answers {
     weft_asked_samples material, fitted, photographs;
+    weft_asked_samples photographs_flat;              /* where `photographs` are seen through a surface */
     weft_asked_samples moved;                         /* the material, its stored numbers moved by a step each */
     weft_asked_samples flat, flat_fitted, flat_moved; /* without heights, where `material` is with them */
 } answers;
@@ -115,6 +122,7 @@ static void free_answers(answers *said)
     weft_asked_samples_free(&said->material);
     weft_asked_samples_free(&said->fitted);
     weft_asked_samples_free(&said->photographs);
+    weft_asked_samples_free(&said->photographs_flat);
     weft_asked_samples_free(&said->moved);
     weft_asked_samples_free(&said->flat);
     weft_asked_samples_free(&said->flat_fitted);
@@ -124,21 +132,12 @@ static void free_answers(answers *said)
 static weft_code ask_material(const measuring *work, const weft_trial *trial, const weft_material *material,
                               weft_asked_samples *held, weft_asked_samples *fitted, weft_error *error)
 {
+    const weft_excerpt *excerpt = fitted_excerpt(work);
     weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_window(&trial->excerpt->layout, &work->window, material, &predictor, error));
+    WEFT_TRY(weft_predictor_of_window(&excerpt->layout, &excerpt->window, material, &predictor, error));
     weft_code code = weft_trial_ask(trial, predictor, held, fitted, error);
     weft_predictor_free(predictor);
     return code;
-}
-
-static weft_code give_heights(const measuring *work, weft_material *material, weft_error *error)
-{
-    const weft_dataset_heights *surface = &work->surface;
-    weft_material_heights *heights;
-    WEFT_TRY(weft_material_heights_create(surface->value, surface->width, surface->height, surface->level_count,
-                                          work->size_mm, &heights, error));
-    weft_material_take_heights(material, heights);
-    return WEFT_OK;
 }
 
 /* What storage does to it. The material is another one afterwards, without heights. */
@@ -162,13 +161,15 @@ static weft_code ask_moved(const measuring *work, const weft_trial *trial, weft_
 static weft_code ask(const measuring *work, const weft_trial *trial, weft_material *material, answers *said,
                      weft_error *error)
 {
-    if (work->surface.value && material->layers) {
+    if (work->asks_heights && material->layers) {
         WEFT_TRY(ask_material(work, trial, material, &said->flat, &said->flat_fitted, error));
-        WEFT_TRY(give_heights(work, material, error));
+        WEFT_TRY(weft_excerpt_give_heights(&work->excerpt, material, error));
     }
     WEFT_TRY(ask_material(work, trial, material, &said->material, &said->fitted, error));
     WEFT_TRY(ask_moved(work, trial, material, said, error));
-    return weft_trial_ask_photographs(trial, &said->photographs, error);
+    if (weft_excerpt_has_surface(&work->excerpt))
+        WEFT_TRY(weft_trial_ask_photographs(trial, false, &said->photographs_flat, error));
+    return weft_trial_ask_photographs(trial, weft_excerpt_has_surface(&work->excerpt), &said->photographs, error);
 }
 
 /* Relative RMSE with and without heights where both are known; `with` says of fewer samples, in the same order. */
@@ -227,6 +228,11 @@ static weft_code take_answers(measuring *work, const answers *said, weft_error *
     WEFT_TRY(weft_error_summary_of(said->fitted.value, said->fitted.count, &fitted, error));
     take_errors(&material, &work->material_taken, &work->result->material);
     take_errors(&photographs, &work->photographs_taken, &work->result->photographs);
+    if (said->photographs_flat.value) {
+        double error_of[2];
+        compare_with_flat(&said->photographs, &said->photographs_flat, error_of);
+        work->result->photographs_flat += error_of[1] / work->measured_count;
+    }
     take_into_mean(&fitted, &work->fitted_taken, &work->result->fitted);
     return take_flat(work, said, error);
 }
@@ -265,6 +271,9 @@ static weft_code ask_split(measuring *work, int split, answers *said, weft_error
     work->result->smaller_model |= report.model != work->whole_model || report.lobe_count != work->whole_lobes;
     weft_trial trial;
     weft_code code = weft_trial_create(&work->excerpt, held, next, &trial, error);
+    if (work->asked.width > 0)
+        trial.asked = work->asked;
+    trial.predicts_asked = work->alone.samples != NULL;
     if (code == WEFT_OK)
         code = ask(work, &trial, &material, said, error);
     weft_trial_free(&trial);
@@ -280,6 +289,7 @@ static weft_code measure_split(measuring *work, int split, weft_error *error)
     if (code == WEFT_OK)
         code = take_answers(work, &said, error);
     weft_asked_samples_free(&said.photographs);
+    weft_asked_samples_free(&said.photographs_flat);
     malloc_trim(0);
     if (code == WEFT_OK)
         code = take_residuals(work, split, &said, error);
@@ -302,13 +312,28 @@ static int fewest_kept(const weft_splits *splits)
     return fewest;
 }
 
-/* What a view sees of a surface lies in other texels than its own. */
-static weft_code read_with_heights(weft_dataset *dataset, measuring *work, weft_error *error)
+static int side_of(int most_side, long most, int image_count)
 {
-    int side = HEIGHTS_SIDE;
-    while (side > 1 && (long)side * side * work->splits.image_count > most_samples_with_heights)
+    int side = most_side;
+    while (side > 1 && (long)side * side * image_count > most)
         side--;
-    return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, side, &work->excerpt, error);
+    return side;
+}
+
+int weft_hold_out_surface_side(int image_count)
+{
+    return side_of(SURFACE_SIDE, most_samples_with_surface, image_count);
+}
+
+/* Lobes need no neighbours: those that are asked for are fitted alone. */
+static weft_code read_with_surface(weft_dataset *dataset, measuring *work, weft_error *error)
+{
+    int images = weft_dataset_get_layout(dataset)->image_count;
+    bool has_layers = work->options.layer_count > 0;
+    int side = has_layers ? side_of(ASKED_SIDE, most_samples_asked, images) : LAYERS_SIDE;
+    WEFT_TRY(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, weft_hold_out_surface_side(images), &work->excerpt, error));
+    work->asked = weft_excerpt_middle(&work->excerpt, side);
+    return has_layers ? WEFT_OK : weft_excerpt_crop(&work->excerpt, &work->asked, &work->alone, error);
 }
 
 static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error *error)
@@ -320,12 +345,10 @@ static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error
     work->spacing = 1;
     if (weft_compress_plan(&others, &work->options, &lobes) == WEFT_COMPRESS_SPARSE)
         return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &work->excerpt, error);
-    if (work->surface.value)
-        return read_with_heights(dataset, work, error);
+    if (weft_dataset_has_surface(dataset))
+        return read_with_surface(dataset, work, error);
     weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
-    int side = work->options.layer_count > 0 ? LAYERS_SIDE : SIDE;
-    while (side > 1 && (long)side * side * layout->image_count > most_samples)
-        side--;
+    int side = side_of(work->options.layer_count > 0 ? LAYERS_SIDE : SIDE, most_samples, layout->image_count);
     WEFT_TRY(weft_excerpt_read(dataset, kind, side, &work->excerpt, error));
     work->spacing = sqrt((double)layout->width * layout->height /
                          ((double)work->excerpt.layout.width * work->excerpt.layout.height));
@@ -356,6 +379,13 @@ static weft_code certify(weft_dataset *dataset, measuring *work, weft_error *err
 
 /* ---- The whole ---- */
 
+static long asked_texels(const measuring *work)
+{
+    const weft_dataset_layout *layout = &work->excerpt.layout;
+    const weft_texel_block *asked = &work->asked;
+    return asked->width > 0 ? (long)asked->width * asked->height : (long)layout->width * layout->height;
+}
+
 static void describe(const weft_dataset_layout *layout, measuring *work)
 {
     const weft_splits *splits = &work->splits;
@@ -370,7 +400,7 @@ static void describe(const weft_dataset_layout *layout, measuring *work)
                                     .light_held_count = splits->light_held_count,
                                     .image_count = splits->image_count,
                                     .image_held_count = (int)lround((double)held / splits->count),
-                                    .texel_count = (long)work->excerpt.layout.width * work->excerpt.layout.height,
+                                    .texel_count = asked_texels(work),
                                     .dataset_texel_count = (long)layout->width * layout->height};
 }
 
@@ -380,9 +410,9 @@ static weft_code measure_splits(weft_dataset *dataset, measuring *work, const we
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     static const char step[] = "fitting without some images";
     WEFT_TRY(read_excerpt(dataset, work, error));
-    WEFT_TRY(
-        weft_compress_share_budget(layout, &work->excerpt.layout, work->given, &work->options.budget_bytes, error));
-    work->window = (weft_predicted_window){work->excerpt.first_x, work->excerpt.first_y, layout->width, layout->height};
+    WEFT_TRY(weft_compress_share_budget(layout, &fitted_excerpt(work)->layout, work->given, &work->options.budget_bytes,
+                                        error));
+    work->asks_heights = work->given->heights && weft_excerpt_has_surface(&work->excerpt);
     describe(layout, work);
     work->whole_model = weft_compress_plan(layout, &work->options, &work->whole_lobes);
     for (int s = 0; s < work->measured_count; s++) {
@@ -409,15 +439,12 @@ weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_optio
     weft_code code = weft_splits_create(weft_dataset_get_layout(dataset), 0, most, &work.splits, error);
     bool each = work.splits.kind == WEFT_SPLIT_EACH;
     work.measured_count = each || split_count > work.splits.count ? work.splits.count : split_count;
-    if (code == WEFT_OK && options->heights && options->layer_count > 0)
-        code = weft_dataset_read_surface(dataset, &work.surface, error);
-    weft_dataset_size_mm(weft_dataset_get_layout(dataset), work.size_mm);
     if (code == WEFT_OK)
         code = measure_splits(dataset, &work, progress, error);
     free_residuals(&work.residuals);
     free_residuals(&work.flat_residuals);
-    weft_dataset_heights_free(&work.surface);
     weft_excerpt_free(&work.excerpt);
+    weft_excerpt_free(&work.alone);
     weft_splits_free(&work.splits);
     /* What is free is given back to the system, so that the fit of the whole has room. */
     malloc_trim(0);

@@ -34,20 +34,27 @@ typedef struct weft_hold_out {
     bool smaller_model; /* the images that were left carry less than all of them do */
     weft_hold_out_heights heights;
     weft_hold_out_error material;    /* as it is to be played: through heights where they are used */
-    weft_hold_out_error photographs; /* interpolated between those that were not held out */
+    weft_hold_out_error photographs; /* interpolated between those that were not held out, as raw is played: through
+                                        the surface of the dataset where it has one */
+    double photographs_flat;         /* relative RMSE of the same samples without it; 0 where there is none */
     weft_error_summary fitted;       /* of the same fits where they were fitted: on what the next split holds out, which
                                         lies in the same rings. Zero where there is no next one */
     bool has_certificate;            /* not where all that is predicted is black */
     weft_certificate certificate;    /* an interval for any pixel, at 0.95 */
 } weft_hold_out;
 
+/* Along each side of the block of texels that is read of a dataset with a surface: 64, or fewer of very many images.
+ * What a view saw beyond the block is not known, and steep views see furthest: of a part of a material less counts what
+ * they see. Pure. */
+int weft_hold_out_surface_side(int image_count);
+
 /* Fits some texels with `options` to the images that a split leaves, for each of up to `split_count` splits, and
  * compares what the material says of the others with their samples, in the quantity of the dataset. Without mip levels,
  * held-out images of `options` and checkpoint. A budget is taken for the share of the texels in the whole material. The
  * texels are at most 12 x 12 (24 x 24 with layers, fewer where there are very many images), 64 x 64 neighbours
- * where the fit borrows from them, and 48 x 48 where layers may be seen through heights: with and without, and what is
- * better counts. What was left out is not in what the fit reads: neither its samples, nor its views
- * as entries of T.
+ * where the fit borrows from them or the dataset has a surface, which is seen in other texels than its own: then
+ * weft_hold_out_surface_side. Layers are asked with and without it, and what is better counts. What was left
+ * out is not in what the fit reads: neither its samples, nor its views as entries of T.
  *
  * Writes a dataset of those texels to the folder of `scratch_path`, nameless once it is complete. The result depends
  * neither on the number of threads nor on the memory allowed.

@@ -53,6 +53,8 @@ json_t *weft_hold_out_to_json(const weft_hold_out *r)
                                 "relative_rmse_without", r->heights.without));
     weft_json_put(&object, "not_fitted", json_of_errors(&r->material));
     weft_json_put(&object, "photographs_interpolated", json_of_errors(&r->photographs));
+    if (r->photographs_flat > 0)
+        weft_json_put(&object, "photographs_without_heights", json_real(r->photographs_flat));
     weft_json_put(&object, "fitted", json_of_error(&r->fitted));
     return object;
 }
@@ -139,6 +141,7 @@ static bool read_object(const json_t *object, weft_hold_out *r)
     r->texel_count = (long)texels;
     r->dataset_texel_count = (long)all_texels;
     r->smaller_model = smaller;
+    r->photographs_flat = json_number_value(json_object_get(object, "photographs_without_heights"));
     return complete && read_kind(kind, &r->kind) && read_heights(json_object_get(object, "heights"), &r->heights) &&
            read_errors(json_object_get(object, "not_fitted"), &r->material) &&
            read_errors(json_object_get(object, "photographs_interpolated"), &r->photographs) &&
@@ -169,8 +172,12 @@ const char *weft_hold_out_about(const weft_hold_out *result)
 
 void weft_hold_out_headline(const weft_hold_out *r, char line[WEFT_HOLD_OUT_LINE])
 {
-    char photographs[96] = "";
-    if (r->photographs.all.count > 0)
+    char photographs[128] = "";
+    if (r->photographs.all.count > 0 && r->photographs_flat > 0)
+        snprintf(photographs, sizeof photographs,
+                 " (the photographs themselves, interpolated through their heights: %.3f, without them: %.3f)",
+                 r->photographs.all.relative_rmse, r->photographs_flat);
+    else if (r->photographs.all.count > 0)
         snprintf(photographs, sizeof photographs, " (the photographs themselves, interpolated: %.3f)",
                  r->photographs.all.relative_rmse);
     snprintf(line, WEFT_HOLD_OUT_LINE, "%s: relative RMSE %.3f%s; on those that were: %.3f", weft_hold_out_about(r),

@@ -8,9 +8,9 @@
 /* ---- Samples ---- */
 
 /* Empty slots for images of all texels; a slot stays empty where its `group` stays 0. */
-static weft_code allocate(const weft_excerpt *excerpt, int image_count, weft_asked_samples *asked, weft_error *error)
+static weft_code allocate(const weft_trial *trial, int image_count, weft_asked_samples *asked, weft_error *error)
 {
-    size_t count = 3 * (size_t)excerpt->layout.width * (size_t)excerpt->layout.height * (size_t)image_count;
+    size_t count = 3 * (size_t)trial->asked.width * (size_t)trial->asked.height * (size_t)image_count;
     *asked = (weft_asked_samples){count, calloc(count + 1, sizeof *asked->value), calloc(count + 1, 1),
                                   calloc(count + 1, sizeof *asked->sample)};
     return asked->value && asked->group && asked->sample
@@ -58,14 +58,16 @@ static void put_texel(const weft_trial *trial, int x, int y, int first, int coun
                       weft_asked_samples *asked)
 {
     const weft_dataset_layout *layout = &trial->excerpt->layout;
+    const weft_texel_block *block = &trial->asked;
     size_t texel = (size_t)y * (size_t)layout->width + (size_t)x;
+    size_t asked_texel = (size_t)(y - block->y) * (size_t)block->width + (size_t)(x - block->x);
     for (int i = 0; i < count; i++) {
         int image = trial->image[first + i];
         size_t at = texel * (size_t)layout->image_count + (size_t)image;
         weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
         weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
         if (!trial->excerpt->mask[at] && light.z > 0 && view.z > 0)
-            put(trial, at, trial->flags[first + i], said[i], 3 * (texel * (size_t)count + (size_t)i), asked);
+            put(trial, at, trial->flags[first + i], said[i], 3 * (asked_texel * (size_t)count + (size_t)i), asked);
     }
 }
 
@@ -92,8 +94,11 @@ weft_code weft_trial_create(const weft_excerpt *excerpt, const uint8_t *held, co
                             weft_error *error)
 {
     size_t images = (size_t)excerpt->layout.image_count;
-    *trial = (weft_trial){
-        .excerpt = excerpt, .held = held, .image = calloc(images, sizeof *trial->image), .flags = calloc(images, 1)};
+    *trial = (weft_trial){.excerpt = excerpt,
+                          .held = held,
+                          .image = calloc(images, sizeof *trial->image),
+                          .flags = calloc(images, 1),
+                          .asked = {0, 0, excerpt->layout.width, excerpt->layout.height}};
     if (!trial->image || !trial->flags)
         return weft_fail_memory(error, "images", images * (sizeof *trial->image + 1));
     list_images(next, trial);
@@ -116,7 +121,8 @@ static weft_code ask_texel(const weft_trial *trial, const weft_predictor *predic
     weft_rgb *said = malloc((size_t)(images + 1) * sizeof *said);
     if (!said)
         return weft_fail_memory(error, "predictions", (size_t)images * sizeof *said);
-    weft_predictor_predict(predictor, x, y, trial->image, images, said);
+    int left = trial->predicts_asked ? trial->asked.x : 0, top = trial->predicts_asked ? trial->asked.y : 0;
+    weft_predictor_predict(predictor, x - left, y - top, trial->image, images, said);
     put_texel(trial, x, y, 0, trial->held_count, said, held);
     put_texel(trial, x, y, trial->held_count, trial->fitted_count, said + trial->held_count, fitted);
     free(said);
@@ -141,12 +147,13 @@ static weft_code ask_texels(const weft_trial *trial, const weft_predictor *predi
                             const weft_interpolation *interpolation, weft_asked_samples *held,
                             weft_asked_samples *fitted, weft_error *error)
 {
-    int width = trial->excerpt->layout.width, texels = width * trial->excerpt->layout.height;
+    const weft_texel_block *block = &trial->asked;
+    int texels = block->width * block->height;
     weft_code code = WEFT_OK;
 #pragma omp parallel for schedule(dynamic, 1)
     for (int texel = 0; texel < texels; texel++) {
         weft_error own = {0};
-        int x = texel % width, y = texel / width;
+        int x = block->x + texel % block->width, y = block->y + texel / block->width;
         weft_code own_code = predictor ? ask_texel(trial, predictor, x, y, held, fitted, &own)
                                        : ask_texel_of_photographs(trial, interpolation, x, y, held, &own);
 #pragma omp critical
@@ -163,21 +170,21 @@ weft_code weft_trial_ask(const weft_trial *trial, const weft_predictor *predicto
                          weft_asked_samples *fitted, weft_error *error)
 {
     *held = *fitted = (weft_asked_samples){0};
-    WEFT_TRY(allocate(trial->excerpt, trial->held_count, held, error));
-    WEFT_TRY(allocate(trial->excerpt, trial->fitted_count, fitted, error));
+    WEFT_TRY(allocate(trial, trial->held_count, held, error));
+    WEFT_TRY(allocate(trial, trial->fitted_count, fitted, error));
     WEFT_TRY(ask_texels(trial, predictor, NULL, held, fitted, error));
     drop_empty_slots(held);
     drop_empty_slots(fitted);
     return WEFT_OK;
 }
 
-weft_code weft_trial_ask_photographs(const weft_trial *trial, weft_asked_samples *held, weft_error *error)
+weft_code weft_trial_ask_photographs(const weft_trial *trial, bool through, weft_asked_samples *held, weft_error *error)
 {
     weft_interpolation *interpolation = NULL;
     *held = (weft_asked_samples){0};
-    WEFT_TRY(allocate(trial->excerpt, trial->held_count, held, error));
-    WEFT_TRY(
-        weft_interpolation_create(trial->excerpt, trial->held, trial->image, trial->held_count, &interpolation, error));
+    WEFT_TRY(allocate(trial, trial->held_count, held, error));
+    WEFT_TRY(weft_interpolation_create(trial->excerpt, trial->held, trial->image, trial->held_count, through,
+                                       &interpolation, error));
     weft_code code = ask_texels(trial, NULL, interpolation, held, NULL, error);
     weft_interpolation_free(interpolation);
     drop_empty_slots(held);

@@ -24,6 +24,8 @@ typedef struct weft_trial {
     int *image;                  /* [held_count + fitted_count] the images that are held out, then the others */
     uint8_t *flags;              /* of those: why each is held out, here or in the next split */
     int held_count, fitted_count;
+    weft_texel_block asked; /* of the excerpt: the texels that are asked for; at first all */
+    bool predicts_asked;    /* predictors have the texels that are asked for alone; at first false */
 } weft_trial;
 
 /* `held` [image_count] are the flags of the split, `next` those of the one after it; both must outlive the trial, as
@@ -32,13 +34,15 @@ weft_code weft_trial_create(const weft_excerpt *excerpt, const uint8_t *held, co
                             weft_error *error);
 void weft_trial_free(weft_trial *trial);
 
-/* What a predictor for the layout of the excerpt says of the images that are held out, and of the fitted ones. The
- * caller frees both, also on failure. Errors: WEFT_SYSTEM for memory. */
+/* What a predictor for the layout of the excerpt, or for the part that is asked for, says of the images that are held
+ * out, and of the fitted ones. The caller frees both, also on failure. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_trial_ask(const weft_trial *trial, const weft_predictor *predictor, weft_asked_samples *held,
                          weft_asked_samples *fitted, weft_error *error);
 
 /* What the photographs that are not held out say of those that are (study/hold_out/interpolation.h), where they say
- * anything. The caller frees it, also on failure. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_trial_ask_photographs(const weft_trial *trial, weft_asked_samples *held, weft_error *error);
+ * anything; `through`: seen through the surface of the excerpt, which has one. The caller frees it, also on failure.
+ * Errors: those of weft_interpolation_create. */
+weft_code weft_trial_ask_photographs(const weft_trial *trial, bool through, weft_asked_samples *held,
+                                     weft_error *error);
 
 #endif

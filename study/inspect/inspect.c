@@ -105,6 +105,8 @@ static json_t *describe_error(const weft_material *material, const weft_hold_out
         weft_hold_out_explain(held_out, how);
         weft_json_put(&described, "not_fitted", json_real(held_out->material.all.relative_rmse));
         weft_json_put(&described, "photographs_interpolated", json_real(held_out->photographs.all.relative_rmse));
+        if (held_out->photographs_flat > 0)
+            weft_json_put(&described, "photographs_without_heights", json_real(held_out->photographs_flat));
         weft_json_put(&described, "fitted", json_real(held_out->fitted.relative_rmse));
         weft_json_put(&described, "how", json_string(how));
     } else {

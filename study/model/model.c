@@ -62,10 +62,13 @@ static weft_code open_material(weft_model *model, const char *path, const weft_m
     return weft_table_directions_create(&model->material, &model->directions, error);
 }
 
-static weft_code open_dataset(weft_model *model, const char *path, weft_error *error)
+static weft_code open_dataset(weft_model *model, const char *path, const weft_model_options *options, weft_error *error)
 {
     WEFT_TRY(weft_dataset_open(path, &model->dataset, error));
-    return weft_raw_btf_create(model->dataset, &model->raw, error);
+    WEFT_TRY(weft_raw_btf_create(model->dataset, &model->raw, error));
+    if (options->flat)
+        weft_raw_btf_flatten(model->raw);
+    return WEFT_OK;
 }
 
 static weft_code open_weave(weft_model *model, const char *path, const weft_model_options *options, weft_error *error)
@@ -100,7 +103,7 @@ weft_code weft_model_open(const char *path, const weft_model_options *options, w
     else if (code == WEFT_OK && model->kind == WEFT_FILE_MATERIAL)
         code = open_material(model, path, options, error);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_DATASET)
-        code = open_dataset(model, path, error);
+        code = open_dataset(model, path, options, error);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_MICROCYLINDER)
         code = open_microcylinder(model, path, options, error);
     else if (code == WEFT_OK && model->kind == WEFT_FILE_WEAVE)

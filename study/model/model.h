@@ -16,6 +16,7 @@ typedef struct weft_model_options {
     int parameter_count;
     bool interval;   /* with the interval of the certificate; a material that has one, evaluated as it is certified */
     bool lobes;      /* of a material that has layers, too: its lobes */
+    bool flat;       /* of a dataset: without its heights */
     bool as_printed; /* weights of a microcylinder cloth: of the article, not by area */
 } weft_model_options;
 

@@ -3,6 +3,7 @@
 #include "btf/dataset/dataset.h"
 #include "reflectance/relief/relief.h"
 #include "study/model/raw_directions.h"
+#include "study/model/texels_around.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -75,6 +76,12 @@ void weft_raw_btf_free(weft_raw_btf *raw)
     free(raw->mean);
     free(raw->mean_mask);
     free(raw);
+}
+
+void weft_raw_btf_flatten(weft_raw_btf *raw)
+{
+    weft_relief_free(&raw->relief);
+    weft_dataset_heights_free(&raw->heights);
 }
 
 /* ---- Interpolation ---- */
@@ -151,11 +158,6 @@ static bool below_horizon(weft_vec3 light, weft_vec3 view)
     return !(light.z > 0 && view.z > 0);
 }
 
-static int wrapped(int index, int count)
-{
-    return ((index % count) + count) % count;
-}
-
 /* ---- Through heights ---- */
 
 /* The samples of one view in a texel, between its lights. */
@@ -172,25 +174,6 @@ static weft_code add_view(weft_raw_btf *raw, int view, int x, int y, weft_vec3 l
     return WEFT_OK;
 }
 
-/* The texels around a place, and what they count for. */
-typedef struct texels_around {
-    int x[4], y[4];
-    double weight[4];
-} texels_around;
-
-static texels_around texels_at(const weft_dataset_layout *layout, weft_real u, weft_real v)
-{
-    texels_around found;
-    double x = (u - floor(u)) * layout->width - 0.5, y = (1 - (v - floor(v))) * layout->height - 0.5;
-    int left = (int)floor(x), upper = (int)floor(y);
-    for (int i = 0; i < 4; i++) {
-        found.weight[i] = (i & 1 ? x - left : left + 1 - x) * (i & 2 ? y - upper : upper + 1 - y);
-        found.x[i] = wrapped(left + (i & 1), layout->width);
-        found.y[i] = wrapped(upper + (i >> 1), layout->height);
-    }
-    return found;
-}
-
 static weft_code sample_through_relief(weft_raw_btf *raw, weft_real u, weft_real v, weft_vec3 light, weft_vec3 view,
                                        weft_rgb *brdf, weft_error *error)
 {
@@ -201,7 +184,7 @@ static weft_code sample_through_relief(weft_raw_btf *raw, weft_real u, weft_real
         corners.index[i] = corners.index[i] < 0 ? -1 : raw->centre.view_of[corners.index[i]];
     weft_relief_taps(&raw->relief, 1, u, v, view, corners.index, corners.weight, tap);
     for (int i = 0; i < 3; i++) {
-        texels_around at = texels_at(raw->layout, tap[i].u, tap[i].v);
+        weft_texels_around at = weft_texels_around_place(raw->layout, tap[i].u, tap[i].v);
         for (int k = 0; k < 4 && tap[i].weight > 0; k++)
             if (at.weight[k] > 0)
                 WEFT_TRY(add_view(raw, corners.index[i], at.x[k], at.y[k], light, (double)tap[i].weight * at.weight[k],
@@ -219,7 +202,7 @@ weft_code weft_raw_btf_sample(weft_raw_btf *raw, weft_real u, weft_real v, weft_
         return WEFT_OK;
     if (raw->heights.value)
         return sample_through_relief(raw, u, v, light, view, brdf, error);
-    texels_around at = texels_at(raw->layout, u, v);
+    weft_texels_around at = weft_texels_around_place(raw->layout, u, v);
     blend b = {0};
     for (int i = 0; i < 4; i++) {
         weft_rgb value;

@@ -11,6 +11,9 @@ typedef struct weft_raw_btf weft_raw_btf;
 weft_code weft_raw_btf_create(weft_dataset *dataset, weft_raw_btf **result, weft_error *error);
 void weft_raw_btf_free(weft_raw_btf *raw);
 
+/* From now on without the heights of the dataset. */
+void weft_raw_btf_flatten(weft_raw_btf *raw);
+
 /* BRDF in 1/sr at texture coordinates (u, v), repeated: bilinear between texels; in a texel barycentric between the
  * three nearest views and, within each, between its three nearest lights (btf/direction/triangulation.h). Samples are
  * divided by the cosine of their own light before they are interpolated, so that a diffuse texel stays constant. Masked

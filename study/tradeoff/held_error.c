@@ -4,6 +4,7 @@
 #include "compress/compress.h"
 #include "study/error/coverage.h"
 #include "study/hold_out/certify.h"
+#include "study/hold_out/hold_out.h"
 #include "study/tradeoff/held_pictures.h"
 #include "study/tradeoff/variant.h"
 
@@ -22,11 +23,15 @@ struct weft_held_bench {
     const char *scratch_path;
     char *material_path;
     weft_excerpt excerpt;
+    weft_texel_block asked; /* of the excerpt, in its middle: less than all where it has a surface */
+    weft_excerpt alone;     /* these, to which lobes are fitted where it has a surface; else nothing */
     weft_splits splits;
     int split_count; /* that are measured: the first ones */
     bool has_pictures;
-    uint8_t *kinds; /* [texel][image] bits 1 << weft_sample_kind */
-    bool is_fitted; /* the materials below are, of this model */
+    uint8_t *kinds;              /* [texel][image] bits 1 << weft_sample_kind */
+    uint8_t *known[MOST_SPLITS]; /* [texel][image] by split: held out, and known through the surface of the excerpt, so
+                                    that all models are asked for the same; NULL where there is none */
+    bool is_fitted;              /* the materials below are, of this model */
     weft_priced_model fitted_model;
     double fit_s;
     weft_material material[MOST_SPLITS];
@@ -113,7 +118,13 @@ static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side
     bench->split_count = 1;
     if (bench->splits.kind == WEFT_SPLIT_EACH)
         bench->split_count = bench->splits.count < MOST_SPLITS ? bench->splits.count : MOST_SPLITS;
-    WEFT_TRY(weft_excerpt_read(dataset, kind, side, &bench->excerpt, error));
+    bool has_surface = weft_dataset_has_surface(dataset);
+    int images = weft_dataset_get_layout(dataset)->image_count;
+    WEFT_TRY(weft_excerpt_read(dataset, kind, has_surface ? weft_hold_out_surface_side(images) : side, &bench->excerpt,
+                               error));
+    bench->asked = weft_excerpt_middle(&bench->excerpt, side);
+    if (has_surface)
+        WEFT_TRY(weft_excerpt_crop(&bench->excerpt, &bench->asked, &bench->alone, error));
     return mark_samples(bench, error);
 }
 
@@ -146,15 +157,18 @@ void weft_held_bench_free(weft_held_bench *bench)
         return;
     forget_fit(bench);
     weft_excerpt_free(&bench->excerpt);
+    weft_excerpt_free(&bench->alone);
     weft_splits_free(&bench->splits);
     free(bench->kinds);
+    for (int s = 0; s < MOST_SPLITS; s++)
+        free(bench->known[s]);
     free(bench->material_path);
     free(bench);
 }
 
-const weft_excerpt *weft_held_bench_texels(const weft_held_bench *bench)
+long weft_held_bench_texels(const weft_held_bench *bench)
 {
-    return &bench->excerpt;
+    return (long)bench->asked.width * bench->asked.height;
 }
 
 const weft_splits *weft_held_bench_splits(const weft_held_bench *bench)
@@ -196,6 +210,17 @@ static weft_code make_masks(const weft_held_bench *bench, const weft_priced_mode
     return WEFT_OK;
 }
 
+/* Lobes need no neighbours. */
+static bool is_fitted_alone(const weft_held_bench *bench, const weft_priced_model *model)
+{
+    return bench->alone.samples && model->options.layer_count == 0;
+}
+
+static const weft_excerpt *fitted_excerpt(const weft_held_bench *bench, const weft_priced_model *model)
+{
+    return is_fitted_alone(bench, model) ? &bench->alone : &bench->excerpt;
+}
+
 static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *model, const uint8_t *unseen,
                            weft_material *material, weft_error *error)
 {
@@ -203,7 +228,8 @@ static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *mode
     weft_compress_report report;
     weft_compress_options options = model->options;
     options.levels = bench->has_pictures; /* fewer texels come from there */
-    WEFT_TRY(weft_excerpt_write(&bench->excerpt, unseen, bench->scratch_path, &others, error));
+    options.heights = false;              /* those of the whole dataset are given afterwards */
+    WEFT_TRY(weft_excerpt_write(fitted_excerpt(bench, model), unseen, bench->scratch_path, &others, error));
     weft_code code = weft_compress(others, &options, NULL, material, &report, error);
     weft_dataset_close(others);
     if (code == WEFT_OK)
@@ -214,9 +240,10 @@ static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *mode
 static weft_code make_predictor(const weft_held_bench *bench, const weft_priced_model *model,
                                 const weft_material *material, weft_predictor **predictor, weft_error *error)
 {
-    const weft_dataset_layout *layout = &bench->excerpt.layout;
-    return model->fewer_texels ? weft_predictor_of_coarser_material(layout, material, predictor, error)
-                               : weft_predictor_of_material(layout, material, predictor, error);
+    const weft_dataset_layout *layout = &fitted_excerpt(bench, model)->layout;
+    const weft_predicted_window *window = &fitted_excerpt(bench, model)->window;
+    return model->fewer_texels ? weft_predictor_of_coarser_material(layout, window, material, predictor, error)
+                               : weft_predictor_of_window(layout, window, material, predictor, error);
 }
 
 /* ---- Errors ---- */
@@ -308,19 +335,37 @@ static void free_said(said *s)
     weft_asked_samples_free(&s->fitted);
 }
 
+/* The heights that the model is seen through, and what they add to its weight. */
+static weft_code give_heights(const weft_held_bench *bench, const weft_priced_model *model, weft_material *material,
+                              weft_weight *weight, weft_error *error)
+{
+    const weft_excerpt *excerpt = &bench->excerpt;
+    const weft_predicted_window *window = &excerpt->window;
+    bool helps = excerpt->surface.level_count > (model->fewer_texels ? 1 : 0);
+    if (!model->options.heights || !weft_excerpt_has_surface(excerpt) || !material->layers || !helps)
+        return WEFT_OK;
+    WEFT_TRY(weft_excerpt_give_heights(excerpt, material, error));
+    double share =
+        (double)excerpt->layout.width * excerpt->layout.height / ((double)window->whole_width * window->whole_height);
+    weight->by_texels += share * (double)weft_material_heights_size(material->heights);
+    return WEFT_OK;
+}
+
 static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *model, const weft_material *fitted,
                               const weft_trial *trial, said *answer, weft_weight *weight, weft_error *error)
 {
     weft_material material;
     weft_predictor *predictor;
     WEFT_TRY(weft_variant_make(fitted, model, bench->material_path, &material, error));
-    weft_code code = make_predictor(bench, model, &material, &predictor, error);
+    weft_code code = weft_weight_of(&material, weight, error);
+    if (code == WEFT_OK)
+        code = give_heights(bench, model, &material, weight, error);
+    if (code == WEFT_OK)
+        code = make_predictor(bench, model, &material, &predictor, error);
     if (code == WEFT_OK) {
         code = weft_trial_ask(trial, predictor, &answer->held, &answer->fitted, error);
         weft_predictor_free(predictor);
     }
-    if (code == WEFT_OK)
-        code = weft_weight_of(&material, weight, error);
     weft_material_free(&material);
     return code;
 }
@@ -329,10 +374,42 @@ static weft_code ask_model(weft_held_bench *bench, const weft_priced_model *mode
                            const uint8_t *unseen, said *answer, weft_weight *weight, weft_error *error)
 {
     if (model->family == WEFT_PRICED_RAW)
-        return weft_trial_ask_photographs(trial, &answer->held, error);
+        return weft_trial_ask_photographs(trial, model->options.heights, &answer->held, error);
     if (!bench->is_fitted)
         WEFT_TRY(fit_split(bench, model, unseen, &bench->material[split], error));
     return ask_material(bench, model, &bench->material[split], trial, answer, weight, error);
+}
+
+/* ---- What can be known ---- */
+
+static weft_code find_known(weft_held_bench *bench, int split, const weft_trial *trial, weft_error *error)
+{
+    const weft_dataset_layout *layout = &bench->excerpt.layout;
+    size_t samples = (size_t)layout->width * (size_t)layout->height * (size_t)layout->image_count;
+    weft_asked_samples seen = {0};
+    if (!weft_excerpt_has_surface(&bench->excerpt) || bench->known[split])
+        return WEFT_OK;
+    bench->known[split] = calloc(samples, 1);
+    if (!bench->known[split])
+        return weft_fail_memory(error, "samples", samples);
+    weft_code code = weft_trial_ask_photographs(trial, true, &seen, error);
+    for (size_t i = 0; i < seen.count; i++)
+        bench->known[split][seen.sample[i]] = 1;
+    weft_asked_samples_free(&seen);
+    return code;
+}
+
+static void keep_known(const uint8_t *known, weft_asked_samples *asked)
+{
+    size_t kept = 0;
+    for (size_t i = 0; known && i < asked->count; i++) {
+        if (!known[asked->sample[i]])
+            continue;
+        asked->value[kept] = asked->value[i];
+        asked->sample[kept] = asked->sample[i];
+        asked->group[kept++] = asked->group[i];
+    }
+    asked->count = known ? kept : asked->count;
 }
 
 static weft_code take_answer(const weft_held_bench *bench, int split, const weft_trial *trial, said *answer, said *all,
@@ -353,10 +430,16 @@ static weft_code measure_split(weft_held_bench *bench, const weft_priced_model *
     weft_code code = make_masks(bench, model, split, &masks, error);
     if (code == WEFT_OK)
         code = weft_trial_create(&bench->excerpt, weft_splits_held(&bench->splits, split), masks.next, &trial, error);
+    trial.asked = bench->asked;
+    trial.predicts_asked = is_fitted_alone(bench, model);
     if (code == WEFT_OK)
         code = ask_model(bench, model, split, &trial, masks.unseen, &answer, &measured->weight, error);
     if (code == WEFT_OK)
+        code = find_known(bench, split, &trial, error);
+    if (code == WEFT_OK) {
+        keep_known(bench->known[split], &answer.held);
         code = take_answer(bench, split, &trial, &answer, all, measured, error);
+    }
     free_said(&answer);
     weft_trial_free(&trial);
     free_masks(&masks);

@@ -30,10 +30,13 @@ static int choose_images(const weft_trial *trial, int image[MOST_PICTURES])
 /* Red, green and blue of a sample follow each other. */
 static void fill(const weft_trial *trial, const weft_asked_samples *said, weft_image_pair *pair)
 {
-    size_t images = (size_t)trial->excerpt->layout.image_count;
+    const weft_texel_block *block = &trial->asked;
+    size_t images = (size_t)trial->excerpt->layout.image_count, width = (size_t)trial->excerpt->layout.width;
     memset(pair->mask, 1, (size_t)pair->sample.width * (size_t)pair->sample.height);
     for (size_t i = 0; i < said->count; i++) {
-        size_t texel = said->sample[i] / images;
+        size_t of_excerpt = said->sample[i] / images;
+        size_t texel =
+            (of_excerpt / width - (size_t)block->y) * (size_t)block->width + of_excerpt % width - (size_t)block->x;
         if (said->sample[i] % images != (size_t)pair->image)
             continue;
         pair->mask[texel] = 0;
@@ -82,7 +85,10 @@ static weft_code compare_image(const weft_trial *trial, const weft_asked_samples
     weft_image_pair pair;
     weft_error_summary summary;
     double exposure;
-    weft_code code = weft_image_pair_create(&trial->excerpt->layout, image, &pair, error);
+    weft_dataset_layout shown = trial->excerpt->layout;
+    shown.width = trial->asked.width;
+    shown.height = trial->asked.height;
+    weft_code code = weft_image_pair_create(&shown, image, &pair, error);
     if (code == WEFT_OK) {
         fill(trial, said, &pair);
         code = weft_image_pair_error(&pair, &summary, error);

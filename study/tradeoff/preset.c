@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ERROR_SIDE = 24, SIZE_SIDE = 32, SPLIT = 1 /* the measurement begins with 0 */ };
+enum { ERROR_SIDE = 24, SURFACE_SIDE = 32, SIZE_SIDE = 32, SPLIT = 1 /* the measurement begins with 0 */ };
 
 /* ---- The models ---- */
 
@@ -31,6 +31,7 @@ static weft_compress_options merge(const weft_compress_options *given, const wef
     merged.light_table = chosen->light_table;
     merged.frames = chosen->frames;
     merged.layer_count = chosen->layer_count;
+    merged.heights = chosen->heights;
     merged.table_components = chosen->table_components;
     return merged;
 }
@@ -38,7 +39,9 @@ static weft_compress_options merge(const weft_compress_options *given, const wef
 static void list_models(choosing *work)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
-    int count = weft_priced_models_list(layout, weft_dataset_has_opacity(work->dataset), work->model);
+    weft_priced_dataset parts = weft_priced_dataset_of(work->dataset);
+    parts.has_surface = parts.has_surface && work->given->heights;
+    int count = weft_priced_models_list(layout, &parts, work->model);
     for (int i = 0; i < count; i++) {
         if (!work->model[i].arguments[0] || work->model[i].options.light_table)
             continue;
@@ -58,30 +61,39 @@ static weft_code measure_models(choosing *work, weft_held_bench *bench, weft_err
         weft_held_error measured;
         weft_progress_report(work->progress, step, i, work->count);
         WEFT_TRY(weft_held_bench_measure(bench, &work->model[i], &measured, error));
+        double error_of = measured.held[WEFT_SAMPLES_ALL].relative_rmse;
+        bool through = work->model[i].options.heights;
         work->offer[i] =
             (weft_offer){weft_weight_scaled(&measured.weight, layout->width, layout->height, work->given->levels),
-                         measured.held[WEFT_SAMPLES_ALL].relative_rmse, true};
+                         error_of, !through || weft_priced_heights_are_kept(work->offer[i - 1].error, error_of)};
         weft_held_error_free(&measured);
     }
     weft_progress_report(work->progress, step, work->count, work->count);
     return WEFT_OK;
 }
 
-/* Near lights need texels at even distances, and the model for few images needs neighbours. */
+/* Near lights need texels at even distances; the model for few images needs neighbours, and so does a surface. */
 static weft_excerpt_kind choose_texels(const choosing *work)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
     int lobes;
-    if (weft_compress_plan(layout, work->given, &lobes) == WEFT_COMPRESS_SPARSE)
+    if (weft_compress_plan(layout, work->given, &lobes) == WEFT_COMPRESS_SPARSE ||
+        weft_dataset_has_surface(work->dataset))
         return WEFT_EXCERPT_BLOCK;
     return layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
+}
+
+/* In the middle of a block where the dataset has a surface: there they are to be like what is measured afterwards. */
+static int choose_side(const weft_dataset *dataset)
+{
+    return weft_dataset_has_surface(dataset) ? SURFACE_SIDE : ERROR_SIDE;
 }
 
 static weft_code measure(choosing *work, weft_error *error)
 {
     weft_held_bench *bench;
-    WEFT_TRY(weft_held_bench_create(work->dataset, choose_texels(work), ERROR_SIDE, SPLIT, work->scratch_path, &bench,
-                                    error));
+    WEFT_TRY(weft_held_bench_create(work->dataset, choose_texels(work), choose_side(work->dataset), SPLIT,
+                                    work->scratch_path, &bench, error));
     weft_code code = measure_models(work, bench, error);
     weft_held_bench_free(bench);
     return code;
@@ -115,7 +127,8 @@ static weft_certificate usual_certificate(void)
 }
 
 /* What the measurement afterwards adds, with numbers of full length. */
-static weft_code added_bytes(const weft_preset_prediction *prediction, double *bytes, weft_error *error)
+static weft_code added_bytes(const weft_preset_prediction *prediction, const weft_priced_dataset *dataset, bool heights,
+                             double *bytes, weft_error *error)
 {
     const double number = 0.12345678901234567;
     const weft_error_summary summary = {number, number, number, number, 10 + number, 1000000};
@@ -130,7 +143,9 @@ static weft_code added_bytes(const weft_preset_prediction *prediction, double *b
                                     .texel_count = 144,
                                     .dataset_texel_count = 4096,
                                     .material = errors,
+                                    .heights = {heights, heights, number, number},
                                     .photographs = errors,
+                                    .photographs_flat = dataset->has_surface ? number : 0,
                                     .fitted = summary,
                                     .has_certificate = true,
                                     .certificate = usual_certificate()};
@@ -152,7 +167,7 @@ static weft_code fit_block(const choosing *work, const weft_compress_options *op
     weft_material material;
     WEFT_TRY(weft_excerpt_read(work->dataset, WEFT_EXCERPT_BLOCK, SIZE_SIDE, &excerpt, error));
     uint8_t *none = calloc((size_t)excerpt.layout.image_count, 1);
-    weft_code code = none ? weft_excerpt_write(&excerpt, none, work->scratch_path, &block, error)
+    weft_code code = none ? weft_excerpt_write_with_surface(&excerpt, none, work->scratch_path, &block, error)
                           : weft_fail_memory(error, "images", (size_t)excerpt.layout.image_count);
     free(none);
     weft_excerpt_free(&excerpt);
@@ -170,10 +185,11 @@ static weft_code predict_bytes(const choosing *work, const weft_compress_options
                                weft_preset_prediction *prediction, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    const weft_priced_dataset parts = weft_priced_dataset_of(work->dataset);
     weft_weight weight;
     double added;
     WEFT_TRY(fit_block(work, options, &weight, error));
-    WEFT_TRY(added_bytes(prediction, &added, error));
+    WEFT_TRY(added_bytes(prediction, &parts, options->heights, &added, error));
     prediction->bytes = weft_weight_scaled(&weight, layout->width, layout->height, options->levels) + added +
                         (double)strlen(layout->provenance);
     return WEFT_OK;

@@ -16,12 +16,13 @@ typedef struct weft_preset_prediction {
 } weft_preset_prediction;
 
 /* Chooses among the models that weft compress makes (study/tradeoff/choice.h), without those of a light table, which
- * take many times as long and are seldom worth it. Fits each to at most 24 x 24 texels without the images of a split
- * that the measurement afterwards does not begin with (study/hold_out/split.h), and the one that is chosen to a block
- * of at most 32 x 32 neighbours with all images, which says how large it will be. *options gets lobes, tables, frames
- * and layers, and keeps all else. Writes to the folder of `scratch_path`; nothing is left there. The result does not
- * depend on the number of threads. Errors: WEFT_BAD_USAGE for a dataset of one image, or where all that was held out is
- * masked; those of weft_compress, of reading and writing. */
+ * take many times as long and are seldom worth it. Fits each to at most 24 x 24 texels, or of a dataset with a surface
+ * measures each on 32 x 32, without the images of a split that the measurement afterwards does not begin with
+ * (study/hold_out/split.h), and fits the one that is chosen to a block of at most 32 x 32 neighbours with all images,
+ * which says how large it will be. *options gets lobes, tables, frames, layers and whether through heights, and keeps
+ * all else. Writes to the folder of `scratch_path`; nothing is left there. The result does not depend on the number of
+ * threads. Errors: WEFT_BAD_USAGE for a dataset of one image, or where all that was held out is masked; those of
+ * weft_compress, of reading and writing. */
 weft_code weft_preset_predict(weft_dataset *dataset, weft_preset preset, const char *scratch_path,
                               const weft_progress *progress, weft_compress_options *options,
                               weft_preset_prediction *prediction, weft_error *error);

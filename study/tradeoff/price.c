@@ -48,7 +48,7 @@ static weft_code write_block(weft_price_shop *shop, const uint8_t *left_out, wef
     uint8_t *none = left_out ? NULL : calloc((size_t)excerpt.layout.image_count, 1);
     weft_code code = left_out || none ? WEFT_OK : weft_fail_memory(error, "images", (size_t)excerpt.layout.image_count);
     if (code == WEFT_OK)
-        code = weft_excerpt_write(&excerpt, left_out ? left_out : none, shop->scratch_path, block, error);
+        code = weft_excerpt_write_with_surface(&excerpt, left_out ? left_out : none, shop->scratch_path, block, error);
     free(none);
     weft_excerpt_free(&excerpt);
     return code;
@@ -158,9 +158,9 @@ static weft_query query_of(long number)
 }
 
 /* At least some, then as many as a tenth of a second allows. */
-static weft_code time_evaluations(const char *path, double *per_second, weft_error *error)
+static weft_code time_evaluations(const char *path, bool through_heights, double *per_second, weft_error *error)
 {
-    const weft_model_options options = {0};
+    const weft_model_options options = {.flat = !through_heights};
     weft_model *model;
     long count = 0;
     WEFT_TRY(weft_model_open(path, &options, &model, error));
@@ -187,7 +187,9 @@ static weft_code fit_block(weft_price_shop *shop, const weft_priced_model *model
     weft_compress_report report;
     shop->is_fitted = false;
     weft_material_free(&shop->fitted);
-    WEFT_TRY(weft_compress(block, &model->options, NULL, &shop->fitted, &report, error));
+    weft_compress_options options = model->options;
+    options.heights = true; /* variants do without them */
+    WEFT_TRY(weft_compress(block, &options, NULL, &shop->fitted, &report, error));
     shop->is_fitted = true;
     shop->fitted_model = *model;
     shop->fit_s = report.seconds;
@@ -209,12 +211,14 @@ static weft_code fit(weft_price_shop *shop, const weft_priced_model *model, cons
 
 /* ---- Prices ---- */
 
-static weft_code time_frame(weft_price_shop *shop, weft_mode mode, double *frame_ms, weft_error *error)
+static weft_code time_frame(weft_price_shop *shop, weft_mode mode, bool through_heights, double *frame_ms,
+                            weft_error *error)
 {
     weft_scene scene = weft_scene_default();
     scene.pane_count = 1;
     scene.pane[0] = mode;
     scene.labels = false;
+    scene.relief = through_heights;
     scene.filter = WEFT_FILTER_EXACT;
     return weft_frame_time_measure(shop->player, &scene, FRAME_WIDTH, FRAME_HEIGHT, frame_ms, error);
 }
@@ -232,27 +236,27 @@ static weft_code price_material(weft_price_shop *shop, const weft_material *mate
     price->fit_s = shop->fit_s / shop->share;
     price->fetches = weft_fetches_of_material(material);
     WEFT_TRY(weft_material_write(shop->material_path, material, error));
-    weft_code code = time_evaluations(shop->material_path, &price->evaluations_a_second, error);
+    weft_code code = time_evaluations(shop->material_path, true, &price->evaluations_a_second, error);
     unlink(shop->material_path);
     WEFT_TRY(code);
     if (!shop->player)
         return WEFT_OK;
     WEFT_TRY(weft_player_set_material(shop->player, material, error));
-    return time_frame(shop, WEFT_MODE_COMPRESSED, &price->frame_ms, error);
+    return time_frame(shop, WEFT_MODE_COMPRESSED, true, &price->frame_ms, error);
 }
 
-static weft_code price_raw(weft_price_shop *shop, weft_price *price, weft_error *error)
+static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_price *price, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
     int skipped_levels;
     price->bits_a_texel = 8.0 * 3 * sizeof(weft_half) * layout->image_count;
     price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
-    price->fetches = weft_fetches_of_raw();
-    WEFT_TRY(time_evaluations(weft_dataset_path(shop->dataset), &price->evaluations_a_second, error));
+    price->fetches = weft_fetches_of_raw(through_heights);
+    WEFT_TRY(time_evaluations(weft_dataset_path(shop->dataset), through_heights, &price->evaluations_a_second, error));
     if (!shop->player)
         return WEFT_OK;
     WEFT_TRY(weft_player_set_dataset(shop->player, shop->block, shop->progress, &skipped_levels, error));
-    weft_code code = time_frame(shop, WEFT_MODE_RAW, &price->frame_ms, error);
+    weft_code code = time_frame(shop, WEFT_MODE_RAW, through_heights, &price->frame_ms, error);
     weft_player_clear(shop->player, WEFT_MODE_RAW);
     return code;
 }
@@ -261,7 +265,7 @@ static weft_code price_model(weft_price_shop *shop, const weft_priced_model *mod
                              weft_price *price, bool *has_parts, weft_error *error)
 {
     if (model->family == WEFT_PRICED_RAW)
-        return price_raw(shop, price, error);
+        return price_raw(shop, model->options.heights, price, error);
     WEFT_TRY(fit(shop, model, left_out, error));
     *has_parts = !model->options.light_table || shop->fitted.light_count > 0;
     if (!*has_parts)

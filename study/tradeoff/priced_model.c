@@ -2,6 +2,7 @@
 
 #include "btf/direction/direction.h"
 #include "compress/compress.h"
+#include "study/hold_out/hold_out.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +15,7 @@ static const double least_share = 0.8;
 
 typedef struct model_list {
     const weft_dataset_layout *layout;
-    bool has_opacity;
+    const weft_priced_dataset *dataset;
     weft_priced_model *model;
     int count;
 } model_list;
@@ -51,6 +52,7 @@ static weft_compress_options lobes_and_table(int lobes, bool table)
     options.lobe_count = lobes;
     options.table = table;
     options.layer_count = 0;
+    options.heights = false;
     return options;
 }
 
@@ -120,19 +122,40 @@ static void add_tables(model_list *list)
 /* Beside layers there is a diffuse term for players without them. */
 static weft_compress_options layers_alone(const model_list *list, int layers)
 {
-    weft_compress_options options = lobes_and_table(0, list->has_opacity);
+    weft_compress_options options = lobes_and_table(0, list->dataset->has_opacity);
     options.layer_count = layers;
+    options.heights = list->dataset->has_surface;
     return options;
+}
+
+/* The same as they are seen without the heights, and then through them. */
+static bool add_pair(model_list *list, const weft_compress_options *through, int layers)
+{
+    weft_compress_options without = *through;
+    char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
+    without.heights = false;
+    snprintf(name, sizeof name, "%d layers, without heights", layers);
+    snprintf(arguments, sizeof arguments, "--layers %d --heights off", layers);
+    bool added = add(list, WEFT_PRICED_LAYERS, &without, 5, name, arguments);
+    snprintf(name, sizeof name, "%d layers, through heights", layers);
+    snprintf(arguments, sizeof arguments, "--layers %d", layers);
+    return added && add(list, WEFT_PRICED_LAYERS, through, 5, name, arguments);
+}
+
+static bool add_flat(model_list *list, const weft_compress_options *options, int layers)
+{
+    char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
+    snprintf(name, sizeof name, "%d layers", layers);
+    snprintf(arguments, sizeof arguments, "--layers %d", layers);
+    return add(list, WEFT_PRICED_LAYERS, options, 5, name, arguments);
 }
 
 static void add_layers(model_list *list)
 {
     for (int layers = 8; layers <= WEFT_LAYERS_MAX; layers *= 2) {
         weft_compress_options options = layers_alone(list, layers);
-        char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
-        snprintf(name, sizeof name, "%d layers", layers);
-        snprintf(arguments, sizeof arguments, "--layers %d", layers);
-        bool added = add(list, WEFT_PRICED_LAYERS, &options, 5, name, arguments);
+        char name[WEFT_PRICED_NAME];
+        bool added = list->dataset->has_surface ? add_pair(list, &options, layers) : add_flat(list, &options, layers);
         snprintf(name, sizeof name, "%d layers, half the texels a side", layers);
         if (added && layers == 32)
             add_coarser(list, &options, name);
@@ -161,15 +184,35 @@ static void add_subsets(model_list *list)
     add_subset(list, WEFT_PHOTOGRAPHS_21_VIEWS, "21 views");
 }
 
-static void add_raw(model_list *list)
+static void add_raw(model_list *list, bool through, const char *name)
 {
     weft_priced_model *model = &list->model[list->count++];
-    *model = (weft_priced_model){.name = "the photographs, interpolated", .family = WEFT_PRICED_RAW, .work = 1};
+    *model = (weft_priced_model){.family = WEFT_PRICED_RAW, .options.heights = through, .work = 1};
+    snprintf(model->name, sizeof model->name, "%s", name);
 }
 
-int weft_priced_models_list(const weft_dataset_layout *layout, bool has_opacity, weft_priced_model *model)
+static void add_photographs(model_list *list)
 {
-    model_list list = {.layout = layout, .has_opacity = has_opacity, .model = model};
+    add_raw(list, false,
+            list->dataset->has_surface ? "the photographs, without heights" : "the photographs, interpolated");
+    if (list->dataset->has_surface)
+        add_raw(list, true, "the photographs, through heights");
+}
+
+weft_priced_dataset weft_priced_dataset_of(const weft_dataset *dataset)
+{
+    return (weft_priced_dataset){weft_dataset_has_opacity(dataset), weft_dataset_has_surface(dataset)};
+}
+
+bool weft_priced_heights_are_kept(double without, double through)
+{
+    return through <= WEFT_HOLD_OUT_HEIGHTS_GAIN * without;
+}
+
+int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced_dataset *dataset,
+                            weft_priced_model *model)
+{
+    model_list list = {.layout = layout, .dataset = dataset, .model = model};
     add_lobes(&list);
     /* That of add_tables, which others share. */
     for (int i = list.count - 1; i >= 0; i--) {
@@ -179,7 +222,7 @@ int weft_priced_models_list(const weft_dataset_layout *layout, bool has_opacity,
     add_tables(&list);
     add_layers(&list);
     add_subsets(&list);
-    add_raw(&list);
+    add_photographs(&list);
     return list.count;
 }
 

@@ -27,17 +27,31 @@ typedef struct weft_priced_model {
     char name[WEFT_PRICED_NAME];
     char arguments[WEFT_PRICED_ARGUMENTS]; /* of weft compress; "" where that has none for it */
     weft_priced_family family;
-    weft_compress_options options; /* not of raw */
+    weft_compress_options options; /* of raw only heights: seen through them */
     weft_photographs_taken photographs;
     int table_bits;    /* 4 or 6: T is rounded after the fit; 0: as it was fitted */
     bool fewer_texels; /* half of them along each side */
     int work;          /* of a fit, beside that of others */
 } weft_priced_model;
 
-/* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. Opacity lies in
- * T, which layers then have beside them. One that is made from the fit of another (table_bits, fewer_texels) comes
- * right after it. Pure. */
-int weft_priced_models_list(const weft_dataset_layout *layout, bool has_opacity, weft_priced_model *model);
+/* What else of a dataset decides which models it can carry. */
+typedef struct weft_priced_dataset {
+    bool has_opacity; /* it lies in T, which layers then have beside them */
+    bool has_surface; /* layers and raw are offered with and without it (options.heights) */
+} weft_priced_dataset;
+
+/* Of a dataset. Pure. */
+weft_priced_dataset weft_priced_dataset_of(const weft_dataset *dataset);
+
+/* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. One that is made
+ * from the fit of another (table_bits, fewer_texels, options.heights) comes after it; layers through heights come right
+ * after the same without. Pure. */
+int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced_dataset *dataset,
+                            weft_priced_model *model);
+
+/* Whether weft compress makes models of these errors, the second of layers through heights and the first of the same
+ * without: it keeps heights only where they gain enough (study/hold_out/hold_out.h). Pure. */
+bool weft_priced_heights_are_kept(double without, double through);
 
 /* Whether the model is made from the same fit as the other. Pure. */
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other);

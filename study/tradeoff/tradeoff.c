@@ -40,8 +40,8 @@ static weft_code study_model(studying *work, const weft_priced_model *model, wef
 static weft_code study_models(studying *work, weft_error *error)
 {
     weft_priced_model model[WEFT_PRICED_MOST];
-    int count =
-        weft_priced_models_list(weft_dataset_get_layout(work->dataset), weft_dataset_has_opacity(work->dataset), model);
+    const weft_priced_dataset parts = weft_priced_dataset_of(work->dataset);
+    int count = weft_priced_models_list(weft_dataset_get_layout(work->dataset), &parts, model);
     for (int i = 0; i < count; i++)
         work->work_total += model[i].work;
     for (int i = 0; i < count; i++) {
@@ -55,14 +55,25 @@ static weft_code study_models(studying *work, weft_error *error)
 
 /* ---- Choices ---- */
 
+static double error_of(const weft_tradeoff_row *row)
+{
+    return row->measured.held[WEFT_SAMPLES_ALL].relative_rmse;
+}
+
+/* A row through heights comes right after the same without. */
+static bool may_be_chosen(const weft_tradeoff_row *row)
+{
+    bool is_through = row->model.family == WEFT_PRICED_LAYERS && row->model.options.heights;
+    return row->model.arguments[0] && (!is_through || weft_priced_heights_are_kept(error_of(row - 1), error_of(row)));
+}
+
 static void choose(weft_tradeoff *result)
 {
     weft_offer offer[WEFT_PRICED_MOST];
     size_t count = (size_t)result->row_count;
     for (size_t i = 0; i < count; i++) {
         const weft_tradeoff_row *row = &result->row[i];
-        offer[i] = (weft_offer){row->price.bytes, row->measured.held[WEFT_SAMPLES_ALL].relative_rmse,
-                                row->model.arguments[0] != 0};
+        offer[i] = (weft_offer){row->price.bytes, error_of(row), may_be_chosen(row)};
     }
     for (size_t i = 0; i < count; i++)
         result->row[i].is_beaten = weft_offer_is_beaten(offer, count, i);
@@ -79,7 +90,6 @@ static void describe(studying *work)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
     const weft_splits *splits = weft_held_bench_splits(work->bench);
-    const weft_excerpt *texels = weft_held_bench_texels(work->bench);
     weft_tradeoff *result = work->result;
     result->width = layout->width;
     result->height = layout->height;
@@ -91,7 +101,7 @@ static void describe(studying *work)
     result->light_count = splits->light_count;
     for (int i = 0; i < splits->image_count; i++)
         result->image_held_count += weft_splits_held(splits, 0)[i] != 0;
-    result->measured_texels = (long)texels->layout.width * texels->layout.height;
+    result->measured_texels = weft_held_bench_texels(work->bench);
     result->fitted_texels = weft_price_shop_texels(work->shop);
     result->texels = (long)layout->width * layout->height;
     result->threads = omp_get_max_threads();

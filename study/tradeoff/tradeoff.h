@@ -33,8 +33,8 @@ typedef struct weft_tradeoff {
 
 /* Fits and measures every model of study/tradeoff/priced_model.h, and writes folder/index.html with its pictures and
  * folder/tradeoff.csv; the page appears when it is complete. Errors are measured on a block of at most 32 x 32
- * neighbouring texels, prices on one of at most 64 x 64. Errors: WEFT_BAD_USAGE for a dataset of one image; those of
- * weft_compress, of reading, writing and drawing. */
+ * neighbouring texels, prices on one of at most 64 x 64.
+ * Errors: WEFT_BAD_USAGE for a dataset of one image; those of weft_compress, of reading, writing and drawing. */
 weft_code weft_tradeoff_study(const char *dataset_path, const char *folder, const weft_progress *progress,
                               weft_tradeoff *result, weft_error *error);
 void weft_tradeoff_free(weft_tradeoff *tradeoff);

@@ -11,6 +11,8 @@ weft_code weft_variant_make(const weft_material *fitted, const weft_priced_model
     weft_code code = weft_material_read(path, result, error);
     unlink(path);
     WEFT_TRY(code);
+    if (!model->options.heights)
+        weft_material_take_heights(result, NULL);
     if (model->fewer_texels)
         weft_material_drop_finest(result);
     if (model->table_bits > 0)

@@ -140,6 +140,8 @@ static weft_code prepare(truth_stage *stage, const weft_traced_request *request,
     truth->cloth_mm = stage->mm_per_unit;
     truth->reach_mm = (double)(stage->tile.top - stage->tile.bottom) / cos(reach_deg * WEFT_PI / 180);
     truth->paths = request->paths;
+    truth->has_heights[WEFT_TRUTH_RAW] = weft_dataset_has_surface(request->dataset);
+    truth->has_heights[WEFT_TRUTH_COMPRESSED] = request->material->layers && request->material->heights;
     return set_models(stage, request, progress, error);
 }
 
@@ -212,7 +214,23 @@ static weft_code trace(truth_stage *stage, const weft_traced_request *request, c
     return code;
 }
 
-static weft_code measure(truth_stage *stage, const weft_scene *scene, weft_truth_scene *result, weft_error *error)
+/* The error of a model that has heights, drawn without them. */
+static weft_code measure_flat(truth_stage *stage, const weft_scene *scene, int light, int model,
+                              const weft_surface_sample *surface, weft_truth_pictures *under, weft_error *error)
+{
+    weft_image picture;
+    weft_scene flat = *scene;
+    flat.relief = false;
+    flat.shadows = light == WEFT_TRUTH_ALL;
+    WEFT_TRY(draw(stage, &flat, model == WEFT_TRUTH_RAW ? WEFT_MODE_RAW : WEFT_MODE_COMPRESSED, &picture, error));
+    weft_code code =
+        weft_truth_error_of(&under->picture[WEFT_TRUTH_TRACED], &picture, surface, &under->flat[model], error);
+    weft_image_free(&picture);
+    return code;
+}
+
+static weft_code measure(truth_stage *stage, const weft_scene *scene, const weft_traced_truth *truth,
+                         weft_truth_scene *result, weft_error *error)
 {
     weft_surface_sample *surface;
     WEFT_TRY(weft_player_read_surface(stage->player, scene, WEFT_MODE_RAW, stage->side, stage->side, &surface, error));
@@ -222,6 +240,8 @@ static weft_code measure(truth_stage *stage, const weft_scene *scene, weft_truth
         int model = i % WEFT_TRUTH_TRACED;
         code = weft_truth_error_of(&under->picture[WEFT_TRUTH_TRACED], &under->picture[model], surface,
                                    &under->error[model], error);
+        if (code == WEFT_OK && truth->has_heights[model])
+            code = measure_flat(stage, scene, i / WEFT_TRUTH_TRACED, model, surface, under, error);
     }
     free(surface);
     return code;
@@ -235,7 +255,7 @@ static weft_code make_scene(truth_stage *stage, const weft_traced_request *reque
     result->caption = settings[index].caption;
     WEFT_TRY(draw_models(stage, &scene, result, error));
     WEFT_TRY(trace(stage, request, &scene, truth, progress, result, error));
-    return measure(stage, &scene, result, error);
+    return measure(stage, &scene, truth, result, error);
 }
 
 weft_code weft_traced_truth_measure(const weft_traced_request *request, const weft_progress *progress,

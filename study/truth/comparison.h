@@ -29,10 +29,11 @@ const char *weft_truth_model_name(weft_truth_model model);
 enum { WEFT_TRUTH_REPEAT = 24 }; /* tiles along the drape's side */
 enum { WEFT_TRUTH_SCENE_COUNT = 3, WEFT_TRUTH_DEFAULT_PATHS = 64 };
 
-/* Linear pictures of a drape under one light, and the errors of the first two against the third. */
+/* Linear pictures of a drape under one light, and the errors of the first two against the third; `flat`: of the same
+ * two without the heights of dataset and material. */
 typedef struct weft_truth_pictures {
     weft_image picture[WEFT_TRUTH_MODELS];
-    weft_truth_error error[WEFT_TRUTH_TRACED];
+    weft_truth_error error[WEFT_TRUTH_TRACED], flat[WEFT_TRUTH_TRACED];
 } weft_truth_pictures;
 
 typedef struct weft_truth_scene {
@@ -43,7 +44,8 @@ typedef struct weft_truth_scene {
 
 /* Freed with weft_traced_truth_free. */
 typedef struct weft_traced_truth {
-    bool drawn; /* false where there is no OpenGL: `why_not` says so */
+    bool drawn;                          /* false where there is no OpenGL: `why_not` says so */
+    bool has_heights[WEFT_TRUTH_TRACED]; /* raw, compressed: the pictures are through heights */
     char why_not[WEFT_MESSAGE_SIZE];
     char warning[WEFT_MESSAGE_SIZE]; /* that the dataset was made of another geometry, or "" */
     char stitch[128];

@@ -1,5 +1,6 @@
 /* Heights from photographs of surfaces that the test knows: matte bumps traced ray by ray, with shadows and marks, by
  * formulas of its own; and what has to be refused. */
+#include "relief/move.h"
 #include "relief/relief.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/scratch_folder.h"
@@ -301,10 +302,92 @@ static int enter(void **state)
     return scratch_folder_enter(state);
 }
 
+/* ---- Moved ---- */
+
+typedef struct all_samples {
+    weft_half value[SIDE * SIDE * VIEWS * LIGHTS * 3];
+    uint8_t mask[SIDE * SIDE * VIEWS * LIGHTS];
+} all_samples;
+
+static void read_all(weft_dataset *dataset, all_samples *all)
+{
+    weft_error error = {0};
+    expect_ok(weft_dataset_read_block(dataset, 0, 0, SIDE, SIDE, all->value, all->mask, &error), &error);
+    weft_dataset_close(dataset);
+}
+
+static void move_to(double plane_mm, bool repeats, const char *output, all_samples *moved)
+{
+    weft_error error = {0};
+    weft_dataset *dataset = synthetic_dataset_open("lowered.btf.h5");
+    const weft_move move = {plane_mm, repeats, NULL};
+    expect_ok(weft_relief_move(dataset, &move, output, json_object(), NULL, &error), &error);
+    weft_dataset_close(dataset);
+    read_all(synthetic_dataset_open(output), moved);
+}
+
+/* Root mean square of what is known of both, of views up to 60 degrees. */
+static double apart(const all_samples *a, const all_samples *b)
+{
+    double sum = 0;
+    long count = 0;
+    for (size_t i = 0; i < SIDE * SIDE * VIEWS * LIGHTS; i++) {
+        bool steep = view_direction[i / LIGHTS % VIEWS].z < 0.5;
+        for (size_t c = 0; c < 3 && !a->mask[i] && !b->mask[i] && !steep; c++, count++)
+            sum += pow((double)(weft_float_of_half(a->value[3 * i + c]) - weft_float_of_half(b->value[3 * i + c])), 2);
+    }
+    assert_true(count > 100000);
+    return sqrt(sum / (double)count);
+}
+
+/* What lies 0.3 mm below its texels, moved there, is what was photographed in their plane. */
+static void moved_texels_lie_on_the_surface(void **state)
+{
+    (void)state;
+    static all_samples flat, low, moved, wrong;
+    surface = level;
+    read_all(photograph("level.btf.h5", VIEWS, LIGHTS), &flat);
+    surface = lowered;
+    read_all(photograph("lowered.btf.h5", VIEWS, LIGHTS), &low);
+    move_to(-0.3, true, "moved.btf.h5", &moved);
+    move_to(0.3, true, "wrong.btf.h5", &wrong);
+    print_message("apart %.4f, moved %.4f, the other way %.4f\n", apart(&low, &flat), apart(&moved, &flat),
+                  apart(&wrong, &flat));
+    assert_true(apart(&moved, &flat) < 0.15 * apart(&low, &flat));
+    for (size_t i = 0; i < sizeof moved.mask; i++)
+        assert_int_equal(moved.mask[i], 0);
+}
+
+/* Views along x and y look past another border each. */
+static void nothing_is_known_beyond_the_border(void **state)
+{
+    (void)state;
+    static all_samples around, cut;
+    surface = lowered;
+    weft_dataset_close(photograph("lowered.btf.h5", VIEWS, LIGHTS));
+    move_to(-0.3, true, "moved.btf.h5", &around);
+    move_to(-0.3, false, "cut.btf.h5", &cut);
+    long lost = 0;
+    for (size_t i = 0; i < sizeof cut.mask; i++) {
+        size_t texel = i / (VIEWS * LIGHTS);
+        weft_vec3 view = view_direction[i / LIGHTS % VIEWS];
+        double x = (double)(texel % SIDE) + 3 * view.x / fmax(view.z, 0.2),
+               y = (double)(texel / SIDE) - 3 * view.y / fmax(view.z, 0.2);
+        bool inside = x > -1e-3 && y > -1e-3 && x < SIDE - 1 + 1e-3 && y < SIDE - 1 + 1e-3;
+        assert_int_equal(cut.mask[i] == 0, inside);
+        for (size_t c = 0; c < 3 && inside; c++)
+            assert_int_equal(cut.value[3 * i + c], around.value[3 * i + c]);
+        lost += !inside;
+    }
+    assert_true(lost > 10000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bumps_are_measured),
+        cmocka_unit_test(moved_texels_lie_on_the_surface),
+        cmocka_unit_test(nothing_is_known_beyond_the_border),
         cmocka_unit_test(gaps_in_the_samples_do_no_harm),
         cmocka_unit_test(a_lowered_plane_is_found_and_nothing_more),
         cmocka_unit_test(a_flat_card_is_refused),

@@ -1,17 +1,25 @@
-/* Whether layers are to be seen through heights: decided by what was held out, on a pattern that is printed below the
- * plane of the texels. What a view sees is found by a search of its own on the formula of the surface. */
+/* Whether layers are to be seen through heights, and what photographs and price lists say through them: by what was
+ * held out, on a pattern that is printed below the plane of the texels. What a view sees is found by a search of its
+ * own on the formula of the surface. */
 #include "fixture.h"
 
+#include "base/atomic_file.h"
 #include "btf/direction/direction.h"
 #include "compress/compress.h"
 #include "study/hold_out/hold_out.h"
+#include "study/tradeoff/held_error.h"
+#include "study/tradeoff/preset.h"
+#include "study/tradeoff/price.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
-enum { WIDTH = 52, HEIGHT = 16, RINGS = 4, LEVELS = 3, DEEP = 6 }; /* wider than what is measured */
+enum { WIDTH = 52, HEIGHT = 16, LEVELS = 3, DEEP = 6 }; /* wider than what is measured */
+
+static int width = WIDTH, rings = 4;
 
 static const char *const path = "hold_out_heights.btf.h5";
 static const char *const scratch = "hold_out_heights_scratch.btf.h5";
@@ -71,10 +79,11 @@ static void write_dataset(bool hilly, double factor)
 {
     weft_error error = {0};
     is_hilly = hilly;
-    weft_dataset_heights heights = {2 * WIDTH, 2 * HEIGHT, LEVELS, malloc(sizeof(float) * 4 * WIDTH * HEIGHT)};
-    for (int i = 0; i < 4 * WIDTH * HEIGHT; i++)
-        heights.value[i] = (float)(factor * surface((i % (2 * WIDTH) + 0.5) / 2, HEIGHT - (i / (2 * WIDTH) + 0.5) / 2));
-    fixture_far_dataset(path, WIDTH, HEIGHT, RINGS, printed, 0);
+    weft_dataset_heights heights = {2 * width, 2 * HEIGHT, LEVELS,
+                                    malloc(sizeof(float) * 4 * (size_t)(width * HEIGHT))};
+    for (int i = 0; i < 4 * width * HEIGHT; i++)
+        heights.value[i] = (float)(factor * surface((i % (2 * width) + 0.5) / 2, HEIGHT - (i / (2 * width) + 0.5) / 2));
+    fixture_far_dataset(path, width, HEIGHT, rings, printed, 0);
     expect_ok(weft_dataset_put_relief(path, path, -DEEP * factor, hilly ? &heights : NULL, "{}", &error), &error);
     weft_dataset_heights_free(&heights);
 }
@@ -125,6 +134,15 @@ static void expect_used(const weft_hold_out *result)
     expect_certificate_of(result, result->heights.with);
 }
 
+/* The photographs are played through their heights, whatever the material is. */
+static void expect_photographs(const weft_hold_out *result, double least_part, double most_part)
+{
+    double through = result->photographs.all.relative_rmse;
+    printf("photographs %.3f, without heights %.3f, of views %.3f\n", through, result->photographs_flat,
+           result->photographs.view.relative_rmse);
+    assert_true(through > least_part * result->photographs_flat && through < most_part * result->photographs_flat);
+}
+
 static void layers_are_seen_through_the_heights_that_are_there(void **state)
 {
     (void)state;
@@ -132,9 +150,11 @@ static void layers_are_seen_through_the_heights_that_are_there(void **state)
     write_dataset(true, 1);
     weft_hold_out through = measure(&options);
     expect_used(&through);
+    expect_photographs(&through, 0, 0.3);
     write_dataset(false, 1);
     through = measure(&options);
     expect_used(&through);
+    expect_photographs(&through, 0, 0.3);
     unlink(path);
 }
 
@@ -151,6 +171,7 @@ static void heights_that_are_not_there_are_refused(void **state)
     options.heights = false;
     weft_hold_out unasked = measure(&options);
     assert_false(unasked.heights.asked || unasked.heights.used);
+    expect_photographs(&unasked, 1.05, 10);
     unlink(path);
 }
 
@@ -181,12 +202,151 @@ static void a_material_has_the_heights_of_its_dataset(void **state)
     unlink(path);
 }
 
+/* ---- Prices ---- */
+
+static weft_priced_model model_of(const weft_dataset *dataset, const char *name)
+{
+    weft_priced_model model[WEFT_PRICED_MOST];
+    weft_priced_dataset parts = weft_priced_dataset_of(dataset);
+    int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &parts, model);
+    for (int i = 0; i < count; i++)
+        if (strcmp(model[i].name, name) == 0)
+            return model[i];
+    fail_msg("no model '%s'", name);
+    return (weft_priced_model){0};
+}
+
+static weft_held_error ask(weft_held_bench *bench, const weft_dataset *dataset, const char *name)
+{
+    weft_priced_model model = model_of(dataset, name);
+    weft_held_error measured;
+    weft_error error = {0};
+    expect_ok(weft_held_bench_measure(bench, &model, &measured, &error), &error);
+    printf("%s: %.3f of %ld\n", name, measured.held[0].relative_rmse, measured.held[0].count);
+    weft_image_free(&measured.sample);
+    weft_image_free(&measured.predicted);
+    return measured;
+}
+
+static double error_of(const weft_held_error *measured)
+{
+    return measured->held[WEFT_SAMPLES_ALL].relative_rmse;
+}
+
+/* Fewer photographs of one repeat. */
+static int make_smaller(void **state)
+{
+    (void)state;
+    width = 26;
+    rings = 3;
+    return 0;
+}
+
+/* Every model for the same samples, those that are known through the heights; layers may choose other views where
+ * several are as near. */
+static void prices_are_of_what_is_played(void **state)
+{
+    (void)state;
+    weft_dataset *dataset;
+    weft_held_bench *bench;
+    weft_error error = {0};
+    write_dataset(true, 1);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    expect_ok(weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, 20, 0, scratch, &bench, &error), &error);
+    weft_held_error diffuse = ask(bench, dataset, "diffuse"), flat = ask(bench, dataset, "8 layers, without heights"),
+                    through = ask(bench, dataset, "8 layers, through heights"),
+                    raw_flat = ask(bench, dataset, "the photographs, without heights"),
+                    raw = ask(bench, dataset, "the photographs, through heights");
+    assert_true(raw.held[0].count > 0 && diffuse.held[0].count == raw.held[0].count);
+    assert_true(flat.held[0].count == raw.held[0].count && through.held[0].count > 9 * raw.held[0].count / 10);
+    assert_true(raw_flat.held[0].count == raw.held[0].count);
+    assert_true(error_of(&through) < 0.92 * error_of(&flat) && error_of(&raw) < 0.3 * error_of(&raw_flat));
+    assert_true(through.interval_width < 0.95 * flat.interval_width);
+    double heights = weft_weight_scaled(&through.weight, width, HEIGHT, true) -
+                     weft_weight_scaled(&flat.weight, width, HEIGHT, true);
+    assert_true(heights > 4 * width * HEIGHT && heights < 1.1 * 4 * width * HEIGHT + 100);
+    weft_held_bench_free(bench);
+    weft_dataset_close(dataset);
+    unlink(path);
+}
+
+static double priced_bytes(weft_dataset *dataset, const weft_priced_model *model, int side)
+{
+    weft_price_shop *shop;
+    weft_price price;
+    bool has_parts;
+    weft_error error = {0};
+    expect_ok(weft_price_shop_open(dataset, side, scratch, NULL, &shop, &error), &error);
+    expect_ok(weft_price_ask(shop, model, &price, &has_parts, &error), &error);
+    weft_price_shop_close(shop);
+    return price.bytes;
+}
+
+static double file_bytes(weft_dataset *dataset, const weft_compress_options *options)
+{
+    weft_material material;
+    weft_error error = {0};
+    expect_ok(weft_compress(dataset, options, NULL, &material, NULL, &error), &error);
+    assert_int_equal(material.heights != NULL, options->heights);
+    expect_ok(weft_material_write("heights.weft", &material, &error), &error);
+    weft_material_free(&material);
+    double bytes = (double)weft_file_bytes("heights.weft");
+    unlink("heights.weft");
+    return bytes;
+}
+
+/* Also of a block, which has its part of the heights. */
+static void heights_have_their_price(void **state)
+{
+    (void)state;
+    weft_dataset *dataset;
+    weft_error error = {0};
+    double file[2], whole[2], part[2];
+    write_dataset(true, 1);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    for (int through = 0; through < 2; through++) {
+        weft_priced_model model =
+            model_of(dataset, through ? "8 layers, through heights" : "8 layers, without heights");
+        file[through] = file_bytes(dataset, &model.options);
+        whole[through] = priced_bytes(dataset, &model, 40);
+        part[through] = priced_bytes(dataset, &model, 20);
+    }
+    assert_float_equal(whole[0], file[0], 0);
+    assert_float_equal(whole[1], file[1], 0);
+    assert_float_equal(part[1] - part[0], file[1] - file[0], 0.35 * (file[1] - file[0]));
+    weft_dataset_close(dataset);
+    unlink(path);
+}
+
+static void heights_are_chosen_where_compress_keeps_them(void **state)
+{
+    (void)state;
+    assert_true(weft_priced_heights_are_kept(0.4, 0.37));
+    assert_false(weft_priced_heights_are_kept(0.4, 0.39));
+    weft_dataset *dataset;
+    weft_preset_prediction prediction;
+    weft_compress_options options = weft_compress_default_options();
+    weft_error error = {0};
+    width = 13;
+    write_dataset(false, 1);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    expect_ok(weft_preset_predict(dataset, WEFT_PRESET_BEST, scratch, NULL, &options, &prediction, &error), &error);
+    printf("best: %s, %.3f\n", prediction.arguments, prediction.error);
+    assert_true(options.layer_count > 0 && options.heights);
+    assert_null(strstr(prediction.arguments, "--heights off"));
+    weft_dataset_close(dataset);
+    unlink(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_are_seen_through_the_heights_that_are_there),
         cmocka_unit_test(heights_that_are_not_there_are_refused),
         cmocka_unit_test(a_material_has_the_heights_of_its_dataset),
+        cmocka_unit_test_setup(prices_are_of_what_is_played, make_smaller),
+        cmocka_unit_test_setup(heights_have_their_price, make_smaller),
+        cmocka_unit_test_setup(heights_are_chosen_where_compress_keeps_them, make_smaller),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -84,6 +84,8 @@ static void nothing_is_chosen_of_nothing(void **state)
 
 /* ---- Models ---- */
 
+static const weft_priced_dataset flat = {0};
+
 static weft_dataset_layout grid_layout(int directions)
 {
     weft_dataset_layout layout = {
@@ -111,7 +113,7 @@ static void the_list_has_what_the_photographs_carry(void **state)
     (void)state;
     weft_priced_model model[WEFT_PRICED_MOST];
     weft_dataset_layout full = grid_layout(DIRECTIONS), few = grid_layout(7);
-    int count = weft_priced_models_list(&full, false, model);
+    int count = weft_priced_models_list(&full, &flat, model);
     assert_in_range(count, 25, WEFT_PRICED_MOST);
     static const char *const wanted[] = {"diffuse",
                                          "3 lobes",
@@ -131,7 +133,7 @@ static void the_list_has_what_the_photographs_carry(void **state)
             assert_true(weft_priced_models_share_fit(&model[i], &model[i - 1]));
     }
     assert_false(weft_priced_models_share_fit(find(model, count, "1 lobe"), find(model, count, "1 lobe, T")));
-    count = weft_priced_models_list(&few, false, model);
+    count = weft_priced_models_list(&few, &flat, model);
     assert_non_null(find(model, count, "2 lobes"));
     assert_null(find(model, count, "2 lobes, T"));
     assert_null(find(model, count, "3 lobes"));
@@ -250,7 +252,7 @@ static weft_held_bench *open_bench(weft_dataset **dataset)
 static weft_held_error measure(weft_held_bench *bench, const char *name)
 {
     weft_priced_model model[WEFT_PRICED_MOST];
-    int count = weft_priced_models_list(&grid, false, model);
+    int count = weft_priced_models_list(&grid, &flat, model);
     const weft_priced_model *wanted = find(model, count, name);
     weft_held_error measured;
     weft_error error = {0};
@@ -332,7 +334,7 @@ static void bytes_are_those_of_the_file(void **state)
     fixture_far_dataset(path, 24, 24, 4, rough, 0);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     const weft_priced_model *wanted =
-        find(model, weft_priced_models_list(weft_dataset_get_layout(dataset), false, model), "1 lobe, T");
+        find(model, weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model), "1 lobe, T");
     expect_ok(weft_price_shop_open(dataset, 64, scratch, NULL, &whole, &error), &error);
     weft_price price = ask(whole, wanted);
     expect_ok(weft_compress(dataset, &wanted->options, NULL, &material, NULL, &error), &error);

@@ -312,6 +312,14 @@ static void check_scene(const weft_truth_scene *scene)
             assert_true(e->block_relative_rmse > 0 && e->block_relative_rmse < e->error.relative_rmse);
             assert_true(e->error.psnr_db > 5 && e->error.psnr_db < 40);
         }
+        /* The dataset alone has a plane: drawn without it, it is another picture, and a worse one. */
+        const weft_truth_pictures *under = &scene->under[light];
+        double flat = under->flat[WEFT_TRUTH_RAW].error.relative_rmse,
+               played = under->error[WEFT_TRUTH_RAW].error.relative_rmse;
+        printf("raw %.4f, without heights %.4f\n", played, flat);
+        assert_int_equal(under->flat[WEFT_TRUTH_RAW].error.count, under->error[WEFT_TRUTH_RAW].error.count);
+        assert_int_equal(under->flat[WEFT_TRUTH_COMPRESSED].error.count, 0);
+        assert_true(flat > 1.0005 * played);
     }
 }
 
@@ -325,6 +333,7 @@ static void the_drape_is_drawn_in_every_scene_and_measured(void **state)
     options.layer_count = 0;
     weft_error error = {0};
     options.lobe_count = 1;
+    expect_ok(weft_dataset_put_relief("weave.btf.h5", "weave.btf.h5", -0.15, NULL, "{}", &error), &error);
     expect_ok(weft_dataset_open("weave.btf.h5", &dataset, &error), &error);
     expect_ok(weft_compress(dataset, &options, NULL, &material, NULL, &error), &error);
     weft_traced_request request = {

@@ -66,7 +66,8 @@ weft_code weft_page_scenes(weft_page *page, const weft_scenes *scenes, weft_erro
         fputs("</p>\n", page->html);
         return WEFT_OK;
     }
-    fputs("<p class=\"note\">Raw: the dataset, interpolated. Compressed: the material. ", page->html);
+    fprintf(page->html, "<p class=\"note\">Raw: the dataset, interpolated%s. Compressed: the material. ",
+            scenes->has_heights ? " through its heights" : "");
     if (scenes->has[WEFT_MODE_ANALYTIC])
         fputs("Analytic: the cloth as its model has it, without noise. ", page->html);
     if (scenes->has[WEFT_SCENE_BARD])

@@ -76,13 +76,14 @@ static void print_errors(weft_page *page, const weft_truth_error *e)
             e->error.psnr_db, 100 * e->error.median_relative, e->block_relative_rmse);
 }
 
-static void print_row(weft_page *page, const weft_truth_scene *scene, int model)
+static void print_row(weft_page *page, const weft_truth_scene *scene, int model, bool flat)
 {
     fputs("<tr><td>", page->html);
     weft_page_text(page, scene->caption);
-    fprintf(page->html, "</td><td>%s</td>", weft_truth_model_name((weft_truth_model)model));
+    fprintf(page->html, "</td><td>%s%s</td>", weft_truth_model_name((weft_truth_model)model),
+            flat ? " without heights" : "");
     for (int light = 0; light < WEFT_TRUTH_LIGHTS; light++)
-        print_errors(page, &scene->under[light].error[model]);
+        print_errors(page, flat ? &scene->under[light].flat[model] : &scene->under[light].error[model]);
     fprintf(page->html, "<td>%.2f %%</td></tr>\n", 100 * scene->noise);
 }
 
@@ -94,8 +95,11 @@ static void print_table(weft_page *page, const weft_traced_truth *truth)
     weft_page_columns(page, "scene||relative RMSE|PSNR|median relative|of blocks|relative RMSE|PSNR|median "
                             "relative|of blocks|noise of the truth");
     for (int i = 0; i < WEFT_TRUTH_SCENE_COUNT; i++)
-        for (int model = 0; model < WEFT_TRUTH_TRACED; model++)
-            print_row(page, &truth->scene[i], model);
+        for (int model = 0; model < WEFT_TRUTH_TRACED; model++) {
+            print_row(page, &truth->scene[i], model, false);
+            if (truth->has_heights[model])
+                print_row(page, &truth->scene[i], model, true);
+        }
     fputs("</table>\n", page->html);
 }
 
@@ -118,9 +122,12 @@ weft_code weft_page_truth(weft_page *page, const weft_traced_truth *truth, weft_
         "a pixel and %d bounces. All light: the player casts the shadows of the mesh. Light of the cloth near by: "
         "what lies beyond %.2g mm neither shades nor lights anything, and the player casts no shadows; that is what "
         "a material knows of. Errors are those of the lit pixels of the mesh; those of blocks are of means over %d "
-        "x %d pixels.</p>\n",
+        "x %d pixels.%s</p>\n",
         WEFT_TRUTH_REPEAT, truth->cloth_mm, truth->triangles, truth->cells, truth->finest_cells, truth->paths,
-        truth->bounces, truth->reach_mm, WEFT_TRUTH_BLOCK, WEFT_TRUTH_BLOCK);
+        truth->bounces, truth->reach_mm, WEFT_TRUTH_BLOCK, WEFT_TRUTH_BLOCK,
+        truth->has_heights[WEFT_TRUTH_RAW] || truth->has_heights[WEFT_TRUTH_COMPRESSED]
+            ? " Pictures are through the heights of dataset and material."
+            : "");
     if (truth->warning[0]) {
         fputs("<p>", page->html);
         weft_page_text(page, truth->warning);
