@@ -73,7 +73,7 @@ static const numerics_claim claims[NUMERICS_MODELS] = {
          "as staple; and H across the yarn, where 1/hypot(H_y, H_z) has its pole. H shorter than 1e-6 gives 0"},
     [NUMERICS_STAPLE_TEXTURE] = {"Woven: staple texture", 1e-08, 0.02, 0.02, 0.002, 10, 10, 1,
                                  "as the point; the edges of the band are jumps"},
-    [NUMERICS_FILAMENT_TEXTURE] = {"Woven: filament texture", 2e-10, 0.1, 0.01, 0.005, 10, 10, 1,
+    [NUMERICS_FILAMENT_TEXTURE] = {"Woven: filament texture", 2e-09, 0.1, 0.01, 0.005, 10, 10, 1,
                                    "as the point; the edges of the band are jumps"},
     [NUMERICS_STAPLE_REFLECTANCE] =
         {"Woven: staple integral", 5e-09, 0.0002, 0.0002, 0, 0, 5, 60,
