@@ -1,5 +1,6 @@
 #include "study/hold_out/hold_out.h"
 
+#include "compress/run/memory.h"
 #include "study/hold_out/certify.h"
 #include "study/hold_out/misplaced.h"
 #include "study/hold_out/rounding.h"
@@ -172,18 +173,22 @@ static weft_code ask(const measuring *work, const weft_trial *trial, weft_materi
     return weft_trial_ask_photographs(trial, weft_excerpt_has_surface(&work->excerpt), &said->photographs, error);
 }
 
-/* Relative RMSE with and without heights where both are known; `with` says of fewer samples, in the same order. */
+/* Relative RMSE with and without heights where both are known. Samples ascend in both; masks may leave either without
+ * some that the other has. */
 static void compare_with_flat(const weft_asked_samples *with, const weft_asked_samples *flat, double error_of[2])
 {
     double square[2] = {0}, energy = 1e-30;
-    for (size_t i = 0, at = 0; i < with->count; i++, at++) {
-        while (flat->sample[at] != with->sample[i])
+    for (size_t i = 0, at = 0; i < with->count; i++) {
+        while (at < flat->count && flat->sample[at] < with->sample[i])
             at++;
+        if (at == flat->count || flat->sample[at] != with->sample[i])
+            continue;
         double sample = (double)with->value[i].sample,
                apart[2] = {(double)with->value[i].prediction - sample, (double)flat->value[at].prediction - sample};
         square[0] += apart[0] * apart[0];
         square[1] += apart[1] * apart[1];
         energy += sample * sample;
+        at++;
     }
     error_of[0] = sqrt(square[0] / energy);
     error_of[1] = sqrt(square[1] / energy);
@@ -325,13 +330,29 @@ int weft_hold_out_surface_side(int image_count)
     return side_of(SURFACE_SIDE, most_samples_with_surface, image_count);
 }
 
+/* That a square of the dataset and, where lobes are fitted, a copy of its middle are within the limit. */
+static weft_code require_memory(const weft_dataset *dataset, const measuring *work, int side, int copied_side,
+                                weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
+    const uint64_t sample_bytes = 3 * sizeof(weft_half) + 1;
+    int smaller = layout->width < layout->height ? layout->width : layout->height;
+    uint64_t read = (uint64_t)(side < smaller ? side : smaller), copied = (uint64_t)copied_side;
+    weft_memory_budget budget = weft_memory_budget_begin(work->options.memory_bytes);
+    return weft_memory_budget_require(&budget,
+                                      sample_bytes * (uint64_t)layout->image_count * (read * read + copied * copied),
+                                      weft_dataset_path(dataset), "the images that are held out", error);
+}
+
 /* Lobes need no neighbours: those that are asked for are fitted alone. */
 static weft_code read_with_surface(weft_dataset *dataset, measuring *work, weft_error *error)
 {
     int images = weft_dataset_get_layout(dataset)->image_count;
     bool has_layers = work->options.layer_count > 0;
     int side = has_layers ? side_of(ASKED_SIDE, most_samples_asked, images) : LAYERS_SIDE;
-    WEFT_TRY(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, weft_hold_out_surface_side(images), &work->excerpt, error));
+    int read_side = weft_hold_out_surface_side(images);
+    WEFT_TRY(require_memory(dataset, work, read_side, has_layers ? 0 : side, error));
+    WEFT_TRY(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, read_side, &work->excerpt, error));
     work->asked = weft_excerpt_middle(&work->excerpt, side);
     return has_layers ? WEFT_OK : weft_excerpt_crop(&work->excerpt, &work->asked, &work->alone, error);
 }

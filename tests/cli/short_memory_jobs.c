@@ -217,9 +217,9 @@ static void write_collections(void)
 
 void short_memory_write_inputs(void)
 {
-    fixture_far_dataset("waves.btf.h5", 12, 12, 2, waves, 1);
-    fixture_far_dataset("small.btf.h5", 6, 6, 2, waves, 1);
-    fixture_far_dataset("wide.btf.h5", 18, 17, 2, waves, 1);
+    fixture_far_dataset("waves.btf.h5", 12, 12, 2, waves, FIXTURE_MASK_ONE);
+    fixture_far_dataset("small.btf.h5", 6, 6, 2, waves, FIXTURE_MASK_ONE);
+    fixture_far_dataset("wide.btf.h5", 18, 17, 2, waves, FIXTURE_MASK_ONE);
     fixture_near_dataset("card.btf.h5", 4, 5, waves);
     write_collections();
     weft_image sky;

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 
 static void put_image(weft_dataset_writer *writer, const weft_dataset_layout *layout, int image,
-                      fixture_reflectance reflectance, int masked)
+                      fixture_reflectance reflectance, fixture_mask masked)
 {
+    uint32_t random = 2654435761u * (uint32_t)(image + 1);
     size_t texels = (size_t)layout->width * (size_t)layout->height;
     weft_half *samples = malloc(3 * texels * sizeof *samples);
     uint8_t *mask = calloc(texels, 1);
@@ -19,28 +20,30 @@ static void put_image(weft_dataset_writer *writer, const weft_dataset_layout *la
         samples[3 * i] = weft_half_of_float((float)(value.r * light.z));
         samples[3 * i + 1] = weft_half_of_float((float)(value.g * light.z));
         samples[3 * i + 2] = weft_half_of_float((float)(value.b * light.z));
+        random = random * 1664525u + 1013904223u;
+        if (masked == FIXTURE_MASK_FIFTH ? (random >> 16) % 5 == 0 : masked == FIXTURE_MASK_ONE && image + i == 0)
+            mask[i] = WEFT_MASK_SATURATED;
     }
-    if (masked)
-        mask[0] = WEFT_MASK_SATURATED;
     weft_error error = {0};
     expect_ok(weft_dataset_writer_put_image(writer, image, samples, mask, &error), &error);
     free(samples);
     free(mask);
 }
 
-static void write_dataset(const char *path, weft_dataset_layout *layout, fixture_reflectance reflectance, int mask_one)
+static void write_dataset(const char *path, weft_dataset_layout *layout, fixture_reflectance reflectance,
+                          fixture_mask masked)
 {
     weft_error error = {0};
     weft_dataset_writer *writer;
     expect_ok(weft_dataset_writer_create(path, layout, &writer, &error), &error);
     for (int i = 0; i < layout->image_count; i++)
-        put_image(writer, layout, i, reflectance, mask_one && i == 0);
+        put_image(writer, layout, i, reflectance, masked);
     expect_ok(weft_dataset_writer_finish(writer, "{\"source\":\"fixture\"}", &error), &error);
     weft_dataset_layout_free(layout);
 }
 
 void fixture_far_dataset(const char *path, int width, int height, int ring_count, fixture_reflectance reflectance,
-                         int mask_one)
+                         fixture_mask masked)
 {
     static const int directions_within[] = {0, 1, 7, 19, 37, 57, 81};
     int count = directions_within[ring_count];
@@ -60,7 +63,7 @@ void fixture_far_dataset(const char *path, int width, int height, int ring_count
             layout.view_of_image[v * count + l] = v;
         }
     }
-    write_dataset(path, &layout, reflectance, mask_one);
+    write_dataset(path, &layout, reflectance, masked);
 }
 
 void fixture_near_dataset(const char *path, int size, int image_count, fixture_reflectance reflectance)

@@ -21,10 +21,13 @@ extern fixture_weave fixture_cloth;
 /* Each texel the mean of 4 x 4 points. */
 weft_rgb fixture_woven(int x, int y, weft_vec3 light, weft_vec3 view);
 
+/* Which samples are masked as saturated: none; that of texel (0, 0) in image 0; at random, one of five. */
+typedef enum fixture_mask { FIXTURE_MASK_NONE, FIXTURE_MASK_ONE, FIXTURE_MASK_FIFTH } fixture_mask;
+
 /* The first `ring_count` rings of ubo81 for views and lights (1, 7, 19, ... directions), all pairs, reflectance times
- * cosine. Texel (0, 0) of image 0 is masked as saturated where `mask_one`. */
+ * cosine. */
 void fixture_far_dataset(const char *path, int width, int height, int ring_count, fixture_reflectance reflectance,
-                         int mask_one);
+                         fixture_mask masked);
 
 /* A few images with near lights above a square of 64 mm; view and light coincide, as with a phone's flash. */
 void fixture_near_dataset(const char *path, int size, int image_count, fixture_reflectance reflectance);

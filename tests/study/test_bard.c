@@ -109,7 +109,7 @@ static void a_dataset_made_by_the_model_is_reproduced(void **state)
 {
     (void)state;
     weft_bard_options options = weft_bard_defaults();
-    fixture_far_dataset(input, WIDTH, HEIGHT, 6, made_by_the_model, 0);
+    fixture_far_dataset(input, WIDTH, HEIGHT, 6, made_by_the_model, FIXTURE_MASK_NONE);
     weft_bard_report report = predict(&options);
     assert_int_equal(report.photograph_count, WEFT_UBO81_COUNT);
     assert_int_equal(report.image_count, WEFT_UBO81_COUNT * WEFT_UBO81_COUNT);
@@ -129,7 +129,7 @@ static void a_lambertian_dataset_is_reproduced_only_when_its_diffuse_part_is_kep
 {
     (void)state;
     weft_bard_options options = weft_bard_defaults();
-    fixture_far_dataset(input, WIDTH, HEIGHT, 6, lambertian, 0);
+    fixture_far_dataset(input, WIDTH, HEIGHT, 6, lambertian, FIXTURE_MASK_NONE);
     assert_true(predict(&options).all.relative_rmse < 1e-3);
     assert_true(largest_difference() < 2e-3);
     /* All of it mapped: too bright by the gain, 1 / cos^2 75 = 14.93. */
@@ -145,7 +145,7 @@ static void a_masked_photograph_is_filled_from_the_nearest_view(void **state)
 {
     (void)state;
     weft_bard_options options = weft_bard_defaults();
-    fixture_far_dataset(input, WIDTH, HEIGHT, 6, lambertian, 1);
+    fixture_far_dataset(input, WIDTH, HEIGHT, 6, lambertian, FIXTURE_MASK_ONE);
     weft_bard_report report = predict(&options);
     assert_int_equal(report.filled_count, 1);
     assert_int_equal(report.empty_texel_count, 0);
@@ -161,7 +161,7 @@ static void photographs_that_were_used_are_kept_bit_by_bit(void **state)
 {
     (void)state;
     weft_bard_options options = {.map = WEFT_BARD_IN_PLANE, .diffuse_share = 0};
-    fixture_far_dataset(input, WIDTH, HEIGHT, 3, made_by_the_model, 0);
+    fixture_far_dataset(input, WIDTH, HEIGHT, 3, made_by_the_model, FIXTURE_MASK_NONE);
     assert_int_equal(predict(&options).photograph_count, 19);
     loaded s = load(input), p = load(output);
     for (size_t i = 0; i < s.count; i++) {
@@ -256,7 +256,7 @@ static void the_file_says_how_it_was_made(void **state)
 {
     (void)state;
     weft_bard_options options = weft_bard_defaults();
-    fixture_far_dataset(input, 2, 2, 2, lambertian, 0);
+    fixture_far_dataset(input, 2, 2, 2, lambertian, FIXTURE_MASK_NONE);
     predict(&options);
     weft_dataset *dataset;
     weft_error error = {0};
@@ -273,7 +273,7 @@ static void the_file_says_how_it_was_made(void **state)
 static void a_full_disk_is_an_error_that_leaves_nothing(void **state)
 {
     (void)state;
-    fixture_far_dataset(input, 40, 40, 3, lambertian, 0);
+    fixture_far_dataset(input, 40, 40, 3, lambertian, FIXTURE_MASK_NONE);
     expect_weft_after("ulimit -f 2048;", "bard bard.btf.h5 -o bard.bard.h5", WEFT_SYSTEM, "bard.bard.h5");
     assert_int_not_equal(access(output, F_OK), 0);
     forget_files();
@@ -282,7 +282,7 @@ static void a_full_disk_is_an_error_that_leaves_nothing(void **state)
 static void the_command_predicts_and_names_what_is_wrong(void **state)
 {
     (void)state;
-    fixture_far_dataset(input, 4, 4, 3, lambertian, 0);
+    fixture_far_dataset(input, 4, 4, 3, lambertian, FIXTURE_MASK_NONE);
     expect_weft("bard bard.btf.h5 -o bard.bard.h5", 0, "predicted from 19 photographs of 361");
     expect_weft("bard bard.btf.h5 -o bard.bard.h5 --json --diffuse 0.5 --map printed", 0, "\"event\":\"prediction\"");
     unlink(output);

@@ -300,7 +300,7 @@ static void a_displacement_costs_the_slope(void **state)
     weft_dataset *dataset;
     weft_error error = {0};
     weft_certificate c = even_certificate();
-    fixture_far_dataset(path, 24, 24, 1, sloping, 0);
+    fixture_far_dataset(path, 24, 24, 1, sloping, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     expect_ok(weft_certify_registration(dataset, &c, &error), &error);
     weft_dataset_close(dataset);

@@ -103,7 +103,7 @@ static void expect_error(const weft_error_summary *measured, const weft_error_su
 static void the_page_tells_the_errors_that_the_functions_have(void **state)
 {
     (void)state;
-    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 3, glossy, 1);
+    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 3, glossy, FIXTURE_MASK_ONE);
     fixture_diffuse_material("compare.weft", WIDTH, HEIGHT, flat);
     const weft_compare_options options = {
         .dataset = "compare.btf.h5", .material = "compare.weft", .folder = "compare-report"};
@@ -174,7 +174,7 @@ static void a_fitted_weave_lies_with_its_yarns_on_those_of_the_data(void **state
     fixture_cloth = (fixture_weave){.width = tile, .height = tile, .left = 5.2, .top = 9.7};
     expect_ok(weft_weave_read(WEFT_ASSETS "/weaves/polyester_lining.wv", NULL, 0, &fixture_cloth.weave, NULL, &error),
               &error);
-    fixture_far_dataset("compare.btf.h5", TEXELS, TEXELS, 3, fixture_woven, 0);
+    fixture_far_dataset("compare.btf.h5", TEXELS, TEXELS, 3, fixture_woven, FIXTURE_MASK_NONE);
     fixture_diffuse_material("compare.weft", TEXELS, TEXELS, flat);
     const char *start = WEFT_ASSETS "/weaves/polyester_lining.wv";
     weft_error_summary laid = compare_weave(start, true, 0, true);
@@ -190,7 +190,7 @@ static void a_fitted_weave_lies_with_its_yarns_on_those_of_the_data(void **state
 static void the_page_compares_every_model_that_is_given(void **state)
 {
     (void)state;
-    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 3, glossy, 1);
+    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 3, glossy, FIXTURE_MASK_ONE);
     fixture_diffuse_material("compare.weft", WIDTH, HEIGHT, flat);
     const weft_compare_options options = {.dataset = "compare.btf.h5",
                                           .material = "compare.weft",
@@ -245,7 +245,7 @@ static void microcylinder_cloth_is_compared_as_it_is(void **state)
                                     .folder = "compare-report"};
     expect_ok(weft_microcylinder_read(options.weave, NULL, 0, &description, &error), &error);
     threads = weft_microcylinder_prepare(&description.cloth);
-    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 6, threaded, 0);
+    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 6, threaded, FIXTURE_MASK_NONE);
     fixture_diffuse_material("compare.weft", WIDTH, HEIGHT, flat);
     weft_comparison comparison;
     expect_ok(weft_compare(&options, NULL, &comparison, &error), &error);
@@ -271,8 +271,8 @@ static void microcylinder_cloth_is_compared_as_it_is(void **state)
 static void a_prediction_of_another_dataset_is_refused(void **state)
 {
     (void)state;
-    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 2, glossy, 0);
-    fixture_far_dataset("other.btf.h5", WIDTH + 1, HEIGHT, 2, glossy, 0);
+    fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 2, glossy, FIXTURE_MASK_NONE);
+    fixture_far_dataset("other.btf.h5", WIDTH + 1, HEIGHT, 2, glossy, FIXTURE_MASK_NONE);
     fixture_diffuse_material("compare.weft", WIDTH, HEIGHT, flat);
     const weft_compare_options options = {
         .dataset = "compare.btf.h5", .material = "compare.weft", .bard = "other.btf.h5", .folder = "no-report"};

@@ -70,7 +70,7 @@ static void whole_tiles_are_averaged_wherever_they_begin(void **state)
     weft_fit_weave_report tiled, whole;
     fixture_cloth.weave = read_weave("polyester_lining.wv");
     fixture_cloth.width = fixture_cloth.height = 16.6, fixture_cloth.left = 5.2, fixture_cloth.top = 9.7;
-    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, fixture_woven, 0);
+    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, fixture_woven, FIXTURE_MASK_NONE);
     fit("polyester_lining.wv", false, &source, &tiled);
     fit("polyester_lining.wv", true, &source, &whole);
     print_message("median relative error %.2f %% of whole tiles, %.2f %% of the whole material\n",
@@ -103,7 +103,7 @@ static void texels_beside_the_frame_do_not_count(void **state)
     weft_fit_weave_report tiled, whole;
     fixture_cloth.weave = read_weave("polyester_lining.wv");
     fixture_cloth.width = fixture_cloth.height = TEXELS / 2.0, fixture_cloth.left = fixture_cloth.top = 0;
-    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, framed, 0);
+    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, framed, FIXTURE_MASK_NONE);
     fit("polyester_lining.wv", false, &source, &tiled);
     fit("polyester_lining.wv", true, &source, &whole);
     print_message("median relative error %.2f %% of the tile, %.2f %% with what is beside the frame\n",
@@ -120,7 +120,7 @@ static void material_without_two_tiles_is_averaged_whole_and_says_why(void **sta
     weft_fit_weave_report report;
     fixture_cloth.weave = read_weave("polyester_lining.wv");
     fixture_cloth.width = fixture_cloth.height = TEXELS, fixture_cloth.left = fixture_cloth.top = 0;
-    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, fixture_woven, 0);
+    fixture_far_dataset(input, TEXELS, TEXELS, RINGS, fixture_woven, FIXTURE_MASK_NONE);
     fit("polyester_lining.wv", false, &source, &report);
     print_message("%s\n", source.why_whole);
     assert_false(source.tiled);
@@ -141,7 +141,7 @@ static void a_window_counts_the_share_of_each_texel_inside(void **state)
     weft_dataset *dataset;
     weft_mean_brdf mean;
     weft_error error = {0};
-    fixture_far_dataset(input, 8, 8, 1, by_column, 0);
+    fixture_far_dataset(input, 8, 8, 1, by_column, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(input, &dataset, &error), &error);
     const weft_texel_window window = {.left = 1.25, .top = 2, .width = 2, .height = 3};
     expect_ok(weft_mean_brdf_of(dataset, &window, NULL, &mean, &error), &error);
@@ -163,7 +163,7 @@ static void what_a_window_shows_twice_counts_once(void **state)
     weft_dataset *dataset;
     weft_mean_brdf mean;
     weft_error error = {0};
-    fixture_far_dataset(input, 8, 8, 1, by_square, 0);
+    fixture_far_dataset(input, 8, 8, 1, by_square, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(input, &dataset, &error), &error);
     const weft_texel_window window = {.left = 1, .top = 2, .width = 3.5, .height = 3, .period_x = 2};
     expect_ok(weft_mean_brdf_of(dataset, &window, NULL, &mean, &error), &error);

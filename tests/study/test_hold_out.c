@@ -243,7 +243,7 @@ static void place_of(const weft_excerpt *excerpt, int texel, int *x, int *y)
 static void scattered_texels_are_one_of_every_cell(void **state)
 {
     (void)state;
-    fixture_far_dataset(path, 24, 20, 2, by_place, 0);
+    fixture_far_dataset(path, 24, 20, 2, by_place, FIXTURE_MASK_NONE);
     weft_excerpt excerpt = read_excerpt(WEFT_EXCERPT_SCATTERED, 6);
     assert_int_equal(excerpt.layout.width, 6);
     assert_int_equal(excerpt.layout.height, 6);
@@ -386,7 +386,7 @@ static void what_is_held_out_does_not_leak(void **state)
     spoilt_layout = grid_layout(0);
     spoilt = split(&spoilt_layout, 0, 1);
     spoilt_factor = 20;
-    fixture_far_dataset(path, 2, 1, 6, spoilt_diffuse, 0);
+    fixture_far_dataset(path, 2, 1, 6, spoilt_diffuse, FIXTURE_MASK_NONE);
     weft_compress_options options = weft_compress_default_options();
     options.layer_count = 0;
     options.light_table = true;
@@ -447,7 +447,7 @@ static void the_error_of_a_diffuse_term_is_that_computed_by_hand(void **state)
     (void)state;
     weft_dataset_layout layout = grid_layout(0);
     weft_splits splits = split(&layout, 0, 3);
-    fixture_far_dataset(path, 3, 2, 6, curved, 0);
+    fixture_far_dataset(path, 3, 2, 6, curved, FIXTURE_MASK_NONE);
     weft_compress_options options = weft_compress_default_options();
     options.layer_count = 0;
     options.lobe_count = 0;

@@ -75,7 +75,7 @@ static weft_rgb printed(int column, int row, weft_vec3 light, weft_vec3 view)
 }
 
 /* A dataset of the pattern that says of itself to lie at `factor` times its heights. */
-static void write_dataset(bool hilly, double factor)
+static void write_masked_dataset(bool hilly, double factor, fixture_mask masked)
 {
     weft_error error = {0};
     is_hilly = hilly;
@@ -83,9 +83,14 @@ static void write_dataset(bool hilly, double factor)
                                     malloc(sizeof(float) * 4 * (size_t)(width * HEIGHT))};
     for (int i = 0; i < 4 * width * HEIGHT; i++)
         heights.value[i] = (float)(factor * surface((i % (2 * width) + 0.5) / 2, HEIGHT - (i / (2 * width) + 0.5) / 2));
-    fixture_far_dataset(path, width, HEIGHT, rings, printed, 0);
+    fixture_far_dataset(path, width, HEIGHT, rings, printed, masked);
     expect_ok(weft_dataset_put_relief(path, path, -DEEP * factor, hilly ? &heights : NULL, "{}", &error), &error);
     weft_dataset_heights_free(&heights);
+}
+
+static void write_dataset(bool hilly, double factor)
+{
+    write_masked_dataset(hilly, factor, FIXTURE_MASK_NONE);
 }
 
 /* ---- Measuring ---- */
@@ -155,6 +160,34 @@ static void layers_are_seen_through_the_heights_that_are_there(void **state)
     through = measure(&options);
     expect_used(&through);
     expect_photographs(&through, 0, 0.3);
+    unlink(path);
+}
+
+/* Photographs know a texel through heights where without them all that they would take is masked, and the other way. */
+static void masked_photographs_are_seen_through_the_heights(void **state)
+{
+    (void)state;
+    weft_compress_options options = eight_layers();
+    write_masked_dataset(true, 1, FIXTURE_MASK_FIFTH);
+    weft_hold_out through = measure(&options);
+    expect_used(&through);
+    expect_photographs(&through, 0, 0.4);
+    unlink(path);
+}
+
+static void what_does_not_fit_into_memory_is_not_read(void **state)
+{
+    (void)state;
+    weft_compress_options options = eight_layers();
+    weft_dataset *dataset;
+    weft_hold_out result;
+    weft_error error = {0};
+    write_dataset(true, 1);
+    options.memory_bytes = 1 << 20;
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    assert_int_equal(weft_hold_out_measure(dataset, &options, 1, scratch, NULL, &result, &error), WEFT_BAD_USAGE);
+    assert_non_null(strstr(error.message, "the images that are held out"));
+    weft_dataset_close(dataset);
     unlink(path);
 }
 
@@ -342,6 +375,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_are_seen_through_the_heights_that_are_there),
+        cmocka_unit_test(masked_photographs_are_seen_through_the_heights),
+        cmocka_unit_test(what_does_not_fit_into_memory_is_not_read),
         cmocka_unit_test(heights_that_are_not_there_are_refused),
         cmocka_unit_test(a_material_has_the_heights_of_its_dataset),
         cmocka_unit_test_setup(prices_are_of_what_is_played, make_smaller),

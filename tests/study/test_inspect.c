@@ -28,7 +28,7 @@ static long long number_in(const json_t *object, const char *group, const char *
 static void a_dataset_says_what_it_holds_and_what_is_masked(void **state)
 {
     (void)state;
-    fixture_far_dataset("inspect.btf.h5", 3, 2, 2, grey, 1);
+    fixture_far_dataset("inspect.btf.h5", 3, 2, 2, grey, FIXTURE_MASK_ONE);
     json_t *description;
     weft_error error = {0};
     expect_ok(weft_verify("inspect.btf.h5", NULL, &description, &error), &error);
@@ -79,7 +79,7 @@ static void expect_refusal(const char *path)
 static void a_cut_dataset_is_refused(void **state)
 {
     (void)state;
-    fixture_far_dataset("inspect.btf.h5", 8, 8, 2, grey, 0);
+    fixture_far_dataset("inspect.btf.h5", 8, 8, 2, grey, FIXTURE_MASK_NONE);
     struct stat status;
     assert_int_equal(stat("inspect.btf.h5", &status), 0);
     for (int part = 1; part < 8; part++) {

@@ -105,7 +105,7 @@ static void layers_come_before_lobes(void **state)
 static void a_dataset_is_divided_by_pi_and_the_cosine(void **state)
 {
     (void)state;
-    fixture_far_dataset("model.btf.h5", 2, 2, 3, constant, 0);
+    fixture_far_dataset("model.btf.h5", 2, 2, 3, constant, FIXTURE_MASK_NONE);
     weft_model *model = open_model("model.btf.h5", NULL);
     weft_vec3 near_top = weft_direction_of_angles((weft_angles){0.2, 1});
     weft_rgb at_place =

@@ -50,7 +50,7 @@ static void close_raw(opened *o)
 static void at_measured_directions_the_samples_come_back(void **state)
 {
     (void)state;
-    fixture_far_dataset(path, 3, 2, 3, shiny, 0);
+    fixture_far_dataset(path, 3, 2, 3, shiny, FIXTURE_MASK_NONE);
     opened o = open_raw();
     for (int i = 0; i < 19; i += 3) {
         weft_vec3 light = weft_direction_of_angles(weft_ubo81_angles(i)),
@@ -67,7 +67,7 @@ static void at_measured_directions_the_samples_come_back(void **state)
 static void a_diffuse_texel_is_constant_between_directions(void **state)
 {
     (void)state;
-    fixture_far_dataset(path, 3, 2, 3, diffuse, 0);
+    fixture_far_dataset(path, 3, 2, 3, diffuse, FIXTURE_MASK_NONE);
     opened o = open_raw();
     for (int i = 0; i < 20; i++) {
         weft_rgb brdf;
@@ -83,7 +83,7 @@ static void a_diffuse_texel_is_constant_between_directions(void **state)
 static void texels_are_interpolated_and_repeated(void **state)
 {
     (void)state;
-    fixture_far_dataset(path, 3, 2, 2, diffuse, 0);
+    fixture_far_dataset(path, 3, 2, 2, diffuse, FIXTURE_MASK_NONE);
     opened o = open_raw();
     const weft_vec3 up = {0, 0, 1};
     weft_rgb between, repeated, wrapped;
@@ -101,7 +101,7 @@ static void texels_are_interpolated_and_repeated(void **state)
 static void a_masked_sample_takes_no_part(void **state)
 {
     (void)state;
-    fixture_far_dataset(path, 1, 1, 2, diffuse, 1);
+    fixture_far_dataset(path, 1, 1, 2, diffuse, FIXTURE_MASK_ONE);
     opened o = open_raw();
     weft_rgb brdf;
     const weft_vec3 up = {0, 0, 1};
@@ -115,7 +115,7 @@ static void a_masked_sample_takes_no_part(void **state)
 static void the_mean_is_that_of_all_texels(void **state)
 {
     (void)state;
-    fixture_far_dataset(path, 3, 2, 2, diffuse, 0);
+    fixture_far_dataset(path, 3, 2, 2, diffuse, FIXTURE_MASK_NONE);
     opened o = open_raw();
     weft_rgb brdf;
     expect_ok(weft_raw_btf_mean(o.raw, direction(10, 20), direction(3, 4), &brdf, NULL), &(weft_error){0});
@@ -127,7 +127,7 @@ static void the_mean_is_that_of_all_texels(void **state)
 static void directions_below_the_horizon_are_black(void **state)
 {
     (void)state;
-    fixture_far_dataset(path, 2, 2, 2, diffuse, 0);
+    fixture_far_dataset(path, 2, 2, 2, diffuse, FIXTURE_MASK_NONE);
     opened o = open_raw();
     weft_rgb brdf;
     expect_ok(weft_raw_btf_sample(o.raw, 0, 0, direction(95, 0), direction(0, 0), &brdf, NULL), &(weft_error){0});

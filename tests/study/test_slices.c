@@ -23,7 +23,7 @@ static void open_contenders(weft_contenders *contenders, weft_dataset **dataset)
 {
     weft_error error = {0};
     weft_material material;
-    fixture_far_dataset("slices.btf.h5", 2, 2, 4, painted, 0);
+    fixture_far_dataset("slices.btf.h5", 2, 2, 4, painted, FIXTURE_MASK_NONE);
     fixture_diffuse_material("slices.weft", 2, 2, grey);
     expect_ok(weft_material_read("slices.weft", &material, &error), &error);
     expect_ok(weft_contenders_open("slices.btf.h5", "slices.weft", &material, WEFT_ASSETS "/weaves/cotton_denim.wv",

@@ -108,7 +108,7 @@ static void the_period_is_found_to_a_twentieth_of_a_texel_under_noise(void **sta
     for (int i = 0; i < 3; i++) {
         fixture_cloth.width = size[i][0], fixture_cloth.height = size[i][1], fixture_cloth.left = 3.3,
         fixture_cloth.top = 5.9, noise = 0.2;
-        fixture_far_dataset(input, 70, 66, 2, waves, 1);
+        fixture_far_dataset(input, 70, 66, 2, waves, FIXTURE_MASK_ONE);
         weft_tile_report report;
         weft_error error = {0};
         expect_ok(find(NULL, &report, &error), &error);
@@ -130,7 +130,7 @@ static void the_weave_gives_the_phase_to_a_twentieth_of_a_texel_under_noise(void
         fixture_cloth.width = cell_x * fixture_cloth.weave.tile_width,
         fixture_cloth.height = cell_y * fixture_cloth.weave.tile_height;
         fixture_cloth.left = 4.27, fixture_cloth.top = 7.61, noise = 0.15;
-        fixture_far_dataset(input, 96, 96, 2, woven, 0);
+        fixture_far_dataset(input, 96, 96, 2, woven, FIXTURE_MASK_NONE);
         weft_tile_report report;
         weft_error error = {0};
         expect_ok(find(&fixture_cloth.weave, &report, &error), &error);
@@ -169,7 +169,7 @@ static void the_mean_tile_is_free_of_noise_and_keeps_the_mean(void **state)
 {
     (void)state;
     fixture_cloth.width = 12, fixture_cloth.height = 10, fixture_cloth.left = fixture_cloth.top = 0, noise = 0;
-    fixture_far_dataset(input, 96, 80, 2, waves, 0);
+    fixture_far_dataset(input, 96, 80, 2, waves, FIXTURE_MASK_NONE);
     weft_tile_report report;
     weft_error error = {0};
     expect_ok(find(NULL, &report, &error), &error);
@@ -178,7 +178,7 @@ static void the_mean_tile_is_free_of_noise_and_keeps_the_mean(void **state)
     expect_near("residual share", report.residual_share, 0, 0.05);
     expect_near("mean of image 5", mean_of_image(output, 5), mean_of_image(input, 5), 1e-3);
     noise = 0.1;
-    fixture_far_dataset(input, 96, 80, 2, waves, 0);
+    fixture_far_dataset(input, 96, 80, 2, waves, FIXTURE_MASK_NONE);
     expect_ok(find(NULL, &report, &error), &error);
     expect_near("residual relative to the mean", report.residual_relative, 0.1, 0.02);
 }
@@ -187,7 +187,7 @@ static void a_sample_masked_in_one_tile_comes_from_the_others(void **state)
 {
     (void)state;
     fixture_cloth.width = 12, fixture_cloth.height = 10, fixture_cloth.left = fixture_cloth.top = 0, noise = 0;
-    fixture_far_dataset(input, 36, 30, 2, waves, 1);
+    fixture_far_dataset(input, 36, 30, 2, waves, FIXTURE_MASK_ONE);
     weft_tile_report report;
     weft_error error = {0};
     expect_ok(find(NULL, &report, &error), &error);
@@ -209,7 +209,7 @@ static void a_masked_texel_looks_like_its_neighbours(void **state)
     weft_dataset *dataset;
     weft_tile_pictures pictures;
     weft_error error = {0};
-    fixture_far_dataset(input, 12, 12, 1, striped, 1);
+    fixture_far_dataset(input, 12, 12, 1, striped, FIXTURE_MASK_ONE);
     expect_ok(weft_dataset_open(input, &dataset, &error), &error);
     expect_ok(weft_tile_pictures_read(dataset, NULL, &pictures, &error), &error);
     assert_int_equal(pictures.count, 1);
@@ -233,12 +233,12 @@ static void expect_refusal(const char *with)
 static void what_has_no_tile_is_refused(void **state)
 {
     (void)state;
-    fixture_far_dataset(input, 64, 64, 2, only_noise, 0);
+    fixture_far_dataset(input, 64, 64, 2, only_noise, FIXTURE_MASK_NONE);
     expect_refusal("does not repeat along u");
     fixture_cloth.width = 40, fixture_cloth.height = 10, fixture_cloth.left = fixture_cloth.top = noise = 0;
-    fixture_far_dataset(input, 60, 60, 2, waves, 0);
+    fixture_far_dataset(input, 60, 60, 2, waves, FIXTURE_MASK_NONE);
     expect_refusal("does not repeat along u");
-    fixture_far_dataset(input, 6, 60, 2, waves, 0);
+    fixture_far_dataset(input, 6, 60, 2, waves, FIXTURE_MASK_NONE);
     expect_refusal("6 x 60 texels");
     fixture_near_dataset(input, 16, 4, waves);
     expect_refusal("near lights");
@@ -249,7 +249,7 @@ static void another_weave_is_refused(void **state)
     (void)state;
     read_weave("cotton_denim.wv");
     fixture_cloth.width = 15.5, fixture_cloth.height = 31, fixture_cloth.left = fixture_cloth.top = 2, noise = 0;
-    fixture_far_dataset(input, 64, 64, 3, woven, 0);
+    fixture_far_dataset(input, 64, 64, 3, woven, FIXTURE_MASK_NONE);
     weft_weave_free(&fixture_cloth.weave);
     read_weave("silk_shantung.wv");
     expect_refusal("does not look like the weave 'Silk shantung'");
@@ -260,7 +260,7 @@ static void the_command_says_what_it_did(void **state)
 {
     (void)state;
     fixture_cloth.width = 12, fixture_cloth.height = 10, fixture_cloth.left = fixture_cloth.top = 0, noise = 0;
-    fixture_far_dataset(input, 36, 30, 2, waves, 0);
+    fixture_far_dataset(input, 36, 30, 2, waves, FIXTURE_MASK_NONE);
     remove(output);
     assert_int_equal(system(WEFT_PROGRAM " tile tile.btf.h5 -o tile.tile.btf.h5 | grep -q 'tiles: 3.00 x 3.00'"), 0);
     assert_int_equal(access(output, F_OK), 0);

@@ -222,7 +222,7 @@ static void write_grid(int side, fixture_reflectance reflectance)
     weft_error error = {0};
     grid = grid_layout(DIRECTIONS);
     expect_ok(weft_splits_create(&grid, 0, 2, &splits, &error), &error);
-    fixture_far_dataset(path, side, side, 6, reflectance, 0);
+    fixture_far_dataset(path, side, side, 6, reflectance, FIXTURE_MASK_NONE);
 }
 
 static void forget_grid(void)
@@ -331,7 +331,7 @@ static void bytes_are_those_of_the_file(void **state)
     weft_priced_model model[WEFT_PRICED_MOST];
     weft_material material;
     weft_error error = {0};
-    fixture_far_dataset(path, 24, 24, 4, rough, 0);
+    fixture_far_dataset(path, 24, 24, 4, rough, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     const weft_priced_model *wanted =
         find(model, weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model), "1 lobe, T");
@@ -391,7 +391,7 @@ static void a_preset_predicts_size_and_error(void **state)
     (void)state;
     weft_dataset *dataset;
     weft_error error = {0};
-    fixture_far_dataset(path, 10, 9, 4, noisy, 0);
+    fixture_far_dataset(path, 10, 9, 4, noisy, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     weft_compress_options options = weft_compress_default_options();
     weft_preset_prediction prediction;
