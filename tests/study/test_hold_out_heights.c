@@ -168,10 +168,13 @@ static void masked_photographs_are_seen_through_the_heights(void **state)
 {
     (void)state;
     weft_compress_options options = eight_layers();
+    write_dataset(true, 1);
+    double whole = measure(&options).photographs_flat;
     write_masked_dataset(true, 1, FIXTURE_MASK_FIFTH);
     weft_hold_out through = measure(&options);
     expect_used(&through);
     expect_photographs(&through, 0, 0.4);
+    assert_true(through.photographs_flat < 2 * whole);
     unlink(path);
 }
 
