@@ -66,6 +66,7 @@ typedef struct weft_rig {
     weft_rig_settings settings;    /* set-up and exposure */
     weft_camera calibration;       /* of the camera */
     const weft_rig_poses *poses;   /* where the axes truly are, with the camera that goes with them; NULL: not known */
+    const char *poses_path;        /* their file, for messages */
     weft_sensor_noise noise;       /* of a raw value */
     double seconds_per_photograph; /* beyond moving, as the operator knows it; 0: a rehearsal measures it on one */
     weft_rig_camera camera;

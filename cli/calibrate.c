@@ -6,6 +6,7 @@
 #include "registration/axes/sightings.h"
 #include "registration/registration.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,6 +58,7 @@ typedef struct night {
     int views, unreachable; /* of the plan */
     double allowed_texels;  /* as far as registration looks */
     bool finds, directs;    /* whether it will find the target, and directions are well enough known */
+    bool good_enough;       /* both, in every view */
 } night;
 
 static bool is_new_view(const weft_plan *plan, int shot)
@@ -94,6 +96,7 @@ static weft_code expect(const weft_session *session, const weft_axes_sightings *
     n->allowed_texels = settings.limits.tolerance_mm * settings.width / opening_mm;
     n->finds = 3 * n->expectation.worst.texels < n->allowed_texels;
     n->directs = weft_deg_of_rad(n->expectation.direction_rad) < direction_limit_deg;
+    n->good_enough = count > 0 && n->unreachable == 0 && n->finds && n->directs;
     return code;
 }
 
@@ -121,8 +124,12 @@ static void say_night(const weft_common_options *common, const night *n)
                          "%d of the %d views of the plan were left aside: the axes of these shots do not reach "
                          "them",
                          n->unreachable, n->views);
-    if (e->poses == 0)
+    if (e->poses == 0) {
+        weft_command_say(common,
+                         "NOT good enough: no view of the plan is reached; turn in the shots what is to turn in "
+                         "the plan");
         return;
+    }
     weft_command_say(common, "expected before the target is looked at, %d poses: %.3f texels of 64 median, %.3f worst",
                      e->poses, e->median_texels, worst->texels);
     weft_command_say(common,
@@ -131,7 +138,10 @@ static void say_night(const weft_common_options *common, const night *n)
                      worst->turns.deg[0], worst->turns.deg[1], worst->turns.deg[2], worst->model_texels,
                      worst->scatter_texels);
     weft_command_say(common, "  the direction of a view: %.4f degrees at worst", weft_deg_of_rad(e->direction_rad));
-    if (n->finds && n->directs)
+    if (n->finds && n->directs && !n->good_enough)
+        weft_command_say(common, "good enough for %d of the %d views: registration looks %.0f texels far", e->poses,
+                         n->views, n->allowed_texels);
+    else if (n->good_enough)
         weft_command_say(common, "good enough: registration looks %.0f texels far", n->allowed_texels);
     else if (worst->scatter_texels > worst->model_texels)
         weft_command_say(common, "NOT good enough: the axes do not repeat; look for play, raise backlash_deg and "
@@ -166,6 +176,12 @@ static json_t *pack_joint(const weft_poses_file *file, int k)
                      e->point_mm);
 }
 
+/* JSON has no infinity. */
+static json_t *pack_expected(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
 static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_report *report, const night *n)
 {
     const weft_poses_file *file = &report->file;
@@ -175,13 +191,14 @@ static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_
         weft_json_append(&joints, pack_joint(file, k));
     for (int i = 0; i < report->not_told.count; i++)
         weft_json_append(&not_told, json_string(report->not_told.line[i]));
-    return json_pack("{ss si si sf sf sf sf sf so so si sf sf sf sf sb}", "event", "poses", "shots", sightings->count,
-                     "used", report->used, "held_out_rms_px", file->held_out_rms_px, "rms_px", file->rms_px, "point_px",
-                     file->point_px, "scatter_deg", weft_deg_of_rad(file->scatter_rad), "scatter_mm", file->scatter_mm,
-                     "joints", joints, "not_told", not_told, "poses", e->poses, "expected_median_texels",
-                     e->median_texels, "expected_worst_texels", e->worst.texels, "expected_direction_deg",
-                     weft_deg_of_rad(e->direction_rad), "allowed_texels", n->allowed_texels, "good_enough",
-                     n->finds && n->directs);
+    return json_pack("{ss si si sf sf sf sf sf so so si si so so so sf sb}", "event", "poses", "shots",
+                     sightings->count, "used", report->used, "held_out_rms_px", file->held_out_rms_px, "rms_px",
+                     file->rms_px, "point_px", file->point_px, "scatter_deg", weft_deg_of_rad(file->scatter_rad),
+                     "scatter_mm", file->scatter_mm, "joints", joints, "not_told", not_told, "poses", e->poses,
+                     "unreachable", n->unreachable, "expected_median_texels", pack_expected(e->median_texels),
+                     "expected_worst_texels", pack_expected(e->worst.texels), "expected_direction_deg",
+                     pack_expected(weft_deg_of_rad(e->direction_rad)), "allowed_texels", n->allowed_texels,
+                     "good_enough", n->good_enough);
 }
 
 /* ---- Running ---- */

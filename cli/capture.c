@@ -289,6 +289,7 @@ static weft_code capture_with_virtual_rig(capture_command *command, weft_error *
         WEFT_TRY(weft_virtual_settings_read(command->rig_file, &command->rig.settings, error));
     WEFT_TRY(weft_virtual_rig_open(&command->rig, &rig, error));
     rig.rig.poses = command->poses ? &poses.poses : NULL;
+    rig.rig.poses_path = command->poses;
     weft_code code = command->dry_run ? rehearse(command, &rig.rig, rig.warning, error)
                      : command->check ? check_rig(command, &rig.rig, NULL, error)
                                       : take_session(command, &rig.rig, &rig, error);

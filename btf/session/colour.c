@@ -57,8 +57,24 @@ json_t *weft_colour_pack(const weft_colour *colour)
                      colour->fitted.worst, "left_out", "mean", colour->left_out.mean, "worst", colour->left_out.worst);
 }
 
+/* JSON has nothing for what is not finite. */
+static weft_code check_numbers(const char *path, const weft_colour *colour, weft_error *error)
+{
+    double sum = 0;
+    for (int i = 0; i < 3 * colour->terms; i++)
+        sum += colour->matrix[i / colour->terms][i % colour->terms];
+    const char *wrong = !isfinite(sum)                                              ? "matrix"
+                        : !isfinite(colour->fitted.mean + colour->fitted.worst)     ? "fitted"
+                        : !isfinite(colour->left_out.mean + colour->left_out.worst) ? "left_out"
+                                                                                    : NULL;
+    return wrong ? weft_fail(error, WEFT_BAD_INPUT, "'%s' is not written: '%s' came out infinite, or as no number",
+                             path, wrong)
+                 : WEFT_OK;
+}
+
 weft_code weft_colour_write(const char *path, const weft_colour *colour, json_t *record, weft_error *error)
 {
+    WEFT_TRY(check_numbers(path, colour, error));
     json_t *root = json_pack("{si}", "weft_colour", COLOUR_VERSION), *packed = weft_colour_pack(colour);
     if (!packed || json_object_update(root, packed) != 0 || json_object_update(root, record) != 0) {
         json_decref(root);

@@ -43,8 +43,8 @@ weft_code weft_colour_unpack(json_t *json, const char *path, weft_colour *colour
 /* Reads a file of `weft colour`. Errors: as above. Thread-safe. */
 weft_code weft_colour_read(const char *path, weft_colour *colour, weft_error *error);
 
-/* Writes one atomically: the colour, and the members of `record` beside it (borrowed). Errors: WEFT_SYSTEM;
- * WEFT_BAD_USAGE where the path names no file. */
+/* Writes one atomically: the colour, and the members of `record` beside it (borrowed). Errors:
+ * WEFT_BAD_INPUT naming a number that is not finite; WEFT_SYSTEM; WEFT_BAD_USAGE where the path names no file. */
 weft_code weft_colour_write(const char *path, const weft_colour *colour, json_t *record, weft_error *error);
 
 #endif

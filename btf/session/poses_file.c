@@ -4,6 +4,7 @@
 #include "base/text/json_text.h"
 #include "btf/session/camera_json.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,9 +91,59 @@ static json_t *pack_texts(const char *const *text, int count)
     return list;
 }
 
+static double sum_of_joints(const weft_poses_file *file)
+{
+    double sum = 0;
+    for (int k = 0; k < WEFT_JOINTS; k++) {
+        const weft_joint *j = &file->poses.joint[k];
+        const weft_joint_error *e = &file->error[k];
+        sum += j->direction.x + j->direction.y + j->direction.z + j->point.x + j->point.y + j->point.z + j->scale +
+               j->uneven[0] + j->uneven[1] + j->wobble[0] + j->wobble[1] + j->wobble[2] + j->wobble[3];
+        sum += e->direction_rad + e->point_mm + e->scale + e->uneven_rad + e->wobble_rad;
+    }
+    return sum;
+}
+
+static double sum_of_home(const weft_poses_file *file)
+{
+    const weft_motion home = weft_motion_of_pose(&file->poses.home);
+    double sum = file->home_rotation_rad + file->home_translation_mm;
+    for (int i = 0; i < 3; i++)
+        sum += home.rotation[i] + home.translation[i];
+    return sum;
+}
+
+static double sum_of_lens(const weft_poses_file *file)
+{
+    const double *vignetting = file->poses.camera.vignetting;
+    double sum = vignetting[0] + vignetting[1] + vignetting[2];
+    for (int i = 0; i < WEFT_LENS_PARAMETERS; i++)
+        sum += weft_lens_parameter(&file->poses.camera, i) + file->lens_error[i];
+    return sum;
+}
+
+/* A sum is finite where all that it is of is. JSON has nothing for what is not. */
+static weft_code check_numbers(const char *path, const weft_poses_file *file, weft_error *error)
+{
+    const struct {
+        const char *name;
+        double sum;
+    } part[] = {{"rms_px", file->rms_px},     {"held_out_rms_px", file->held_out_rms_px},
+                {"point_px", file->point_px}, {"scatter", file->scatter_rad + file->scatter_mm},
+                {"home", sum_of_home(file)},  {"joints", sum_of_joints(file)},
+                {"camera", sum_of_lens(file)}};
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
+        if (!isfinite(part[i].sum))
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not written: '%s' came out infinite, or as no number",
+                             path, part[i].name);
+    }
+    return WEFT_OK;
+}
+
 weft_code weft_poses_write(const char *path, const weft_poses_file *file, const weft_poses_shot *shot, int shot_count,
                            const char *const *not_told, int not_told_count, weft_error *error)
 {
+    WEFT_TRY(check_numbers(path, file, error));
     json_t *scatter =
         json_pack("{sf sf}", "rotation_deg", weft_deg_of_rad(file->scatter_rad), "translation_mm", file->scatter_mm);
     json_t *root = json_pack("{si so so so so so sf sf sf so so so}", "weft_poses", POSES_VERSION, "camera",

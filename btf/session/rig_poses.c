@@ -138,3 +138,10 @@ weft_angles weft_pose_view(const weft_pose *pose)
 {
     return weft_angles_of_direction(weft_unit(weft_pose_camera_position(pose)));
 }
+
+bool weft_pose_is_above(const weft_pose *pose)
+{
+    /* Directions are stored as single floats, in which less than this is none. */
+    const double least_cosine = 1e-6;
+    return pose->translation.z > 0 && weft_unit(weft_pose_camera_position(pose)).z > least_cosine;
+}

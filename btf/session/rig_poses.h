@@ -70,6 +70,9 @@ weft_pose weft_rig_poses_at(const weft_rig_poses *poses, const weft_turns *turns
 /* The direction that a pose sees the origin of the plate from. */
 weft_angles weft_pose_view(const weft_pose *pose);
 
+/* Whether the middle of the plate is in front of the camera, and the camera above the plate. */
+bool weft_pose_is_above(const weft_pose *pose);
+
 /* Two unit vectors across a unit vector: e1, e2 and the vector are right-handed. */
 void weft_across(weft_vec3 direction, weft_vec3 *e1, weft_vec3 *e2);
 

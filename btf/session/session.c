@@ -147,15 +147,30 @@ static bool unpack_pose(json_t *json, weft_motion *pose)
         sound = fabs(w[i]) <= 361 && fabs(t[i]) <= largest_mm;
         w[i] = weft_rad_of_deg(w[i]);
     }
-    return sound;
+    weft_pose seen = weft_pose_of_motion(pose);
+    return sound && weft_pose_is_above(&seen);
 }
 
-/* What only some rigs know: of all shots or of none, as the first has it. */
+/* Whether shots have a field: of all or of none. */
+static weft_code are_all_told(json_t *plan, const char *name, const char *path, bool *told, weft_error *error)
+{
+    size_t count = json_array_size(plan);
+    *told = json_object_get(json_array_get(plan, 0), name);
+    for (size_t i = 1; i < count; i++) {
+        if (*told != (json_object_get(json_array_get(plan, i), name) != NULL))
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': some shots of the plan have '%s', shot %zu has none", path,
+                             name, *told ? i : 0);
+    }
+    return WEFT_OK;
+}
+
+/* What only some rigs know. */
 static weft_code unpack_places(json_t *plan, const char *path, weft_session *session, weft_error *error)
 {
     size_t count = (size_t)session->shot_count;
-    bool turns = json_object_get(json_array_get(plan, 0), "turns_deg");
-    bool poses = json_object_get(json_array_get(plan, 0), "pose");
+    bool turns = false, poses = false;
+    WEFT_TRY(are_all_told(plan, "turns_deg", path, &turns, error));
+    WEFT_TRY(are_all_told(plan, "pose", path, &poses, error));
     session->turns = turns ? calloc(count, sizeof *session->turns) : NULL;
     session->pose = poses ? calloc(count, sizeof *session->pose) : NULL;
     if ((turns && !session->turns) || (poses && !session->pose))

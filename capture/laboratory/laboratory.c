@@ -23,7 +23,7 @@ struct weft_laboratory {
     int lamp_count;
     char *sample, *identity;
     char camera_device[PATH_MAX];
-    char lens[PATH_MAX];
+    char lens[PATH_MAX], poses_path[PATH_MAX];
     weft_controller *controller;
     weft_relay *relay;
     weft_stage *stage;
@@ -45,19 +45,14 @@ static weft_code read_lens(weft_laboratory *lab, weft_error *error)
     return WEFT_OK;
 }
 
-/* Poses go with the size of the photographs that they were found in. */
 static weft_code read_poses(weft_laboratory *lab, weft_error *error)
 {
-    char path[PATH_MAX];
-    const weft_camera *lens = &lab->rig.calibration, *camera = &lab->poses.poses.camera;
     if (!lab->file.poses[0])
         return WEFT_OK;
-    WEFT_TRY(weft_rig_file_beside(&lab->file, lab->file.poses, path, sizeof path, error));
-    WEFT_TRY(weft_poses_read(path, &lab->poses, error));
-    if (camera->width != lens->width || camera->height != lens->height)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is for photographs of %d x %d pixels, the lens is for %d x %d",
-                         path, camera->width, camera->height, lens->width, lens->height);
+    WEFT_TRY(weft_rig_file_beside(&lab->file, lab->file.poses, lab->poses_path, sizeof lab->poses_path, error));
+    WEFT_TRY(weft_poses_read(lab->poses_path, &lab->poses, error));
     lab->rig.poses = &lab->poses.poses;
+    lab->rig.poses_path = lab->poses_path;
     return WEFT_OK;
 }
 

@@ -122,13 +122,19 @@ static variance of_scatter(const weft_axes_fit *fit, double opening_mm, const we
     return v;
 }
 
+/* A pose that shows the opening from behind or from the side, if only for some unknowns, says nothing. */
+static double deviation(double square)
+{
+    return square >= 0 ? sqrt(square) : INFINITY;
+}
+
 weft_expected_pose weft_axes_expect_pose(const weft_axes_fit *fit, const weft_rig_poses *nominal, double opening_mm,
                                          int texels, const weft_turns *turns)
 {
     double per_mm = texels / opening_mm;
     variance model = of_model(fit, nominal, opening_mm, turns), scatter = of_scatter(fit, opening_mm, turns);
-    return (weft_expected_pose){*turns, sqrt(model.mm2) * per_mm, sqrt(scatter.mm2) * per_mm,
-                                sqrt(model.mm2 + scatter.mm2) * per_mm, sqrt(model.rad2 + scatter.rad2)};
+    return (weft_expected_pose){*turns, deviation(model.mm2) * per_mm, deviation(scatter.mm2) * per_mm,
+                                deviation(model.mm2 + scatter.mm2) * per_mm, deviation(model.rad2 + scatter.rad2)};
 }
 
 /* ---- Poses of a plan ---- */

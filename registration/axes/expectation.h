@@ -25,7 +25,8 @@ typedef struct weft_expectation {
  * camera before phi of the sample. False where it cannot be seen so. Pure. */
 bool weft_axes_turns_like(const weft_axes_shot *shot, int count, weft_angles view, weft_turns *turns);
 
-/* Of one pose: the covariance of the fit through the derivatives of the pose, by differences. Pure. */
+/* Of one pose: the covariance of the fit through the derivatives of the pose, by differences. Infinite where the camera
+ * does not see the opening. Pure. */
 weft_expected_pose weft_axes_expect_pose(const weft_axes_fit *fit, const weft_rig_poses *nominal, double opening_mm,
                                          int texels, const weft_turns *turns);
 

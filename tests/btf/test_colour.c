@@ -24,6 +24,20 @@ static void write(const weft_colour *colour, const char *path)
     json_decref(record);
 }
 
+static void what_is_no_number_is_named(void **state)
+{
+    (void)state;
+    weft_colour colour = roots;
+    weft_error error = {0};
+    colour.matrix[2][5] = NAN;
+    assert_int_equal(weft_colour_write("none.json", &colour, NULL, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "'none.json' is not written: 'matrix' came out"));
+    colour = matrix;
+    colour.left_out.worst = INFINITY;
+    assert_int_equal(weft_colour_write("none.json", &colour, NULL, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "'none.json' is not written: 'left_out' came out"));
+}
+
 static void assert_same(const weft_colour *a, const weft_colour *b)
 {
     assert_int_equal(a->terms, b->terms);
@@ -154,6 +168,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_written_is_read),
+        cmocka_unit_test(what_is_no_number_is_named),
         cmocka_unit_test(a_colour_is_a_matrix_times_its_terms),
         cmocka_unit_test(twice_the_light_is_twice_the_colour),
         cmocka_unit_test(a_session_keeps_a_colour),

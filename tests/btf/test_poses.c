@@ -87,6 +87,31 @@ static void what_cannot_be_is_refused(void **state)
     assert_refused("\"rms_px\": 0.5", "\"rms_px\": \"small\"", "wrong type");
 }
 
+static void assert_not_written(const weft_poses_file *file, const char *said)
+{
+    weft_error error = {0};
+    assert_int_equal(weft_poses_write("none.poses.json", file, NULL, 0, NULL, 0, &error), WEFT_BAD_INPUT);
+    if (!strstr(error.message, said) || !strstr(error.message, "none.poses.json"))
+        fail_msg("'%s' does not say '%s'", error.message, said);
+}
+
+static void what_is_no_number_is_named(void **state)
+{
+    (void)state;
+    weft_poses_file file = example();
+    file.held_out_rms_px = INFINITY;
+    assert_not_written(&file, "'held_out_rms_px' came out infinite");
+    file = example();
+    file.error[2].wobble_rad = NAN;
+    assert_not_written(&file, "'joints' came out");
+    file = example();
+    file.poses.home.translation.y = NAN;
+    assert_not_written(&file, "'home' came out");
+    file = example();
+    file.poses.camera.cy = NAN;
+    assert_not_written(&file, "'camera' came out");
+}
+
 /* A motion is its pose, whichever part of the quaternion is the largest. */
 static void motions_come_back(void **state)
 {
@@ -113,6 +138,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(poses_are_read_as_they_were_written),
         cmocka_unit_test(what_cannot_be_is_refused),
+        cmocka_unit_test(what_is_no_number_is_named),
         cmocka_unit_test(motions_come_back),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

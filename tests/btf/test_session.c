@@ -111,8 +111,7 @@ static void places_of_the_axes_survive_the_round_trip(void **state)
     weft_error error = {0};
     weft_session written = example(), read;
     weft_turns turns[SHOTS] = {{{75, -15, 0}}, {{75, -15, 0}}, {{75.25, -15, 3}}};
-    weft_motion pose[SHOTS] = {
-        {{0.1, 0.2, 0.3}, {1, 2, 1000}}, {{0.1, 0.2, 0.3}, {1, 2, 1000}}, {{0, 0, 0}, {0, 0, 9}}};
+    weft_motion pose[SHOTS] = {{{3, 0.2, 0.3}, {1, 2, 1000}}, {{3, 0.2, 0.3}, {1, 2, 1000}}, {{3, 0, 0}, {0, 0, 9}}};
     assert_int_equal(weft_session_create(&written, &error), WEFT_OK);
     assert_int_equal(weft_session_open(folder, &read, &error), WEFT_OK);
     assert_null(read.turns);
@@ -129,10 +128,60 @@ static void places_of_the_axes_survive_the_round_trip(void **state)
     weft_pose known = weft_session_pose(&read, read.shot[0].view);
     assert_true(known.translation.y == 2);
     weft_session_free(&read);
-    pose[1].translation[0] = 1e7;
+}
+
+static void assert_second_pose_is_refused(weft_motion second)
+{
+    weft_error error = {0};
+    weft_session written = example(), read;
+    weft_motion pose[SHOTS] = {{{3, 0, 0}, {0, 0, 9}}, second, {{3, 0, 0}, {0, 0, 9}}};
+    written.pose = pose;
     assert_int_equal(weft_session_create(&written, &error), WEFT_OK);
     assert_int_equal(weft_session_open(folder, &read, &error), WEFT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "'pose' of shot 1 of the plan cannot be"));
+    assert_non_null(strstr(error.message, "session.json': 'pose' of shot 1 of the plan cannot be"));
+}
+
+static void poses_that_cannot_be_are_refused(void **state)
+{
+    (void)state;
+    assert_second_pose_is_refused((weft_motion){{3, 0, 0}, {1e7, 0, 9}});
+    /* Below the plate, behind it, and in it. */
+    assert_second_pose_is_refused((weft_motion){{0.1, 0, 0}, {0, 0, 9}});
+    assert_second_pose_is_refused((weft_motion){{0.1, 0, 0}, {0, 0, -9}});
+    assert_second_pose_is_refused((weft_motion){{WEFT_PI / 2, 0, 0}, {0, 0, 9}});
+}
+
+/* The session with poses and turns in all shots, but that shot `number` lacks what is called `name`. */
+static void assert_mix_is_refused(const char *name, int number, const char *said)
+{
+    weft_error error = {0};
+    weft_session written = example(), read;
+    weft_turns turns[SHOTS] = {{{0}}};
+    weft_motion pose[SHOTS] = {{{3, 0, 0}, {0, 0, 9}}, {{3, 0, 0}, {0, 0, 9}}, {{3, 0, 0}, {0, 0, 9}}};
+    char path[256], *text;
+    size_t size;
+    written.turns = turns;
+    written.pose = pose;
+    assert_int_equal(weft_session_create(&written, &error), WEFT_OK);
+    snprintf(path, sizeof path, "%s/session.json", folder);
+    assert_int_equal(weft_read_file(path, 1 << 20, &text, &size, &error), WEFT_OK);
+    char *at = strstr(text, name);
+    for (int i = 0; i < number; i++)
+        at = strstr(at + 1, name);
+    at[1] = 'x';
+    assert_int_equal(weft_write_file(path, text, size, &error), WEFT_OK);
+    free(text);
+    assert_int_equal(weft_session_open(folder, &read, &error), WEFT_BAD_INPUT);
+    if (!strstr(error.message, said) || !strstr(error.message, "session.json"))
+        fail_msg("'%s' does not say '%s'", error.message, said);
+}
+
+static void places_of_some_shots_alone_are_refused(void **state)
+{
+    (void)state;
+    assert_mix_is_refused("\"pose\"", 0, "some shots of the plan have 'pose', shot 0 has none");
+    assert_mix_is_refused("\"pose\"", 2, "some shots of the plan have 'pose', shot 2 has none");
+    assert_mix_is_refused("\"turns_deg\"", 0, "some shots of the plan have 'turns_deg', shot 0 has none");
 }
 
 static void a_sample_whose_name_is_not_utf_8_is_described_all_the_same(void **state)
@@ -250,6 +299,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(session_survives_the_round_trip),
         cmocka_unit_test(places_of_the_axes_survive_the_round_trip),
+        cmocka_unit_test(poses_that_cannot_be_are_refused),
+        cmocka_unit_test(places_of_some_shots_alone_are_refused),
         cmocka_unit_test(a_sample_whose_name_is_not_utf_8_is_described_all_the_same),
         cmocka_unit_test(journal_gives_back_what_was_appended),
         cmocka_unit_test(cut_last_line_is_forgotten_and_overwritten),

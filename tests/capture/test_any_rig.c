@@ -233,6 +233,7 @@ static void the_session_knows_where_the_axes_put_the_camera(void **state)
     weft_session session;
     weft_error error = {0};
     rig.poses = &poses;
+    rig.poses_path = "rig.poses.json";
     poses.camera.fx = 450;
     assert_int_equal(run(&rig, &summary, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "no axes that calibrated poses could be of"));
@@ -252,6 +253,42 @@ static void the_session_knows_where_the_axes_put_the_camera(void **state)
     assert_int_equal(run(&rig, &summary, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "begun with other poses of the rig"));
     remove_session();
+}
+
+static void assert_poses_are_refused(weft_rig *rig, const weft_rig_poses *poses, const char *said)
+{
+    weft_capture_summary summary;
+    weft_error error = {0};
+    rig->poses = poses;
+    assert_int_equal(run(rig, &summary, &error), WEFT_BAD_INPUT);
+    if (!strstr(error.message, said) || !strstr(error.message, "'rig.poses.json'"))
+        fail_msg("'%s' does not say '%s'", error.message, said);
+}
+
+/* Of photographs of another size, of another lens; and such as put the camera behind or below the plate. */
+static void poses_that_are_not_of_the_rig_are_refused(void **state)
+{
+    (void)state;
+    bench b = {0};
+    weft_rig rig = rig_of(&b);
+    rig.poses_path = "rig.poses.json";
+    rig.stage.turns = turns;
+    const weft_rig_poses sound = weft_rig_poses_nominal(&rig.calibration, 500);
+    weft_rig_poses poses = sound;
+    poses.camera.height = 80;
+    assert_poses_are_refused(&rig, &poses, "is for photographs of 96 x 80 pixels, the lens is for 96 x 96");
+    poses = sound;
+    poses.camera.k1 += 0.01;
+    assert_poses_are_refused(&rig, &poses, "another distortion or vignetting than the rig has: calibrate again");
+    poses = sound;
+    poses.camera.vignetting[2] += 0.01;
+    assert_poses_are_refused(&rig, &poses, "another distortion or vignetting than the rig has: calibrate again");
+    poses = sound;
+    poses.home.translation.z *= -1;
+    assert_poses_are_refused(&rig, &poses, "does not see the plate from above, with turns of 10 0 0 degrees");
+    poses = sound;
+    poses.joint[WEFT_CAMERA_THETA].scale = 1;
+    assert_poses_are_refused(&rig, &poses, "does not see the plate from above, with turns of 50 90 0 degrees");
 }
 
 static void a_photograph_during_which_the_stage_moved_is_taken_again(void **state)
@@ -350,6 +387,7 @@ int main(void)
         cmocka_unit_test(a_stage_that_cannot_be_homed_ends_the_run_with_its_message),
         cmocka_unit_test(another_rig_does_not_continue_a_session),
         cmocka_unit_test(the_session_knows_where_the_axes_put_the_camera),
+        cmocka_unit_test(poses_that_are_not_of_the_rig_are_refused),
         cmocka_unit_test(a_photograph_during_which_the_stage_moved_is_taken_again),
         cmocka_unit_test(a_stage_that_never_keeps_still_ends_the_run),
         cmocka_unit_test(whatever_fails_the_axes_stop_and_the_light_goes_off),

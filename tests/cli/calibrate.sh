@@ -29,6 +29,7 @@ for words in ("left out tv000_pv000/", "left out tv020_pv030/", "the target", "9
               "expected before the target is looked at, 11 poses", "axes of the light are not seen"):
     assert words in notes, (words, notes)
 poses = [e for e in events if e["event"] == "poses"][0]
+assert poses["good_enough"] is True and poses["unreachable"] == 0, poses
 assert poses["used"] == 9 and poses["shots"] == 11 and poses["poses"] == 11, poses
 assert 0 < poses["held_out_rms_px"] < 1.5 and poses["expected_worst_texels"] >= poses["expected_median_texels"] > 0
 file = json.load(open("rig.poses.json"))
@@ -40,6 +41,36 @@ printf '%s\n' theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg 30,0,0,0
 expect_ok capture --rig off.json --sample "$weave" --plan one.csv --poses rig.poses.json --truth-images 1 --truth-size 4 -o night
 grep -q '"pose"' night/session.json || fail "the session does not know the poses"
 expect_error 1 "begun with other poses" capture --rig off.json --sample "$weave" --plan one.csv -o night
+
+# Poses that are not of this rig, whatever is asked of it.
+sed 's/176/96/g' off.json >small.json
+for what in "" --dry-run --check; do
+    expect_error 1 "'rig.poses.json' is for photographs of 176 x 176" capture --rig small.json --sample "$weave" --plan one.csv --poses rig.poses.json -o no $what
+done
+"$python" - <<'PYTHON'
+import json
+poses = json.load(open("rig.poses.json"))
+poses["home"]["translation_mm"][2] *= -1
+json.dump(poses, open("behind.poses.json", "w"))
+poses["home"]["translation_mm"][2] *= -1
+poses["camera"]["k1"] += 0.1
+json.dump(poses, open("lens.poses.json", "w"))
+PYTHON
+expect_error 1 "'behind.poses.json' puts the camera" capture --rig off.json --sample "$weave" --plan one.csv --poses behind.poses.json -o no
+expect_error 1 "'lens.poses.json' is of a lens" capture --rig off.json --sample "$weave" --plan one.csv --poses lens.poses.json -o no
+
+# A night that the shots say nothing of, or not all, is not called good.
+view() { printf '%s\n' theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg "$@"; }
+view 30,180,0,0 30,180,10,0 30,180,20,0 30,180,30,0 30,180,40,0 30,180,50,0 30,180,60,0 30,180,70,0 >arc.csv
+expect_ok capture --rig off.json --sample "$weave" --plan arc.csv --truth-images 1 --truth-size 4 -o arc
+view 30,0,45,90 >beside.csv
+view 30,0,45,90 30,180,45,0 >both.csv
+expect_ok calibrate arc --plan both.csv --json -o arc.poses.json
+grep -q '"unreachable":1,.*"good_enough":false' out.log || fail "one view of two is good enough: $(cat out.log)"
+grep -q "good enough for 1 of the 2 views" out.log || fail "not said: $(cat out.log)"
+expect_ok calibrate arc --plan beside.csv --json -o arc.poses.json
+grep -q '"unreachable":1,.*"good_enough":false' out.log || fail "no view is good enough: $(cat out.log)"
+grep -q "NOT good enough: no view of the plan is reached" out.log || fail "not said: $(cat out.log)"
 
 # What cannot be.
 sed 's/"weft_poses": 1/"weft_poses": 3/' rig.poses.json >new.poses.json

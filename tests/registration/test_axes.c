@@ -356,6 +356,23 @@ static void a_turntable_is_found(void **state)
     weft_axes_report_free(&report);
 }
 
+/* What is not seen is not known, whatever is known of the other poses. */
+static void nothing_is_expected_of_a_pose_that_sees_nothing(void **state)
+{
+    (void)state;
+    weft_virtual_settings settings = off_settings();
+    series s = take(&settings, 7);
+    weft_axes_report report = calibrate(&s);
+    /* From the zenith the opening is in front of this camera; from the side it is not. */
+    const weft_turns turns[] = {{{0, 0, 0}}, {{170, 0, 0}}, {{10, 0, 0}}};
+    report.fit.poses.home.translation.z = 1;
+    weft_expectation e;
+    weft_error error = {0};
+    assert_int_equal(weft_axes_expect(&report.fit, &s.nominal, 36, TEXELS, turns, 3, &e, &error), WEFT_OK);
+    assert_true(isinf(e.worst.texels) && e.worst.turns.deg[0] == 170);
+    weft_axes_report_free(&report);
+}
+
 static void shots_that_tell_too_little_are_refused(void **state)
 {
     (void)state;
@@ -408,6 +425,7 @@ int main(void)
         cmocka_unit_test(a_bumped_target_is_left_out),
         cmocka_unit_test(the_lens_is_found_where_it_may),
         cmocka_unit_test(a_turntable_is_found),
+        cmocka_unit_test(nothing_is_expected_of_a_pose_that_sees_nothing),
         cmocka_unit_test(shots_that_tell_too_little_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

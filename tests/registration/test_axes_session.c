@@ -93,6 +93,7 @@ static int take_all(void **state)
     take("series", "series.csv", NULL);
     calibrate();
     c.rig.rig.poses = &c.report.file.poses;
+    c.rig.rig.poses_path = "series";
     take("night", "night.csv", &truth_request);
     sound(weft_session_open("night", &c.night, &error), &error);
     sound(truth_read("night.truth.h5", &c.real, &error), &error);
