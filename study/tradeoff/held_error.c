@@ -276,10 +276,11 @@ static weft_code append(weft_asked_samples *all, weft_asked_samples *more, weft_
     all->group = group ? group : all->group;
     if (!value || !sample || !group)
         return weft_fail_memory(error, "samples", count * (sizeof *value + sizeof *sample));
-    memcpy(value + all->count, more->value, more->count * sizeof *value);
-    memcpy(sample + all->count, more->sample, more->count * sizeof *sample);
-    if (more->count > 0)
+    if (more->count > 0) {
+        memcpy(value + all->count, more->value, more->count * sizeof *value);
+        memcpy(sample + all->count, more->sample, more->count * sizeof *sample);
         memcpy(group + all->count, more->group, more->count);
+    }
     all->count = count;
     return WEFT_OK;
 }
