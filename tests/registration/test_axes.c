@@ -356,8 +356,8 @@ static void a_turntable_is_found(void **state)
     weft_axes_report_free(&report);
 }
 
-/* What is not seen is not known, whatever is known of the other poses. */
-static void nothing_is_expected_of_a_pose_that_sees_nothing(void **state)
+/* What is not seen is not known, and is the worst, whatever is known of the other poses. */
+static void what_is_expected_is_the_worst_and_the_median(void **state)
 {
     (void)state;
     weft_virtual_settings settings = off_settings();
@@ -365,9 +365,19 @@ static void nothing_is_expected_of_a_pose_that_sees_nothing(void **state)
     weft_axes_report report = calibrate(&s);
     /* From the zenith the opening is in front of this camera; from the side it is not. */
     const weft_turns turns[] = {{{0, 0, 0}}, {{170, 0, 0}}, {{10, 0, 0}}};
-    report.fit.poses.home.translation.z = 1;
     weft_expectation e;
     weft_error error = {0};
+    /* The worst comes first, so that neither end stands for all. */
+    const weft_turns steep_first[] = {{{75, 0, 0}}, {{0, 0, 0}}, {{40, 0, 0}}};
+    weft_expected_pose one[3];
+    for (int i = 0; i < 3; i++)
+        one[i] = weft_axes_expect_pose(&report.fit, &s.nominal, 36, TEXELS, &steep_first[i]);
+    assert_true(one[0].texels > one[2].texels && one[2].texels > one[1].texels);
+    assert_int_equal(weft_axes_expect(&report.fit, &s.nominal, 36, TEXELS, steep_first, 3, &e, &error), WEFT_OK);
+    assert_true(e.worst.texels == one[0].texels && e.median_texels == one[2].texels);
+    assert_true(e.direction_rad == fmax(one[0].direction_rad, fmax(one[1].direction_rad, one[2].direction_rad)));
+    assert_true(one[2].direction_rad < e.direction_rad);
+    report.fit.poses.home.translation.z = 1;
     assert_int_equal(weft_axes_expect(&report.fit, &s.nominal, 36, TEXELS, turns, 3, &e, &error), WEFT_OK);
     assert_true(isinf(e.worst.texels) && e.worst.turns.deg[0] == 170);
     weft_axes_report_free(&report);
@@ -425,7 +435,7 @@ int main(void)
         cmocka_unit_test(a_bumped_target_is_left_out),
         cmocka_unit_test(the_lens_is_found_where_it_may),
         cmocka_unit_test(a_turntable_is_found),
-        cmocka_unit_test(nothing_is_expected_of_a_pose_that_sees_nothing),
+        cmocka_unit_test(what_is_expected_is_the_worst_and_the_median),
         cmocka_unit_test(shots_that_tell_too_little_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
