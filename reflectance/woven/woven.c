@@ -109,7 +109,8 @@ static weft_real filament_integrand_at(const weft_prepared_segment *prepared, we
     const weft_spine *spine = &prepared->spine;
     weft_mirror at = {.sin_v = v.sine, .cos_v = v.cosine};
     weft_real across = filament_mirror(half, &at);
-    if (!(across > 0 && at.cos_u > spine->cos_umax && faces_both(&at, light, view)))
+    bool inside = fabs(at.sin_u) * spine->cos_umax < at.cos_u * spine->sin_umax; /* |u| < umax */
+    if (!(across > 0 && inside && faces_both(&at, light, view)))
         return 0;
     weft_real u = atan2(half.y, half.z), radius = weft_filament_radius(prepared, spine, u, at.sin_u, at.cos_u);
     weft_real fade = filament_fade(prepared->segment.delta, spine->umax, u);

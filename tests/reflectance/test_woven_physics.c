@@ -161,6 +161,29 @@ static void frozen_radius_is_that_of_the_shorter_spine(void **state)
     assert_true(beyond > 1000);
 }
 
+/* Down to the flattest yarns, whose cosines are all 1: the ends of a yarn of 1e-6 are where those of its point are. */
+static void the_integrand_of_a_prepared_yarn_is_that_of_its_point(void **state)
+{
+    (void)state;
+    uint64_t random = 9;
+    int lit = 0, dark = 0;
+    for (int i = 0; i < 20000; i++) {
+        weft_segment s = random_segment(&random, i % 2 == 0);
+        s.umax = exp(random_between(&random, log((weft_real)1e-6), log((weft_real)1.3)));
+        weft_real tilt = random_between(&random, (weft_real)0.01, (weft_real)0.99) * s.umax;
+        tilt += i % 4 < 2 ? 0 : s.umax; /* within, and beyond the end */
+        weft_vec3 light = weft_unit(weft_vec3_of(random_between(&random, -1, 1), sin(tilt), cos(tilt)));
+        weft_real limit = s.psi != 0 ? s.umax : (weft_real)1.5, at = random_between(&random, -limit, limit);
+        weft_prepared_segment prepared = weft_segment_prepare(&s);
+        double got = (double)weft_prepared_integrand(&prepared, (weft_angle){at, sin(at), cos(at)}, light, light);
+        double expected = (double)weft_yarn_highlight(&s, at, light, light).integrand;
+        assert_true(fabs(got - expected) <= 1e3 * (double)WEFT_REAL_EPSILON * expected);
+        lit += s.psi == 0 && s.umax < (weft_real)1e-4 && expected > 0;
+        dark += s.psi == 0 && s.umax < (weft_real)1e-4 && expected == 0;
+    }
+    assert_true(lit > 500 && dark > 500);
+}
+
 /* Eq. 9 by the distance to the end, from double: s^2 (3 - 2 s). There the printed 1 - c^2 (3 - 2 c) is all rounding in
  * single precision. */
 static void fade_keeps_its_digits_to_the_end_of_the_yarn(void **state)
@@ -300,6 +323,7 @@ int main(void)
         cmocka_unit_test(mean_of_the_texture_is_the_reflectance),
         cmocka_unit_test(small_twist_tends_to_the_filament),
         cmocka_unit_test(frozen_radius_is_that_of_the_shorter_spine),
+        cmocka_unit_test(the_integrand_of_a_prepared_yarn_is_that_of_its_point),
         cmocka_unit_test(fade_keeps_its_digits_to_the_end_of_the_yarn),
         cmocka_unit_test(mean_of_a_texture_with_frozen_radius_is_the_reflectance),
         cmocka_unit_test(a_spine_that_ends_in_a_spike_keeps_its_length),
