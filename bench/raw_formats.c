@@ -28,9 +28,11 @@ typedef struct collection {
     double streaming_ms; /* of processor */
 } collection;
 
-static weft_code begin(void *context, const weft_raw_plan *plan, weft_direction_map *directions, weft_error *error)
+static weft_code begin(void *context, const weft_raw_plan *plan, weft_direction_map *directions,
+                       weft_relief_map *relief, weft_error *error)
 {
     (void)directions;
+    (void)relief;
     (void)error;
     collection *c = context;
     c->plan = *plan;
