@@ -1,14 +1,16 @@
 #include "capture/status_page.h"
 
 #include "base/atomic_file.h"
+#include "base/numeric/statistics.h"
 #include "base/picture/colour.h"
-#include "base/text/html_page.h"
+#include "base/text/chart.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { THUMBNAIL = 160, CHART_WIDTH = 1000, CHART_HEIGHT = 200 };
+enum { THUMBNAIL = 160 };
 
 /* One photograph of which the lamp is known. */
 typedef struct lamp_level {
@@ -76,12 +78,6 @@ static void measure_lamp(weft_status_page *status, int shot, const weft_shot_rec
     status->lamp[status->lamp_count++] = (lamp_level){status->noted, value / record->exposure_s / cos(theta_rad)};
 }
 
-static int compare_levels(const void *a, const void *b)
-{
-    double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
 /* 0 where nothing is known. */
 static double median_level(const weft_status_page *status)
 {
@@ -90,8 +86,7 @@ static double median_level(const weft_status_page *status)
         return 0;
     for (int i = 0; i < status->lamp_count; i++)
         level[i] = status->lamp[i].level;
-    qsort(level, (size_t)status->lamp_count, sizeof *level, compare_levels);
-    double median = level[status->lamp_count / 2];
+    double median = weft_quantile(level, (size_t)status->lamp_count, 0.5);
     free(level);
     return median;
 }
@@ -137,23 +132,26 @@ static void write_tiles(weft_page *page, const weft_status_page *status, const w
     fputs("</div>", page->html);
 }
 
-/* The lamp over the photographs of this run: 10 % to either side of its median. */
-static void write_drift(weft_page *page, const weft_status_page *status)
+/* The lamp over the photographs of this run. */
+static weft_code write_drift(weft_page *page, const weft_status_page *status, weft_error *error)
 {
-    double median = median_level(status), span = fmax(status->noted - 1, 1);
-    if (!(median > 0))
-        return;
-    fprintf(
-        page->html,
-        "<h2>Lamp</h2><p class=\"note\">On the white patches, by photograph, 10 %% to either side of its median.</p>"
-        "<svg class=\"chart\" viewBox=\"0 0 %d %d\"><line x1=\"0\" x2=\"%d\" y1=\"%d\" y2=\"%d\" stroke=\"gray\"/>",
-        CHART_WIDTH, CHART_HEIGHT, CHART_WIDTH, CHART_HEIGHT / 2, CHART_HEIGHT / 2);
+    double median = median_level(status);
+    double(*point)[2] = calloc((size_t)status->lamp_count + 1, sizeof *point);
+    if (!point)
+        return weft_fail_memory(error, "status page", (size_t)status->lamp_count * sizeof *point);
     for (int i = 0; i < status->lamp_count; i++) {
-        double change = weft_clamp(status->lamp[i].level / median - 1, -0.1, 0.1);
-        fprintf(page->html, "<circle class=\"colour0\" r=\"3\" cx=\"%.1f\" cy=\"%.1f\"/>",
-                status->lamp[i].number / span * CHART_WIDTH, (0.5 - change / 0.2) * CHART_HEIGHT);
+        point[i][0] = status->lamp[i].number;
+        point[i][1] = median > 0 ? 100 * (status->lamp[i].level / median - 1) : NAN;
     }
-    fputs("</svg>", page->html);
+    weft_chart_series lamp = {NULL, 0, false, status->lamp_count, (const double(*)[2])point};
+    weft_chart chart = {"The lamp, as the white patches show it",
+                        {"photograph of this run", "", 0, 1},
+                        {"against its median", " %", -5, 5},
+                        1,
+                        &lamp};
+    weft_chart_write(page, &chart);
+    free(point);
+    return WEFT_OK;
 }
 
 static void write_faults(weft_page *page, const weft_status_counts *counts, const char *why)
@@ -192,7 +190,11 @@ static weft_code write_page(const weft_status_page *status, const weft_status_co
     WEFT_TRY(weft_page_begin(status->folder, status->session->sample, &page, error));
     write_tiles(&page, status, counts);
     write_faults(&page, counts, why);
-    write_drift(&page, status);
+    weft_code code = write_drift(&page, status, error);
+    if (code != WEFT_OK) {
+        weft_page_abandon(&page);
+        return code;
+    }
     write_gallery(&page, status);
     return weft_page_finish(&page, error);
 }

@@ -3,13 +3,13 @@
  *
  *     <div class="tiles">          the few numbers that matter most, by weft_page_tile
  *     <p class="note">             an explanation, smaller
- *     <div class="row">            figures side by side
+ *     <div class="row">            figures side by side; "row even": in columns of one width that fill the page
  *     <div class="gallery">        cards; each is a <figure> with a <div> of up to three pictures and a <figcaption>
  *     <table class="long">         many rows and columns: smaller, and the heading stays in sight
  *     <td class="text">            a cell of words, at the left; a table's first column is at the left anyway
  *     <tr class="bad">, "weak"     a row that reports a failure, or something to look at; also <figure class="bad">
- *     <svg class="chart">          as wide as the page
- *     <svg class="plot">           a scatter of points, by study/tradeoff/plot.h; <div class="plots"> holds three
+ *     <svg class="plot">           points and curves, by base/text/chart.h, or a scatter, by study/tradeoff/plot.h;
+ *                                  <div class="plots"> holds two or three
  *     <div class="pairs">          rows of two small pictures side by side
  *     class="colour0" to "colour4" what belongs together
  *

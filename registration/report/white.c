@@ -1,7 +1,9 @@
 #include "registration/report/tables.h"
 
 #include "base/numeric/statistics.h"
+#include "base/text/chart.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* Mean of the channels of a white level. */
@@ -47,28 +49,28 @@ static double level_of_stay(const weft_registration *r, const weft_stay *stay, d
     return weft_quantile(scratch, count, 0.5);
 }
 
-/* A dot for every stay: its median white level against the median of all, over the order in which they were taken. */
-static void write_drift(weft_page *page, const weft_registration *r, double overall, double *scratch)
+/* The median white level of every stay against the median of all, over the order in which they were taken. */
+static weft_code write_drift(weft_page *page, const weft_registration *r, double overall, double *scratch,
+                             weft_error *error)
 {
-    enum { width = 1000, height = 160, margin = 40 };
-    const double reach = 0.05;
-    int last = 1;
-    for (int i = 0; i < r->survey.stay_count; i++)
-        last = r->survey.stay[i].stay > last ? r->survey.stay[i].stay : last;
-    fprintf(page->html, "<svg class=\"chart\" viewBox=\"0 0 %d %d\" font-size=\"12\" fill=\"#5b6675\">", width, height);
-    for (int tick = -1; tick <= 1; tick++)
-        fprintf(
-            page->html,
-            "<line x1=\"%d\" x2=\"%d\" y1=\"%d\" y2=\"%d\" stroke=\"#dfe3e8\"/><text x=\"4\" y=\"%d\">%+d %%</text>",
-            margin, width - 10, height / 2 - tick * 60, height / 2 - tick * 60, height / 2 - tick * 60 + 4, 5 * tick);
-    for (int i = 0; i < r->survey.stay_count; i++) {
+    int count = r->survey.stay_count;
+    double(*point)[2] = calloc((size_t)count + 1, sizeof *point);
+    if (!point)
+        return weft_fail_memory(error, "white levels", (size_t)count * sizeof *point);
+    for (int i = 0; i < count; i++) {
         double level = level_of_stay(r, &r->survey.stay[i], scratch);
-        double y = weft_clamp((level / overall - 1) / reach, -1.2, 1.2);
-        if (level > 0)
-            fprintf(page->html, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"#2b6cb0\"/>",
-                    margin + 10 + (double)(width - margin - 30) * r->survey.stay[i].stay / last, height / 2 - 60 * y);
+        point[i][0] = r->survey.stay[i].stay;
+        point[i][1] = level > 0 ? 100 * (level / overall - 1) : NAN;
     }
-    fputs("</svg>\n", page->html);
+    weft_chart_series stays = {NULL, 0, false, count, (const double(*)[2])point};
+    weft_chart chart = {"The lamp over the session",
+                        {"stay of the camera", "", 0, 0},
+                        {"white level against the median", " %", -5, 5},
+                        1,
+                        &stays};
+    weft_chart_write(page, &chart);
+    free(point);
+    return WEFT_OK;
 }
 
 weft_code weft_write_whites(weft_page *page, const weft_session *session, const weft_registration *r, weft_error *error)
@@ -91,10 +93,8 @@ weft_code weft_write_whites(weft_page *page, const weft_session *session, const 
                             "disagree by (%)");
     for (int ring = 0; ring < WEFT_RING_COUNT && overall > 0; ring++)
         write_ring(page, ring, overall, level, disagreement, collect_levels(session, r, ring, level, disagreement));
-    fputs("</table>\n<p>White level of every stay of the camera, in the order in which they were taken:</p>\n",
-          page->html);
-    if (overall > 0)
-        write_drift(page, r, overall, level);
+    fputs("</table>\n", page->html);
+    weft_code code = overall > 0 ? write_drift(page, r, overall, level, error) : WEFT_OK;
     free(level);
-    return WEFT_OK;
+    return code;
 }

@@ -2,9 +2,11 @@
 #include "tests/support/cmocka_all.h"
 
 #include "base/atomic_file.h"
+#include "base/text/chart.h"
 #include "base/text/html_page.h"
 #include "tests/support/scratch_folder.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -66,6 +68,58 @@ static void headings_of_columns_say_that_they_are(void **state)
     free(html);
 }
 
+/* The place of the n-th disc of a page. */
+static void place_of_disc(const char *html, int n, double place[2])
+{
+    const char *disc = html;
+    for (int i = 0; i <= n; i++) {
+        disc = strstr(disc + 1, "<circle");
+        assert_non_null(disc);
+    }
+    assert_int_equal(sscanf(strstr(disc, " cx="), " cx=\"%lf\" cy=\"%lf\"", &place[0], &place[1]), 2);
+}
+
+static void a_chart_has_its_points_where_its_ticks_say(void **state)
+{
+    (void)state;
+    weft_page page;
+    const double point[][2] = {{0, -5}, {10, 20}, {5, NAN}, {20, 7.5}};
+    const weft_chart_series series = {HOSTILE, 1, true, 4, point};
+    const weft_chart chart = {HOSTILE, {HOSTILE, "\u00b0", 0, 10}, {"y", " %", 0, 1}, 1, &series};
+    assert_int_equal(weft_page_begin("report", "Chart", &page, NULL), WEFT_OK);
+    weft_chart_write(&page, &chart);
+    char *html = finished_page(&page);
+    double first[2], second[2], last[2];
+    place_of_disc(html, 0, first);
+    place_of_disc(html, 1, second);
+    place_of_disc(html, 2, last);
+    assert_true(fabs(second[0] - (first[0] + last[0]) / 2) < 0.11);
+    assert_true(fabs(last[1] - (first[1] + second[1]) / 2) < 0.11);
+    assert_true(second[1] < first[1]);
+    char tick[96];
+    snprintf(tick, sizeof tick, "text-anchor=\"middle\">20\u00b0</text>");
+    assert_non_null(strstr(html, tick));
+    snprintf(tick, sizeof tick, "y=\"%.1f\" text-anchor=\"end\">-5 %%</text>", first[1] + 4);
+    assert_non_null(strstr(html, tick));
+    assert_null(strstr(html, "it's"));
+    assert_null(strstr(html, "nan"));
+    free(html);
+}
+
+static void a_chart_of_nothing_is_not_drawn(void **state)
+{
+    (void)state;
+    weft_page page;
+    const double nowhere[][2] = {{NAN, 1}, {1, INFINITY}};
+    const weft_chart_series series[] = {{"none", 0, true, 2, nowhere}, {"empty", 0, false, 0, NULL}};
+    const weft_chart chart = {"Nothing", {"x", "", 0, 1}, {"y", "", 0, 1}, 2, series};
+    assert_int_equal(weft_page_begin("report", "Chart", &page, NULL), WEFT_OK);
+    weft_chart_write(&page, &chart);
+    char *html = finished_page(&page);
+    assert_null(strstr(html, "<svg"));
+    free(html);
+}
+
 static void a_page_that_is_given_up_leaves_no_file(void **state)
 {
     (void)state;
@@ -81,6 +135,8 @@ int main(void)
         cmocka_unit_test(nothing_in_a_text_is_markup),
         cmocka_unit_test(a_picture_lies_beside_the_page_under_its_caption),
         cmocka_unit_test(headings_of_columns_say_that_they_are),
+        cmocka_unit_test(a_chart_has_its_points_where_its_ticks_say),
+        cmocka_unit_test(a_chart_of_nothing_is_not_drawn),
         cmocka_unit_test(a_page_that_is_given_up_leaves_no_file),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

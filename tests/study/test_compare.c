@@ -120,9 +120,12 @@ static void the_page_tells_the_errors_that_the_functions_have(void **state)
     assert_int_equal(comparison.left_out.count, 0);
     char *page = read_page("compare-report/index.html"), row[128];
     const weft_error_summary *m = &comparison.model[0].texture.all;
-    snprintf(row, sizeof row, "<td>all</td><td>%ld</td><td>%.2f %%</td><td>%.4f</td>", m->count,
-             100 * m->median_relative, m->relative_rmse);
+    snprintf(row, sizeof row, "<td>all</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td>", m->count, m->relative_rmse,
+             100 * m->median_relative);
     assert_non_null(strstr(page, row));
+    snprintf(row, sizeof row, "<title>compressed, 30\u00b0: %.4g</title>",
+             comparison.model[0].texture.by_view[2].relative_rmse);
+    assert_non_null(strstr(strstr(page, "Error by view"), row));
     assert_int_equal(access("compare-report/texels-2-compressed-difference.png", R_OK), 0);
     assert_true((strstr(page, "There are no pictures of scenes") != NULL) == !comparison.scenes.drawn);
     free(page);

@@ -1,5 +1,7 @@
 #include "study/compare/page/sections.h"
 
+#include "base/text/chart.h"
+
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,6 +20,32 @@ static void print_held_out(weft_page *page, const weft_hold_out *held_out)
     fputs(". All other numbers of this page are of samples that were fitted.</p>\n", page->html);
 }
 
+/* What a reader of pictures asks first: the first scene, a drape. */
+static void print_drape(weft_page *page, const weft_scenes *scenes)
+{
+    const weft_error_summary *e = &scenes->scene[0].error[WEFT_MODE_COMPRESSED];
+    char label[80];
+    if (!scenes->drawn || e->count == 0)
+        return;
+    snprintf(label, sizeof label, "on a drape, %.1f %% from the photographs", 100 * e->relative_rmse);
+    weft_page_tile(page, label, "%.0f dB", e->psnr_db);
+}
+
+/* Whether the numbers are good ones. */
+static void explain_tiles(weft_page *page, const weft_comparison *comparison)
+{
+    fputs("<p class=\"note\">", page->html);
+    if (comparison->scenes.drawn)
+        fputs("As a rule of thumb, two pictures are hard to tell apart from 40 dB on, at 30 dB they look alike until "
+              "they lie side by side, and below 25 dB the difference is plain. ",
+              page->html);
+    if (comparison->has_held_out)
+        fputs("What the photographs interpolated leave is what lies between their directions: a material that leaves "
+              "no more is a good one.",
+              page->html);
+    fputs("</p>\n", page->html);
+}
+
 void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison)
 {
     const weft_error_summary *all = &comparison->model[0].texture.all;
@@ -27,6 +55,7 @@ void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const
     if (comparison->has_held_out)
         print_held_out(page, &comparison->held_out);
     fputs("<div class=\"tiles\">\n", page->html);
+    print_drape(page, &comparison->scenes);
     if (comparison->has_held_out)
         weft_page_tile(page, "relative RMSE where it was not fitted", "%.4f",
                        comparison->held_out.material.all.relative_rmse);
@@ -36,10 +65,11 @@ void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const
                    comparison->half_float_bytes / comparison->material_bytes);
     if (comparison->left_out.count > 0) {
         weft_page_tile(page, "relative RMSE, photographs left out", "%.4f", comparison->left_out.mean_relative_rmse);
-        weft_page_tile(page, "median relative error, photographs left out", "%.4f",
-                       comparison->left_out.mean_median_relative);
+        weft_page_tile(page, "median relative error, photographs left out", "%.2f %%",
+                       100 * comparison->left_out.mean_median_relative);
     }
     fputs("</div>\n", page->html);
+    explain_tiles(page, comparison);
 }
 
 /* What the columns of errors mean. */
@@ -122,15 +152,15 @@ static void print_levels(weft_page *page, const weft_material *material)
     fputs("<p class=\"note\">Measured over all valid samples when the file was written, decoded as a player sees it; "
           "percentiles to 2 % of their value.</p>\n<table>",
           page->html);
-    weft_page_columns(page, "texels|median relative|80th percentile|RMSE|relative RMSE|PSNR");
+    weft_page_columns(page, "texels|relative RMSE|median relative|80th percentile|PSNR|RMSE");
     for (int i = 0; i < material->level_count; i++) {
         const weft_material_level *level = &material->level[i];
         const weft_error_summary *e = &level->error;
         fprintf(page->html,
-                "<tr><td>%d \u00d7 %d</td><td>%.2f %%</td><td>%.2f %%</td><td>%.4f</td><td>%.4f</td><td>%.1f "
-                "dB</td></tr>\n",
-                level->width, level->height, 100 * e->median_relative, 100 * e->percentile80_relative, e->rmse,
-                e->relative_rmse, e->psnr_db);
+                "<tr><td>%d \u00d7 %d</td><td>%.4f</td><td>%.2f %%</td><td>%.2f %%</td><td>%.1f dB</td>"
+                "<td>%.4f</td></tr>\n",
+                level->width, level->height, e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative,
+                e->psnr_db, e->rmse);
     }
     fputs("</table>\n", page->html);
 }
@@ -139,8 +169,8 @@ static void print_error(weft_page *page, const char *name, const weft_error_summ
 {
     if (e->count == 0)
         return;
-    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.2f %%</td><td>%.4f</td></tr>\n", name, e->count,
-            100 * e->median_relative, e->relative_rmse);
+    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td></tr>\n", name, e->count,
+            e->relative_rmse, 100 * e->median_relative);
 }
 
 static void print_rings(weft_page *page, const char *title, const weft_error_summary ring[WEFT_RING_COUNT])
@@ -153,16 +183,42 @@ static void print_rings(weft_page *page, const char *title, const weft_error_sum
     }
 }
 
-static void print_directions(weft_page *page, const weft_dataset_layout *layout, const weft_measurement *measurement)
+/* The relative RMSE of every model by ring of the view, or of the light. */
+static void draw_rings(weft_page *page, const weft_comparison *comparison, bool of_light)
 {
+    double point[WEFT_CONTENDER_COUNT - 1][WEFT_RING_COUNT][2];
+    weft_chart_series series[WEFT_CONTENDER_COUNT - 1];
+    for (int m = 0; m < comparison->model_count; m++) {
+        const weft_measurement *texture = &comparison->model[m].texture;
+        const weft_error_summary *ring = of_light ? texture->by_light : texture->by_view;
+        for (int i = 0; i < WEFT_RING_COUNT; i++) {
+            point[m][i][0] = 15 * i;
+            point[m][i][1] = ring[i].count > 0 ? ring[i].relative_rmse : NAN;
+        }
+        series[m] =
+            (weft_chart_series){comparison->model[m].name, m, true, WEFT_RING_COUNT, (const double(*)[2])point[m]};
+    }
+    weft_chart chart = {of_light ? "Error by light" : "Error by view",
+                        {of_light ? "light from the normal" : "view from the normal", "\u00b0", 0, 75},
+                        {"relative RMSE, fitted samples", "", 0, 0.1},
+                        comparison->model_count,
+                        series};
+    weft_chart_write(page, &chart);
+}
+
+static void print_directions(weft_page *page, const weft_dataset_layout *layout, const weft_comparison *comparison)
+{
+    const weft_measurement *measurement = &comparison->model[0].texture;
     fputs("<h2>Error by direction</h2>\n", page->html);
     fprintf(page->html,
             "<p class=\"note\">Level 0 against the dataset, measured for this page over %ld of %ld texels. ",
             measurement->texel_count, (long)layout->width * layout->height);
     explain_error(page);
-    fputs("</p>\n", page->html);
-    fputs("<table>", page->html);
-    weft_page_columns(page, "|values|median relative|relative RMSE");
+    fputs("</p>\n<div class=\"plots\">\n", page->html);
+    draw_rings(page, comparison, false);
+    draw_rings(page, comparison, true);
+    fputs("</div>\n<table>", page->html);
+    weft_page_columns(page, "the material|values|relative RMSE|median relative");
     print_error(page, "all", &measurement->all);
     print_rings(page, "view from the normal|||", measurement->by_view);
     print_rings(page, "light from the normal|||", measurement->by_light);
@@ -241,7 +297,10 @@ static weft_code print_fit_value(weft_page *page, const char *name, json_t *valu
     char *text = bare ? NULL : json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(4));
     if (!bare && !text)
         return weft_fail_memory(error, name, 0);
-    weft_page_fact(page, name, "%s", bare ? bare : text);
+    snprintf(title, sizeof title, "%s", name);
+    for (char *c = title; *c; c++)
+        *c = *c == '_' ? ' ' : *c;
+    weft_page_fact(page, title, "%s", bare ? bare : text);
     free(text);
     return WEFT_OK;
 }
@@ -302,7 +361,7 @@ weft_code weft_page_numbers(weft_page *page, const weft_dataset_layout *layout, 
                             const weft_comparison *comparison, weft_error *error)
 {
     print_levels(page, material);
-    print_directions(page, layout, &comparison->model[0].texture);
+    print_directions(page, layout, comparison);
     print_certificate(page, comparison);
     print_sizes(page, comparison);
     WEFT_TRY(print_fit(page, material, error));

@@ -29,7 +29,7 @@ weft_code weft_page_pair(weft_page *page, const char *name, const weft_image_pai
     WEFT_TRY(weft_picture_exposure(&pair->sample, pair->mask, &exposure, error));
     fputs("<h3>", page->html);
     weft_page_text(page, caption);
-    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);
+    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row even\">\n", exposure);
     weft_image picture;
     WEFT_TRY(weft_picture_encode(&pair->sample, pair->mask, exposure, &picture, error));
     WEFT_TRY(put_picture(page, name, "sample", &picture, "photograph", error));
@@ -77,7 +77,7 @@ static weft_code put_models(weft_page *page, int index, const weft_comparison *c
     WEFT_TRY(weft_picture_exposure(&photograph->sample, photograph->mask, &exposure, error));
     weft_image picture;
     snprintf(name, sizeof name, "texels-%d", index);
-    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);
+    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row even\">\n", exposure);
     WEFT_TRY(weft_picture_encode(&photograph->sample, photograph->mask, exposure, &picture, error));
     WEFT_TRY(put_picture(page, name, "sample", &picture, "photograph", error));
     for (int i = 0; i < comparison->model_count; i++) {

@@ -40,7 +40,7 @@ static weft_code put_scene(weft_page *page, int index, const weft_scenes *scenes
     WEFT_TRY(weft_picture_exposure(&scene->picture[WEFT_MODE_RAW], NULL, &exposure, error));
     fputs("<h3>", page->html);
     weft_page_text(page, scene->caption);
-    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row\">\n", exposure);
+    fprintf(page->html, " (shown %.3g times brighter)</h3>\n<div class=\"row even\">\n", exposure);
     for (int model = 0; model < WEFT_SCENE_MODELS; model++) {
         if (!scenes->has[model])
             continue;

@@ -38,7 +38,7 @@ static weft_code put_difference(weft_page *page, const char *row, const weft_tru
 static weft_code put_row(weft_page *page, const char *row, const weft_truth_pictures *under, double exposure,
                          weft_error *error)
 {
-    fputs("<div class=\"row\">\n", page->html);
+    fputs("<div class=\"row even\">\n", page->html);
     for (int model = 0; model < WEFT_TRUTH_MODELS; model++) {
         weft_image picture;
         WEFT_TRY(weft_picture_encode(&under->picture[model], NULL, exposure, &picture, error));
@@ -72,8 +72,8 @@ static weft_code put_scene(weft_page *page, int index, const weft_traced_truth *
 
 static void print_errors(weft_page *page, const weft_truth_error *e)
 {
-    fprintf(page->html, "<td>%.4f</td><td>%.2f dB</td><td>%.2f %%</td><td>%.4f</td>", e->error.relative_rmse,
-            e->error.psnr_db, 100 * e->error.median_relative, e->block_relative_rmse);
+    fprintf(page->html, "<td>%.4f</td><td>%.2f %%</td><td>%.1f dB</td><td>%.4f</td>", e->error.relative_rmse,
+            100 * e->error.median_relative, e->error.psnr_db, e->block_relative_rmse);
 }
 
 static void print_row(weft_page *page, const weft_truth_scene *scene, int model, bool flat)
@@ -92,8 +92,8 @@ static void print_table(weft_page *page, const weft_traced_truth *truth)
     fputs("<table><tr><td></td><td></td><th scope=\"colgroup\" colspan=\"4\">all light</th><th scope=\"colgroup\" "
           "colspan=\"4\">light of the cloth near by</th><td></td></tr>\n",
           page->html);
-    weft_page_columns(page, "scene||relative RMSE|PSNR|median relative|of blocks|relative RMSE|PSNR|median "
-                            "relative|of blocks|noise of the truth");
+    weft_page_columns(page, "scene||relative RMSE|median relative|PSNR|of blocks|relative RMSE|median "
+                            "relative|PSNR|of blocks|noise of the truth");
     for (int i = 0; i < WEFT_TRUTH_SCENE_COUNT; i++)
         for (int model = 0; model < WEFT_TRUTH_TRACED; model++) {
             print_row(page, &truth->scene[i], model, false);
