@@ -1,6 +1,7 @@
 #include "registration/report/tables.h"
 
 #include "base/numeric/statistics.h"
+#include "base/text/chart.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -84,6 +85,35 @@ void weft_write_faults(weft_page *page, const weft_session *session, const weft_
     fputs("</table>\n", page->html);
 }
 
+/* What is drawn of a stay. */
+typedef enum stay_quantity { STAY_ERROR, STAY_SHIFT } stay_quantity;
+
+/* A dot for every stay that did not fail, over the angle of its view. */
+static weft_code draw_stays(weft_page *page, const weft_session *session, const weft_registration *r,
+                            stay_quantity quantity, weft_error *error)
+{
+    int count = 0;
+    double(*point)[2] = calloc((size_t)r->survey.stay_count + 1, sizeof *point);
+    if (!point)
+        return weft_fail_memory(error, "stays", (size_t)r->survey.stay_count * sizeof *point);
+    for (int stay = 0; stay < r->survey.stay_count; stay++) {
+        if (r->pose[stay].source == WEFT_POSE_FAILED)
+            continue;
+        point[count][0] = weft_deg_of_rad(r->survey.view[r->survey.stay[stay].view].theta_rad);
+        point[count++][1] = quantity == STAY_ERROR ? 1000 * weft_registration_uncertainty_texels(session, r, stay)
+                                                   : r->pose[stay].shift_mm;
+    }
+    const weft_chart_series stays = {NULL, 0, false, count, (const double(*)[2])point};
+    const weft_chart chart = {quantity == STAY_ERROR ? "Random error of every stay" : "Shift of every stay",
+                              {"view from the normal", "\u00b0", 0, 75},
+                              {quantity == STAY_ERROR ? "thousandths of a texel" : "mm", "", 0, 0.1},
+                              1,
+                              &stays};
+    weft_chart_write(page, &chart);
+    free(point);
+    return WEFT_OK;
+}
+
 weft_code weft_write_rings(weft_page *page, const weft_session *session, const weft_registration *r, weft_error *error)
 {
     fputs(
@@ -107,7 +137,10 @@ weft_code weft_write_rings(weft_page *page, const weft_session *session, const w
                 s.worst_uncertainty, s.median_correlation, s.worst_correlation, s.median_shift_mm, s.worst_shift_mm,
                 100 * s.saturated);
     }
-    fputs("</table>\n", page->html);
+    fputs("</table>\n<div class=\"plots\">\n", page->html);
+    WEFT_TRY(draw_stays(page, session, r, STAY_ERROR, error));
+    WEFT_TRY(draw_stays(page, session, r, STAY_SHIFT, error));
+    fputs("</div>\n", page->html);
     return WEFT_OK;
 }
 
