@@ -306,6 +306,10 @@ static void grant_wishes(weft_application *a)
         weft_application_change_surroundings(a);
     if (i->wants_mesh)
         weft_application_change_mesh(a);
+    if (i->wants_file) {
+        weft_application_open(a, i->wants_file);
+        i->wants_file = NULL;
+    }
     if (i->wants_reload) {
         i->wants_reload = false;
         weft_application_open(a, NULL);

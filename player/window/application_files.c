@@ -32,6 +32,7 @@ weft_code weft_application_open_files(weft_application *a, weft_error *error)
     weft_error no_watch;
     if (weft_watch_create(&a->watch, &no_watch) != WEFT_OK)
         weft_log_line(&a->setup.log, no_watch.message);
+    weft_recent_files_read(&a->recent);
     WEFT_TRY(weft_space_mouse_create(&a->mouse, error));
     return weft_scene_loader_create(a->setup.request, &a->loader, error);
 }
@@ -41,6 +42,7 @@ void weft_application_close_files(weft_application *a)
     weft_scene_loader_free(a->loader);
     weft_space_mouse_free(a->mouse);
     weft_watch_free(a->watch);
+    weft_recent_files_free(&a->recent);
 }
 
 /* ---- Files ---- */
@@ -61,6 +63,18 @@ static weft_code watch_files(weft_application *a, weft_error *error)
         WEFT_TRY(weft_watch_set(a->watch, slot, is_file ? path[slot] : NULL, error));
     }
     return WEFT_OK;
+}
+
+/* What is shown comes to the head of the list; where it cannot be stored, that is no reason to stop. */
+static void remember_files(weft_application *a)
+{
+    const weft_settings *s = &a->setup.request->settings;
+    const char *const path[] = {s->mesh, s->environment, s->weave, s->dataset, s->material};
+    weft_error error;
+    for (size_t i = 0; i < sizeof path / sizeof *path; i++) {
+        if (path[i] && weft_recent_files_add(&a->recent, path[i], &error) != WEFT_OK)
+            weft_log_line(&a->setup.log, error.message);
+    }
 }
 
 void weft_application_open(weft_application *a, const char *path)
@@ -123,6 +137,7 @@ static weft_code show_arrived(weft_application *a, char note[WEFT_NOTE_SIZE], we
     snprintf(note, WEFT_NOTE_SIZE, "%s", said);
     if (said[0])
         weft_log_line(&a->setup.log, said);
+    remember_files(a);
     /* Even where another file failed in the same slice: the names shown before are gone. */
     weft_error ignored;
     weft_code watched = watch_files(a, code == WEFT_OK ? error : &ignored);

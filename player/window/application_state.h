@@ -8,6 +8,7 @@
 #include "player/window/application.h"
 #include "player/window/history.h"
 #include "player/window/interaction.h"
+#include "player/window/recent_files.h"
 #include "player/window/space_mouse/space_mouse.h"
 #include "player/window/watch.h"
 #include "player/window/weave_edit.h"
@@ -19,6 +20,7 @@ struct weft_application {
     weft_scene_loader *loader;
     weft_space_mouse *mouse;
     weft_watch *watch; /* NULL where the system has none */
+    weft_recent_files recent;
     double polled_s;
     char mouse_message[WEFT_MESSAGE_SIZE]; /* told last */
     /* The picture */

@@ -21,6 +21,7 @@ typedef struct weft_interaction {
     /* What the caller takes note of and resets: */
     bool changed; /* the picture is out of date */
     bool wants_screenshot, wants_quit, wants_reload, wants_undo, wants_redo;
+    const char *wants_file;         /* to be opened, or NULL */
     const char *wants_mesh;         /* name of a built-in mesh, or NULL */
     const char *wants_surroundings; /* name of a built-in environment, "none", or NULL */
     char said[96];                  /* what a key did, to be told; or "" */

@@ -305,6 +305,18 @@ static void picture_section(weft_application *a)
     i->changed |= weft_ui_toggle("Tint extrapolation", &scene->show_extrapolation);
 }
 
+/* ---- Files ---- */
+
+static void recent_section(weft_application *a)
+{
+    for (int i = 0; i < a->recent.count; i++) {
+        const char *path = a->recent.path[i];
+        if (weft_ui_entry_chosen(strrchr(path, '/') + 1, path))
+            a->interaction.wants_file = path;
+    }
+    weft_ui_dim_text("Or drop a file on the window.");
+}
+
 /* ---- Facts ---- */
 
 static void size_rows(const weft_application *a)
@@ -341,7 +353,10 @@ static void facts_section(const weft_application *a)
     weft_ui_value("Picture", text);
     size_rows(a);
     weft_ui_gap();
-    weft_ui_dim_text(a->errors[0] ? a->errors : "The errors of what is visible are measured once the picture rests.");
+    weft_ui_dim_text(a->errors[0] ? a->errors
+                     : a->interaction.available[WEFT_MODE_RAW]
+                         ? "The errors of what is visible are measured once the picture rests."
+                         : "Drop the dataset on the window, and the errors are measured.");
 }
 
 void weft_panel_show(weft_application *a, int width, int height)
@@ -364,6 +379,8 @@ void weft_panel_show(weft_application *a, int width, int height)
             picture_section(a);
         if (weft_ui_section("Size and error", true))
             facts_section(a);
+        if (weft_ui_section("Recent files", false))
+            recent_section(a);
         weft_ui_gap();
         weft_ui_dim_text("H: mouse and keys");
         weft_ui_panel_end();

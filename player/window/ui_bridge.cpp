@@ -384,6 +384,16 @@ bool weft_ui_button(const char *label)
     return ImGui::Button(label);
 }
 
+bool weft_ui_entry_chosen(const char *label, const char *whole)
+{
+    ImGui::PushID(whole);
+    const bool chosen = ImGui::Selectable(label);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", whole);
+    ImGui::PopID();
+    return chosen;
+}
+
 bool weft_ui_toggle(const char *label, bool *value)
 {
     return ImGui::Checkbox(label, value);

@@ -70,6 +70,8 @@ void weft_ui_dim_text(const char *text);
 void weft_ui_swatch(uint32_t colour, const char *meaning);
 void weft_ui_value(const char *label, const char *value);
 bool weft_ui_button(const char *label);
+/* One of several lines to choose from, with all of it under the pointer; `whole` differs from that of the others. */
+bool weft_ui_entry_chosen(const char *label, const char *whole);
 bool weft_ui_toggle(const char *label, bool *value);
 /* `low`, `high`: of what the user may choose; a value beyond them stays until then. `format` as printf takes it for one
  * double; `logarithmic` needs 0 < low. */
