@@ -5,6 +5,7 @@
 #include "cli/describe.h"
 #include "study/hold_out/record.h"
 #include "study/inspect/model_report.h"
+#include "study/tradeoff/frame_timer.h"
 #include "study/tradeoff/preset.h"
 
 #include <limits.h>
@@ -21,6 +22,7 @@ typedef struct compress_command {
     int hold_out;             /* splits; 0: off */
     int lobes, table, layers; /* NOT_GIVEN, or as in the options */
     weft_preset preset;
+    double least_fps; /* 0: any */
 } compress_command;
 
 enum { NOT_GIVEN = -1 };
@@ -130,6 +132,10 @@ static const weft_option option_table[] = {
          "large it is, and how well it does. small: few bytes; best: the least error; balanced: between them, where "
          "more bytes gain little (see tradeoff)",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(compress_command, preset), .words = preset_words},
+    {"fps", .argument = "N",
+     .help = "Choose as --preset does (default: best), of the models of which this machine draws at least so many "
+             "frames a second: 730 x 400 pixels, every texel, level and direction evaluated",
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(compress_command, least_fps), .low = 0.1, .high = 10000},
     {"hold-out", .argument = "off|N",
      .help = "Fit some texels N times without about a tenth of the views and of the lights, others each time, and say "
              "how well the material predicts these (default: 1); the material itself is fitted to all images",
@@ -142,6 +148,13 @@ static const weft_option option_table[] = {
     {0},
 };
 
+/* Without a preset, fast frames are to be as good as they can be. */
+static weft_preset_wish wish_of(const compress_command *command)
+{
+    bool alone = command->preset == WEFT_PRESET_NONE && command->least_fps > 0;
+    return (weft_preset_wish){alone ? WEFT_PRESET_BEST : command->preset, command->least_fps};
+}
+
 /* A preset chooses what these options say. */
 static weft_code check_preset(const compress_command *command, weft_error *error)
 {
@@ -149,11 +162,12 @@ static weft_code check_preset(const compress_command *command, weft_error *error
     bool chosen = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || command->layers != NOT_GIVEN ||
                   o->light_table || o->table_components > 0 || o->frames != usual.frames || o->target_error > 0 ||
                   o->budget_bytes > 0;
-    if (command->preset == WEFT_PRESET_NONE || !chosen)
+    if (wish_of(command).preset == WEFT_PRESET_NONE || !chosen)
         return WEFT_OK;
-    return weft_fail(error, WEFT_BAD_USAGE,
-                     "--preset chooses the model: leave out --lobes, --table, --light-table, --tables, --layers, "
-                     "--frames, --error and --budget");
+    return weft_fail(
+        error, WEFT_BAD_USAGE,
+        "--preset and --fps choose the model: leave out --lobes, --table, --light-table, --tables, --layers, "
+        "--frames, --error and --budget");
 }
 
 static weft_code check(void *values, weft_error *error)
@@ -391,38 +405,69 @@ static weft_code measure_hold_out(const compress_command *command, weft_dataset 
     return code;
 }
 
+/* "12.3 ms a frame (81 frames/s)", or "" where nothing was drawn. */
+static void print_speed(double frame_ms, char text[64])
+{
+    text[0] = 0;
+    if (frame_ms > 0)
+        snprintf(text, 64, "%.1f ms a frame (%.0f frames/s)", frame_ms, 1000 / frame_ms);
+}
+
 /* Before the work: what the preset chose, and what is predicted of it. */
 static weft_code choose_preset(const compress_command *command, weft_dataset *dataset, weft_compress_options *options,
                                const weft_progress *progress, weft_preset_prediction *prediction, weft_error *error)
 {
-    char scratch_path[PATH_MAX];
+    char scratch_path[PATH_MAX], speed[64];
+    const weft_preset_wish wish = wish_of(command);
     *prediction = (weft_preset_prediction){0};
-    if (command->preset == WEFT_PRESET_NONE)
+    if (wish.preset == WEFT_PRESET_NONE)
         return WEFT_OK;
     snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
-    WEFT_TRY(weft_preset_predict(dataset, command->preset, scratch_path, progress, options, prediction, error));
-    weft_command_say(&command->common, "preset %s: %s (%s)", weft_preset_name(prediction->preset), prediction->model,
+    WEFT_TRY(weft_preset_predict(dataset, &wish, scratch_path, progress, options, prediction, error));
+    print_speed(prediction->frame_ms, speed);
+    weft_command_say(&command->common, "preset %s: %s (%s)", weft_preset_name(wish.preset), prediction->model,
                      prediction->arguments);
-    weft_command_say(&command->common, "  predicted: %.3f MB, relative RMSE %.3f on directions that are not fitted",
-                     prediction->bytes * 1e-6, prediction->error);
+    weft_command_say(&command->common, "  predicted: %.3f MB, relative RMSE %.3f on directions that are not fitted%s%s",
+                     prediction->bytes * 1e-6, prediction->error, speed[0] ? ", " : "", speed);
     json_t *object = command->common.json ? weft_preset_to_json(prediction) : NULL;
     weft_code code = object ? weft_command_describe(&command->common, "predicted", object, error) : WEFT_OK;
     json_decref(object);
     return code;
 }
 
-static void say_prediction(const compress_command *command, const weft_preset_prediction *prediction,
-                           const weft_hold_out *held_out)
+static weft_code say_speed(const compress_command *command, const weft_preset_prediction *prediction,
+                           const weft_material *material, weft_error *error)
+{
+    weft_frame_timer *timer;
+    double frame_ms;
+    char predicted[64], measured[64];
+    if (!(prediction->frame_ms > 0))
+        return WEFT_OK;
+    WEFT_TRY(weft_frame_timer_open(&timer, error));
+    weft_code code = weft_frame_timer_of_material(timer, material, &frame_ms, error);
+    weft_frame_timer_close(timer);
+    WEFT_TRY(code);
+    print_speed(prediction->frame_ms, predicted);
+    print_speed(frame_ms, measured);
+    if (measured[0])
+        weft_command_say(&command->common, "predicted %s, is %s (%+.1f %%)", predicted, measured,
+                         100 * (frame_ms / prediction->frame_ms - 1));
+    return WEFT_OK;
+}
+
+static weft_code say_prediction(const compress_command *command, const weft_preset_prediction *prediction,
+                                const weft_hold_out *held_out, const weft_material *material, weft_error *error)
 {
     double bytes = (double)weft_file_bytes(command->output);
-    if (prediction->preset == WEFT_PRESET_NONE)
-        return;
+    if (prediction->wish.preset == WEFT_PRESET_NONE)
+        return WEFT_OK;
     weft_command_say(&command->common, "predicted %.3f MB, is %.3f MB (%+.1f %%)", prediction->bytes * 1e-6,
                      bytes * 1e-6, 100 * (bytes / prediction->bytes - 1));
     if (held_out->split_count > 0)
         weft_command_say(&command->common, "predicted relative RMSE %.3f %s, is %.3f (%+.1f %%)", prediction->error,
                          weft_hold_out_about(held_out), held_out->material.all.relative_rmse,
                          100 * (held_out->material.all.relative_rmse / prediction->error - 1));
+    return say_speed(command, prediction, material, error);
 }
 
 static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
@@ -448,7 +493,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     }
     if (code == WEFT_OK && held_out.split_count > 0)
         code = weft_hold_out_store(&held_out, &material, error);
-    if (code == WEFT_OK && prediction.preset != WEFT_PRESET_NONE)
+    if (code == WEFT_OK && prediction.wish.preset != WEFT_PRESET_NONE)
         code = weft_material_put_metadata(&material, "predicted", weft_preset_to_json(&prediction), error);
     if (code == WEFT_OK)
         code = weft_material_write(command->output, &material, error);
@@ -464,7 +509,8 @@ static weft_code compress_dataset(const compress_command *command, const char *p
         say_layers(&command->common, &options, &report);
         say_errors(&command->common, &material);
         say_sizes(command, layout, &report);
-        say_prediction(command, &prediction, &held_out);
+        if (code == WEFT_OK)
+            code = say_prediction(command, &prediction, &held_out, &material, error);
     }
     weft_material_free(&material);
     weft_dataset_close(dataset);

@@ -100,3 +100,20 @@ size_t weft_preset_choose(const weft_offer *offer, size_t count, weft_preset pre
         return best;
     return preset == WEFT_PRESET_SMALL ? small : find_bend(offer, count, small, best);
 }
+
+weft_code weft_preset_choose_fast(weft_offer *offer, size_t count, weft_preset preset, double most_ms,
+                                  weft_offer_time *ask, void *context, size_t *chosen, size_t *fastest,
+                                  weft_error *error)
+{
+    double frame_ms, least_ms = INFINITY;
+    *fastest = count;
+    while ((*chosen = weft_preset_choose(offer, count, preset)) < count) {
+        WEFT_TRY(ask(context, *chosen, &frame_ms, error));
+        if (frame_ms <= most_ms)
+            break;
+        offer[*chosen].may_be_chosen = false;
+        *fastest = frame_ms < least_ms ? *chosen : *fastest;
+        least_ms = fmin(least_ms, frame_ms);
+    }
+    return WEFT_OK;
+}

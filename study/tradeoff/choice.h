@@ -2,6 +2,8 @@
 #ifndef WEFT_STUDY_TRADEOFF_CHOICE_H
 #define WEFT_STUDY_TRADEOFF_CHOICE_H
 
+#include "base/status.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -39,5 +41,15 @@ bool weft_offer_is_beaten(const weft_offer *offer, size_t count, size_t which);
  *
  * Returns `count` where nothing may be chosen. Pure. */
 size_t weft_preset_choose(const weft_offer *offer, size_t count, weft_preset preset);
+
+/* Milliseconds of a frame of an offer; 0 where nothing can be drawn. */
+typedef weft_code weft_offer_time(void *context, size_t which, double *frame_ms, weft_error *error);
+
+/* The same among those whose frames take at most `most_ms`. A time is asked for only where the offer would be chosen:
+ * one that is too slow may be chosen no longer, and the preset chooses anew. Where none is left *chosen is `count`, and
+ * *fastest the offer that came nearest (`count` without any). Errors: those of `ask`. */
+weft_code weft_preset_choose_fast(weft_offer *offer, size_t count, weft_preset preset, double most_ms,
+                                  weft_offer_time *ask, void *context, size_t *chosen, size_t *fastest,
+                                  weft_error *error);
 
 #endif

@@ -3,8 +3,10 @@
 #include "base/text/json_text.h"
 #include "compress/compress.h"
 #include "study/hold_out/record.h"
+#include "study/tradeoff/frame_timer.h"
 #include "study/tradeoff/held_error.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,12 +16,15 @@ enum { ERROR_SIDE = 24, SURFACE_SIDE = 32, SIZE_SIDE = 32, SPLIT = 1 /* the meas
 
 typedef struct choosing {
     weft_dataset *dataset;
+    const weft_preset_wish *wish;
     const weft_compress_options *given;
     const char *scratch_path;
     const weft_progress *progress;
+    weft_frame_timer *timer;
     int count;
     weft_priced_model model[WEFT_PRICED_MOST];
     weft_offer offer[WEFT_PRICED_MOST];
+    weft_preset_prediction prediction[WEFT_PRICED_MOST]; /* of those that were asked for it */
 } choosing;
 
 /* What is chosen of the options; all else is as it was given. */
@@ -159,8 +164,9 @@ static weft_code added_bytes(const weft_preset_prediction *prediction, const wef
     return predicted > 0 ? WEFT_OK : weft_fail_memory(error, "prediction", 0);
 }
 
+/* What it weighs, and how long a frame of it takes. */
 static weft_code fit_block(const choosing *work, const weft_compress_options *options, weft_weight *weight,
-                           weft_error *error)
+                           double *frame_ms, weft_error *error)
 {
     weft_excerpt excerpt;
     weft_dataset *block;
@@ -176,19 +182,21 @@ static weft_code fit_block(const choosing *work, const weft_compress_options *op
     weft_dataset_close(block);
     WEFT_TRY(code);
     code = weft_weight_of(&material, weight, error);
+    if (code == WEFT_OK)
+        code = weft_frame_timer_of_material(work->timer, &material, frame_ms, error);
     weft_material_free(&material);
     return code;
 }
 
 /* The metadata are those of the whole dataset, not of the block. */
-static weft_code predict_bytes(const choosing *work, const weft_compress_options *options,
+static weft_code predict_costs(const choosing *work, const weft_compress_options *options,
                                weft_preset_prediction *prediction, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
     const weft_priced_dataset parts = weft_priced_dataset_of(work->dataset);
     weft_weight weight;
     double added;
-    WEFT_TRY(fit_block(work, options, &weight, error));
+    WEFT_TRY(fit_block(work, options, &weight, &prediction->frame_ms, error));
     WEFT_TRY(added_bytes(prediction, &parts, options->heights, &added, error));
     prediction->bytes = weft_weight_scaled(&weight, layout->width, layout->height, options->levels) + added +
                         (double)strlen(layout->provenance);
@@ -197,22 +205,55 @@ static weft_code predict_bytes(const choosing *work, const weft_compress_options
 
 /* ---- The whole ---- */
 
-static weft_code choose(choosing *work, weft_preset preset, weft_compress_options *options,
-                        weft_preset_prediction *prediction, weft_error *error)
+/* Predicts all of a model; its frame is what was asked for. */
+static weft_code predict(void *context, size_t which, double *frame_ms, weft_error *error)
 {
-    list_models(work);
-    WEFT_TRY(measure(work, error));
-    size_t chosen = weft_preset_choose(work->offer, (size_t)work->count, preset);
-    const weft_priced_model *model = &work->model[chosen];
-    *prediction = (weft_preset_prediction){.preset = preset, .error = work->offer[chosen].error};
+    choosing *work = context;
+    const weft_priced_model *model = &work->model[which];
+    weft_preset_prediction *prediction = &work->prediction[which];
+    *prediction = (weft_preset_prediction){.wish = *work->wish, .error = work->offer[which].error};
     memcpy(prediction->model, model->name, sizeof prediction->model);
     memcpy(prediction->arguments, model->arguments, sizeof prediction->arguments);
-    WEFT_TRY(predict_bytes(work, &model->options, prediction, error));
-    *options = merge(options, &model->options);
+    WEFT_TRY(predict_costs(work, &model->options, prediction, error));
+    *frame_ms = prediction->frame_ms;
     return WEFT_OK;
 }
 
-weft_code weft_preset_predict(weft_dataset *dataset, weft_preset preset, const char *scratch_path,
+static weft_code fail_too_slow(const weft_preset_prediction *fastest, weft_error *error)
+{
+    return weft_fail(error, WEFT_BAD_USAGE,
+                     "no model that a preset may choose is drawn at %g frames/s here: the fastest, %s, takes %.1f ms a "
+                     "frame (%.0f frames/s)",
+                     fastest->wish.least_fps, fastest->model, fastest->frame_ms, 1000 / fastest->frame_ms);
+}
+
+static weft_code choose(choosing *work, weft_compress_options *options, weft_preset_prediction *prediction,
+                        weft_error *error)
+{
+    const weft_preset_wish *wish = work->wish;
+    size_t chosen, fastest, count = (size_t)work->count;
+    WEFT_TRY(weft_preset_choose_fast(work->offer, count, wish->preset,
+                                     wish->least_fps > 0 ? 1000 / wish->least_fps : INFINITY, predict, work, &chosen,
+                                     &fastest, error));
+    if (chosen == count)
+        return fail_too_slow(&work->prediction[fastest], error);
+    *prediction = work->prediction[chosen];
+    *options = merge(options, &work->model[chosen].options);
+    return WEFT_OK;
+}
+
+static weft_code work_through(choosing *work, weft_compress_options *options, weft_preset_prediction *prediction,
+                              weft_error *error)
+{
+    WEFT_TRY(weft_frame_timer_open(&work->timer, error));
+    if (work->wish->least_fps > 0 && weft_frame_timer_why_not(work->timer)[0])
+        return weft_fail(error, WEFT_SYSTEM, "frames cannot be timed: %s", weft_frame_timer_why_not(work->timer));
+    list_models(work);
+    WEFT_TRY(measure(work, error));
+    return choose(work, options, prediction, error);
+}
+
+weft_code weft_preset_predict(weft_dataset *dataset, const weft_preset_wish *wish, const char *scratch_path,
                               const weft_progress *progress, weft_compress_options *options,
                               weft_preset_prediction *prediction, weft_error *error)
 {
@@ -221,17 +262,29 @@ weft_code weft_preset_predict(weft_dataset *dataset, weft_preset preset, const c
         return weft_fail_memory(error, "models", sizeof *work);
     const weft_compress_options given = *options;
     work->dataset = dataset;
+    work->wish = wish;
     work->given = &given;
     work->scratch_path = scratch_path;
     work->progress = progress;
-    weft_code code = choose(work, preset, options, prediction, error);
+    weft_code code = work_through(work, options, prediction, error);
+    weft_frame_timer_close(work->timer);
     free(work);
     return code;
 }
 
+/* The time of a frame is not the same twice: it is there only where it was asked for, and equal files are equal. */
 json_t *weft_preset_to_json(const weft_preset_prediction *prediction)
 {
-    return json_pack("{s:s, s:s, s:s, s:f, s:f}", "preset", weft_preset_name(prediction->preset), "model",
-                     prediction->model, "options", prediction->arguments, "bytes", prediction->bytes, "relative_rmse",
-                     prediction->error);
+    json_t *object = json_pack("{s:s, s:s, s:s, s:f, s:f}", "preset", weft_preset_name(prediction->wish.preset),
+                               "model", prediction->model, "options", prediction->arguments, "bytes", prediction->bytes,
+                               "relative_rmse", prediction->error);
+    if (!object || !(prediction->wish.least_fps > 0))
+        return object;
+    json_t *speed = json_pack("{s:f, s:f}", "least_fps", prediction->wish.least_fps, "frame_ms", prediction->frame_ms);
+    int outcome = speed ? json_object_update(object, speed) : -1;
+    json_decref(speed);
+    if (outcome == 0)
+        return object;
+    json_decref(object);
+    return NULL;
 }

@@ -8,22 +8,31 @@
 
 #include <jansson.h>
 
-typedef struct weft_preset_prediction {
+/* What is wanted. */
+typedef struct weft_preset_wish {
     weft_preset preset;
+    double least_fps; /* of frames as study/tradeoff/frame_timer.h draws them, here; 0: any */
+} weft_preset_wish;
+
+typedef struct weft_preset_prediction {
+    weft_preset_wish wish;
     char model[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS]; /* what it chose */
     double bytes;                                                   /* of the file */
-    double error; /* relative RMSE on directions that are not fitted */
+    double error;    /* relative RMSE on directions that are not fitted */
+    double frame_ms; /* 0 where nothing was drawn */
 } weft_preset_prediction;
 
 /* Chooses among the models that weft compress makes (study/tradeoff/choice.h), without those of a light table, which
  * take many times as long and are seldom worth it. Fits each to at most 24 x 24 texels, or of a dataset with a surface
  * measures each on 32 x 32, without the images of a split that the measurement afterwards does not begin with
  * (study/hold_out/split.h), and fits the one that is chosen to a block of at most 32 x 32 neighbours with all images,
- * which says how large it will be. *options gets lobes, tables, frames, layers and whether through heights, and keeps
+ * which says how large it will be and how long a frame takes. One that is too slow is chosen no longer, and the preset
+ * chooses among the others. *options gets lobes, tables, frames, layers and whether through heights, and keeps
  * all else. Writes to the folder of `scratch_path`; nothing is left there. The result does not depend on the number of
- * threads. Errors: WEFT_BAD_USAGE for a dataset of one image, or where all that was held out is masked; those of
- * weft_compress, of reading and writing. */
-weft_code weft_preset_predict(weft_dataset *dataset, weft_preset preset, const char *scratch_path,
+ * threads, but where frames are to be fast. Errors: WEFT_BAD_USAGE for a dataset of one image, where all that was held
+ * out is masked, or where no model is fast enough; WEFT_SYSTEM where frames are to be fast and nothing can be drawn;
+ * those of weft_compress, of reading and writing. */
+weft_code weft_preset_predict(weft_dataset *dataset, const weft_preset_wish *wish, const char *scratch_path,
                               const weft_progress *progress, weft_compress_options *options,
                               weft_preset_prediction *prediction, weft_error *error);
 

@@ -2,12 +2,11 @@
 
 #include "base/atomic_file.h"
 #include "base/clock.h"
+#include "btf/direction/direction.h"
 #include "compress/compress.h"
-#include "player/draw/player.h"
-#include "player/gl/context.h"
-#include "study/error/frame_time.h"
 #include "study/hold_out/excerpt.h"
 #include "study/model/model.h"
+#include "study/tradeoff/frame_timer.h"
 #include "study/tradeoff/variant.h"
 #include "study/tradeoff/weight.h"
 
@@ -17,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { FRAME_WIDTH = 730, FRAME_HEIGHT = 400, EVALUATIONS_AT_ONCE = 64 };
+enum { EVALUATIONS_AT_ONCE = 64 };
 
 static const double evaluating_s = 0.1, largest_theta_rad = 1.3;
 
@@ -29,9 +28,7 @@ struct weft_price_shop {
     char *material_path;
     int side;
     double share; /* of the texels that are fitted */
-    weft_headless *headless;
-    weft_player *player;
-    char why_not_drawn[WEFT_MESSAGE_SIZE], renderer[128];
+    weft_frame_timer *timer;
     bool is_fitted;
     weft_priced_model fitted_model;
     weft_material fitted;
@@ -54,29 +51,6 @@ static weft_code write_block(weft_price_shop *shop, const uint8_t *left_out, wef
     return code;
 }
 
-static weft_code set_drape(weft_player *player, weft_error *error)
-{
-    weft_mesh mesh;
-    WEFT_TRY(weft_mesh_open("drape", &mesh, error));
-    weft_code code = weft_player_set_mesh(player, &mesh, error);
-    weft_mesh_free(&mesh);
-    return code;
-}
-
-/* Without OpenGL nothing is drawn, and the shop says why. */
-static weft_code open_player(weft_price_shop *shop, weft_error *error)
-{
-    weft_error absence = {0};
-    if (weft_headless_create(WEFT_GL_CORE, &shop->headless, &absence) != WEFT_OK) {
-        shop->headless = NULL;
-        snprintf(shop->why_not_drawn, sizeof shop->why_not_drawn, "%s", absence.message);
-        return WEFT_OK;
-    }
-    snprintf(shop->renderer, sizeof shop->renderer, "%s", weft_gl_renderer());
-    WEFT_TRY(weft_player_create(&shop->player, error));
-    return set_drape(shop->player, error);
-}
-
 static weft_code prepare(weft_price_shop *shop, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
@@ -88,7 +62,7 @@ static weft_code prepare(weft_price_shop *shop, weft_error *error)
     if (layout->width > shop->side || layout->height > shop->side)
         WEFT_TRY(write_block(shop, NULL, &shop->block, error));
     shop->share = (double)weft_price_shop_texels(shop) / ((double)layout->width * layout->height);
-    return open_player(shop, error);
+    return weft_frame_timer_open(&shop->timer, error);
 }
 
 weft_code weft_price_shop_open(weft_dataset *dataset, int side, const char *scratch_path, const weft_progress *progress,
@@ -113,8 +87,7 @@ void weft_price_shop_close(weft_price_shop *shop)
 {
     if (!shop)
         return;
-    weft_player_free(shop->player);
-    weft_headless_free(shop->headless);
+    weft_frame_timer_close(shop->timer);
     if (shop->block != shop->dataset)
         weft_dataset_close(shop->block);
     weft_material_free(&shop->fitted);
@@ -130,12 +103,12 @@ long weft_price_shop_texels(const weft_price_shop *shop)
 
 const char *weft_price_shop_why_not_drawn(const weft_price_shop *shop)
 {
-    return shop->why_not_drawn;
+    return weft_frame_timer_why_not(shop->timer);
 }
 
 const char *weft_price_shop_renderer(const weft_price_shop *shop)
 {
-    return shop->renderer;
+    return weft_frame_timer_renderer(shop->timer);
 }
 
 /* ---- Evaluating ---- */
@@ -211,18 +184,6 @@ static weft_code fit(weft_price_shop *shop, const weft_priced_model *model, cons
 
 /* ---- Prices ---- */
 
-static weft_code time_frame(weft_price_shop *shop, weft_mode mode, bool through_heights, double *frame_ms,
-                            weft_error *error)
-{
-    weft_scene scene = weft_scene_default();
-    scene.pane_count = 1;
-    scene.pane[0] = mode;
-    scene.labels = false;
-    scene.relief = through_heights;
-    scene.filter = WEFT_FILTER_EXACT;
-    return weft_frame_time_measure(shop->player, &scene, FRAME_WIDTH, FRAME_HEIGHT, frame_ms, error);
-}
-
 static weft_code price_material(weft_price_shop *shop, const weft_material *material, weft_price *price,
                                 weft_error *error)
 {
@@ -239,26 +200,18 @@ static weft_code price_material(weft_price_shop *shop, const weft_material *mate
     weft_code code = time_evaluations(shop->material_path, true, &price->evaluations_a_second, error);
     unlink(shop->material_path);
     WEFT_TRY(code);
-    if (!shop->player)
-        return WEFT_OK;
-    WEFT_TRY(weft_player_set_material(shop->player, material, error));
-    return time_frame(shop, WEFT_MODE_COMPRESSED, true, &price->frame_ms, error);
+    return weft_frame_timer_of_material(shop->timer, material, &price->frame_ms, error);
 }
 
 static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_price *price, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
-    int skipped_levels;
     price->bits_a_texel = 8.0 * 3 * sizeof(weft_half) * layout->image_count;
     price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
     price->fetches = weft_fetches_of_raw(through_heights);
     WEFT_TRY(time_evaluations(weft_dataset_path(shop->dataset), through_heights, &price->evaluations_a_second, error));
-    if (!shop->player)
-        return WEFT_OK;
-    WEFT_TRY(weft_player_set_dataset(shop->player, shop->block, shop->progress, &skipped_levels, error));
-    weft_code code = time_frame(shop, WEFT_MODE_RAW, through_heights, &price->frame_ms, error);
-    weft_player_clear(shop->player, WEFT_MODE_RAW);
-    return code;
+    return weft_frame_timer_of_dataset(shop->timer, shop->block, through_heights, shop->progress, &price->frame_ms,
+                                       error);
 }
 
 static weft_code price_model(weft_price_shop *shop, const weft_priced_model *model, const uint8_t *left_out,

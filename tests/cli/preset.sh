@@ -48,7 +48,9 @@ assert 0 < sizes[0] - sizes[1] < 400, sizes
 PYTHON
 for option in "--lobes 2" "--table off" "--layers 8" "--tables pca:4" "--light-table on" "--frames off" "--error 5" "--budget 1"; do
     # shellcheck disable=SC2086
-    expect_error 2 "--preset chooses the model" compress knit.btf.h5 -o none.weft --preset small $option
+    expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --preset small $option
 done
+expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --fps 20 --layers 8
+expect_error 2 "--fps" compress knit.btf.h5 -o none.weft --fps 0
 expect_error 2 "--preset" compress knit.btf.h5 -o none.weft --preset tiny
 expect_no_file none.weft

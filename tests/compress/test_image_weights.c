@@ -129,7 +129,7 @@ static void a_gross_error_of_small_weight_does_no_harm(void **state)
         double even = error_with(row[i].views, row[i].lights, row[i].weights, 1, row[i].model);
         double light = error_with(row[i].views, row[i].lights, row[i].weights, 1e-4, row[i].model);
         double none = error_with(row[i].views, row[i].lights, row[i].weights, 0, row[i].model);
-        if (!(even > 0.02) || !(light < even / 4) || !(none < even / 4))
+        if (!(even > 0.002) || !(light < even / 4) || !(none < even / 4))
             fail_msg("row %zu: errors %g even, %g with small weight, %g without", i, even, light, none);
     }
 }

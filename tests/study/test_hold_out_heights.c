@@ -359,7 +359,8 @@ static void heights_are_chosen_where_compress_keeps_them(void **state)
     width = 13;
     write_dataset(false, 1);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(weft_preset_predict(dataset, WEFT_PRESET_BEST, scratch, NULL, &options, &prediction, &error), &error);
+    const weft_preset_wish wish = {.preset = WEFT_PRESET_BEST};
+    expect_ok(weft_preset_predict(dataset, &wish, scratch, NULL, &options, &prediction, &error), &error);
     printf("best: %s, %.3f\n", prediction.arguments, prediction.error);
     assert_true(options.layer_count > 0 && options.heights);
     assert_null(strstr(prediction.arguments, "--heights off"));

@@ -6,6 +6,7 @@
 #include "btf/material/metadata.h"
 #include "compress/compress.h"
 #include "study/hold_out/record.h"
+#include "study/tradeoff/frame_timer.h"
 #include "study/tradeoff/plot.h"
 #include "study/tradeoff/preset.h"
 #include "study/tradeoff/tradeoff.h"
@@ -385,6 +386,20 @@ static double compress_as_chosen(weft_dataset *dataset, const weft_compress_opti
     return (double)bytes;
 }
 
+/* It is written where it was wished for. */
+static void expect_speed(weft_preset_prediction prediction)
+{
+    prediction.wish.least_fps = 10;
+    json_t *object = weft_preset_to_json(&prediction);
+    assert_float_equal(json_real_value(json_object_get(object, "frame_ms")), prediction.frame_ms, 0);
+    assert_float_equal(json_real_value(json_object_get(object, "least_fps")), 10, 0);
+    json_decref(object);
+    weft_frame_timer *timer;
+    assert_int_equal(weft_frame_timer_open(&timer, NULL), WEFT_OK);
+    assert_true((prediction.frame_ms > 0) == (weft_frame_timer_why_not(timer)[0] == 0));
+    weft_frame_timer_close(timer);
+}
+
 /* All texels are measured both times, but other directions. */
 static void a_preset_predicts_size_and_error(void **state)
 {
@@ -397,7 +412,9 @@ static void a_preset_predicts_size_and_error(void **state)
     weft_preset_prediction prediction;
     weft_hold_out held_out;
     options.weights = WEFT_WEIGHTS_SCREEN;
-    expect_ok(weft_preset_predict(dataset, WEFT_PRESET_SMALL, scratch, NULL, &options, &prediction, &error), &error);
+    const weft_preset_wish wish = {.preset = WEFT_PRESET_SMALL};
+    expect_ok(weft_preset_predict(dataset, &wish, scratch, NULL, &options, &prediction, &error), &error);
+    expect_speed(prediction);
     assert_int_equal(options.weights, WEFT_WEIGHTS_SCREEN);
     assert_false(options.light_table);
     double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
@@ -408,6 +425,45 @@ static void a_preset_predicts_size_and_error(void **state)
     weft_dataset_close(dataset);
     unlink(path);
     assert_int_not_equal(access(scratch, F_OK), 0);
+}
+
+/* Nobody knows the time of what is not asked for. */
+typedef struct times {
+    const double *frame_ms;
+    int asked;
+} times;
+
+static weft_code tell_time(void *context, size_t which, double *frame_ms, weft_error *error)
+{
+    (void)error;
+    times *t = context;
+    t->asked++;
+    *frame_ms = t->frame_ms[which];
+    return WEFT_OK;
+}
+
+static void frames_that_are_too_slow_are_not_chosen(void **state)
+{
+    (void)state;
+    const weft_offer all[] = {{1000, 0.5, true}, {2000, 0.3, true}, {4000, 0.2, true}, {8000, 0.1, true}};
+    const double frame_ms[] = {12, 30, 20, 50};
+    static const struct {
+        double most_ms;
+        size_t chosen, fastest;
+        int asked;
+    } row[] = {{50, 3, 4, 1}, {49, 2, 3, 2}, {19, 0, 2, 4}, {11, 4, 0, 4}, {INFINITY, 3, 4, 1}};
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        weft_offer offer[4];
+        memcpy(offer, all, sizeof all);
+        times t = {frame_ms, 0};
+        size_t chosen, fastest;
+        assert_int_equal(
+            weft_preset_choose_fast(offer, 4, WEFT_PRESET_BEST, row[i].most_ms, tell_time, &t, &chosen, &fastest, NULL),
+            WEFT_OK);
+        assert_int_equal(chosen, row[i].chosen);
+        assert_int_equal(fastest, row[i].fastest);
+        assert_int_equal(t.asked, row[i].asked);
+    }
 }
 
 /* ---- Plots ---- */
@@ -460,6 +516,7 @@ int main(void)
         cmocka_unit_test(variants_are_made_of_the_same_fit),
         cmocka_unit_test(bytes_are_those_of_the_file),
         cmocka_unit_test(a_preset_predicts_size_and_error),
+        cmocka_unit_test(frames_that_are_too_slow_are_not_chosen),
         cmocka_unit_test(points_lie_on_logarithmic_axes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
