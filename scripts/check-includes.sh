@@ -1,10 +1,11 @@
 #!/bin/sh
 # What the include paths cannot refuse: an include that climbs out of its folder, or a bare name that belongs to another folder; and
-# the order of the stages along the corridor.
+# the order of the stages along the corridor. And that nothing lies beside the rooms: what a test left behind was once committed.
 set -eu
 cd "$(dirname "$0")/.."
 
 rooms='base btf reflectance geometry capture registration import relief compress player study cli'
+beside='[.]ci assets bench cmake docs packaging scripts tests'
 faults=$(mktemp)
 trap 'rm -f "$faults"' EXIT
 
@@ -42,5 +43,7 @@ git ls-files $rooms | grep -E '\.(c|h|cpp)$' | xargs grep -nE '^[[:space:]]*#[[:
         else if (rank[to] > rank[from] || (to " " from) in stranger)
             print $1 ":" $2 ": " from " may not include " to
     }' >"$faults"
+git ls-files | grep / | cut -d/ -f1 | sort -u | grep -vxE "$(echo $rooms $beside | tr ' ' '|')" |
+    sed 's|$|/: is no room|' >>"$faults" || true
 cat "$faults"
 [ ! -s "$faults" ]

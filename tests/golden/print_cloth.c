@@ -50,6 +50,8 @@ weft_code print_weave(const char *path, FILE *out, weft_error *error)
     fprintf(out, "tiles: %.9g %.9g corner %.9g %.9g\n", weave.layout.tiles_u, weave.layout.tiles_v,
             weave.layout.corner_u, weave.layout.corner_v);
     fprintf(out, "specular_scale: %.9g\n", weave.specular_scale);
+    if (weave.cell_pitch_mm > 0) /* a key that the first files do not have */
+        fprintf(out, "cell_pitch_mm: %.9g\n", weave.cell_pitch_mm);
     print_pattern(out, &weave);
     for (int i = 0; i < weave.yarn_count; i++)
         print_weave_yarn(out, &weave, i);
