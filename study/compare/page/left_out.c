@@ -19,14 +19,10 @@ weft_code weft_page_left_out(weft_page *page, const weft_leave_one_out *left_out
 {
     if (left_out->count == 0)
         return WEFT_OK;
-    fprintf(
-        page->html,
-        "<h2>Leave one out</h2>\n<p class=\"note\">Each photograph predicted by a fit to the %d others, over its valid "
-        "samples "
-        "and all channels. Relative RMSE: \u221a(mean (p \u2212 s)\u00b2 / mean s\u00b2). Median relative: of |p "
-        "\u2212 s| / s, "
-        "where s counts as at least 1e-4 of the largest sample of the photograph. All fits together took %.1f s.</p>\n",
-        left_out->count - 1, left_out->seconds);
+    fprintf(page->html,
+            "<h2>Leave one out</h2>\n<p class=\"note\">Each photograph predicted by a fit to the %d others, over its "
+            "valid samples and all channels. All fits together took %.1f s.</p>\n",
+            left_out->count - 1, left_out->seconds);
     print_table(page, left_out);
     for (int i = 0; i < left_out->count; i++) {
         const weft_left_out *photograph = &left_out->photograph[i];

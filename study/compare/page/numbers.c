@@ -20,12 +20,18 @@ static void print_held_out(weft_page *page, const weft_hold_out *held_out)
     fputs(". All other numbers of this page are of samples that were fitted.</p>\n", page->html);
 }
 
-/* What a reader of pictures asks first: the first scene, a drape. */
-static void print_drape(weft_page *page, const weft_scenes *scenes)
+/* A drape shows many more views and lights than a few photographs have: what is drawn of them there is no measure. */
+static bool measures_drape(const weft_comparison *comparison)
 {
-    const weft_error_summary *e = &scenes->scene[0].error[WEFT_MODE_COMPRESSED];
+    return comparison->scenes.drawn && comparison->left_out.count == 0;
+}
+
+/* What a reader of pictures asks first: the first scene, a drape. */
+static void print_drape(weft_page *page, const weft_comparison *comparison)
+{
+    const weft_error_summary *e = &comparison->scenes.scene[0].error[WEFT_MODE_COMPRESSED];
     char label[80];
-    if (!scenes->drawn || e->count == 0)
+    if (!measures_drape(comparison) || e->count == 0)
         return;
     snprintf(label, sizeof label, "on a drape, %.1f %% from the photographs", 100 * e->relative_rmse);
     weft_page_tile(page, label, "%.0f dB", e->psnr_db);
@@ -35,7 +41,7 @@ static void print_drape(weft_page *page, const weft_scenes *scenes)
 static void explain_tiles(weft_page *page, const weft_comparison *comparison)
 {
     fputs("<p class=\"note\">", page->html);
-    if (comparison->scenes.drawn)
+    if (measures_drape(comparison))
         fputs("As a rule of thumb, two pictures are hard to tell apart from 40 dB on, at 30 dB they look alike until "
               "they lie side by side, and below 25 dB the difference is plain. ",
               page->html);
@@ -55,7 +61,7 @@ void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const
     if (comparison->has_held_out)
         print_held_out(page, &comparison->held_out);
     fputs("<div class=\"tiles\">\n", page->html);
-    print_drape(page, &comparison->scenes);
+    print_drape(page, comparison);
     if (comparison->has_held_out)
         weft_page_tile(page, "relative RMSE where it was not fitted", "%.4f",
                        comparison->held_out.material.all.relative_rmse);
