@@ -2,10 +2,11 @@
  * file and keeps no memory; one that ends well has written the bytes of the run that nothing disturbed.
  *
  * Usage: test_short_memory inputs                    makes the folder 'inputs', which the jobs read
- *        test_short_memory [--more|--every] [JOB...] these jobs or subcommands, or all
- * The first allocation of a site fails (short_memory.h), alone; with --more that of every site, whatever the job's
- * stride, and the last of each with all that follow it; with --every the n-th of all alone, n = 1, 2, 3 ... until a run
- * ends in which none failed. */
+ *        test_short_memory [--more|--sites|--every] [JOB...] these jobs or subcommands, or all
+ * The first allocation of a site fails (short_memory.h), alone: at every n-th site of a job. With --sites it is every
+ * site, and the last allocation of each fails, too, with all that follow it: hours under AddressSanitizer; with --more
+ * as many sites as some time allows, spread over the run; with --every the n-th allocation of all alone, n = 1, 2, 3
+ * ... until a run ends in which none failed. */
 #include "base/picture/image_library.h"
 #include "tests/cli/short_memory.h"
 #include "tests/cli/short_memory_files.h"
@@ -34,6 +35,9 @@
 
 enum { MAX_SAID = 1 << 16, TIME_LIMIT_S = 120, MOST_FAULTS = 20, SYSTEM_FAILURE = 3, LEAKED = 23 };
 
+/* Of processor time that a job may take with --more, about. */
+static const double more_s = 30;
+
 int __real_main(int argc, char **argv);
 int __wrap_main(int argc, char **argv);
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *argument);
@@ -51,7 +55,7 @@ static char run_folder[32]; /* of this process: others may run beside it */
 
 static const short_memory_order undisturbed;
 
-typedef enum extent { FIRST, MORE, EVERY } extent;
+typedef enum extent { FIRST, MORE, SITES, EVERY } extent;
 
 /* ---- One run, in a process of its own ---- */
 
@@ -229,21 +233,37 @@ static void try(const short_memory_job *job, short_memory_order order, const sho
         print_frames("kept", memory_log->keeper, 4);
 }
 
-static void try_sites(const short_memory_job *job, const outcome *whole, extent reach)
+static int count_sites(const short_memory_log *noted)
+{
+    int count = 0;
+    for (int i = 0; i < SHORT_MEMORY_SITES; i++)
+        count += noted->site[i].hash != 0;
+    return count;
+}
+
+/* Every how many sites one is tried; a run that fails takes at most as long as one that does not. */
+static int choose_stride(const short_memory_job *job, const short_memory_log *noted, extent reach, double once_s)
+{
+    if (reach == MORE)
+        return 1 + (int)(2 * count_sites(noted) * once_s / more_s);
+    return reach == FIRST ? job->stride : 1;
+}
+
+static void try_sites(const short_memory_job *job, const outcome *whole, extent reach, double once_s)
 {
     static short_memory_log noted;
     static outcome got;
     memcpy(&noted, memory_log, sizeof noted);
-    int sites = 0, before = runs;
+    int sites = 0, before = runs, stride = choose_stride(job, &noted, reach, once_s);
     for (int i = 0; i < SHORT_MEMORY_SITES && faults < MOST_FAULTS; i++) {
         const short_memory_site *site = &noted.site[i];
-        if (site->hash == 0 || (reach == FIRST && sites++ % job->stride != 0))
+        if (site->hash == 0 || sites++ % stride != 0)
             continue;
         try(job, (short_memory_order){site->hash, 1, false}, site, &got, whole);
-        if (reach == MORE)
+        if (reach != FIRST)
             try(job, (short_memory_order){site->hash, site->count, true}, site, &got, whole);
     }
-    printf("%s: %ld allocations, %d runs", job->name, noted.count, runs - before);
+    printf("%s: %ld allocations at %d sites, %d runs", job->name, noted.count, sites, runs - before);
 }
 
 static void try_every(const short_memory_job *job, const outcome *whole)
@@ -278,7 +298,7 @@ static void run_job(const short_memory_job *job, extent reach)
     } else if (reach == EVERY)
         try_every(job, &whole);
     else
-        try_sites(job, &whole, reach);
+        try_sites(job, &whole, reach, once_s);
     printf(", %.3f s of processor once, %.1f s in all\n", once_s, processor_s() - start_s);
 }
 
@@ -324,7 +344,10 @@ static bool is_chosen(const short_memory_job *job, int count, char **chosen)
 int __wrap_main(int argc, char **argv)
 {
     const char *option = argc > 1 ? argv[1] : "";
-    extent reach = strcmp(option, "--every") == 0 ? EVERY : strcmp(option, "--more") == 0 ? MORE : FIRST;
+    extent reach = strcmp(option, "--every") == 0   ? EVERY
+                   : strcmp(option, "--sites") == 0 ? SITES
+                   : strcmp(option, "--more") == 0  ? MORE
+                                                    : FIRST;
     int first = reach == FIRST ? 1 : 2;
     memory_log = mmap(NULL, sizeof *memory_log, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (memory_log == MAP_FAILED)
