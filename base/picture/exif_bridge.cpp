@@ -1,4 +1,5 @@
 #include "base/picture/image_library.h"
+#include "base/picture/tiff_sensitivity.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -17,6 +18,9 @@ double number_of(const OIIO::ImageSpec &spec, std::initializer_list<const char *
         const double value = (double)spec.get_float_attribute(name, 0);
         if (value > 0 && std::isfinite(value))
             return value;
+        /* What TIFF holds as an int is no float to OpenImageIO 2.4. */
+        if (const int whole = spec.get_int_attribute(name, 0); whole > 0)
+            return whole;
     }
     return 0;
 }
@@ -41,6 +45,8 @@ weft_code read_head(const char *path, weft_exif *exif, weft_error *error)
     exif->f_number = number_of(spec, {"FNumber"});
     exif->iso = number_of(
         spec, {"Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings", "Exif:ISOSpeed", "ISOSpeed", "raw:iso_speed"});
+    if (exif->iso <= 0 && strcmp(input->format_name(), "tiff") == 0)
+        exif->iso = weft_tiff_sensitivity(path);
     exif->focal_length_mm = number_of(spec, {"Exif:FocalLength"});
     exif->focal_length_35mm = number_of(spec, {"Exif:FocalLengthIn35mmFilm"});
     return WEFT_OK;

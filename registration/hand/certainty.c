@@ -104,7 +104,7 @@ double weft_hand_view_error_deg(const weft_camera *camera, const weft_hand_photo
 
 /* Logarithm of the light of a sample of paper, over what the lamp explains of it but for its level. */
 static double paper_deviation(const double place[2], const weft_paper_sample *sample, const weft_lamp_solution *lamps,
-                              weft_vec3 lamp)
+                              weft_vec3 lamp, const weft_pose *pose)
 {
     double power = 1, encoded = 2 * (double)weft_srgb_of_linear(sample->light[1]) - 1;
     double value = log((double)sample->light[1]), square = sample->radius_squared;
@@ -112,13 +112,15 @@ static double paper_deviation(const double place[2], const weft_paper_sample *sa
         value += lamps->tone[k] * (power *= encoded);
     double fall = 1 + square * (lamps->vignetting[0] + square * (lamps->vignetting[1] + square * lamps->vignetting[2]));
     double reach = weft_length(weft_subtract(lamp, weft_vec3_of(place[0], place[1], 0)));
-    return value - log(fall) + 3 * log(reach / weft_length(lamp));
+    double beam = weft_flash_log_beam(&lamps->flash, pose, place[0], place[1]);
+    return value - log(fall) + 3 * log(reach / weft_length(lamp)) - beam;
 }
 
-weft_code weft_hand_paper_residual(const weft_paper_places *places, const weft_paper_samples *paper,
+weft_code weft_hand_paper_residual(const weft_paper_places *places, const weft_lamp_evidence *evidence,
                                    const weft_lamp_solution *lamps, const weft_lamp_place *lamp, double *residual,
                                    weft_error *error)
 {
+    const weft_paper_samples *paper = &evidence->paper;
     size_t count = 0, most = (size_t)paper->count + 1;
     double *deviation = malloc(most * sizeof *deviation);
     if (!deviation)
@@ -126,7 +128,8 @@ weft_code weft_hand_paper_residual(const weft_paper_places *places, const weft_p
     for (int i = 0; i < paper->count; i++) {
         const weft_paper_sample *sample = &paper->sample[i];
         if (!places->is_ink[sample->place] && sample->light[1] > 0)
-            deviation[count++] = paper_deviation(places->place[sample->place], sample, lamps, lamp->position_mm);
+            deviation[count++] =
+                paper_deviation(places->place[sample->place], sample, lamps, lamp->position_mm, &evidence->pose);
     }
     double middle = weft_quantile(deviation, count, 0.5);
     for (size_t i = 0; i < count; i++)
@@ -182,7 +185,8 @@ static void fill_figures(const weft_hand *hand, const int *index, int count, dou
         sum += weight[i] = 1 / weft_hand_variance(hand, p, contrast, pitch_mm);
         value[WEFT_IMAGE_VIEW_ERROR * count + i] = p->view_uncertainty_deg;
         value[WEFT_IMAGE_LIGHT_ERROR * count + i] = p->lamp.uncertainty_deg;
-        value[WEFT_IMAGE_VALUE_ERROR * count + i] = hypot(shared_error, p->lamp.residual);
+        value[WEFT_IMAGE_VALUE_ERROR * count + i] =
+            hypot(hypot(shared_error, p->lamp.residual), hand->lamps.dark_error);
     }
     for (int i = 0; i < count; i++)
         weight[i] *= count / sum;

@@ -13,7 +13,7 @@ double weft_hand_view_error_deg(const weft_camera *camera, const weft_hand_photo
 /* How far bare paper lies from what the lamp explains: 1.4826 times the median deviation of the logarithm of light from
  * its median, which is the standard deviation where most of it is free of shadows and stains. `tone`: the corrections
  * found with the lamp, all 0 where there are none. 0 without paper. Errors: WEFT_SYSTEM. */
-weft_code weft_hand_paper_residual(const weft_paper_places *places, const weft_paper_samples *paper,
+weft_code weft_hand_paper_residual(const weft_paper_places *places, const weft_lamp_evidence *evidence,
                                    const weft_lamp_solution *lamps, const weft_lamp_place *lamp, double *residual,
                                    weft_error *error);
 
@@ -31,8 +31,8 @@ double weft_hand_variance(const weft_hand *hand, const weft_hand_photograph *pho
                           double pitch_mm);
 
 /* Puts the figures of the images: image i is photograph index[i]. Weights are 1 / variance with mean 1, the contrast
- * being the median over the photographs; the error of the values is that of s0 and e alone. Errors: those of
- * weft_dataset_writer_put_figure. */
+ * being the median over the photographs; the error of the values is that of s0, e and the tone curve
+ * (lamps.dark_error). Errors: those of weft_dataset_writer_put_figure. */
 weft_code weft_hand_put_figures(const weft_hand *hand, const int *index, int count, double pitch_mm,
                                 weft_dataset_writer *writer, weft_error *error);
 

@@ -297,8 +297,8 @@ static weft_code judge_photographs(work *w, weft_error *error)
         if (!weft_hand_used(p))
             continue;
         p->view_uncertainty_deg = weft_hand_view_error_deg(&hand->lens.camera, p);
-        WEFT_TRY(weft_hand_paper_residual(&w->places, &w->evidence[i].paper, &hand->lamps, &p->lamp, &p->lamp.residual,
-                                          error));
+        WEFT_TRY(
+            weft_hand_paper_residual(&w->places, &w->evidence[i], &hand->lamps, &p->lamp, &p->lamp.residual, error));
     }
     return WEFT_OK;
 }
@@ -422,6 +422,18 @@ static weft_code note_misfits(weft_hand *hand, weft_error *error)
     return WEFT_OK;
 }
 
+/* Paper and ink leave the middle of the tone curve open. */
+static weft_code note_tone(weft_hand *hand, weft_error *error)
+{
+    const double most = 0.05;
+    if (!(hand->lamps.dark_error > most))
+        return WEFT_OK;
+    return weft_lines_add(&hand->notes, error,
+                          "the tone curve leaves reflectances near a tenth of the paper's uncertain by %.0f %% (a "
+                          "standard error): take some photographs twice, the second two stops darker, or use RAW files",
+                          100 * hand->lamps.dark_error);
+}
+
 static weft_code run(work *w, const char *output, weft_error *error)
 {
     weft_hand *hand = w->hand;
@@ -447,6 +459,7 @@ static weft_code run(work *w, const char *output, weft_error *error)
     WEFT_TRY(find_lamps(w, error));
     leave_out_underexposed(hand);
     WEFT_TRY(note_misfits(hand, error));
+    WEFT_TRY(note_tone(hand, error));
     if (w->settings->lights)
         WEFT_TRY(weft_listed_compare(w->settings->lights, hand->photograph, hand->count, &hand->notes, error));
     WEFT_TRY(check_enough(w, "can be used", error));

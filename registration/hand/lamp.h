@@ -5,6 +5,7 @@
 #define WEFT_REGISTRATION_HAND_LAMP_H
 
 #include "registration/hand/ball.h"
+#include "registration/hand/flash.h"
 #include "registration/hand/listed.h"
 #include "registration/hand/paper.h"
 #include "registration/hand/pin.h"
@@ -46,7 +47,8 @@ typedef struct weft_lamp_solution {
     double ball_shift_mm[WEFT_TARGET_BALL_COUNT][2]; /* from its place on the sheet */
     double pin_shift_mm[3];                          /* of its head */
     double ball_misfit, pin_misfit; /* medians of how far highlights and shadows lie off, in standard errors */
-    double flash_mm[3];             /* in the frame of the camera */
+    double dark_error;              /* standard error of the tone curve, relative: of light of a tenth of the paper's */
+    weft_flash flash;               /* with a beam of zeros where the lamp is none */
 } weft_lamp_solution;
 
 /* Fills solution->place with a first guess: where the rays from the balls meet, else by the shadow of the pin, else as
@@ -56,7 +58,7 @@ void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solut
 
 /* Least squares over all photographs together (Ceres), from the guess. A sample of paper at place x under a lamp at L
  * obeys
- *     log light = log level + log(L_z |L|^2 / |L - x|^3) + log V(r^2) + [ink] log ink
+ *     log light = log level + log(L_z |L|^2 / |L - x|^3) + log V(r^2) + [ink] log ink + [flash] log beam(x)
  * after Lambert's and the inverse square law; a highlight obeys the law of reflection on a sphere; lamp, head of the
  * pin and its shadow lie on a line; a list is believed within its standard errors. Shadows, stains and wrong rows
  * hardly count (Cauchy's weight). One lamp has one power: level |L|^2 / exposure is the same in all photographs, within

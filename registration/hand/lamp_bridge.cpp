@@ -28,6 +28,10 @@ constexpr double independent_samples = 30;
 constexpr double typical_mm = 700, distance_deviation = 1, shift_deviation_mm = 1, pin_deviation_mm = 0.5;
 constexpr double power_deviation = 0.1, ink_prior_deviation = 0.2, vignetting_deviation = 0.2, flash_deviation_mm = 60;
 
+/* Beams of flashes lie between that of a bare tube, cos^0, and one that leaves a stop less in the corners of a wide
+ * lens, cos^4; a beam of cos^2 may be turned aside by six degrees. */
+constexpr double beam_mean[WEFT_BEAM_TERMS] = {0, 0, -1, 0, -1}, beam_deviation[WEFT_BEAM_TERMS] = {0.2, 0.2, 1, 1, 1};
+
 constexpr double tone_deviation[WEFT_TONE_TERMS] = {0.5, 0.5, 0.25, 0.25, 0.125};
 
 using vec3 = std::array<double, 3>;
@@ -39,7 +43,8 @@ struct photograph_unknowns {
 
 /* Unknowns that all photographs share. */
 struct shared_unknowns {
-    double tone[WEFT_TONE_TERMS], vignetting[2], ink, power, shift[WEFT_TARGET_BALL_COUNT][2], pin_shift[3], flash[3];
+    double tone[WEFT_TONE_TERMS], vignetting[2], ink, power, shift[WEFT_TARGET_BALL_COUNT][2], pin_shift[3], flash[3],
+        beam[WEFT_BEAM_TERMS];
 };
 
 /* From the lamp's unknowns to its place on the plate: itself, or moved with the camera. */
@@ -59,6 +64,17 @@ struct mounting {
             lamp[axis] = pose.rotation[0][axis] * there[0] + pose.rotation[1][axis] * there[1] +
                          pose.rotation[2][axis] * there[2];
     }
+
+    /* Logarithm of the beam of a flash towards a place of the plate: weft_flash_log_beam. */
+    template <typename T> T log_beam(const T *unknown, const T *beam, double x, double y) const
+    {
+        const double from[3] = {pose.translation.x, pose.translation.y, pose.translation.z};
+        T to[3];
+        for (int axis = 0; axis < 3; axis++)
+            to[axis] = pose.rotation[axis][0] * x + pose.rotation[axis][1] * y + from[axis] / unit_mm - unknown[axis];
+        const T u = to[0] / to[2], v = to[1] / to[2];
+        return u * (beam[0] + beam[2] * u + beam[3] * v) + v * (beam[1] + beam[4] * v);
+    }
 };
 
 struct paper_residual {
@@ -67,7 +83,7 @@ struct paper_residual {
     bool is_ink;
 
     template <typename T>
-    bool operator()(const T *unknown, const T *level, const T *tone, const T *vignetting, const T *ink,
+    bool operator()(const T *unknown, const T *level, const T *tone, const T *vignetting, const T *ink, const T *beam,
                     T *residual) const
     {
         T lamp[3];
@@ -83,6 +99,8 @@ struct paper_residual {
         T common = log(lamp[2]) + log(far_squared) - 1.5 * log(near_squared) + log(fall);
         if (is_ink)
             common += ink[0];
+        if (mount.is_flash)
+            common += mount.log_beam(unknown, beam, x, y);
         for (int c = 0; c < 3; c++) {
             T value = T(log_light[c]);
             for (int k = 0; k < WEFT_TONE_TERMS; k++)
@@ -205,6 +223,15 @@ struct tone_residual {
     }
 };
 
+struct beam_residual {
+    template <typename T> bool operator()(const T *beam, T *residual) const
+    {
+        for (int k = 0; k < WEFT_BEAM_TERMS; k++)
+            residual[k] = (beam[k] - beam_mean[k]) / beam_deviation[k];
+        return true;
+    }
+};
+
 /* (value - mean) / deviation of every unknown in a block. */
 template <int N> struct prior_residual {
     std::array<double, N> mean;
@@ -245,6 +272,8 @@ class lamp_search
     {
         shared = {};
         shared.ink = std::log(wanted->ink);
+        if (input->flash)
+            std::copy_n(beam_mean, WEFT_BEAM_TERMS, shared.beam);
         for (int i = 0; i < input->count; i++)
             start(i);
         for (int i = 0; i < input->count; i++) {
@@ -348,9 +377,10 @@ class lamp_search
                     residual->power[c][term] = power *= encoded;
             }
             problem.AddResidualBlock(
-                new ceres::AutoDiffCostFunction<paper_residual, 3, 3, 3, WEFT_TONE_TERMS, 2, 1>(residual.release()),
+                new ceres::AutoDiffCostFunction<paper_residual, 3, 3, 3, WEFT_TONE_TERMS, 2, 1, WEFT_BEAM_TERMS>(
+                    residual.release()),
                 new ceres::ScaledLoss(new ceres::CauchyLoss(3 * share), 1, ceres::TAKE_OWNERSHIP), lamp_of(i),
-                own[(size_t)i].level, shared.tone, shared.vignetting, &shared.ink);
+                own[(size_t)i].level, shared.tone, shared.vignetting, &shared.ink, shared.beam);
         }
     }
 
@@ -459,13 +489,23 @@ class lamp_search
         for (auto &shift : shared.shift)
             add_prior<2>(problem, shift, shift_deviation_mm / unit_mm);
         add_prior<3>(problem, shared.pin_shift, pin_deviation_mm / unit_mm);
-        if (input->flash)
-            add_prior<3>(problem, shared.flash, flash_deviation_mm / unit_mm);
+        add_flash_priors();
         for (int i = 0; !input->flash && i < input->count; i++)
             problem.AddResidualBlock(new ceres::AutoDiffCostFunction<distance_residual, 1, 3>(new distance_residual),
                                      nullptr, lamp_of(i));
         if (!input->tone_unknown)
             hold(shared.tone);
+    }
+
+    void add_flash_priors()
+    {
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<beam_residual, WEFT_BEAM_TERMS, WEFT_BEAM_TERMS>(new beam_residual),
+            nullptr, shared.beam);
+        if (input->flash)
+            add_prior<3>(problem, shared.flash, flash_deviation_mm / unit_mm);
+        else
+            hold(shared.beam);
     }
 
     /* Standard errors of the lamps' directions from the middle of the sample. */
@@ -478,9 +518,38 @@ class lamp_search
         std::vector<block_pair> wanted;
         for (int i = 0; i < (input->flash ? 1 : input->count); i++)
             wanted.emplace_back(lamp_of(i), lamp_of(i));
+        if (input->tone_unknown)
+            wanted.emplace_back(shared.tone, shared.tone);
         const bool known = covariance.Compute(wanted, &problem);
         for (int i = 0; i < input->count; i++)
             output->place[i].uncertainty_deg = known ? uncertainty_deg(covariance, i) : 90;
+        if (input->tone_unknown)
+            output->dark_error = known ? dark_error(covariance) : 1;
+    }
+
+    /* (2 encoded - 1)^k of an encoded value; returns the logarithm of its light. */
+    double tone_powers(double encoded, double power[WEFT_TONE_TERMS]) const
+    {
+        double value = std::log((double)weft_linear_of_srgb((float)encoded)), stretched = 1;
+        for (int k = 0; k < WEFT_TONE_TERMS; k++)
+            value += shared.tone[k] * (power[k] = stretched *= 2 * encoded - 1);
+        return value;
+    }
+
+    /* Paper in the middle of a photograph's range, and what has a tenth of its light under the curve found. */
+    double dark_error(const ceres::Covariance &covariance)
+    {
+        const double paper = 0.7, step = 1.0 / 1024;
+        double matrix[WEFT_TONE_TERMS * WEFT_TONE_TERMS], bright[WEFT_TONE_TERMS], dark[WEFT_TONE_TERMS], variance = 0;
+        if (!covariance.GetCovarianceBlock(shared.tone, shared.tone, matrix))
+            return 1;
+        const double wanted = tone_powers(paper, bright) - std::log(10);
+        for (double encoded = paper; encoded > step && tone_powers(encoded, dark) > wanted;)
+            encoded -= step;
+        for (int r = 0; r < WEFT_TONE_TERMS; r++)
+            for (int c = 0; c < WEFT_TONE_TERMS; c++)
+                variance += (dark[r] - bright[r]) * matrix[r * WEFT_TONE_TERMS + c] * (dark[c] - bright[c]);
+        return std::sqrt(std::max(0.0, variance));
     }
 
     /* From the part of the covariance across the direction; of a flash two thirds of it. */
@@ -505,8 +574,9 @@ class lamp_search
         mount_of(i).place(lamp_of(i), lamp);
         weft_lamp_place *place = &output->place[i];
         place->position_mm = weft_vec3_of(lamp[0] * unit_mm, lamp[1] * unit_mm, lamp[2] * unit_mm);
+        const double beam = input->flash ? mount_of(i).log_beam(lamp_of(i), shared.beam, 0, 0) : 0;
         for (int c = 0; c < 3; c++)
-            place->level[c] = std::exp(own[(size_t)i].level[c]) / input->target->paper_reflectance;
+            place->level[c] = std::exp(own[(size_t)i].level[c] + beam) / input->target->paper_reflectance;
     }
 
     static double median(std::vector<double> &value)
@@ -546,7 +616,8 @@ class lamp_search
         for (int axis = 0; axis < 3; axis++)
             output->pin_shift_mm[axis] = shared.pin_shift[axis] * unit_mm;
         for (int axis = 0; axis < 3; axis++)
-            output->flash_mm[axis] = shared.flash[axis] * unit_mm;
+            output->flash.place_mm[axis] = shared.flash[axis] * unit_mm;
+        std::copy_n(shared.beam, WEFT_BEAM_TERMS, output->flash.beam);
     }
 };
 

@@ -78,16 +78,19 @@ static weft_code invert_vignetting(work *w, weft_error *error)
 
 /* Divides weighted sums of light by what a perfect white diffuser would show at each texel, and turns the colours of
  * the camera into linear sRGB where they are known; sets the mask where the quotient is beyond half floats. */
-static void normalise(const weft_hand_settings *settings, const weft_lamp_place *lamp, const float *texel,
-                      weft_half *half, uint8_t *mask)
+static void normalise(const weft_hand_settings *settings, const weft_flash *flash, const weft_hand_photograph *p,
+                      const float *texel, weft_half *half, uint8_t *mask)
 {
+    const weft_lamp_place *lamp = &p->lamp;
     weft_vec3 l = lamp->position_mm;
+    double beam_middle = weft_flash_log_beam(flash, &p->pose, 0, 0);
     for (int y = 0; y < settings->height; y++) {
         for (int x = 0; x < settings->width; x++) {
             long at = (long)y * settings->width + x;
-            double side = settings->target.opening_mm, dx = l.x - ((x + 0.5) / settings->width - 0.5) * side;
-            double dy = l.y - (0.5 - (y + 0.5) / settings->height) * side;
+            double side = settings->target.opening_mm, at_x = ((x + 0.5) / settings->width - 0.5) * side;
+            double at_y = (0.5 - (y + 0.5) / settings->height) * side, dx = l.x - at_x, dy = l.y - at_y;
             double nearness = weft_dot(l, l) / (dx * dx + dy * dy + l.z * l.z) * WEFT_HAND_FULL_SCALE;
+            nearness *= exp(weft_flash_log_beam(flash, &p->pose, at_x, at_y) - beam_middle);
             float rgb[3];
             for (int c = 0; c < 3; c++)
                 rgb[c] = (float)((double)texel[3 * at + c] / (lamp->level[c] * nearness));
@@ -116,7 +119,7 @@ static weft_code resample(const work *w, int image, const weft_light_values *val
     WEFT_TRY(weft_resampler_create(&resampling, w->settings->width, w->settings->height, &resampler, error));
     weft_resampler_apply(&resampler, values->samples, 0, WEFT_HAND_FULL_SCALE, texel, mask);
     weft_resampler_free(&resampler);
-    normalise(w->settings, &p->lamp, texel, half, mask);
+    normalise(w->settings, &w->hand->lamps.flash, p, texel, half, mask);
     p->contrast = weft_hand_contrast(half, mask, (size_t)w->settings->width * (size_t)w->settings->height);
     WEFT_TRY(weft_thumbnail_of_texels(half, w->settings->width, w->settings->height, &p->rectified, error));
     return weft_dataset_writer_put_image(w->writer, image, half, mask, error);
