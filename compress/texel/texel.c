@@ -313,15 +313,6 @@ static void round_codes(const uint8_t *whole, size_t count, int bits, uint8_t *r
         rounded[i] = weft_table_code_rounded(whole[i], bits);
 }
 
-/* A code that is rounded up makes its view brighter. */
-static bool exceeds_limit(weft_texel_fitter *fitter)
-{
-    bool any = false;
-    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
-        any = any || weft_texel_exceeds(fitter, channel);
-    return any;
-}
-
 /* The fewest bits of T and S with which a model that meets the target still does. */
 static void spare_bits(weft_texel_fitter *fitter)
 {
@@ -334,7 +325,7 @@ static void spare_bits(weft_texel_fitter *fitter)
     for (int bits = 4; bits <= 8; bits += 2) {
         round_codes(whole, codes, bits, fitter->now.code);
         round_codes(whole_light, light_codes, bits, fitter->now.light_code);
-        if (bits == 8 || (meets_target(fitter) && !exceeds_limit(fitter)))
+        if (bits == 8 || (meets_target(fitter) && !weft_texel_is_too_bright(fitter)))
             return;
     }
 }
@@ -394,12 +385,12 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         weft_samples_weigh_for_screen(&fitter->bundle, &fitter->samples);
     counts->texels++;
     counts->empty += fitter->samples.valid_count == 0;
+    weft_texel_limit(fitter);
     if (fitter->source->judgement) {
         weft_error_sums judged = weft_texel_judge(fitter, level, x, y);
         weft_error_sums_add(&counts->sums, &judged);
         return;
     }
-    weft_texel_limit(fitter);
     weft_frame_search_forget(&fitter->frames);
     weft_fit_options whole = whole_model(fitter);
     fitter->most_lobes = whole.lobe_count;
