@@ -12,7 +12,7 @@
 
 enum { SMALLEST_BUDGET = 4500, BUDGET_STEP = 1000, BUDGETS = 8 };
 
-/* What of the hundred figures of a set is printed: the largest for each kind of model. */
+/* Columns of the table: the largest value of each is printed. */
 typedef enum kind { PLAIN, TABLE, LIGHT_TABLE, COMPONENTS, TARGET, BUDGET, BUDGET_LIGHT, KINDS } kind;
 
 static const char *const name_of_kind[KINDS] = {"no T",  "T",      "T and S",      "components",
@@ -76,7 +76,7 @@ static weft_code look_at_set(const adversary *one, long directions, weft_error *
     printf("| %s |", one->name);
     for (kind own = PLAIN; own < KINDS && code == WEFT_OK; own++) {
         double most;
-        code = look_at_kind(dataset, own, &limits, directions, &most, error);
+        code = look_at_kind(dataset, own, &limits, directions / KINDS, &most, error);
         printf(" %.2f |", most);
         fflush(stdout);
     }
@@ -103,7 +103,8 @@ int main(int argc, char **argv)
     int first = argc > 2 ? atoi(argv[2]) : 0, last = argc > 2 ? first + 1 : ADVERSARIES;
     if (argc > 3 || directions < 1 || first < 0 || last > ADVERSARIES) {
         fprintf(stderr, "usage: bench_brightest [DIRECTIONS [SET]]\n"
-                        "DIRECTIONS for each kind of model, default 10000000; SET from 0, default all\n");
+                        "DIRECTIONS: random lights and views a set, shared by all kinds of model, default 10000000\n"
+                        "SET: from 0, default all\n");
         return WEFT_BAD_USAGE;
     }
     weft_error error = {0};
