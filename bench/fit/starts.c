@@ -38,7 +38,8 @@ typedef struct contest {
 /* What the texels of a set said. */
 typedef struct tally {
     int count, above;
-    int missed; /* above, and above what noise leaves: more lobes than the truth has follow the noise */
+    int above_run_on; /* when the fit, too, is run to convergence: what is above then is in another minimum */
+    int missed;       /* above, and above what noise leaves: more lobes than the truth has follow the noise */
     double microseconds, worst;
     double passes;
 } tally;
@@ -50,6 +51,19 @@ static void print_fit(const char *name, int texel, const char *which, const weft
         printf(" | %.2f %.2f %.2f, N %.1f, A %.3f", fit->lobe[i].c[0], fit->lobe[i].c[1], fit->lobe[i].c[2],
                exp(fit->lobe[i].log_exponent), fit->lobe[i].amplitude);
     printf("\n");
+}
+
+/* What a fit leaves when it is run to convergence as the random ones are. */
+static double run_on(const contest *with, int channel, const weft_fit_options *options, const weft_fit *from)
+{
+    weft_fit_options converged = *options;
+    weft_fit fit = *from;
+    converged.tolerance = 1e-6;
+    converged.max_passes = 400;
+    for (int view = 0; view < with->bundle->view_count; view++)
+        with->table[view] = 1;
+    weft_fit_refine(with->bundle, with->samples, channel, &converged, with->workspace, &fit, with->table);
+    return weft_fit_residual(with->bundle, with->samples, channel, &fit, with->table);
 }
 
 static void judge(const arguments *given, const contest *with, int channel, int lobes, bool table, uint64_t seed,
@@ -70,6 +84,7 @@ static void judge(const arguments *given, const contest *with, int channel, int 
     double ratio = left > 0 ? sqrt(left / least) : 1;
     own->count++;
     own->above += ratio > ABOVE;
+    own->above_run_on += run_on(with, channel, &options, &fit) > ABOVE * ABOVE * least;
     own->missed += left > ABOVE * ABOVE * fmax(least, with->noise * with->noise * with->samples->energy[channel]);
     own->worst = fmax(own->worst, ratio);
     if (given->per_texel && ratio > ABOVE) {
@@ -85,6 +100,7 @@ static void add_row(const arguments *given, const char *name, int lobes, const t
     report_row(given->report, "%s, %d lobe%s", name, lobes, lobes > 1 ? "s" : "");
     report_number(given->report, "fits", 0, own->count);
     report_number(given->report, "above by 2 %, %", 2, 100.0 * own->above / (own->count ? own->count : 1));
+    report_number(given->report, "run on, %", 2, 100.0 * own->above_run_on / (own->count ? own->count : 1));
     report_number(given->report, "and above the noise, %", 2, 100.0 * own->missed / (own->count ? own->count : 1));
     report_number(given->report, "worst ratio", 3, own->worst);
     report_number(given->report, "us a fit", 0, own->microseconds / (own->count ? own->count : 1));
@@ -124,6 +140,7 @@ static weft_code run_source(const arguments *given, texel_source *source, int co
             add_row(given, name, i + 1, &own[i]);
         sum[i].count += own[i].count;
         sum[i].above += own[i].above;
+        sum[i].above_run_on += own[i].above_run_on;
         sum[i].missed += own[i].missed;
         sum[i].worst = fmax(sum[i].worst, own[i].worst);
         sum[i].microseconds += own[i].microseconds;

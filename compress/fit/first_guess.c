@@ -234,11 +234,13 @@ static double finish(const refinement *own, weft_finalist *to)
     return left_at_moderate_contrast(own);
 }
 
-/* Whether a start that had a few passes over all lights has come near what another left in the end. */
+/* Whether a start that had a few passes over all lights has come near what another left in the end. The first steps of
+ * a lobe that is alone tell nothing of that: it may have a long way to go. */
 static bool catches_up(const refinement *own, double left)
 {
     weft_fit_options race = own->options;
     race.max_passes = START_PASSES;
+    race.wanted = own->options.lobe_count > 1 ? NEAR * left : 0;
     weft_workspace_refine(own->bundle, own->samples, own->channel, &race, own->workspace, 0.01);
     return left_at_moderate_contrast(own) < NEAR * left;
 }

@@ -124,6 +124,15 @@ static double ease(double share)
     return fmin(2, fmax(0.1, 1 - pow(2 * share - 1, 3)));
 }
 
+/* All further steps rarely gain more than so many times what the next one promises. */
+#define FURTHER 4
+
+/* Whether the search has what it wants, or its next step promises so little that it will not get there. */
+static bool is_decided(const weft_fit_options *options, double left, double gain)
+{
+    return options->wanted > 0 && (left < options->wanted || left - FURTHER * gain >= options->wanted);
+}
+
 void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                            const weft_fit_options *options, weft_fit_workspace *workspace, double damping)
 {
@@ -140,7 +149,7 @@ void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *sample
                 return;
             next->fit = now->fit;
             if (make_step(&normal, damping, options, &next->fit, &gain)) {
-                if (gain < 0.5 * least_gain)
+                if (gain < 0.5 * least_gain || is_decided(options, now->residual, gain))
                     return;
                 weft_workspace_begin_warm(bundle, samples, channel, options, now->table, next);
                 accepted = next->residual < now->residual;

@@ -13,7 +13,8 @@ typedef struct weft_candidate {
 typedef struct weft_judgement {
     int count;
     const weft_candidate *candidate;               /* [count] */
-    float *square_error[WEFT_MATERIAL_MAX_LEVELS]; /* [texel][count], NULL where only sums are wanted */
+    float *square_error[WEFT_MATERIAL_MAX_LEVELS]; /* [texel][count], infinite where rounded tables glare; NULL where
+                                                      only sums are wanted */
 } weft_judgement;
 
 /* Bytes of a texel before any coding: rho, lobes as half floats, the bits of T and S. Pure. */

@@ -75,9 +75,8 @@ void weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle,
     const weft_starts *starts = find_starts(search, bundle, samples, workspace, request);
     bool turn = may_turn(request);
     options.tolerance = GREY_TOLERANCE;
-    int most = request->most_finalists;
-    int count =
-        weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, starts, most, search->surface);
+    int count = weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, starts, WEFT_FINALISTS,
+                                       search->surface);
     search->best = choose_frame(&search->surface[0], turn);
     search->has_other = count > 1;
     if (count > 1)
@@ -85,7 +84,8 @@ void weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle,
     if (!turn || !request->given)
         return;
     starts = &search->starts[request->options.table].given;
-    weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, starts, most, search->given);
+    weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, starts, WEFT_FINALISTS,
+                           search->given);
     weft_grey_fit given = choose_frame(&search->given[0], turn);
     if (given.fit.residual < search->best.fit.residual) {
         search->other = search->best;

@@ -36,8 +36,7 @@ typedef struct weft_frame_request {
     weft_frame_choice choice;
     const weft_frame *given; /* NULL where there is none */
     weft_fit_options options;
-    int most_lobes;     /* that any request for this texel asks for */
-    int most_finalists; /* starts to refine */
+    int most_lobes; /* that any request for this texel asks for */
 } weft_frame_request;
 
 /* Forgets the starts of the last texel. */

@@ -1,6 +1,7 @@
 /* Models of a texel that are given, not sought. */
 #include "compress/texel/parts.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A term that glares where a table of components is brighter than the one that was fitted must not take the others
@@ -32,6 +33,13 @@ static void load_channel(weft_texel_fitter *fitter, const weft_candidate *from, 
                                : 255;
 }
 
+/* Whether the tables of a candidate have fewer bits than it was fitted with. A code that is rounded up makes its view
+ * or its light brighter. */
+static bool is_rounded(const weft_candidate *candidate)
+{
+    return candidate->parts.table_bits % 8 || candidate->parts.light_table_bits % 8;
+}
+
 weft_error_sums weft_texel_judge(weft_texel_fitter *fitter, int level, int x, int y)
 {
     const weft_judgement *judgement = fitter->source->judgement;
@@ -44,8 +52,11 @@ weft_error_sums weft_texel_judge(weft_texel_fitter *fitter, int level, int x, in
         for (int channel = 0; channel < WEFT_CHANNELS; channel++)
             load_channel(fitter, candidate, at, texel, channel, &frame);
         sums = weft_texel_measure(fitter, judgement->count == 1 && weft_texel_is_tallied(at, x, y));
-        if (judgement->square_error[level])
-            judgement->square_error[level][texel * (size_t)judgement->count + (size_t)i] = (float)sums.square_error;
+        float *square_error = judgement->square_error[level];
+        bool is_refused = square_error && is_rounded(candidate) && weft_texel_is_too_bright(fitter);
+        if (square_error)
+            square_error[texel * (size_t)judgement->count + (size_t)i] =
+                is_refused ? INFINITY : (float)sums.square_error;
     }
     return sums;
 }

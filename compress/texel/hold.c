@@ -122,6 +122,14 @@ bool weft_texel_exceeds(weft_texel_fitter *fitter, int channel)
            exceeds(weft_peak_of_fit(&fitter->net[1], fit, &tables), fitter->most[channel]);
 }
 
+bool weft_texel_is_too_bright(weft_texel_fitter *fitter)
+{
+    bool any = false;
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+        any = any || weft_texel_exceeds(fitter, channel);
+    return any;
+}
+
 void weft_texel_limit_terms(weft_texel_fitter *fitter, int channel, double share, double *most)
 {
     weft_peak_tables tables = decode_tables(fitter, channel);

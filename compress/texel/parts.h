@@ -83,6 +83,9 @@ void weft_texel_hold(weft_texel_fitter *fitter, int channel, const weft_fit_opti
 /* Whether a channel of the last model, T and S as their codes are now, exceeds that limit. */
 bool weft_texel_exceeds(weft_texel_fitter *fitter, int channel);
 
+/* Whether any channel does. */
+bool weft_texel_is_too_bright(weft_texel_fitter *fitter);
+
 /* Lowers most [1 + lobe_count], rho first, to the amplitudes with which each term of a channel alone has `share` of
  * that limit at its brightest. */
 void weft_texel_limit_terms(weft_texel_fitter *fitter, int channel, double share, double *most);
@@ -93,7 +96,8 @@ double weft_texel_weighted_error(weft_texel_fitter *fitter);
 /* The last model as it will be read, against the samples. */
 weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied);
 
-/* Measures every candidate of the source's judgement; returns the sums of the last. */
+/* Measures every candidate of the source's judgement; returns the sums of the last. One whose codes exceed the limit
+ * only since they were rounded leaves an infinite error. */
 weft_error_sums weft_texel_judge(weft_texel_fitter *fitter, int level, int x, int y);
 
 /* Lobes for tables that are given. */

@@ -136,17 +136,17 @@ static void fit_channel(weft_texel_fitter *fitter, const weft_fit_options *optio
         weft_texel_limit_unseen(fitter, channel);
 }
 
-static weft_frame_request request_of(const weft_texel_fitter *fitter, const weft_fit_options *options, int most,
+static weft_frame_request request_of(const weft_texel_fitter *fitter, const weft_fit_options *options,
                                      const weft_frame *given)
 {
-    return (weft_frame_request){fitter->source->frames, given, *options, fitter->most_lobes, most};
+    return (weft_frame_request){fitter->source->frames, given, *options, fitter->most_lobes};
 }
 
-/* The grey fit, without S, that a model begins from: the best of `most` refined starts. */
-static const weft_grey_fit *find_start(weft_texel_fitter *fitter, const weft_fit_options *options, int most,
+/* The grey fit, without S, that a model begins from: the best of the refined starts. */
+static const weft_grey_fit *find_start(weft_texel_fitter *fitter, const weft_fit_options *options,
                                        const weft_frame *given)
 {
-    weft_frame_request request = request_of(fitter, options, most, given);
+    weft_frame_request request = request_of(fitter, options, given);
     weft_frame_search_run(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
     return &fitter->frames.best;
 }
@@ -155,14 +155,16 @@ static const weft_grey_fit *find_start(weft_texel_fitter *fitter, const weft_fit
 static const weft_grey_fit *find_other(weft_texel_fitter *fitter, const weft_fit_options *options,
                                        const weft_frame *given)
 {
-    weft_frame_request request = request_of(fitter, options, WEFT_FINALISTS, given);
+    weft_frame_request request = request_of(fitter, options, given);
     bool found =
         weft_frame_search_other(&fitter->frames, &fitter->bundle, &fitter->samples, fitter->workspace, &request);
     return found ? &fitter->frames.other : NULL;
 }
 
-/* Fits and packs one model, with S or without, from its start; `fitter` holds the result, which may yet glare. */
-static void fit_from(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_grey_fit *start)
+/* Fits and packs one model, with S or without, from its start; `fitter` holds the result, which may yet glare. Stops at
+ * the channel with which what is left before rounding reaches `most`, and returns false. */
+static bool fit_from(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_grey_fit *start,
+                     double most)
 {
     if (light)
         start = weft_texel_light_start(fitter, options, start);
@@ -172,8 +174,9 @@ static void fit_from(weft_texel_fitter *fitter, const weft_fit_options *options,
     fitter->now.held = false;
     fitter->now.residual = 0;
     weft_frame frame = weft_pack_frame(&start->fit.frame, fitter->now.frame);
-    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
+    for (int channel = 0; channel < WEFT_CHANNELS && !(fitter->now.residual >= most); channel++)
         fit_channel(fitter, options, light, channel, start, &frame);
+    return !(fitter->now.residual >= most);
 }
 
 static void hold(weft_texel_fitter *fitter, const weft_fit_options *options)
@@ -184,7 +187,7 @@ static void hold(weft_texel_fitter *fitter, const weft_fit_options *options)
 
 static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given)
 {
-    fit_from(fitter, options, light, find_start(fitter, options, WEFT_FINALISTS, given));
+    fit_from(fitter, options, light, find_start(fitter, options, given), INFINITY);
     hold(fitter, options);
 }
 
@@ -219,8 +222,7 @@ static bool try_start(weft_texel_fitter *fitter, const weft_fit_options *options
                       const weft_grey_fit *start, contest *state)
 {
     swap_results(fitter);
-    fit_from(fitter, options, light, start);
-    bool is_beaten = fitter->now.residual >= state->least;
+    bool is_beaten = !fit_from(fitter, options, light, start, state->least);
     if (!is_beaten)
         hold(fitter, options);
     double own = is_beaten ? INFINITY : weft_texel_weighted_error(fitter);
@@ -244,17 +246,14 @@ static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options
     return spoilt;
 }
 
-/* Whether the grey fit of a smaller model leaves so little that the model needs a look; then all its starts are
- * refined.
- */
+/* Whether the grey fit of a smaller model leaves so little that the model needs a look. All its starts are refined: the
+ * first alone may leave far more than the model does in the end. */
 static bool may_serve(weft_texel_fitter *fitter, const weft_fit_options *options, const weft_frame *given,
                       const contest *state)
 {
     double clear = fitter->light_count > 0 ? CLEARLY_LESS_LIT : CLEARLY_LESS;
-    if (state->is_sure && state->grey < clear * find_start(fitter, options, 1, given)->fit.residual)
-        return false;
-    find_start(fitter, options, WEFT_FINALISTS, given);
-    return true;
+    double left = find_start(fitter, options, given)->fit.residual;
+    return !(state->is_sure && state->grey < clear * left);
 }
 
 /* Without S, without T and with fewer lobes. */
@@ -283,7 +282,7 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
  * whole one. */
 static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
 {
-    contest state = {.least = INFINITY, .grey = find_start(fitter, whole, WEFT_FINALISTS, given)->fit.residual};
+    contest state = {.least = INFINITY, .grey = find_start(fitter, whole, given)->fit.residual};
     bool spoilt = try_model(fitter, whole, fitter->light_count > 0, given, &state);
     state.is_sure = !spoilt && fitter->samples.valid_count > MANY_SAMPLES;
     try_all_smaller(fitter, whole, given, &state);
@@ -314,15 +313,6 @@ static void round_codes(const uint8_t *whole, size_t count, int bits, uint8_t *r
         rounded[i] = weft_table_code_rounded(whole[i], bits);
 }
 
-/* A code that is rounded up makes its view brighter. */
-static bool exceeds_limit(weft_texel_fitter *fitter)
-{
-    bool any = false;
-    for (int channel = 0; channel < WEFT_CHANNELS; channel++)
-        any = any || weft_texel_exceeds(fitter, channel);
-    return any;
-}
-
 /* The fewest bits of T and S with which a model that meets the target still does. */
 static void spare_bits(weft_texel_fitter *fitter)
 {
@@ -335,7 +325,7 @@ static void spare_bits(weft_texel_fitter *fitter)
     for (int bits = 4; bits <= 8; bits += 2) {
         round_codes(whole, codes, bits, fitter->now.code);
         round_codes(whole_light, light_codes, bits, fitter->now.light_code);
-        if (bits == 8 || (meets_target(fitter) && !exceeds_limit(fitter)))
+        if (bits == 8 || (meets_target(fitter) && !weft_texel_is_too_bright(fitter)))
             return;
     }
 }
@@ -395,12 +385,12 @@ void weft_texel_fit(weft_texel_fitter *fitter, weft_material *material, int leve
         weft_samples_weigh_for_screen(&fitter->bundle, &fitter->samples);
     counts->texels++;
     counts->empty += fitter->samples.valid_count == 0;
+    weft_texel_limit(fitter);
     if (fitter->source->judgement) {
         weft_error_sums judged = weft_texel_judge(fitter, level, x, y);
         weft_error_sums_add(&counts->sums, &judged);
         return;
     }
-    weft_texel_limit(fitter);
     weft_frame_search_forget(&fitter->frames);
     weft_fit_options whole = whole_model(fitter);
     fitter->most_lobes = whole.lobe_count;
