@@ -180,7 +180,6 @@ vec4 chosen_radiance(SurfacePoint point, float through, int fine)
     vec2 coordinate = point.coordinate;
     vec4 view = vec4(point.view, 0.0);
     if (stored) {
-        point.chance = chance;
         coordinate = tap[chosen].coordinate;
         view = texelFetch(layer_view, ivec2(number, 0), 0);
         corners = Corners(ivec3(int(view.w)), vec3(1.0, 0.0, 0.0));
