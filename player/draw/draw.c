@@ -91,6 +91,12 @@ static bool uses_layers(const weft_player *p, const weft_scene *scene)
     return scene->layers > 0 && p->material.layers.group_count > 0;
 }
 
+static int drawn_groups(const weft_player *p, const weft_scene *scene)
+{
+    int wanted = (scene->layers + WEFT_LAYERS_GROUP - 1) / WEFT_LAYERS_GROUP, most = p->material.layers.group_count;
+    return wanted < most ? wanted : most;
+}
+
 void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_mode mode, GLuint program)
 {
     switch (mode) {
@@ -98,7 +104,7 @@ void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_m
         weft_raw_texture_bind(&p->raw, program);
         break;
     case WEFT_MODE_COMPRESSED:
-        weft_material_texture_bind(&p->material, program, scene->layers);
+        weft_material_texture_bind(&p->material, program, uses_layers(p, scene));
         if (scene->show_extrapolation && p->material.seen.maps)
             weft_seen_texture_bind(&p->material.seen, program, uses_layers(p, scene) ? 0 : 5);
         glUniform1fv(glGetUniformLocation(program, "lobe_share"), WEFT_SCENE_MAX_LOBES,
@@ -144,7 +150,8 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         kind.light_table = p->material.light_table.count > 0;
         kind.fewer_bits = scene->table_bits < 8;
         kind.pruned = scene->show_extrapolation && p->material.seen.maps;
-        kind.layer_groups = scene->layers > 0 ? p->material.layers.group_count : 0;
+        kind.layer_groups = uses_layers(p, scene) ? p->material.layers.group_count : 0;
+        kind.drawn_groups = drawn_groups(p, scene);
         kind.half_vector = p->material.layers.half_vector;
         kind.opacity = kind.layer_groups > 0 && !p->material.opaque;
         kind.relief = kind.layer_groups > 0 && scene->relief && p->material.relief.height;

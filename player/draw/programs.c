@@ -11,8 +11,9 @@ static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
     return a->mode == b->mode && a->stochastic == b->stochastic && a->shadows == b->shadows &&
            a->one_light == b->one_light && a->plot == b->plot && a->opacity == b->opacity && a->relief == b->relief &&
            a->threads == b->threads && a->noise == b->noise && a->layer_groups == b->layer_groups &&
-           a->half_vector == b->half_vector && a->lobe_count == b->lobe_count && a->view_table == b->view_table &&
-           a->light_table == b->light_table && a->fewer_bits == b->fewer_bits && a->pruned == b->pruned;
+           a->drawn_groups == b->drawn_groups && a->half_vector == b->half_vector && a->lobe_count == b->lobe_count &&
+           a->view_table == b->view_table && a->light_table == b->light_table && a->fewer_bits == b->fewer_bits &&
+           a->pruned == b->pruned;
 }
 
 static const char *name_of(bool value)
@@ -28,11 +29,13 @@ static void define(const weft_program_kind *kind, char *text, size_t size)
         "ONE_LIGHT %s\n"
         "#define STOCHASTIC %s\n#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
         "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n"
-        "#define LAYER_GROUPS %d\n#define HALF_VECTOR %s\n#define RELIEF %s\n#define PRUNED %d\n",
+        "#define LAYER_GROUPS %d\n#define DRAWN_GROUPS %d\n#define HALF_VECTOR %s\n#define RELIEF %s\n#define PRUNED "
+        "%d\n",
         WEFT_MAX_LIGHTS, WEFT_SHADOW_LAYERS, WEFT_LEVEL_COLOURS, kind->one_light ? "1" : "light_count",
         name_of(kind->one_light), name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity),
         kind->lobe_count, name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits),
-        name_of(kind->noise), kind->layer_groups, name_of(kind->half_vector), name_of(kind->relief), kind->pruned);
+        name_of(kind->noise), kind->layer_groups, kind->drawn_groups, name_of(kind->half_vector), name_of(kind->relief),
+        kind->pruned);
 }
 
 static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)

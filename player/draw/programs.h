@@ -18,6 +18,7 @@ typedef struct weft_program_kind {
     bool noise;   /* analytic: that of the weave */
     /* Of the compressed material: */
     int layer_groups; /* four layers each, in the place of lobes; 0: lobes */
+    int drawn_groups; /* the first of them, which are evaluated */
     bool half_vector; /* the maps of the layers are over it */
     int lobe_count;
     bool view_table, light_table;

@@ -233,7 +233,7 @@ static void set_areas(const weft_mip_layout *layout, GLuint program, const char 
     weft_gl_set_vec2(program, step, 1.0 / layout->width, 1.0 / layout->height);
 }
 
-void weft_layer_texture_bind(const weft_layer_texture *t, GLuint program, int unit, int view_unit, int count)
+void weft_layer_texture_bind(const weft_layer_texture *t, GLuint program, int unit, int view_unit)
 {
     weft_gl_bind(program, "layer_coefficient", unit, GL_TEXTURE_2D_ARRAY, t->coefficient);
     weft_gl_bind(program, "layer_bounds", unit + 1, GL_TEXTURE_2D, t->bounds);
@@ -244,7 +244,6 @@ void weft_layer_texture_bind(const weft_layer_texture *t, GLuint program, int un
     }
     set_areas(&t->layout, program, "layer_area", "layer_step");
     set_areas(&t->bounds_layout, program, "bounds_area", "bounds_step");
-    weft_gl_set_int(program, "layer_groups", (count + WEFT_LAYERS_GROUP - 1) / WEFT_LAYERS_GROUP);
     weft_gl_set_vec2(program, "layer_sides", t->light_side, t->view_side);
     weft_gl_set_float(program, "least_cosine", (double)t->least_cosine);
 }

@@ -31,8 +31,8 @@ void weft_layer_texture_free(weft_layer_texture *texture);
 /* Of graphics memory; *shared receives what does not grow with the number of texels. */
 size_t weft_layer_texture_bytes(const weft_layer_texture *texture, size_t *shared);
 
-/* Sets the uniforms of layered.glsl to evaluate the first `count` layers, from texture unit `unit` on (four of them),
- * and on `view_unit`; `program` is in use. */
-void weft_layer_texture_bind(const weft_layer_texture *texture, GLuint program, int unit, int view_unit, int count);
+/* Sets the uniforms of layered.glsl, from texture unit `unit` on (four of them), and on `view_unit`; `program` is in
+ * use. */
+void weft_layer_texture_bind(const weft_layer_texture *texture, GLuint program, int unit, int view_unit);
 
 #endif

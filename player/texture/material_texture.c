@@ -217,11 +217,11 @@ size_t weft_material_texture_bytes(const weft_material_texture *t)
     return of_layers + t->relief.bytes + texels * (16 * layers + 4 * (size_t)(t->table.count + t->light_table.count));
 }
 
-void weft_material_texture_bind(const weft_material_texture *t, GLuint program, int layer_count)
+void weft_material_texture_bind(const weft_material_texture *t, GLuint program, bool layered)
 {
-    if (t->layers.group_count > 0 && layer_count > 0) {
+    if (layered) {
         /* Unit 2 is that of a light table, which lobes alone have. */
-        weft_layer_texture_bind(&t->layers, program, 5, 2, layer_count);
+        weft_layer_texture_bind(&t->layers, program, 5, 2);
         weft_relief_texture_bind(&t->relief, program, 9);
     }
     weft_gl_bind(program, "material_texel", 0, GL_TEXTURE_2D_ARRAY, t->texel);

@@ -44,8 +44,8 @@ void weft_material_texture_free(weft_material_texture *texture);
 /* Of graphics memory, without the directions. */
 size_t weft_material_texture_bytes(const weft_material_texture *texture);
 
-/* Sets the uniforms of compressed.glsl, and those of layered.glsl to evaluate the first layer_count layers; `program`
- * is in use. */
-void weft_material_texture_bind(const weft_material_texture *texture, GLuint program, int layer_count);
+/* Sets the uniforms of compressed.glsl, or if `layered`, for which the material must have layers, those of
+ * layered.glsl; `program` is in use. */
+void weft_material_texture_bind(const weft_material_texture *texture, GLuint program, bool layered);
 
 #endif

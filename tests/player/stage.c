@@ -295,3 +295,19 @@ void stage_layers(weft_layers_kind kind, int layer_count, weft_material *materia
     for (int k = 0; k < material->level_count; k++)
         fill_layers_level(&material->layers->level[k], layer_count);
 }
+
+void stage_heights(bool hills, int levels, weft_material *material)
+{
+    int width = hills ? 2 * material->level[0].width : 1, height = hills ? 2 * material->level[0].height : 1;
+    const double size_mm[2] = {4, 2.6};
+    weft_error error = {0};
+    weft_material_heights *heights;
+    float *value = malloc((size_t)width * (size_t)height * sizeof *value);
+    for (int i = 0; i < width * height; i++) {
+        double u = (i % width + 0.5) / width, v = 1 - (i / width + 0.5) / height;
+        value[i] = (float)(-0.4 + (hills ? 0.3 * sin(2 * WEFT_PI * u) * cos(2 * WEFT_PI * v + 1) : 0));
+    }
+    expect_ok(weft_material_heights_create(value, width, height, levels, size_mm, &heights, &error), &error);
+    weft_material_take_heights(material, heights);
+    free(value);
+}

@@ -26,6 +26,9 @@ void stage_material(int width, int height, int lobes, int views, int lights, wef
 /* Adds layers that are smooth in light and view, with coefficients at random, some of them held by their ceilings. */
 void stage_layers(weft_layers_kind kind, int layer_count, weft_material *material);
 
+/* Gives it hills of 0.6 mm, two heights along each side of a texel, on the finest `levels`; or only a plane. */
+void stage_heights(bool hills, int levels, weft_material *material);
+
 /* A checkerboard of a dark matt and a bright shining cloth with one texel a field, whose mip levels are exact means:
  * the lobes of all texels have the same shape. */
 void stage_checker(int size, weft_material *material);

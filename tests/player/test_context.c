@@ -36,6 +36,7 @@ static weft_program_kind kind_of(weft_mode mode, int plot, int choice)
                                .noise = mode == WEFT_MODE_ANALYTIC && choice & 16,
                                .threads = mode == WEFT_MODE_ANALYTIC && choice & 8,
                                .layer_groups = layered ? 4 : 0,
+                               .drawn_groups = layered ? 2 : 0,
                                .half_vector = layered && choice & 8,
                                .opacity = layered && choice & 4,
                                .lobe_count = compressed && choice & 8 ? 3 : 0,

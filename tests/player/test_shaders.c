@@ -187,23 +187,6 @@ static weft_rgba evaluate_layers(void *context, const weft_surface_sample *at)
     return (weft_rgba){value.r, value.g, value.b, opacity_through(model, at)};
 }
 
-/* Hills of 0.6 mm, two heights along each side of a texel, on the finest levels; or only a plane. */
-static void give_heights(weft_material *material, bool hills, int levels)
-{
-    int width = hills ? 2 * material->level[0].width : 1, height = hills ? 2 * material->level[0].height : 1;
-    const double size_mm[2] = {4, 2.6};
-    weft_error error = {0};
-    weft_material_heights *heights;
-    float *value = malloc((size_t)width * (size_t)height * sizeof *value);
-    for (int i = 0; i < width * height; i++) {
-        double u = (i % width + 0.5) / width, v = 1 - (i / width + 0.5) / height;
-        value[i] = (float)(-0.4 + (hills ? 0.3 * sin(2 * WEFT_PI * u) * cos(2 * WEFT_PI * v + 1) : 0));
-    }
-    expect_ok(weft_material_heights_create(value, width, height, levels, size_mm, &heights, &error), &error);
-    weft_material_take_heights(material, heights);
-    free(value);
-}
-
 typedef enum surface_shape { FLAT, PLANE, HILLS } surface_shape;
 
 static stage_difference difference_of_layers(void **state, weft_layers_kind kind, int layer_count, int views,
@@ -216,7 +199,7 @@ static stage_difference difference_of_layers(void **state, weft_layers_kind kind
     stage_material(20, 13, 1, views, 0, material);
     stage_layers(kind, layer_count, material);
     if (shape != FLAT)
-        give_heights(material, shape == HILLS, 2);
+        stage_heights(shape == HILLS, 2, material);
     expect_ok(weft_table_directions_create(material, &model.lobes.directions, &error), &error);
     expect_ok(weft_layer_maps_create(material->layers, &model.maps, &error), &error);
     expect_ok(weft_layer_maps_keep_views(&model.maps, &error), &error);

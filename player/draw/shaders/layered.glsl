@@ -1,6 +1,7 @@
 // The compressed material: linear layers. Coefficients are interpolated by the hardware between texels, the maps of the
 // factors between directions, and both are multiplied once a pixel and light. C twin: weft_layers_sample_through.
-// Constants defined by player/draw/programs.c: LAYER_GROUPS, four layers each; HALF_VECTOR, whether the maps are over it;
+// Constants defined by player/draw/programs.c: LAYER_GROUPS, four layers each; DRAWN_GROUPS, the first of them, which are
+// evaluated; HALF_VECTOR, whether the maps are over it;
 // OPACITY, whether there is any below 1; RELIEF, whether it is all seen through heights (reflectance/relief/relief.glsl):
 // then from the stored views around, each at a place of its own.
 uniform sampler2DArray layer_coefficient; // of a group in each layer, all levels side by side; -1 .. 1
@@ -10,21 +11,18 @@ uniform sampler2D layer_bounds;           // codes of floors and of the ceiling,
 uniform highp sampler3D layer_map;
 uniform highp sampler2DArray layer_map_of_view; // the same of every stored view by itself
 uniform sampler2D layer_view;              // of every stored view: direction, entry in the table of views
-uniform int layer_groups; // that are evaluated
 uniform vec2 layer_sides; // nodes along a side, of lights and of views
 uniform vec2 layer_step, bounds_step; // 1 / size of the textures
 uniform vec4 layer_area[16], bounds_area[16];
 uniform float least_cosine;
 
-void add_coefficients(int level, vec2 coordinate, float weight, inout vec4 sum[LAYER_GROUPS])
+void add_coefficients(int level, vec2 coordinate, float weight, inout vec4 sum[DRAWN_GROUPS])
 {
     // After the last texel of a row or column comes the first one.
     vec4 area = layer_area[level];
     vec2 place = area.xy + 0.5 + fract(vec2(coordinate.x, -coordinate.y) - 0.5 / area.zw) * area.zw;
-    for (int i = 0; i < LAYER_GROUPS; i++) {
-        if (i < layer_groups)
-            sum[i] += weight * textureLod(layer_coefficient, vec3(place * layer_step, float(i)), 0.0);
-    }
+    for (int i = 0; i < DRAWN_GROUPS; i++)
+        sum[i] += weight * textureLod(layer_coefficient, vec3(place * layer_step, float(i)), 0.0);
 }
 
 // Floors of red, green and blue, and the ceiling, of the nearest texel.
@@ -53,7 +51,7 @@ vec2 map_place(vec2 inner, int group, int colour)
 }
 
 // Reflectance times cosine, for directions above the horizon. STOCHASTIC takes one of the two rows of view nodes.
-vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view, inout float chance)
+vec3 layers_value(vec4 coefficient[DRAWN_GROUPS], vec3 light, vec3 view, inout float chance)
 {
     vec3 half_vector = half_vector_of(light, view);
     vec2 inner = inner_node(light, half_vector);
@@ -64,9 +62,7 @@ vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view, inout f
         row += happens(chance, share) ? 1.0 : 0.0;
     float low = (row + (outer.x + 0.5) * rows) * rows, high = low + rows;
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < LAYER_GROUPS; i++) {
-        if (i >= layer_groups)
-            break;
+    for (int i = 0; i < DRAWN_GROUPS; i++) {
         for (int c = 0; c < 3; c++) {
             vec2 place = map_place(inner, i, c);
             vec4 factor = textureLod(layer_map, vec3(place, low), 0.0);
@@ -79,13 +75,11 @@ vec3 layers_value(vec4 coefficient[LAYER_GROUPS], vec3 light, vec3 view, inout f
 }
 
 // The same as stored view `number` has it.
-vec3 layers_value_of_view(vec4 coefficient[LAYER_GROUPS], vec3 light, int number, vec3 view)
+vec3 layers_value_of_view(vec4 coefficient[DRAWN_GROUPS], vec3 light, int number, vec3 view)
 {
     vec3 half_vector = half_vector_of(light, view), sum = vec3(0.0);
     vec2 inner = inner_node(light, half_vector);
-    for (int i = 0; i < LAYER_GROUPS; i++) {
-        if (i >= layer_groups)
-            break;
+    for (int i = 0; i < DRAWN_GROUPS; i++) {
         for (int c = 0; c < 3; c++)
             sum[c] += dot(coefficient[i], textureLod(layer_map_of_view, vec3(map_place(inner, i, c), float(number)), 0.0));
     }
@@ -106,29 +100,28 @@ float opacity_of_level(int level, vec2 coordinate, Entries views)
     return mix(top, bottom, share.y);
 }
 
-// Of `point` at a place: as stored view `number` saw it from its direction `view`, or with -1 as seen from there.
-// Loops of one round or none, here and below, since software rasterisers pass over a loop that no pixel takes, not over a
-// branch.
-vec4 radiance_at(SurfacePoint point, vec2 coordinate, int number, vec3 view, Entries views, int fine, float share)
+// Of `point` at a place: if `stored` as stored view `number` saw it from its direction `view`, else as seen from there.
+// Both are evaluated where pixels differ: software rasterisers run both sides of a branch anyway, and a loop of one round
+// or none in its place takes longer than both. Where `stored` is a constant, compilers drop the other.
+vec4 radiance_at(SurfacePoint point, vec2 coordinate, bool stored, int number, vec3 view, Entries views, int fine,
+                 float share)
 {
-    int of_view = RELIEF && number >= 0 ? 1 : 0;
-    vec4 coefficient[LAYER_GROUPS];
-    for (int i = 0; i < LAYER_GROUPS; i++)
+    vec4 coefficient[DRAWN_GROUPS];
+    for (int i = 0; i < DRAWN_GROUPS; i++)
         coefficient[i] = vec4(0.0);
     add_coefficients(fine, coordinate, 1.0 - share, coefficient);
     if (share > 0.0)
         add_coefficients(fine + 1, coordinate, share, coefficient);
     vec4 bounds = bounds_at(fine, coordinate);
-    vec3 sum = vec3(0.0), value = vec3(0.0);
+    vec3 sum = vec3(0.0);
     for (int i = 0; i < LIGHT_COUNT; i++) {
         vec3 irradiance = surface_irradiance(point, i), light = surface_light(point, i);
         if (irradiance == vec3(0.0) || light.z <= 0.0 || view.z <= 0.0)
             continue;
         vec3 most = vec3(bounds.a * min(1.0, light.z / least_cosine));
-        for (int k = 0; k < of_view; k++)
-            value = layers_value_of_view(coefficient, light, number, view);
-        for (int k = of_view; k < 1; k++)
-            value = layers_value(coefficient, light, view, point.chance);
+        vec3 of_view = RELIEF ? layers_value_of_view(coefficient, light, number, view) : vec3(0.0);
+        vec3 between = layers_value(coefficient, light, view, point.chance);
+        vec3 value = stored ? of_view : between;
         sum += irradiance / light.z * min(max(value, bounds.rgb * light.z), most);
     }
     if (!OPACITY)
@@ -145,7 +138,7 @@ vec4 radiance_of_tap(SurfacePoint point, int number, vec2 coordinate, int fine, 
     Entries views;
     if (OPACITY)
         views = table_entries(Corners(ivec3(int(view.w)), vec3(1.0, 0.0, 0.0)), table_columns);
-    return radiance_at(point, coordinate, number, view.xyz, views, fine, share);
+    return radiance_at(point, coordinate, true, number, view.xyz, views, fine, share);
 }
 
 int chosen_tap(ReliefTap tap[3], inout float chance)
@@ -172,33 +165,29 @@ vec4 radiance_without_heights(SurfacePoint point, int fine, float share)
     Entries views;
     if (OPACITY)
         views = table_entries(find_corners(0, point.view), table_columns);
-    return radiance_at(point, point.coordinate, -1, point.view, views, fine, share);
+    return radiance_at(point, point.coordinate, false, 0, point.view, views, fine, share);
 }
 
-// One level and one view, stored or not, by chance.
+// One level and one view, stored or not, by chance. Heights are followed where none count, too.
 vec4 chosen_radiance(SurfacePoint point, float through, int fine)
 {
-    Corners views;
-    int number = -1, rounds = happens(point.chance, through) ? 1 : 0;
+    bool stored = happens(point.chance, through);
+    Corners corners = find_corners(stored ? 2 : 0, point.view);
+    ReliefTap tap[3];
+    relief_taps(1.0, point.coordinate, point.view, corners.label, corners.weight, tap);
+    float chance = point.chance;
+    int chosen = chosen_tap(tap, chance), number = corners.label[chosen];
     vec2 coordinate = point.coordinate;
-    vec3 view = point.view;
-    for (int i = 0; i < rounds; i++) {
-        Corners corners = find_corners(2, point.view);
-        ReliefTap tap[3];
-        relief_taps(1.0, point.coordinate, point.view, corners.label, corners.weight, tap);
-        int chosen = chosen_tap(tap, point.chance);
-        number = corners.label[chosen];
+    vec4 view = vec4(point.view, 0.0);
+    if (stored) {
         coordinate = tap[chosen].coordinate;
-        vec4 stored = texelFetch(layer_view, ivec2(number, 0), 0);
-        view = stored.xyz;
-        views = Corners(ivec3(int(stored.w)), vec3(1.0, 0.0, 0.0));
+        view = texelFetch(layer_view, ivec2(number, 0), 0);
+        corners = Corners(ivec3(int(view.w)), vec3(1.0, 0.0, 0.0));
     }
-    for (int i = rounds; OPACITY && i < 1; i++)
-        views = find_corners(0, point.view);
     Entries entries;
     if (OPACITY)
-        entries = table_entries(views, table_columns);
-    return radiance_at(point, coordinate, number, view, entries, fine, 0.0);
+        entries = table_entries(corners, table_columns);
+    return radiance_at(point, coordinate, stored, number, view.xyz, entries, fine, 0.0);
 }
 
 vec4 radiance(SurfacePoint point)
@@ -215,10 +204,9 @@ vec4 radiance(SurfacePoint point)
     if (!RELIEF)
         return radiance_without_heights(point, fine, share);
     vec4 sum = vec4(0.0);
-    int rounds = through > 0.0 ? 1 : 0, rounds_without = through < 1.0 ? 1 : 0;
-    for (int i = 0; i < rounds; i++)
+    if (through > 0.0)
         sum += through * radiance_through_heights(point, fine, share);
-    for (int i = 0; i < rounds_without; i++)
+    if (through < 1.0)
         sum += (1.0 - through) * radiance_without_heights(point, fine, share);
     return sum;
 }
