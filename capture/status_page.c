@@ -145,8 +145,8 @@ static weft_code write_drift(weft_page *page, const weft_status_page *status, we
     }
     weft_chart_series lamp = {NULL, 0, false, status->lamp_count, (const double(*)[2])point};
     weft_chart chart = {"The lamp, as the white patches show it",
-                        {"photograph of this run", "", 0, 1},
-                        {"against its median", " %", -5, 5},
+                        {"photograph of this run", "", 0, 1, 1},
+                        {"against its median", " %", -5, 5, 0},
                         1,
                         &lamp};
     weft_chart_write(page, &chart);

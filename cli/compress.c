@@ -152,7 +152,7 @@ static const weft_option option_table[] = {
 static weft_preset_wish wish_of(const compress_command *command)
 {
     bool alone = command->preset == WEFT_PRESET_NONE && command->least_fps > 0;
-    return (weft_preset_wish){alone ? WEFT_PRESET_BEST : command->preset, command->least_fps};
+    return (weft_preset_wish){alone ? WEFT_PRESET_BEST : command->preset, command->least_fps, !command->common.quiet};
 }
 
 /* A preset chooses what these options say. */
@@ -435,39 +435,39 @@ static weft_code choose_preset(const compress_command *command, weft_dataset *da
     return code;
 }
 
-static weft_code say_speed(const compress_command *command, const weft_preset_prediction *prediction,
-                           const weft_material *material, weft_error *error)
+/* The file is written: where it cannot be drawn, there is only nothing to say of that. */
+static void say_speed(const compress_command *command, const weft_preset_prediction *prediction,
+                      const weft_material *material)
 {
     weft_frame_timer *timer;
-    double frame_ms;
+    weft_error ignored;
+    double frame_ms = 0;
     char predicted[64], measured[64];
-    if (!(prediction->frame_ms > 0))
-        return WEFT_OK;
-    WEFT_TRY(weft_frame_timer_open(&timer, error));
-    weft_code code = weft_frame_timer_of_material(timer, material, &frame_ms, error);
+    if (!(prediction->frame_ms > 0) || command->common.quiet || weft_frame_timer_open(&timer, &ignored) != WEFT_OK)
+        return;
+    if (weft_frame_timer_of_material(timer, material, &frame_ms, &ignored) != WEFT_OK)
+        frame_ms = 0;
     weft_frame_timer_close(timer);
-    WEFT_TRY(code);
     print_speed(prediction->frame_ms, predicted);
     print_speed(frame_ms, measured);
     if (measured[0])
         weft_command_say(&command->common, "predicted %s, is %s (%+.1f %%)", predicted, measured,
                          100 * (frame_ms / prediction->frame_ms - 1));
-    return WEFT_OK;
 }
 
-static weft_code say_prediction(const compress_command *command, const weft_preset_prediction *prediction,
-                                const weft_hold_out *held_out, const weft_material *material, weft_error *error)
+static void say_prediction(const compress_command *command, const weft_preset_prediction *prediction,
+                           const weft_hold_out *held_out, const weft_material *material)
 {
     double bytes = (double)weft_file_bytes(command->output);
     if (prediction->wish.preset == WEFT_PRESET_NONE)
-        return WEFT_OK;
+        return;
     weft_command_say(&command->common, "predicted %.3f MB, is %.3f MB (%+.1f %%)", prediction->bytes * 1e-6,
                      bytes * 1e-6, 100 * (bytes / prediction->bytes - 1));
     if (held_out->split_count > 0)
         weft_command_say(&command->common, "predicted relative RMSE %.3f %s, is %.3f (%+.1f %%)", prediction->error,
                          weft_hold_out_about(held_out), held_out->material.all.relative_rmse,
                          100 * (held_out->material.all.relative_rmse / prediction->error - 1));
-    return say_speed(command, prediction, material, error);
+    say_speed(command, prediction, material);
 }
 
 static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
@@ -509,8 +509,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
         say_layers(&command->common, &options, &report);
         say_errors(&command->common, &material);
         say_sizes(command, layout, &report);
-        if (code == WEFT_OK)
-            code = say_prediction(command, &prediction, &held_out, &material, error);
+        say_prediction(command, &prediction, &held_out, &material);
     }
     weft_material_free(&material);
     weft_dataset_close(dataset);

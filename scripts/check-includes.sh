@@ -43,6 +43,8 @@ git ls-files $rooms | grep -E '\.(c|h|cpp)$' | xargs grep -nE '^[[:space:]]*#[[:
         else if (rank[to] > rank[from] || (to " " from) in stranger)
             print $1 ":" $2 ": " from " may not include " to
     }' >"$faults"
+git ls-files | grep -v / | grep -vxE '[.](clang-format|clang-tidy|gitignore)|CMake(Lists[.]txt|Presets[.]json)|LICENSE|Makefile|README[.]md' |
+    sed 's|$|: lies beside the rooms|' >>"$faults" || true
 git ls-files | grep / | cut -d/ -f1 | sort -u | grep -vxE "$(echo $rooms $beside | tr ' ' '|')" |
     sed 's|$|/: is no room|' >>"$faults" || true
 cat "$faults"

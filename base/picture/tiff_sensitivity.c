@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { EXIF_DIRECTORY = 34665, SENSITIVITY = 34855, SHORT = 3, ENTRY_BYTES = 12 };
+enum { EXIF_DIRECTORY = 34665, SENSITIVITY = 34855, SHORT = 3, LONG = 4, ENTRY_BYTES = 12 };
 
 typedef struct tiff {
     FILE *file;
@@ -20,7 +20,16 @@ static uint32_t number_of(const tiff *t, const unsigned char *byte, int count)
     return value;
 }
 
-/* The value of a tag in the directory at an offset, where it fits into its entry; 0 where there is none. */
+/* The first value of an entry of a directory, where the entry holds it; 0 where it lies elsewhere. */
+static uint32_t value_of(const tiff *t, const unsigned char *entry)
+{
+    uint32_t type = number_of(t, entry + 2, 2), count = number_of(t, entry + 4, 4);
+    if (type == SHORT && (count == 1 || count == 2))
+        return number_of(t, entry + 8, 2);
+    return type == LONG && count == 1 ? number_of(t, entry + 8, 4) : 0;
+}
+
+/* The value of a tag in the directory at an offset; 0 where there is none. */
 static uint32_t value_in(const tiff *t, uint32_t offset, uint32_t tag)
 {
     unsigned char byte[ENTRY_BYTES] = {0};
@@ -28,7 +37,7 @@ static uint32_t value_in(const tiff *t, uint32_t offset, uint32_t tag)
         return 0;
     for (uint32_t left = number_of(t, byte, 2); left > 0 && fread(byte, ENTRY_BYTES, 1, t->file) == 1; left--) {
         if (number_of(t, byte, 2) == tag)
-            return number_of(t, byte + 8, number_of(t, byte + 2, 2) == SHORT ? 2 : 4);
+            return value_of(t, byte);
     }
     return 0;
 }

@@ -36,9 +36,11 @@ static linear_axis fit_axis(const weft_chart *chart, int coordinate)
             high = has_place(point) ? fmax(high, point[coordinate]) : high;
         }
     }
-    double step = choose_step(high > low ? high - low : 1);
+    double step = fmax(choose_step(high > low ? high - low : 1), least->least_step);
     linear_axis axis = {step * floor(low / step + 1e-9), step * ceil(high / step - 1e-9), step, LEFT,
                         WIDTH - LEFT - RIGHT};
+    if (!(axis.high > axis.low))
+        axis.high = axis.low + step;
     if (coordinate) {
         axis.start = HEIGHT - BOTTOM;
         axis.length = -(HEIGHT - TOP - BOTTOM);

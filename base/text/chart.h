@@ -19,6 +19,7 @@ typedef struct weft_chart_series {
 typedef struct weft_chart_axis {
     const char *label, *unit; /* text; the unit, such as " %", follows the number of every tick */
     double low, high;         /* shown at least */
+    double least_step;        /* between ticks: 1 of what is counted; 0: any */
 } weft_chart_axis;
 
 typedef struct weft_chart {

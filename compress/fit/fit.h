@@ -35,7 +35,7 @@ typedef struct weft_fit_options {
     double max_amplitude; /* rho and each A <= this, in the scaled units of weft_samples */
     double tolerance;     /* stop when a step lowers the residual by less than this fraction */
     int max_passes;
-    double wanted; /* stop when the residual is below, or the next step promises too little to get there; 0: do not */
+    double wanted; /* stop when the next step promises too little to leave less than this; 0: do not */
 } weft_fit_options;
 
 /* 2 lobes, table, N <= 8192, tolerance 1e-3, 40 passes. */

@@ -127,10 +127,10 @@ static double ease(double share)
 /* All further steps rarely gain more than so many times what the next one promises. */
 #define FURTHER 4
 
-/* Whether the search has what it wants, or its next step promises so little that it will not get there. */
-static bool is_decided(const weft_fit_options *options, double left, double gain)
+/* Whether the next step promises so little that the search will not get where it is wanted. */
+static bool is_hopeless(const weft_fit_options *options, double left, double gain)
 {
-    return options->wanted > 0 && (left < options->wanted || left - FURTHER * gain >= options->wanted);
+    return options->wanted > 0 && left - FURTHER * gain >= options->wanted;
 }
 
 void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
@@ -149,7 +149,7 @@ void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *sample
                 return;
             next->fit = now->fit;
             if (make_step(&normal, damping, options, &next->fit, &gain)) {
-                if (gain < 0.5 * least_gain || is_decided(options, now->residual, gain))
+                if (gain < 0.5 * least_gain || is_hopeless(options, now->residual, gain))
                     return;
                 weft_workspace_begin_warm(bundle, samples, channel, options, now->table, next);
                 accepted = next->residual < now->residual;

@@ -5,6 +5,7 @@
 #include "player/scene/false_colour.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
 {
@@ -78,17 +79,22 @@ static weft_code build(const weft_program_kind *kind, GLuint *program, weft_erro
     return weft_gl_program(weft_mode_name(kind->mode), vertex, fragment[kind->mode], program, error);
 }
 
-static void forget(weft_programs *p)
+/* Of those that are kept in the order of their building; returns where the next one goes. */
+static int forget_oldest(weft_programs *p)
 {
     glUseProgram(0); /* a program in use would outlive its deletion */
-    for (int i = 0; i < p->count; i++)
-        glDeleteProgram(p->name[i]);
-    p->count = 0;
+    glDeleteProgram(p->name[0]);
+    p->count--;
+    memmove(p->kind, p->kind + 1, (size_t)p->count * sizeof *p->kind);
+    memmove(p->name, p->name + 1, (size_t)p->count * sizeof *p->name);
+    return p->count;
 }
 
 void weft_programs_free(weft_programs *p)
 {
-    forget(p);
+    glUseProgram(0);
+    for (int i = 0; i < p->count; i++)
+        glDeleteProgram(p->name[i]);
     for (int i = 0; i < 2; i++) {
         glDeleteProgram(p->surface[i]);
         glDeleteProgram(p->geometry[i]);
@@ -102,10 +108,8 @@ weft_code weft_programs_find(weft_programs *p, const weft_program_kind *kind, GL
     int i = 0;
     while (i < p->count && !same_kind(&p->kind[i], kind))
         i++;
-    if (i == WEFT_PROGRAM_CAPACITY) {
-        forget(p);
-        i = 0;
-    }
+    if (i == WEFT_PROGRAM_CAPACITY)
+        i = forget_oldest(p);
     if (i == p->count) {
         WEFT_TRY(build(kind, &p->name[i], error));
         p->kind[i] = *kind;

@@ -65,16 +65,28 @@ static weft_code watch_files(weft_application *a, weft_error *error)
     return WEFT_OK;
 }
 
-/* What is shown comes to the head of the list; where it cannot be stored, that is no reason to stop. */
+/* A file that is new in its slot comes to the head of the list; where it cannot be stored, that is no reason to stop.
+ */
+static void remember_file(weft_application *a, int slot, const char *path)
+{
+    weft_error error;
+    if (!path || strcmp(path, a->remembered[slot]) == 0)
+        return;
+    snprintf(a->remembered[slot], sizeof a->remembered[slot], "%s", path);
+    if (weft_recent_files_add(&a->recent, path, &error) != WEFT_OK)
+        weft_log_line(&a->setup.log, error.message);
+}
+
+/* The material last: it is what most windows are for. */
 static void remember_files(weft_application *a)
 {
     const weft_settings *s = &a->setup.request->settings;
-    const char *const path[] = {s->mesh, s->environment, s->weave, s->dataset, s->material};
-    weft_error error;
-    for (size_t i = 0; i < sizeof path / sizeof *path; i++) {
-        if (path[i] && weft_recent_files_add(&a->recent, path[i], &error) != WEFT_OK)
-            weft_log_line(&a->setup.log, error.message);
-    }
+    remember_file(a, WEFT_SLOT_MESH, weft_mesh_is_built_in(s->mesh) ? NULL : s->mesh);
+    remember_file(a, WEFT_SLOT_ENVIRONMENT,
+                  s->environment && weft_surroundings_are(s->environment) ? NULL : s->environment);
+    remember_file(a, WEFT_SLOT_WEAVE, s->weave);
+    remember_file(a, WEFT_SLOT_DATASET, s->dataset);
+    remember_file(a, WEFT_SLOT_MATERIAL, s->material);
 }
 
 void weft_application_open(weft_application *a, const char *path)

@@ -9,9 +9,12 @@
 #include "player/window/history.h"
 #include "player/window/interaction.h"
 #include "player/window/recent_files.h"
+#include "player/window/scene_part.h"
 #include "player/window/space_mouse/space_mouse.h"
 #include "player/window/watch.h"
 #include "player/window/weave_edit.h"
+
+#include <limits.h>
 
 struct weft_application {
     weft_application_setup setup;
@@ -21,6 +24,7 @@ struct weft_application {
     weft_space_mouse *mouse;
     weft_watch *watch; /* NULL where the system has none */
     weft_recent_files recent;
+    char remembered[WEFT_SLOT_COUNT][PATH_MAX]; /* of each slot, the file that came last */
     double polled_s;
     char mouse_message[WEFT_MESSAGE_SIZE]; /* told last */
     /* The picture */

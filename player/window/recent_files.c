@@ -2,10 +2,11 @@
 
 #include "base/atomic_file.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 enum { STORE_LIMIT = 1 << 16 };
 
@@ -41,25 +42,45 @@ static int find(const weft_recent_files *recent, const char *path)
     return -1;
 }
 
+static bool is_file(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 static void take_line(weft_recent_files *recent, const char *line)
 {
     bool is_one = line[0] == '/' && recent->count < WEFT_RECENT_FILES_MOST && find(recent, line) < 0;
-    char *path = is_one && access(line, R_OK) == 0 ? strdup(line) : NULL;
+    char *path = is_one && is_file(line) ? strdup(line) : NULL;
     if (path)
         insert(recent, recent->count, path);
 }
 
-void weft_recent_files_read(weft_recent_files *recent)
+static void forget(weft_recent_files *recent)
+{
+    for (int i = 0; i < recent->count; i++)
+        free(recent->path[i]);
+    recent->count = 0;
+}
+
+/* Takes what the store has in place of the list; where it cannot be read the list stays. */
+static void read_store(weft_recent_files *recent)
 {
     char *text, *rest;
     size_t size;
     weft_error ignored;
-    *recent = (weft_recent_files){.store = find_store()};
     if (!recent->store || weft_read_file(recent->store, STORE_LIMIT, &text, &size, &ignored) != WEFT_OK)
         return;
+    forget(recent);
     for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
         take_line(recent, line);
     free(text);
+}
+
+void weft_recent_files_read(weft_recent_files *recent)
+{
+    *recent = (weft_recent_files){.store = find_store()};
+    read_store(recent);
 }
 
 /* ---- Storing ---- */
@@ -94,7 +115,8 @@ static weft_code write_list(const weft_recent_files *recent, weft_error *error)
 
 weft_code weft_recent_files_add(weft_recent_files *recent, const char *path, weft_error *error)
 {
-    char *absolute = realpath(path, NULL);
+    char *absolute = is_file(path) ? realpath(path, NULL) : NULL;
+    read_store(recent);
     int place = absolute ? find(recent, absolute) : 0;
     if (!absolute || strchr(absolute, '\n') || (place == 0 && recent->count > 0)) {
         free(absolute);
@@ -114,8 +136,7 @@ weft_code weft_recent_files_add(weft_recent_files *recent, const char *path, wef
 
 void weft_recent_files_free(weft_recent_files *recent)
 {
-    for (int i = 0; i < recent->count; i++)
-        free(recent->path[i]);
+    forget(recent);
     free(recent->store);
     *recent = (weft_recent_files){0};
 }

@@ -18,9 +18,10 @@ typedef struct weft_recent_files {
  * a window opens all the same. */
 void weft_recent_files_read(weft_recent_files *recent);
 
-/* Puts a file at the head of the list, once, and stores the list if it changed. A path that cannot be a line of it is
- * left out. Two windows that store at once: the later one is right. Errors: WEFT_SYSTEM from storing; the list has the
- * file all the same. */
+/* Puts a file at the head of the list as other windows have stored it, once, and stores that if it changed. What is no
+ * file, and a path that cannot be a line of the list, is left out. Two windows that store at the same moment: the later
+ * one is right. Errors: WEFT_BAD_USAGE where the store is a folder and WEFT_SYSTEM from storing; the list has the file
+ * all the same. */
 weft_code weft_recent_files_add(weft_recent_files *recent, const char *path, weft_error *error);
 
 void weft_recent_files_free(weft_recent_files *recent);

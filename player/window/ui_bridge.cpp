@@ -387,9 +387,11 @@ bool weft_ui_button(const char *label)
 bool weft_ui_entry_chosen(const char *label, const char *whole)
 {
     ImGui::PushID(whole);
-    const bool chosen = ImGui::Selectable(label);
+    const bool chosen = ImGui::Selectable("##entry");
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s", whole);
+    ImGui::SameLine(0, 0);
+    ImGui::TextUnformatted(label);
     ImGui::PopID();
     return chosen;
 }

@@ -11,8 +11,8 @@
 double weft_hand_view_error_deg(const weft_camera *camera, const weft_hand_photograph *photograph);
 
 /* How far bare paper lies from what the lamp explains: 1.4826 times the median deviation of the logarithm of light from
- * its median, which is the standard deviation where most of it is free of shadows and stains. `tone`: the corrections
- * found with the lamp, all 0 where there are none. 0 without paper. Errors: WEFT_SYSTEM. */
+ * its median, which is the standard deviation where most of it is free of shadows and stains. `lamps` gives tone curve,
+ * vignetting and beam. 0 without paper. Errors: WEFT_SYSTEM. */
 weft_code weft_hand_paper_residual(const weft_paper_places *places, const weft_lamp_evidence *evidence,
                                    const weft_lamp_solution *lamps, const weft_lamp_place *lamp, double *residual,
                                    weft_error *error);

@@ -47,7 +47,8 @@ typedef struct weft_lamp_solution {
     double ball_shift_mm[WEFT_TARGET_BALL_COUNT][2]; /* from its place on the sheet */
     double pin_shift_mm[3];                          /* of its head */
     double ball_misfit, pin_misfit; /* medians of how far highlights and shadows lie off, in standard errors */
-    double dark_error;              /* standard error of the tone curve, relative: of light of a tenth of the paper's */
+    double dark_error;              /* standard error of the tone curve, relative: of light of a tenth of the paper's; 0
+                                       where the curve is known */
     weft_flash flash;               /* with a beam of zeros where the lamp is none */
 } weft_lamp_solution;
 

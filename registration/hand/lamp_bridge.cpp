@@ -549,7 +549,7 @@ class lamp_search
         for (int r = 0; r < WEFT_TONE_TERMS; r++)
             for (int c = 0; c < WEFT_TONE_TERMS; c++)
                 variance += (dark[r] - bright[r]) * matrix[r * WEFT_TONE_TERMS + c] * (dark[c] - bright[c]);
-        return std::sqrt(std::max(0.0, variance));
+        return std::isfinite(variance) ? std::sqrt(std::max(0.0, variance)) : 1;
     }
 
     /* From the part of the covariance across the direction; of a flash two thirds of it. */

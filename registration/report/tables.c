@@ -105,8 +105,8 @@ static weft_code draw_stays(weft_page *page, const weft_session *session, const 
     }
     const weft_chart_series stays = {NULL, 0, false, count, (const double(*)[2])point};
     const weft_chart chart = {quantity == STAY_ERROR ? "Random error of every stay" : "Shift of every stay",
-                              {"view from the normal", "\u00b0", 0, 75},
-                              {quantity == STAY_ERROR ? "thousandths of a texel" : "mm", "", 0, 0.1},
+                              {"view from the normal", "\u00b0", 0, 75, 0},
+                              {quantity == STAY_ERROR ? "thousandths of a texel" : "mm", "", 0, 0.1, 0},
                               1,
                               &stays};
     weft_chart_write(page, &chart);

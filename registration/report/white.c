@@ -64,8 +64,8 @@ static weft_code write_drift(weft_page *page, const weft_registration *r, double
     }
     weft_chart_series stays = {NULL, 0, false, count, (const double(*)[2])point};
     weft_chart chart = {"The lamp over the session",
-                        {"stay of the camera", "", 0, 0},
-                        {"white level against the median", " %", -5, 5},
+                        {"stay of the camera", "", 0, 0, 1},
+                        {"white level against the median", " %", -5, 5, 0},
                         1,
                         &stays};
     weft_chart_write(page, &chart);

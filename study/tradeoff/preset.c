@@ -21,7 +21,7 @@ typedef struct choosing {
     const char *scratch_path;
     const weft_progress *progress;
     weft_frame_timer *timer;
-    int count;
+    int count, asked;
     weft_priced_model model[WEFT_PRICED_MOST];
     weft_offer offer[WEFT_PRICED_MOST];
     weft_preset_prediction prediction[WEFT_PRICED_MOST]; /* of those that were asked for it */
@@ -164,6 +164,18 @@ static weft_code added_bytes(const weft_preset_prediction *prediction, const wef
     return predicted > 0 ? WEFT_OK : weft_fail_memory(error, "prediction", 0);
 }
 
+/* What nobody asked for is no reason to fail. */
+static weft_code time_frame(const choosing *work, const weft_material *material, double *frame_ms, weft_error *error)
+{
+    weft_error ignored;
+    bool must = work->wish->least_fps > 0;
+    *frame_ms = 0;
+    if (!work->timer)
+        return WEFT_OK;
+    weft_code code = weft_frame_timer_of_material(work->timer, material, frame_ms, must ? error : &ignored);
+    return must ? code : WEFT_OK;
+}
+
 /* What it weighs, and how long a frame of it takes. */
 static weft_code fit_block(const choosing *work, const weft_compress_options *options, weft_weight *weight,
                            double *frame_ms, weft_error *error)
@@ -183,7 +195,7 @@ static weft_code fit_block(const choosing *work, const weft_compress_options *op
     WEFT_TRY(code);
     code = weft_weight_of(&material, weight, error);
     if (code == WEFT_OK)
-        code = weft_frame_timer_of_material(work->timer, &material, frame_ms, error);
+        code = time_frame(work, &material, frame_ms, error);
     weft_material_free(&material);
     return code;
 }
@@ -214,7 +226,9 @@ static weft_code predict(void *context, size_t which, double *frame_ms, weft_err
     *prediction = (weft_preset_prediction){.wish = *work->wish, .error = work->offer[which].error};
     memcpy(prediction->model, model->name, sizeof prediction->model);
     memcpy(prediction->arguments, model->arguments, sizeof prediction->arguments);
+    weft_progress_report(work->progress, "sizing models", work->asked, work->count);
     WEFT_TRY(predict_costs(work, &model->options, prediction, error));
+    weft_progress_report(work->progress, "sizing models", ++work->asked, work->count);
     *frame_ms = prediction->frame_ms;
     return WEFT_OK;
 }
@@ -242,12 +256,22 @@ static weft_code choose(choosing *work, weft_compress_options *options, weft_pre
     return WEFT_OK;
 }
 
+static weft_code open_timer(choosing *work, weft_error *error)
+{
+    weft_error ignored;
+    bool must = work->wish->least_fps > 0;
+    if (!must && !work->wish->times_frames)
+        return WEFT_OK;
+    weft_code code = weft_frame_timer_open(&work->timer, must ? error : &ignored);
+    if (must && code == WEFT_OK && weft_frame_timer_why_not(work->timer)[0])
+        return weft_fail(error, WEFT_SYSTEM, "frames cannot be timed: %s", weft_frame_timer_why_not(work->timer));
+    return must ? code : WEFT_OK;
+}
+
 static weft_code work_through(choosing *work, weft_compress_options *options, weft_preset_prediction *prediction,
                               weft_error *error)
 {
-    WEFT_TRY(weft_frame_timer_open(&work->timer, error));
-    if (work->wish->least_fps > 0 && weft_frame_timer_why_not(work->timer)[0])
-        return weft_fail(error, WEFT_SYSTEM, "frames cannot be timed: %s", weft_frame_timer_why_not(work->timer));
+    WEFT_TRY(open_timer(work, error));
     list_models(work);
     WEFT_TRY(measure(work, error));
     return choose(work, options, prediction, error);

@@ -11,7 +11,8 @@
 /* What is wanted. */
 typedef struct weft_preset_wish {
     weft_preset preset;
-    double least_fps; /* of frames as study/tradeoff/frame_timer.h draws them, here; 0: any */
+    double least_fps;  /* of frames as study/tradeoff/frame_timer.h draws them, here; 0: any */
+    bool times_frames; /* says how long one takes, where it can be drawn; with least_fps in any case */
 } weft_preset_wish;
 
 typedef struct weft_preset_prediction {
@@ -29,9 +30,9 @@ typedef struct weft_preset_prediction {
  * which says how large it will be and how long a frame takes. One that is too slow is chosen no longer, and the preset
  * chooses among the others. *options gets lobes, tables, frames, layers and whether through heights, and keeps
  * all else. Writes to the folder of `scratch_path`; nothing is left there. The result does not depend on the number of
- * threads, but where frames are to be fast. Errors: WEFT_BAD_USAGE for a dataset of one image, where all that was held
- * out is masked, or where no model is fast enough; WEFT_SYSTEM where frames are to be fast and nothing can be drawn;
- * those of weft_compress, of reading and writing. */
+ * threads; with least_fps it depends on the machine. Errors: WEFT_BAD_USAGE for a dataset of one image, where all that
+ * was held out is masked, or where no model is fast enough; where frames are to be fast also WEFT_SYSTEM where there is
+ * no OpenGL, and those of drawing; those of weft_compress, of reading and writing. */
 weft_code weft_preset_predict(weft_dataset *dataset, const weft_preset_wish *wish, const char *scratch_path,
                               const weft_progress *progress, weft_compress_options *options,
                               weft_preset_prediction *prediction, weft_error *error);

@@ -85,7 +85,7 @@ static void a_chart_has_its_points_where_its_ticks_say(void **state)
     weft_page page;
     const double point[][2] = {{0, -5}, {10, 20}, {5, NAN}, {20, 7.5}};
     const weft_chart_series series = {HOSTILE, 1, true, 4, point};
-    const weft_chart chart = {HOSTILE, {HOSTILE, "\u00b0", 0, 10}, {"y", " %", 0, 1}, 1, &series};
+    const weft_chart chart = {HOSTILE, {HOSTILE, "\u00b0", 0, 10, 0}, {"y", " %", 0, 1, 0}, 1, &series};
     assert_int_equal(weft_page_begin("report", "Chart", &page, NULL), WEFT_OK);
     weft_chart_write(&page, &chart);
     char *html = finished_page(&page);
@@ -106,13 +106,30 @@ static void a_chart_has_its_points_where_its_ticks_say(void **state)
     free(html);
 }
 
+static void a_chart_of_one_point_has_axes(void **state)
+{
+    (void)state;
+    weft_page page;
+    const double point[][2] = {{0, 0}};
+    const weft_chart_series series = {NULL, 0, true, 1, point};
+    const weft_chart chart = {"One", {"stay", "", 0, 0, 1}, {"y", "", 0, 0, 0}, 1, &series};
+    assert_int_equal(weft_page_begin("report", "Chart", &page, NULL), WEFT_OK);
+    weft_chart_write(&page, &chart);
+    char *html = finished_page(&page);
+    assert_null(strstr(html, "nan"));
+    assert_null(strstr(html, "inf"));
+    assert_null(strstr(html, "middle\">0.")); /* half a stay */
+    assert_non_null(strstr(html, "middle\">1</text>"));
+    free(html);
+}
+
 static void a_chart_of_nothing_is_not_drawn(void **state)
 {
     (void)state;
     weft_page page;
     const double nowhere[][2] = {{NAN, 1}, {1, INFINITY}};
     const weft_chart_series series[] = {{"none", 0, true, 2, nowhere}, {"empty", 0, false, 0, NULL}};
-    const weft_chart chart = {"Nothing", {"x", "", 0, 1}, {"y", "", 0, 1}, 2, series};
+    const weft_chart chart = {"Nothing", {"x", "", 0, 1, 0}, {"y", "", 0, 1, 0}, 2, series};
     assert_int_equal(weft_page_begin("report", "Chart", &page, NULL), WEFT_OK);
     weft_chart_write(&page, &chart);
     char *html = finished_page(&page);
@@ -136,6 +153,7 @@ int main(void)
         cmocka_unit_test(a_picture_lies_beside_the_page_under_its_caption),
         cmocka_unit_test(headings_of_columns_say_that_they_are),
         cmocka_unit_test(a_chart_has_its_points_where_its_ticks_say),
+        cmocka_unit_test(a_chart_of_one_point_has_axes),
         cmocka_unit_test(a_chart_of_nothing_is_not_drawn),
         cmocka_unit_test(a_page_that_is_given_up_leaves_no_file),
     };

@@ -85,11 +85,32 @@ static void a_tiff_whose_exif_lies_beyond_its_end_says_none(void **state)
     assert_true(exif.iso == 0);
 }
 
+/* Then the entry holds the place of the values: no sensitivity, however like one it looks. */
+static void a_sensitivity_that_lies_elsewhere_is_none(void **state)
+{
+    (void)state;
+    enum { ENTRY_AT = 8 + 2 + 12 * 11 + 4 + 2, RATIONAL = 5 };
+    static const struct {
+        unsigned char type, count;
+        double iso;
+    } row[] = {{SHORT, 1, 1250}, {SHORT, 2, 1250}, {SHORT, 3, 0}, {LONG, 1, 1250}, {LONG, 2, 0}, {RATIONAL, 1, 0}};
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        bytes b = make_tiff(false, 0);
+        b.at[ENTRY_AT + 2] = row[i].type;
+        b.at[ENTRY_AT + 4] = row[i].count;
+        scratch_store("picture.tif", b.at, b.count);
+        weft_exif exif;
+        assert_int_equal(weft_exif_read("picture.tif", &exif, NULL), WEFT_OK);
+        assert_true(exif.iso == row[i].iso);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tiff_says_sensitivity_and_angle_of_view_in_either_byte_order),
         cmocka_unit_test(a_tiff_whose_exif_lies_beyond_its_end_says_none),
+        cmocka_unit_test(a_sensitivity_that_lies_elsewhere_is_none),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
 }

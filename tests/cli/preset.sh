@@ -50,6 +50,14 @@ for option in "--lobes 2" "--table off" "--layers 8" "--tables pca:4" "--light-t
     # shellcheck disable=SC2086
     expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --preset small $option
 done
+# Where frames can be drawn, a tenth of one a second is no condition, and the file says how many there are.
+if "$weft" compress knit.btf.h5 -o slow.weft --preset small --fps 0.1 --hold-out off -q 2>err.log; then
+    expect_ok info slow.weft --json
+    "$python" -c 'import json; p = json.load(open("out.log"))["metadata"]["predicted"]; assert p["least_fps"] == 0.1 and p["frame_ms"] > 0, p' ||
+        fail "the file does not say how fast it was predicted to be"
+else
+    grep -q "frames cannot be timed" err.log || fail "$(cat err.log)"
+fi
 expect_error 2 "choose the model" compress knit.btf.h5 -o none.weft --fps 20 --layers 8
 expect_error 2 "--fps" compress knit.btf.h5 -o none.weft --fps 0
 expect_error 2 "--preset" compress knit.btf.h5 -o none.weft --preset tiny

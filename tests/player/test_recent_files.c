@@ -68,6 +68,37 @@ static void the_next_window_has_the_newest_first_and_each_once(void **state)
     weft_recent_files_free(&recent);
 }
 
+/* Each has read the list before the other stored its file. */
+static void windows_beside_each_other_keep_the_files_of_both(void **state)
+{
+    (void)state;
+    weft_recent_files one, other;
+    char name[16];
+    weft_recent_files_read(&one);
+    weft_recent_files_read(&other);
+    for (int i = 0; i < 2; i++) {
+        make_file(i, name);
+        add(i ? &other : &one, name);
+    }
+    make_file(2, name);
+    add(&one, name);
+    assert_int_equal(one.count, 3);
+    expect_name(&one, 1, "file1.weft");
+    weft_recent_files_free(&one);
+    weft_recent_files_free(&other);
+}
+
+static void a_folder_is_no_file(void **state)
+{
+    (void)state;
+    weft_recent_files recent;
+    assert_int_equal(weft_make_folder("drape", NULL), WEFT_OK);
+    weft_recent_files_read(&recent);
+    add(&recent, "drape");
+    assert_int_equal(recent.count, 0);
+    weft_recent_files_free(&recent);
+}
+
 static void the_oldest_falls_off_a_full_list(void **state)
 {
     (void)state;
@@ -156,6 +187,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(the_next_window_has_the_newest_first_and_each_once, forget),
+        cmocka_unit_test_teardown(windows_beside_each_other_keep_the_files_of_both, forget),
+        cmocka_unit_test_teardown(a_folder_is_no_file, forget),
         cmocka_unit_test_teardown(the_oldest_falls_off_a_full_list, forget),
         cmocka_unit_test_teardown(what_is_gone_and_what_is_no_path_is_not_offered, forget),
         cmocka_unit_test_teardown(a_list_that_is_no_list_is_empty, forget),

@@ -23,7 +23,8 @@ static void print_held_out(weft_page *page, const weft_hold_out *held_out)
 /* A drape shows many more views and lights than a few photographs have: what is drawn of them there is no measure. */
 static bool measures_drape(const weft_comparison *comparison)
 {
-    return comparison->scenes.drawn && comparison->left_out.count == 0;
+    const weft_error_summary *e = &comparison->scenes.scene[0].error[WEFT_MODE_COMPRESSED];
+    return comparison->scenes.drawn && e->count > 0 && isfinite(e->psnr_db) && comparison->left_out.count == 0;
 }
 
 /* What a reader of pictures asks first: the first scene, a drape. */
@@ -31,7 +32,7 @@ static void print_drape(weft_page *page, const weft_comparison *comparison)
 {
     const weft_error_summary *e = &comparison->scenes.scene[0].error[WEFT_MODE_COMPRESSED];
     char label[80];
-    if (!measures_drape(comparison) || e->count == 0)
+    if (!measures_drape(comparison))
         return;
     snprintf(label, sizeof label, "on a drape, %.1f %% from the photographs", 100 * e->relative_rmse);
     weft_page_tile(page, label, "%.0f dB", e->psnr_db);
@@ -40,6 +41,8 @@ static void print_drape(weft_page *page, const weft_comparison *comparison)
 /* Whether the numbers are good ones. */
 static void explain_tiles(weft_page *page, const weft_comparison *comparison)
 {
+    if (!measures_drape(comparison) && !comparison->has_held_out)
+        return;
     fputs("<p class=\"note\">", page->html);
     if (measures_drape(comparison))
         fputs("As a rule of thumb, two pictures are hard to tell apart from 40 dB on, at 30 dB they look alike until "
@@ -205,8 +208,8 @@ static void draw_rings(weft_page *page, const weft_comparison *comparison, bool 
             (weft_chart_series){comparison->model[m].name, m, true, WEFT_RING_COUNT, (const double(*)[2])point[m]};
     }
     weft_chart chart = {of_light ? "Error by light" : "Error by view",
-                        {of_light ? "light from the normal" : "view from the normal", "\u00b0", 0, 75},
-                        {"relative RMSE, fitted samples", "", 0, 0.1},
+                        {of_light ? "light from the normal" : "view from the normal", "\u00b0", 0, 75, 0},
+                        {"relative RMSE, fitted samples", "", 0, 0.1, 0},
                         comparison->model_count,
                         series};
     weft_chart_write(page, &chart);
