@@ -386,11 +386,13 @@ bool weft_ui_button(const char *label)
 
 bool weft_ui_entry_chosen(const char *label, const char *whole)
 {
+    /* The label is text of its own: within that of a widget "##" would end it. */
+    const ImVec2 place = ImGui::GetCursorPos();
     ImGui::PushID(whole);
     const bool chosen = ImGui::Selectable("##entry");
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s", whole);
-    ImGui::SameLine(0, 0);
+    ImGui::SetCursorPos(place);
     ImGui::TextUnformatted(label);
     ImGui::PopID();
     return chosen;
