@@ -135,7 +135,7 @@ static const weft_option option_table[] = {
     {"fps", .argument = "N",
      .help = "Choose as --preset does (default: best), of the models of which this machine draws at least so many "
              "frames a second: 730 x 400 pixels, every texel, level and direction evaluated",
-     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(compress_command, least_fps), .low = 0.1, .high = 10000},
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(compress_command, least_fps), .low = 0.01, .high = 10000},
     {"hold-out", .argument = "off|N",
      .help = "Fit some texels N times without about a tenth of the views and of the lights, others each time, and say "
              "how well the material predicts these (default: 1); the material itself is fitted to all images",
