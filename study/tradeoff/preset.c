@@ -249,6 +249,8 @@ static weft_code choose(choosing *work, weft_compress_options *options, weft_pre
     WEFT_TRY(weft_preset_choose_fast(work->offer, count, wish->preset,
                                      wish->least_fps > 0 ? 1000 / wish->least_fps : INFINITY, predict, work, &chosen,
                                      &fastest, error));
+    if (chosen == count && fastest == count)
+        return weft_fail(error, WEFT_BAD_USAGE, "no model can be chosen: none has an error on what was held out");
     if (chosen == count)
         return fail_too_slow(&work->prediction[fastest], error);
     *prediction = work->prediction[chosen];

@@ -34,7 +34,7 @@ static void print_drape(weft_page *page, const weft_comparison *comparison)
     char label[80];
     if (!measures_drape(comparison))
         return;
-    snprintf(label, sizeof label, "on a drape, %.1f %% from the photographs", 100 * e->relative_rmse);
+    snprintf(label, sizeof label, "on a drape, %.1f %% from the photographs it was fitted to", 100 * e->relative_rmse);
     weft_page_tile(page, label, "%.0f dB", e->psnr_db);
 }
 
