@@ -1,5 +1,6 @@
 #include "import/import.h"
 #include "cli/arguments.h"
+#include "cli/heights.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 typedef struct import_command {
     weft_common_options common;
     const char *input, *output;
+    bool heights;
     weft_import_options options;
 } import_command;
 
@@ -31,6 +33,7 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(import_command, options.lights)},
     {"linear", .help = "8- and 16-bit photographs hold linear values, not sRGB", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(import_command, options.linear)},
+    WEFT_HEIGHTS_OPTION(import_command, heights),
     {"skip-bad", .help = "Mask photographs that cannot be used instead of stopping", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(import_command, options.skip_bad)},
     {0},
@@ -49,7 +52,7 @@ static void say_report(const import_command *command, const weft_import_report *
 
 static int run(int argc, char **argv)
 {
-    import_command command = {.options = weft_import_defaults()};
+    import_command command = {.heights = true, .options = weft_import_defaults()};
     weft_arguments_parse(&weft_command_import, argc, argv, &command);
     weft_progress progress = weft_command_progress(&command.common);
     weft_import_report report;
@@ -59,6 +62,8 @@ static int run(int argc, char **argv)
         say_report(&command, &report);
         weft_import_report_free(&report);
     }
+    if (code == WEFT_OK && command.heights)
+        code = weft_heights_look(&command.common, command.output, &error);
     return weft_command_exit("import", &command.common, code, &error);
 }
 

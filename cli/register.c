@@ -1,4 +1,5 @@
 #include "cli/arguments.h"
+#include "cli/heights.h"
 #include "registration/outcome/lamp_drift.h"
 #include "registration/registration.h"
 #include "registration/report/tables.h"
@@ -11,7 +12,7 @@ typedef struct register_command {
     weft_common_options common;
     const char *input, *output, *report_folder, *colour;
     int width, height;
-    bool allow_unfinished;
+    bool allow_unfinished, heights;
 } register_command;
 
 enum { LARGEST_SIZE = 8192 };
@@ -29,6 +30,7 @@ static const weft_option option_table[] = {
      .help =
          "The colours of the camera under the lamp, from weft colour (default: those that the session holds, if any)",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(register_command, colour)},
+    WEFT_HEIGHTS_OPTION(register_command, heights),
     {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
      .offset = offsetof(register_command, report_folder)},
     {"allow-unfinished", .help = "Register what there is of a session that is not finished", .kind = WEFT_OPTION_FLAG,
@@ -95,7 +97,7 @@ static weft_code say_outcome(const register_command *command, const weft_session
 
 static int run(int argc, char **argv)
 {
-    register_command command = {.width = 64, .height = 64};
+    register_command command = {.width = 64, .height = 64, .heights = true};
     weft_arguments_parse(&weft_command_register, argc, argv, &command);
     weft_progress progress = weft_command_progress(&command.common);
     weft_session session;
@@ -117,6 +119,8 @@ static int run(int argc, char **argv)
         code = say_outcome(&command, &session, &registration, &error);
         weft_registration_free(&registration);
     }
+    if (code == WEFT_OK && command.heights)
+        code = weft_heights_look(&command.common, command.output, &error);
     weft_session_free(&session);
     return weft_command_exit("register", &command.common, code, &error);
 }

@@ -2,6 +2,8 @@
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
 #include "cli/arguments.h"
+#include "cli/heights.h"
+#include "relief/keep.h"
 #include "relief/move.h"
 #include "relief/page.h"
 #include "relief/surface.h"
@@ -56,36 +58,10 @@ static const weft_option option_table[] = {
     {0},
 };
 
-/* What goes into the provenance and into the event of --json. The caller owns it; NULL where memory is short. */
-static json_t *pack_report(const weft_relief_report *report)
-{
-    static const char *const name[] = {"nothing", "plane", "relief"};
-    json_t *levels = json_array();
-    for (int i = 0; i < report->level_count; i++)
-        weft_json_append(&levels, json_pack("[f, f, f]", report->level_error[i].flat, report->level_error[i].plane,
-                                            report->level_error[i].heights));
-    return json_pack("{s:s, s:f, s:[f, f], s:b, s:i, s:{s:f, s:f, s:f}, s:o}", "verdict", name[report->verdict],
-                     "plane_mm", report->plane_mm, "range_mm", report->low_mm, report->high_mm, "repeats",
-                     report->repeats, "levels_used", report->levels_used, "left_out_error", "flat", report->error.flat,
-                     "plane", report->error.plane, "relief", report->error.heights, "level_error", levels);
-}
-
-static char *print_report(const weft_relief_report *report, const char *event)
-{
-    json_t *object = pack_report(report);
-    if (event)
-        weft_json_put(&object, "event", json_string(event));
-    char *text = object ? json_dumps(object, JSON_COMPACT) : NULL;
-    json_decref(object);
-    return text;
-}
-
 static void say_report(const relief_command *command, const weft_relief_report *report, const char *output)
 {
     const weft_common_options *common = &command->common;
-    char reason[512];
-    weft_relief_reason(report, reason, sizeof reason);
-    weft_command_say(common, "%s", reason);
+    weft_heights_say(common, report);
     weft_command_say(common, "plane     %.3f mm above that of the texels", report->plane_mm);
     weft_command_say(common, "heights   looked for from %.3f to %.3f mm in %d x %d places; the material %s",
                      report->low_mm, report->high_mm, report->width, report->height,
@@ -96,10 +72,6 @@ static void say_report(const relief_command *command, const weft_relief_report *
                      report->compared_count, report->view_count, report->error.flat, report->error.plane,
                      report->error.heights);
     weft_command_say(common, "levels    the finest %d of %d gain", report->levels_used, report->level_count);
-    char *event = print_report(report, "relief");
-    if (event)
-        weft_command_event(common, event);
-    free(event);
     if (command->move && report->verdict != WEFT_RELIEF_NOTHING)
         weft_command_say(common, "texels    moved by %.3f mm, onto that plane", report->plane_mm);
     weft_command_say(common, "%s: written", output);
@@ -119,14 +91,7 @@ static weft_code write_surfaces(const relief_command *command, const weft_relief
 static weft_code keep(const relief_command *command, const weft_relief_report *report, weft_error *error)
 {
     const char *output = command->output ? command->output : command->input;
-    const weft_dataset_heights heights = {report->width, report->height, report->levels_used, report->height_mm_of};
-    char *made = print_report(report, NULL);
-    if (!made)
-        return weft_fail_memory(error, "report", 0);
-    weft_code code =
-        weft_dataset_put_relief(command->input, output, report->verdict == WEFT_RELIEF_NOTHING ? 0 : report->plane_mm,
-                                report->verdict == WEFT_RELIEF_HEIGHTS ? &heights : NULL, made, error);
-    free(made);
+    weft_code code = weft_relief_keep(command->input, output, report, error);
     if (code == WEFT_OK)
         say_report(command, report, output);
     return code;
@@ -141,7 +106,7 @@ static weft_code move(const relief_command *command, const weft_relief_report *r
     weft_progress progress = weft_command_progress(&command->common);
     size_t count = (size_t)report->width * (size_t)report->height;
     weft_dataset *dataset;
-    json_t *made = pack_report(report);
+    json_t *made = weft_relief_report_pack(report);
     weft_json_put(&made, "moved", json_true());
     heights.value = malloc(count * sizeof *heights.value);
     weft_code code = made && heights.value ? weft_dataset_open(command->input, &dataset, error)

@@ -1,6 +1,7 @@
 #include "base/text/csv.h"
 #include "btf/direction/direction.h"
 #include "cli/arguments.h"
+#include "cli/heights.h"
 #include "geometry/acquisition/acquisition.h"
 
 #include <stdlib.h>
@@ -12,6 +13,7 @@ typedef struct simulate_command {
     weft_common_options common;
     const char *input, *output, *obj, *directions;
     int tiles_x, tiles_y, resolution;
+    bool heights;
     weft_acquisition_options options;
 } simulate_command;
 
@@ -35,6 +37,7 @@ static const weft_option option_table[] = {
      .offset = offsetof(simulate_command, options.seed)},
     {"resolution", .argument = "N", .help = "Cells of the mesh across the tile (default: what the stitch says)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(simulate_command, resolution), .low = 4, .high = 1024},
+    WEFT_HEIGHTS_OPTION(simulate_command, heights),
     {"obj", .argument = "FILE.obj", .help = "Write the surface of the yarns too; without -o, only that",
      .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(simulate_command, obj)},
     {"obj-tiles", .argument = "WxH", .help = "Tiles in the OBJ file (default: 1x1)", .kind = WEFT_OPTION_SIZE,
@@ -117,7 +120,7 @@ static weft_code acquire(const simulate_command *command, const weft_stitch *sti
     weft_command_say(
         common, "noise of the worst view: %.2f %%, with %.0f paths per texel and view; %.1f %% of the tile covered",
         100 * report.noise, report.paths_per_texel, 100 * report.covered);
-    return WEFT_OK;
+    return command->heights ? weft_heights_look(common, command->output, error) : WEFT_OK;
 }
 
 static weft_code simulate(const simulate_command *command, weft_error *error)
@@ -139,8 +142,10 @@ static weft_code simulate(const simulate_command *command, weft_error *error)
 
 static int run(int argc, char **argv)
 {
-    simulate_command command = {
-        .tiles_x = 1, .tiles_y = 1, .options = {.width = 32, .height = 32, .bounces = 3, .noise = 0.01, .seed = 1}};
+    simulate_command command = {.tiles_x = 1,
+                                .tiles_y = 1,
+                                .heights = true,
+                                .options = {.width = 32, .height = 32, .bounces = 3, .noise = 0.01, .seed = 1}};
     weft_arguments_parse(&weft_command_simulate, argc, argv, &command);
     weft_error error = {0};
     weft_code code = simulate(&command, &error);

@@ -16,7 +16,7 @@ awk 'BEGIN {
         for (i = 0; i < 8; i++)
             print theta "," 45 * i + theta
 }' >directions.csv
-expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --size 20x16 --noise 10 --bounces 0 \
+expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --heights off --size 20x16 --noise 10 --bounces 0 \
     --resolution 40 --directions directions.csv
 cp knit.btf.h5 before.btf.h5
 
@@ -32,6 +32,16 @@ grep -q "Error by view" page/index.html || fail "the page does not show the erro
 expect_ok verify deep.btf.h5
 expect_ok info deep.btf.h5
 grep -q "verdict: relief" out.log || fail "the dataset does not say what was decided"
+
+# A command that writes a dataset looks for them by itself.
+expect_says "^relief: " simulate "$assets/stitches/plain_knit.stitch" -o seen.btf.h5 --size 20x16 --noise 10 --bounces 0 \
+    --resolution 40 --directions directions.csv
+"$python" - <<'PYTHON' || fail "weft simulate keeps other heights than weft relief"
+import h5py
+seen, deep, flat = (h5py.File(name + ".btf.h5") for name in ("seen", "deep", "knit"))
+assert (seen["height"][:] == deep["height"][:]).all() and "height" not in flat
+assert seen.attrs["plane_mm"] == deep.attrs["plane_mm"]
+PYTHON
 
 # In place, as events, without what was there before.
 expect_ok relief knit.btf.h5 --json --range=-0.5,0.125

@@ -1,0 +1,50 @@
+#include "cli/heights.h"
+
+#include "relief/keep.h"
+#include "relief/page.h"
+
+#include <stdlib.h>
+
+void weft_heights_say(const weft_common_options *common, const weft_relief_report *report)
+{
+    char reason[512];
+    weft_relief_reason(report, reason, sizeof reason);
+    weft_command_say(common, "%s", reason);
+    json_t *object = weft_relief_report_pack(report);
+    if (object)
+        json_object_set_new(object, "event", json_string("relief"));
+    char *event = object ? json_dumps(object, JSON_COMPACT) : NULL;
+    json_decref(object);
+    if (event)
+        weft_command_event(common, event);
+    free(event);
+}
+
+static weft_code estimate(const weft_common_options *common, const char *path, weft_relief_report *report,
+                          weft_error *error)
+{
+    const weft_relief_options options = {0};
+    weft_progress progress = weft_command_progress(common);
+    weft_dataset *dataset;
+    WEFT_TRY(weft_dataset_open(path, &dataset, error));
+    weft_code code = weft_relief_estimate(dataset, &options, &progress, report, error);
+    weft_dataset_close(dataset);
+    return code;
+}
+
+weft_code weft_heights_look(const weft_common_options *common, const char *path, weft_error *error)
+{
+    weft_relief_report report;
+    weft_code code = estimate(common, path, &report, error);
+    if (code == WEFT_BAD_INPUT) {
+        weft_command_say(common, "no heights: %s", error->message);
+        return WEFT_OK;
+    }
+    if (code != WEFT_OK)
+        return code;
+    weft_heights_say(common, &report);
+    if (report.verdict != WEFT_RELIEF_NOTHING)
+        code = weft_relief_keep(path, path, &report, error);
+    weft_relief_report_free(&report);
+    return code;
+}
