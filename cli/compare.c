@@ -132,6 +132,28 @@ static weft_code say_held_out(const weft_common_options *common, const weft_comp
     return code;
 }
 
+/* The first scene, whose frames are timed: how a model looks beside the photographs, and what it costs. */
+static void say_scene(const weft_common_options *common, const weft_scenes *scenes)
+{
+    const weft_scene_pictures *scene = &scenes->scene[0];
+    double raw_ms = scenes->frame_ms[WEFT_MODE_RAW];
+    for (int model = 0; model < WEFT_SCENE_MODELS; model++) {
+        const weft_error_summary *e = &scene->error[model];
+        double frame_ms = model == WEFT_SCENE_BARD ? raw_ms : scenes->frame_ms[model];
+        if (!scenes->drawn || !scenes->has[model] || model == WEFT_MODE_RAW || e->count == 0)
+            continue;
+        weft_command_say(common, "%s, %s beside raw: PSNR %.2f dB, relative RMSE %.4f; %.1f ms a frame, raw %.1f ms",
+                         scene->caption, weft_scenes_model_name(model), e->psnr_db, e->relative_rmse, frame_ms, raw_ms);
+        char event[384];
+        snprintf(event, sizeof event,
+                 "{\"event\":\"scene\",\"scene\":\"%s\",\"model\":\"%s\",\"relative_rmse\":%.6g,"
+                 "\"psnr_db\":%.6g,\"frame_ms\":%.6g,\"raw_frame_ms\":%.6g}",
+                 scene->caption, weft_scenes_model_name(model), e->relative_rmse, isfinite(e->psnr_db) ? e->psnr_db : 0,
+                 frame_ms, raw_ms);
+        weft_command_event(common, event);
+    }
+}
+
 /* How many samples of this dataset lie in their interval; of those that were fitted more do. */
 static void say_coverage(const weft_common_options *common, const weft_comparison *comparison)
 {
@@ -171,6 +193,7 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
                          "leave one out: relative RMSE %.4f, median relative error %.4f (means of %d photographs)",
                          comparison->left_out.mean_relative_rmse, comparison->left_out.mean_median_relative,
                          comparison->left_out.count);
+    say_scene(common, &comparison->scenes);
     if (!comparison->scenes.drawn)
         weft_command_say(common, "no pictures of scenes: %s", comparison->scenes.why_not);
     say_truth(common, &comparison->truth);

@@ -1,6 +1,6 @@
 #!/bin/sh
 # docs/gallery.md and its pictures: the cloths that come with Weft, in the same light. Usage: gallery.sh WEFT [DATASETS]
-# Simulated datasets are kept in DATASETS, and taken from there the next time; photographs of a card are drawn where they exist.
+# Datasets and materials are kept in DATASETS, and taken from there the next time. Frames are timed: let nothing else run.
 set -eu
 weft=$(realpath "$1")
 source_dir=$(cd "$(dirname "$0")/.." && pwd)
@@ -11,11 +11,11 @@ mkdir -p "$work" "$pictures"
 cd "$work"
 [ -n "${2:-}" ] || trap 'rm -rf "$work"' EXIT
 
-# draw FILE.jpg ARGUMENT...: one picture of a cloth.
+# draw FILE ARGUMENT...: one picture of a cloth.
 draw() {
     out=$1
     shift
-    "$weft" render "$@" --size 400x300 -o drawn.png
+    "$weft" render "$@" --size 400x300 -o drawn.png >&2
     convert drawn.png -quality 88 "$pictures/$out.jpg"
     rm drawn.png
 }
@@ -25,30 +25,56 @@ kilobytes() { echo "$(($(stat -c %s "$1") / 1000)) kB"; }
 title() { sed -n 's/.*name *= *"\([^"]*\)".*/\1/p' "$1" | head -n 1; }
 held_out() { printf '%.3f' "$("$weft" info "$1" | sed -n "s/^  $2: //p" | head -n 1)"; }
 
+# compare NAME [ARGUMENT...]: NAME.scenes holds how the models look on a drape, and what a frame costs.
+compare() {
+    name=$1
+    shift
+    [ -s "$name.scenes" ] || "$weft" compare "$name.btf.h5" "$name.weft" "$@" -o "$name-page" >"$name.scenes" 2>/dev/null
+}
+
+# of_scene NAME MODEL FIELD, from these: 1 decibels beside raw, 2 milliseconds a frame, 3 of raw.
+of_scene() {
+    sed -n "s/.*, $2 beside raw: PSNR \([0-9.]*\) dB.*; \([0-9.]*\) ms a frame, raw \([0-9.]*\) ms.*/\\$3/p" "$1.scenes"
+}
+analytic_too() {
+    value=$(of_scene "$1" analytic "$2")
+    [ -z "$value" ] || printf ' / %s' "$value"
+}
+
+# row NAME: bytes, milliseconds and error of a dataset and its material, and of the analytic cloth where there is one.
+row() {
+    echo "| $(kilobytes "$1.btf.h5") / $(kilobytes "$1.weft")" \
+        "| $(of_scene "$1" compressed 3) / $(of_scene "$1" compressed 2)$(analytic_too "$1" 2)" \
+        "| $(held_out "$1.weft" photographs_interpolated) / $(held_out "$1.weft" not_fitted)" \
+        "| $(of_scene "$1" compressed 1)$(analytic_too "$1" 1) dB |"
+}
+
 {
     cat <<'TEXT'
 # Gallery
 
 Every cloth that comes with Weft, in the studio that a first picture begins in. `scripts/gallery.sh WEFT` draws this page.
 
+*Raw* is the dataset, interpolated. *Compressed* is the same as a material of 32 layers, the default. Where the cloth is deep,
+both are seen through the [heights](guide/relief.md) that were found in the views. Frames are those of `weft compare`: a drape
+of 400 x 400 pixels, exact, on a software rasteriser. Errors are relative RMSEs on directions that were held out: what the
+other photographs, interpolated, and what a material of them say there. Decibels compare the two pictures of the drape.
+
 ## Stitches: yarns in space, simulated, compressed
 
-`weft simulate` traces light through yarns. 32 x 32 texels, 64 views x 64 lights; a napkin of 60 mm. *Raw* is what was simulated;
-*compressed* is the same as a material of 32 layers, the default, a twenty-fifth of the bytes. The errors are relative RMSEs on directions that
-were held out: what the other photographs, interpolated, and what a material of them say there.
+`weft simulate` traces light through yarns. 32 x 32 texels, 64 views x 64 lights; a napkin of 60 mm.
 
-| stitch | raw | compressed | bytes, raw / compressed | error, raw interpolated / compressed |
-| --- | --- | --- | --- | --- |
+| stitch | raw | compressed | bytes, raw / compressed | ms a frame | error, raw interpolated / compressed | drape |
+| --- | --- | --- | --- | --- | --- | --- |
 TEXT
     for file in "$source_dir"/assets/stitches/*.stitch; do
         name=$(basename "$file" .stitch)
         [ -s "$name.btf.h5" ] || "$weft" simulate "$file" -o "$name.btf.h5" --size 32x32 --noise 3 -q >&2
         [ -s "$name.weft" ] || "$weft" compress "$name.btf.h5" -o "$name.weft" -q >&2
-        draw "$name-raw" --raw "$name.btf.h5" --mesh drape --mesh-size 60 >&2
-        draw "$name" "$name.weft" --mesh drape --mesh-size 60 >&2
-        echo "| $(title "$file") | ![raw](images/gallery/$name-raw.jpg) | ![compressed](images/gallery/$name.jpg)" \
-            "| $(kilobytes "$name.btf.h5") / $(kilobytes "$name.weft")" \
-            "| $(held_out "$name.weft" photographs_interpolated) / $(held_out "$name.weft" not_fitted) |"
+        compare "$name"
+        draw "$name-raw" --raw "$name.btf.h5" --mesh drape --mesh-size 60
+        draw "$name" "$name.weft" --mesh drape --mesh-size 60
+        echo "| $(title "$file") | ![raw](images/gallery/$name-raw.jpg) | ![compressed](images/gallery/$name.jpg) $(row "$name")"
     done
     cat <<'TEXT'
 
@@ -61,9 +87,33 @@ A few numbers a yarn, no photographs: Irawan and Marschner's model. A cloth of 3
 TEXT
     for file in "$source_dir"/assets/weaves/*.wv; do
         name=$(basename "$file" .wv)
-        draw "$name" --weave "$file" >&2
-        draw "$name-ball" --weave "$file" --mesh sphere --mesh-size 30 >&2
+        draw "$name" --weave "$file"
+        draw "$name-ball" --weave "$file" --mesh sphere --mesh-size 30
         echo "| $(title "$file") | ![cloth](images/gallery/$name.jpg) | ![ball](images/gallery/$name-ball.jpg) |"
+    done
+    cat <<'TEXT'
+
+### The same, photographed and compressed
+
+The virtual rig takes 6561 photographs of each, `weft register` makes 64 x 64 texels of them. The rig shows large threads: here
+a dataset is a cloth of 2 m. *Analytic* is the weave itself, laid as the rig lays it.
+
+| weave | raw | compressed | analytic | bytes, raw / compressed | ms a frame, analytic too | error, raw interpolated / compressed | drape, analytic too |
+| --- | --- | --- | --- | --- | --- | --- | --- |
+TEXT
+    for file in "$source_dir"/assets/weaves/*.wv; do
+        weave=$(basename "$file" .wv)
+        name=$weave-photographed
+        [ -s "$name.btf.h5" ] || "$weft" capture --rig virtual --sample "$file" --seed 1 -o "$weave-session" -q >&2
+        [ -s "$name.btf.h5" ] || "$weft" register "$weave-session" --size 64x64 -o "$name.btf.h5" -q >&2
+        rm -rf "$weave-session"
+        [ -s "$name.weft" ] || "$weft" compress "$name.btf.h5" -o "$name.weft" -q >&2
+        compare "$name" --weave "$file"
+        draw "$name-raw" --raw "$name.btf.h5" --mesh drape --repeat 40
+        draw "$name" "$name.weft" --mesh drape --repeat 40
+        draw "$name-analytic" --raw "$name.btf.h5" --weave "$file" --mode analytic --mesh drape --repeat 40
+        echo "| $(title "$file") | ![raw](images/gallery/$name-raw.jpg) | ![compressed](images/gallery/$name.jpg)" \
+            "| ![analytic](images/gallery/$name-analytic.jpg) $(row "$name")"
     done
     cat <<'TEXT'
 
@@ -74,8 +124,8 @@ TEXT
 TEXT
     for file in "$source_dir"/assets/microcylinder/*.mc; do
         name=$(basename "$file" .mc)
-        draw "$name" --weave "$file" >&2
-        draw "$name-ball" --weave "$file" --mesh sphere >&2
+        draw "$name" --weave "$file"
+        draw "$name-ball" --weave "$file" --mesh sphere
         echo "| $(title "$file") | ![cloth](images/gallery/$name.jpg) | ![ball](images/gallery/$name-ball.jpg) |"
     done
     montage -geometry 200x150+2+2 -tile 6x $(for name in plain_knit twill two_colour_loops open_weave ribs satin silk_charmeuse \

@@ -42,6 +42,8 @@ for model in compressed analytic; do
     printed=$(sed -n "s/^$model, mean BRDF: relative RMSE \([0-9.]*\),.*/\1/p" out.log)
     grep -q "<td>$model</td>.*<td>$printed</td>" report/index.html || fail "page and command differ on the error of $model"
 done
+shown=$(sed -n "s/.*compressed beside raw: PSNR \([0-9.]*\) dB.*/\1/p" out.log | awk '{ printf "%.0f dB", $1 }')
+grep -q "$shown" report/index.html || fail "page and command differ on the drape: $shown"
 # The table of the slices goes through eval as it is: columns 7 to 9 are the data, the next threes the models.
 slices_agree() {
     expect_ok eval "$1" --at report/slices.csv
