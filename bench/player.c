@@ -131,6 +131,27 @@ static void judge_environment(weft_player *player, weft_scene scene, weft_canvas
     weft_image_free(&moving);
 }
 
+/* What the first frames of a resting picture lack against many. */
+static void judge_rest(weft_player *player, weft_scene scene, weft_canvas *canvas)
+{
+    enum { MANY = 4 * WEFT_ENVIRONMENT_PARTS };
+    static const int frames[] = {1, 4, 8, 16, 32, 64};
+    weft_scene away = scene;
+    away.orbit.distance = 500;
+    away.ground = false;
+    weft_image background = picture(player, &away, 0, 1, canvas);
+    weft_image reference = picture(player, &scene, 0, MANY, canvas);
+    printf("    at rest, against %d frames:", MANY);
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+        weft_image image = picture(player, &scene, 0, frames[i], canvas);
+        printf(" %d %.2f %%", frames[i], 100 * bench_relative_rmse(&image, &reference, &background));
+        weft_image_free(&image);
+    }
+    printf("\n");
+    weft_image_free(&background);
+    weft_image_free(&reference);
+}
+
 static void time_mode(weft_player *player, weft_mode mode, weft_canvas *canvas)
 {
     char what[64];
@@ -181,6 +202,7 @@ static void time_studio(weft_player *player, weft_mode mode, weft_canvas *canvas
     scene.shadows = scene.ground = true;
     snprintf(what, sizeof what, "%s, studio", weft_mode_name(mode));
     time_scene(player, scene, what, canvas);
+    judge_rest(player, scene, canvas);
     scene.ground = false;
     snprintf(what, sizeof what, "%s, studio without ground", weft_mode_name(mode));
     time_scene(player, scene, what, canvas);

@@ -20,8 +20,8 @@ void weft_heights_say(const weft_common_options *common, const weft_relief_repor
     free(event);
 }
 
-static weft_code estimate(const weft_common_options *common, const char *path, weft_relief_report *report,
-                          weft_error *error)
+weft_code weft_heights_estimate(const weft_common_options *common, const char *path, weft_relief_report *report,
+                                weft_error *error)
 {
     const weft_relief_options options = {0};
     weft_progress progress = weft_command_progress(common);
@@ -35,7 +35,7 @@ static weft_code estimate(const weft_common_options *common, const char *path, w
 weft_code weft_heights_look(const weft_common_options *common, const char *path, weft_error *error)
 {
     weft_relief_report report;
-    weft_code code = estimate(common, path, &report, error);
+    weft_code code = weft_heights_estimate(common, path, &report, error);
     if (code == WEFT_BAD_INPUT) {
         weft_command_say(common, "no heights: %s", error->message);
         return WEFT_OK;

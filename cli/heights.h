@@ -17,6 +17,11 @@
 /* Says what was decided, in a line and as an event "relief". */
 void weft_heights_say(const weft_common_options *common, const weft_relief_report *report);
 
+/* What there is to find in the closed dataset `path`. Errors: those of weft_relief_estimate and of reading. The caller
+ * frees the report. */
+weft_code weft_heights_estimate(const weft_common_options *common, const char *path, weft_relief_report *report,
+                                weft_error *error);
+
 /* Looks for heights in the closed dataset `path`, which was written just now, and keeps what was decided. The file
  * stays as it is where that is nothing, and where its photographs can show no parallax; then the reason is said.
  * Errors: those of reading and writing; the dataset then is as it was. */

@@ -1,11 +1,22 @@
+#include "base/atomic_file.h"
+#include "base/integers.h"
 #include "base/text/csv.h"
 #include "btf/direction/direction.h"
 #include "cli/arguments.h"
 #include "cli/heights.h"
 #include "geometry/acquisition/acquisition.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Where texels lie. */
+typedef enum plane { PLANE_AUTO, PLANE_TOP, PLANE_MEAN } plane;
+static const char *const plane_words[] = {"auto", "top", "mean", NULL};
+
+/* Enough to see the plane at which the views agree: half as many texels each way, but no fewer than so many. */
+#define ROUGH_NOISE 0.1
+enum { FEWEST_ROUGH = 16 };
 
 enum { MAX_DIRECTIONS = 1024, MAX_TEXELS_ACROSS = 4096, MAX_BOUNCES = 256, MAX_TILES_ACROSS = 64 };
 
@@ -14,6 +25,7 @@ typedef struct simulate_command {
     const char *input, *output, *obj, *directions;
     int tiles_x, tiles_y, resolution;
     bool heights;
+    plane plane;
     weft_acquisition_options options;
 } simulate_command;
 
@@ -37,6 +49,10 @@ static const weft_option option_table[] = {
      .offset = offsetof(simulate_command, options.seed)},
     {"resolution", .argument = "N", .help = "Cells of the mesh across the tile (default: what the stitch says)",
      .kind = WEFT_OPTION_WHOLE, .offset = offsetof(simulate_command, resolution), .low = 4, .high = 1024},
+    {"plane", .argument = "WHICH",
+     .help = "Where texels lie: where the views agree best, found by a rough simulation (auto, default), on the top "
+             "face of the cloth (top), or at the mean height of what is seen from above (mean)",
+     .kind = WEFT_OPTION_CHOICE, .offset = offsetof(simulate_command, plane), .words = plane_words},
     WEFT_HEIGHTS_OPTION(simulate_command, heights),
     {"obj", .argument = "FILE.obj", .help = "Write the surface of the yarns too; without -o, only that",
      .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(simulate_command, obj)},
@@ -103,17 +119,76 @@ static weft_code choose_directions(const char *which, weft_vec3 *direction, int 
     return code;
 }
 
+/* What is simulated. */
+typedef struct request {
+    const weft_stitch *stitch;
+    const weft_tile_mesh *mesh;
+    weft_vec3 direction[MAX_DIRECTIONS];
+    int count;
+    weft_acquisition_options options;
+} request;
+
+/* The best plane of a dataset; the top where its views tell none. */
+static weft_code find_best(const weft_common_options *common, const char *path, double *plane_mm, weft_error *error)
+{
+    weft_relief_report report;
+    weft_code code = weft_heights_estimate(common, path, &report, error);
+    if (code == WEFT_BAD_INPUT) {
+        weft_command_say(common, "plane: the top of the cloth, for the best cannot be told: %s", error->message);
+        return WEFT_OK;
+    }
+    if (code != WEFT_OK)
+        return code;
+    *plane_mm = report.verdict == WEFT_RELIEF_NOTHING ? 0 : fmin(report.plane_mm, 0);
+    weft_relief_report_free(&report);
+    return WEFT_OK;
+}
+
+/* The same from a rough simulation, in a temporary file beside the output. */
+static weft_code find_best_roughly(const simulate_command *command, const request *wanted, double *plane_mm,
+                                   weft_error *error)
+{
+    weft_progress progress = weft_command_progress(&command->common);
+    weft_acquisition_options rough = wanted->options;
+    weft_acquisition_report report;
+    weft_atomic_file scratch;
+    rough.noise = fmax(rough.noise, ROUGH_NOISE);
+    rough.width = weft_larger(rough.width / 2, weft_smaller(rough.width, FEWEST_ROUGH));
+    rough.height = weft_larger(rough.height / 2, weft_smaller(rough.height, FEWEST_ROUGH));
+    WEFT_TRY(weft_atomic_file_begin(command->output, &scratch, error));
+    weft_code code = weft_acquire(wanted->stitch, wanted->mesh, wanted->direction, wanted->count, &rough,
+                                  scratch.temporary_path, &progress, &report, error);
+    if (code == WEFT_OK)
+        code = find_best(&command->common, scratch.temporary_path, plane_mm, error);
+    weft_atomic_file_abandon(&scratch);
+    return code;
+}
+
+static weft_code choose_plane(const simulate_command *command, request *wanted, weft_error *error)
+{
+    double *plane_mm = &wanted->options.plane_mm;
+    if (command->plane == PLANE_MEAN)
+        WEFT_TRY(weft_acquisition_mean_height(wanted->stitch, wanted->mesh, plane_mm, error));
+    if (command->plane == PLANE_AUTO)
+        WEFT_TRY(find_best_roughly(command, wanted, plane_mm, error));
+    if (*plane_mm < 0)
+        weft_command_say(&command->common, "texels lie %.3f mm below the top of the cloth", fabs(*plane_mm));
+    return WEFT_OK;
+}
+
 static weft_code acquire(const simulate_command *command, const weft_stitch *stitch, const weft_tile_mesh *mesh,
                          weft_error *error)
 {
     const weft_common_options *common = &command->common;
     const weft_acquisition_options *options = &command->options;
-    weft_vec3 direction[MAX_DIRECTIONS];
+    request wanted = {.stitch = stitch, .mesh = mesh, .options = *options};
     weft_acquisition_report report;
     weft_progress progress = weft_command_progress(common);
-    int count;
-    WEFT_TRY(choose_directions(command->directions, direction, &count, error));
-    WEFT_TRY(weft_acquire(stitch, mesh, direction, count, options, command->output, &progress, &report, error));
+    WEFT_TRY(choose_directions(command->directions, wanted.direction, &wanted.count, error));
+    WEFT_TRY(choose_plane(command, &wanted, error));
+    int count = wanted.count;
+    WEFT_TRY(weft_acquire(stitch, mesh, wanted.direction, count, &wanted.options, command->output, &progress, &report,
+                          error));
     weft_command_say(common, "%s: %d x %d texels of %.3g x %.3g mm, %d views x %d lights", command->output,
                      options->width, options->height, stitch->width / options->width, stitch->height / options->height,
                      count, count);

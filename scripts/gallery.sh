@@ -133,5 +133,5 @@ TEXT
         "$pictures/all.jpg" >&2
     echo
     echo "[All pages](README.md)"
-} >"$page.new"
-mv "$page.new" "$page"
+} >"$work/gallery.md"
+cp "$work/gallery.md" "$page"

@@ -21,7 +21,7 @@ join() {
 
 for stitch in plain_knit:40x32 purl_knit:40x32 two_colour_loops:32x32 satin:32x32 ribs:32x32 open_weave:32x32; do
     name=${stitch%:*}
-    [ -e "$name.btf.h5" ] || "$weft" simulate "$stitches/$name.stitch" --size "${stitch#*:}" --noise 3 --heights off -o "$name.btf.h5"
+    [ -e "$name.btf.h5" ] || "$weft" simulate "$stitches/$name.stitch" --size "${stitch#*:}" --noise 3 --plane top --heights off -o "$name.btf.h5"
     "$weft" compress "$name.btf.h5" --lobes 2 -o "$name.weft"
 done
 "$weft" compress two_colour_loops.btf.h5 --table off -o lobes.weft

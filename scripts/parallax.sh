@@ -31,6 +31,6 @@ echo '{"rig": "virtual", "opening_mm": 14.4, "width_px": 1040, "height_px": 1040
 weft=$build/cli/weft
 "$weft" capture --rig "$scratch/rig.json" --sample "$stitch" --plan "$scratch/plan.csv" -o "$scratch/session" --truth-size 160 --truth-images 11
 "$weft" register "$scratch/session" --size 160x160 -o "$scratch/registered.btf.h5"
-"$weft" simulate "$stitch" -o "$scratch/simulated.btf.h5" --heights off --size 20x16 --directions "$scratch/directions.csv"
+"$weft" simulate "$stitch" -o "$scratch/simulated.btf.h5" --plane top --heights off --size 20x16 --directions "$scratch/directions.csv"
 "$build/bench/bench_truth" "$scratch/session" "$scratch/registered.btf.h5" "$scratch/session.truth.h5"
 "$build/bench/bench_parallax" "$stitch" "$scratch/registered.btf.h5" "$scratch/simulated.btf.h5"

@@ -11,20 +11,20 @@ stitch=$(realpath "$(dirname "$0")/../assets/stitches/plain_knit.stitch")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-"$weft" simulate "$stitch" -o knit.btf.h5 --size 40x32 --noise 2
+"$weft" simulate "$stitch" --plane top -o knit.btf.h5 --size 40x32 --noise 2
 for relief in off on; do
     "$weft" render knit.btf.h5 --relief "$relief" --mesh plane --repeat 3.2 --camera -90,30,1.6 --light 45,120 --size 640x360 -o "$relief.png"
 done
 convert off.png on.png -bordercolor white -border 3 +append -colors 200 "$out"
 
-"$weft" simulate "$stitch" -o coarse.btf.h5 --size 20x16 --noise 2 --directions ubo81
+"$weft" simulate "$stitch" --plane top -o coarse.btf.h5 --size 20x16 --noise 2 --directions ubo81
 "$weft" compress coarse.btf.h5 -o coarse.weft --layers 32
 for relief in off on; do
     "$weft" render coarse.weft --relief "$relief" --filter exact --mesh plane --repeat 3.2 --camera -90,30,1.6 --light 45,120 --size 640x360 -o "layers-$relief.png"
 done
 convert layers-off.png layers-on.png -bordercolor white -border 3 +append -colors 200 "$layers"
 
-"$weft" simulate "$stitch" -o still.btf.h5 --size 32x32 --noise 3 --directions ubo81
+"$weft" simulate "$stitch" --plane top -o still.btf.h5 --size 32x32 --noise 3 --directions ubo81
 "$weft" relief still.btf.h5 --move on -o moved.btf.h5
 for name in still moved; do
     "$weft" compress "$name.btf.h5" -o "$name-2.weft" --lobes 2

@@ -4,13 +4,14 @@
 #include "btf/dataset/dataset.h"
 #include "geometry/acquisition/view_samples.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define LOWEST_COSINE 0.17364817766693034885 /* of 80 degrees */
 #define GOLDEN_ANGLE 2.39996322972865332223  /* pi (3 - sqrt(5)) */
 
-enum { MAX_TEXELS_ACROSS = 4096 };
+enum { MAX_TEXELS_ACROSS = 4096, PROBES = 64 /* across the tile */ };
 
 /* An acquisition under way. */
 typedef struct acquisition {
@@ -45,6 +46,11 @@ static weft_code check_request(const acquisition *a, weft_error *error)
                          options->height, MAX_TEXELS_ACROSS);
     if (!(options->noise > 0))
         return weft_fail(error, WEFT_BAD_USAGE, "noise of %g: it must be above 0", options->noise);
+    double depth_mm = (double)(a->mesh->top - a->mesh->bottom);
+    if (!(options->plane_mm <= 0 && options->plane_mm >= -depth_mm))
+        return weft_fail(error, WEFT_BAD_USAGE,
+                         "texels %g mm above the top of the cloth: it is %.3g mm thick, and they lie in it",
+                         options->plane_mm, depth_mm);
     for (int i = 0; i < a->direction_count; i++)
         if (!(a->direction[i].z > 1e-3))
             return weft_fail(error, WEFT_BAD_USAGE, "direction %d is (%.3g, %.3g, %.3g), not above the horizon", i + 1,
@@ -58,6 +64,8 @@ static char *provenance(const acquisition *a)
     json_t *object = json_pack("{s:s, s:s, s:i, s:i, s:f, s:I}", "source", "simulated from a stitch", "stitch",
                                a->stitch->name, "triangles", a->mesh->triangle_count, "bounces", options->bounces,
                                "noise", a->report->noise, "seed", (json_int_t)options->seed);
+    if (options->plane_mm < 0)
+        weft_json_put(&object, "plane_below_top_mm", json_real(-options->plane_mm));
     char *text = object ? json_dumps(object, JSON_INDENT(2)) : NULL;
     json_decref(object);
     return text;
@@ -189,6 +197,30 @@ static weft_code finish(acquisition *a, weft_error *error)
     weft_code code = weft_dataset_writer_finish(writer, text, error);
     free(text);
     return code;
+}
+
+weft_code weft_acquisition_mean_height(const weft_stitch *stitch, const weft_tile_mesh *mesh, double *height_mm,
+                                       weft_error *error)
+{
+    const weft_vec3 up = {0, 0, 1};
+    const weft_illumination_options light = {.bounces = 0};
+    weft_illumination *illumination;
+    weft_first_hit hit;
+    double sum = 0;
+    int seen = 0;
+    WEFT_TRY(weft_illumination_create(stitch, mesh, &up, 1, &light, &illumination, error));
+    for (uint32_t i = 0; i < PROBES * PROBES; i++) {
+        float radiance[1][3] = {{0}};
+        weft_real x = ((weft_real)(i % PROBES) + (weft_real)0.5) / PROBES * (weft_real)mesh->width;
+        weft_real y = ((weft_real)(i / PROBES) + (weft_real)0.5) / PROBES * (weft_real)mesh->height;
+        if (!weft_illumination_path(illumination, weft_vec3_of(x, y, (weft_real)mesh->top), up, 0, i, radiance, &hit))
+            continue;
+        sum += (double)(hit.at.z - (weft_real)mesh->top);
+        seen++;
+    }
+    weft_illumination_free(illumination);
+    *height_mm = seen > 0 ? fmin(sum / seen, 0) : 0;
+    return WEFT_OK;
 }
 
 weft_code weft_acquire(const weft_stitch *stitch, const weft_tile_mesh *mesh, const weft_vec3 *direction,

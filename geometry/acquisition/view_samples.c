@@ -26,7 +26,7 @@ weft_code weft_view_samples_create(const weft_tile_mesh *mesh, int light_count, 
     *samples = (weft_view_samples){.options = options,
                                    .tile_width = (weft_real)mesh->width,
                                    .tile_height = (weft_real)mesh->height,
-                                   .top = (weft_real)mesh->top,
+                                   .plane = (weft_real)mesh->top + (weft_real)options->plane_mm,
                                    .light_count = light_count};
     size_t texels = texel_count(samples), bytes = texels * values_per_texel(samples) * sizeof *samples->sum;
     samples->texel = malloc(texels * sizeof *samples->texel);
@@ -46,14 +46,14 @@ void weft_view_samples_free(weft_view_samples *samples)
     *samples = (weft_view_samples){0};
 }
 
-/* Point k of a batch in a texel, on the top face of the bounding box. */
+/* Point k of a batch in a texel. */
 static weft_vec3 place_in_texel(const weft_view_samples *samples, int x, int y, uint64_t key, uint32_t k)
 {
     double point[2];
     weft_sequence_point(weft_sequence_key(key, PLACE_KEY), k, point);
     return weft_vec3_of((x + point[0]) / samples->options->width * samples->tile_width,
                         (samples->options->height - y - 1 + point[1]) / samples->options->height * samples->tile_height,
-                        samples->top);
+                        samples->plane);
 }
 
 static void add_batch(weft_view_samples *samples, const weft_illumination *illumination, weft_vec3 view, size_t index,

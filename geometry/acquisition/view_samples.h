@@ -19,8 +19,8 @@ typedef struct weft_texel_samples {
 } weft_texel_samples;
 
 typedef struct weft_view_samples {
-    const weft_acquisition_options *options; /* not owned */
-    weft_real tile_width, tile_height, top;
+    const weft_acquisition_options *options;  /* not owned */
+    weft_real tile_width, tile_height, plane; /* plane: where the texels lie, height in the tile */
     int light_count;
     weft_texel_samples *texel; /* [height][width] */
     float *sum;                /* [height][width][light_count][3] of batch means */

@@ -18,6 +18,7 @@ typedef struct weft_base_surface {
     int vertex_count, triangle_count;
     const weft_base_vertex *vertex; /* [vertex_count] */
     const uint32_t (*triangle)[3];  /* [triangle_count] */
+    weft_real plane_mm;             /* what of the flat cloth lies on it: this height above its top face */
 } weft_base_surface;
 
 /* Finds the triangle over which a place of the flat cloth lies. */

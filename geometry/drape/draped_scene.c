@@ -53,7 +53,8 @@ static bool lay_vertex(weft_draped_scene *scene, const weft_base_map *map, int t
         return false;
     weft_vec3 fibre = weft_add(weft_scale(place.along_x, (weft_real)t[0]), weft_scale(place.along_y, (weft_real)t[1]));
     fibre = weft_unit(weft_add(fibre, weft_scale(place.normal, (weft_real)t[2])));
-    store(weft_add(place.at, weft_scale(place.normal, (weft_real)(p[2] - mesh->top))), scene->position[to]);
+    store(weft_add(place.at, weft_scale(place.normal, (weft_real)(p[2] - mesh->top) - map->surface->plane_mm)),
+          scene->position[to]);
     store(fibre, scene->tangent[to]);
     return true;
 }

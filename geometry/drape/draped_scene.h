@@ -16,8 +16,8 @@ typedef struct weft_draped_hit {
     weft_real distance; /* along the ray */
 } weft_draped_hit;
 
-/* The surface carries the top of the cloth: a vertex at height z of the tile lies top - z below it along the normal.
- * Tiles begin at (0, 0) of the flat cloth; triangles that reach beyond the hem are left out. Keeps a reference to
+/* The surface carries the top of the cloth, or a plane in it: a vertex at height z of the tile lies top + plane_mm - z
+ * below it along the normal. Tiles begin at (0, 0) of the flat cloth; triangles that reach beyond the hem are left out. Keeps a reference to
  * `mesh`, which must stay. The caller frees with weft_draped_scene_free. Errors: WEFT_BAD_INPUT for more than `most`
  * triangles or a surface that weft_base_map_create refuses, WEFT_SYSTEM with the text of Embree. */
 weft_code weft_draped_scene_create(const weft_tile_mesh *mesh, const weft_base_surface *surface, int most,

@@ -43,7 +43,8 @@ typedef struct truth_stage {
     weft_mesh drape;
     weft_draped_cloth *cloth;
     double mm_per_unit;
-    int side; /* of the pictures, pixels */
+    double plane_mm; /* where the texels lie, above the top of the cloth */
+    int side;        /* of the pictures, pixels */
     weft_headless *headless;
     weft_player *player;
 } truth_stage;
@@ -61,16 +62,27 @@ static void put_away(truth_stage *stage)
 
 /* ---- What the dataset says of itself ---- */
 
-/* As many bounces as the simulation followed, and whether it was one of this stitch. */
-static weft_code read_provenance(const weft_dataset_layout *layout, const weft_stitch *stitch, weft_traced_truth *truth,
+/* Height of the texels above the top of the cloth: where they were simulated, or where `weft relief` moved them. */
+static double plane_of(const json_t *provenance)
+{
+    const json_t *relief = json_object_get(provenance, "relief");
+    bool is_moved = json_is_true(json_object_get(relief, "moved"));
+    double below_mm = json_number_value(json_object_get(provenance, "plane_below_top_mm"));
+    return (is_moved ? json_number_value(json_object_get(relief, "plane_mm")) : 0) - below_mm;
+}
+
+/* Where its texels lie, as many bounces as the simulation followed, and whether it was one of this stitch. */
+static weft_code read_provenance(truth_stage *stage, const weft_dataset_layout *layout, weft_traced_truth *truth,
                                  weft_error *error)
 {
+    const weft_stitch *stitch = &stage->stitch;
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
     if (!provenance)
         return weft_fail_memory(error, "provenance", strlen(layout->provenance));
     const char *name = json_string_value(json_object_get(provenance, "stitch"));
     const json_t *bounces = json_object_get(provenance, "bounces");
     json_int_t count = json_integer_value(bounces);
+    stage->plane_mm = plane_of(provenance);
     truth->bounces = json_is_integer(bounces) && count >= 0 && count <= MAX_BOUNCES ? (int)count : DEFAULT_BOUNCES;
     if (!name)
         snprintf(truth->warning, sizeof truth->warning, "the dataset was not simulated from a stitch");
@@ -104,6 +116,7 @@ static weft_code lay_cloth(truth_stage *stage, weft_error *error)
     WEFT_TRY(weft_mesh_drape(&stage->drape, error));
     WEFT_TRY(weft_truth_base_create(&stage->drape, WEFT_TRUTH_REPEAT, stage->stitch.width, &base, error));
     stage->mm_per_unit = base.mm_per_unit;
+    base.surface.plane_mm = (weft_real)stage->plane_mm;
     weft_code code = weft_draped_cloth_create(&stage->stitch, &stage->tile, &base.surface, &stage->cloth, error);
     weft_truth_base_free(&base);
     return code;
@@ -132,7 +145,7 @@ static weft_code prepare(truth_stage *stage, const weft_traced_request *request,
                          weft_traced_truth *truth, weft_error *error)
 {
     WEFT_TRY(weft_stitch_read(request->stitch, &stage->stitch, error));
-    WEFT_TRY(read_provenance(weft_dataset_get_layout(request->dataset), &stage->stitch, truth, error));
+    WEFT_TRY(read_provenance(stage, weft_dataset_get_layout(request->dataset), truth, error));
     WEFT_TRY(polygonise(stage, request->stitch, truth, error));
     WEFT_TRY(lay_cloth(stage, error));
     snprintf(truth->stitch, sizeof truth->stitch, "%s", stage->stitch.name);

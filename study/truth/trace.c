@@ -33,8 +33,10 @@ weft_code weft_truth_base_create(const weft_mesh *mesh, double repeat, double ti
                                              .x = (weft_real)v->coordinate[0] * scale,
                                              .y = (weft_real)v->coordinate[1] * scale};
     }
-    base->surface =
-        (weft_base_surface){mesh->vertex_count, mesh->triangle_count, base->vertex, (const uint32_t(*)[3])mesh->index};
+    base->surface = (weft_base_surface){.vertex_count = mesh->vertex_count,
+                                        .triangle_count = mesh->triangle_count,
+                                        .vertex = base->vertex,
+                                        .triangle = (const uint32_t(*)[3])mesh->index};
     return WEFT_OK;
 }
 

@@ -23,7 +23,7 @@ spread 24 0 >grid.csv
 spread 7 50 >between.csv
 for set in grid between; do
     seed=$([ $set = grid ] && echo 1 || echo 2)
-    expect_ok simulate "$assets/stitches/plain_knit.stitch" -o $set.btf.h5 --heights off --size 12x12 --noise 10 --bounces 0 \
+    expect_ok simulate "$assets/stitches/plain_knit.stitch" -o $set.btf.h5 --plane top --heights off --size 12x12 --noise 10 --bounces 0 \
         --resolution 20 --directions $set.csv --seed "$seed"
 done
 

@@ -57,6 +57,6 @@ simulate_knit() {
         for (i = 0; i < 6; i++)
             print 40 "," 60 * i + 7
     }' >directions.csv
-    expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --size 8x8 --noise 10 --bounces 0 \
+    expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --plane top --heights off --size 8x8 --noise 10 --bounces 0 \
         --resolution 20 --directions directions.csv
 }

@@ -16,7 +16,7 @@ awk 'BEGIN {
         for (i = 0; i < 8; i++)
             print theta "," 45 * i + theta
 }' >directions.csv
-expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --heights off --size 20x16 --noise 10 --bounces 0 \
+expect_ok simulate "$assets/stitches/plain_knit.stitch" -o knit.btf.h5 --plane top --heights off --size 20x16 --noise 10 --bounces 0 \
     --resolution 40 --directions directions.csv
 cp knit.btf.h5 before.btf.h5
 
@@ -34,7 +34,7 @@ expect_ok info deep.btf.h5
 grep -q "verdict: relief" out.log || fail "the dataset does not say what was decided"
 
 # A command that writes a dataset looks for them by itself.
-expect_says "^relief: " simulate "$assets/stitches/plain_knit.stitch" -o seen.btf.h5 --size 20x16 --noise 10 --bounces 0 \
+expect_says "^relief: " simulate "$assets/stitches/plain_knit.stitch" -o seen.btf.h5 --plane top --size 20x16 --noise 10 --bounces 0 \
     --resolution 40 --directions directions.csv
 "$python" - <<'PYTHON' || fail "weft simulate keeps other heights than weft relief"
 import h5py
@@ -42,6 +42,12 @@ seen, deep, flat = (h5py.File(name + ".btf.h5") for name in ("seen", "deep", "kn
 assert (seen["height"][:] == deep["height"][:]).all() and "height" not in flat
 assert seen.attrs["plane_mm"] == deep.attrs["plane_mm"]
 PYTHON
+
+# Texels lie where the views agree, which is where no plane helps them any more.
+expect_says "^texels lie 0.[12]" simulate "$assets/stitches/plain_knit.stitch" -o best.btf.h5 --size 20x16 --noise 10 --bounces 0 \
+    --resolution 40 --directions directions.csv --heights off
+expect_says "^plane  *-*0.0" relief best.btf.h5
+expect_says "plane_below_top_mm: 0.[12]" info best.btf.h5
 
 # In place, as events, without what was there before.
 expect_ok relief knit.btf.h5 --json --range=-0.5,0.125

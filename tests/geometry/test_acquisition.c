@@ -170,6 +170,73 @@ static void frames_average_normals_and_fibres(void **state)
     weft_stitch_free(&stitch);
 }
 
+enum { PAIR = 2 };
+
+static void simulate_pair(const weft_stitch *stitch, const weft_tile_mesh *mesh, double plane_mm, const char *path,
+                          float value[SIZE * SIZE][PAIR * PAIR][3])
+{
+    static weft_half half[SIZE * SIZE][PAIR * PAIR][3];
+    const weft_vec3 direction[PAIR] = {{0, 0, 1}, {sqrt(0.5), 0, sqrt(0.5)}};
+    const weft_acquisition_options options = {
+        .width = SIZE, .height = SIZE, .noise = 0.03, .seed = 4, .plane_mm = plane_mm};
+    weft_acquisition_report report;
+    weft_dataset *dataset;
+    weft_error error = {0};
+    if (weft_acquire(stitch, mesh, direction, PAIR, &options, path, NULL, &report, &error) != WEFT_OK ||
+        weft_dataset_open(path, &dataset, &error) != WEFT_OK)
+        fail_msg("%s", error.message);
+    assert_int_equal(weft_dataset_read_block(dataset, 0, 0, SIZE, SIZE, &half[0][0][0], NULL, &error), WEFT_OK);
+    weft_dataset_close(dataset);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        for (int k = 0; k < PAIR * PAIR; k++)
+            for (int c = 0; c < 3; c++)
+                value[i][k][c] = weft_float_of_half(half[i][k][c]);
+}
+
+/* A texel that lies deeper is seen where its line of sight leaves the top of the cloth: at 45 degrees one texel farther
+ * for a depth of one texel, and from above where it was. */
+static void a_deeper_plane_shifts_what_slanted_views_see(void **state)
+{
+    (void)state;
+    static float top[SIZE * SIZE][PAIR * PAIR][3], deep[SIZE * SIZE][PAIR * PAIR][3];
+    weft_stitch stitch;
+    weft_tile_mesh mesh;
+    shipped_stitch_open("plain_knit", 40, &stitch, &mesh);
+    simulate_pair(&stitch, &mesh, 0, "top.btf.h5", top);
+    simulate_pair(&stitch, &mesh, -stitch.width / SIZE, "deep.btf.h5", deep);
+    for (int view = 0; view < PAIR; view++) {
+        double moved = 0, still = 0, signal = 0;
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            int farther = i / SIZE * SIZE + (i + 1) % SIZE, image = view * PAIR;
+            double here = (double)deep[i][image][0];
+            moved += pow(here - (double)top[farther][image][0], 2);
+            still += pow(here - (double)top[i][image][0], 2);
+            signal += here * here;
+        }
+        assert_true(sqrt((view ? moved : still) / signal) < 0.1);
+        assert_true(sqrt((view ? still : moved) / signal) > 0.3);
+    }
+    weft_tile_mesh_free(&mesh);
+    weft_stitch_free(&stitch);
+}
+
+/* A rod of radius 0.25 covers half of its tile; its top is seen pi / 4 of the radius high in the mean. */
+static void the_mean_height_is_of_what_is_seen(void **state)
+{
+    (void)state;
+    static const char text[] = "stitch { tile = {1, 1}, resolution = 96, yarn { radius = 0.25, diffuse = {0.5, 0.5, "
+                               "0.5}, points { {0, 0.5, 0}, {0.5, 0.5, 0}, {1, 0.5, 0} } } }";
+    weft_stitch stitch;
+    weft_tile_mesh mesh;
+    double height_mm;
+    assert_int_equal(weft_stitch_parse(text, "rod.stitch", &stitch, NULL), WEFT_OK);
+    assert_int_equal(weft_tile_mesh_create(&stitch, 0, "rod.stitch", &mesh, NULL), WEFT_OK);
+    assert_int_equal(weft_acquisition_mean_height(&stitch, &mesh, &height_mm, NULL), WEFT_OK);
+    assert_float_equal(height_mm, 0.25 * (atan(1) - 1), 0.003);
+    weft_tile_mesh_free(&mesh);
+    weft_stitch_free(&stitch);
+}
+
 static void requests_without_sense_are_refused(void **state)
 {
     (void)state;
@@ -187,6 +254,13 @@ static void requests_without_sense_are_refused(void **state)
     assert_int_equal(weft_acquire(&stitch, &mesh, &up, 1, &options, "no.btf.h5", NULL, &report, &error),
                      WEFT_BAD_USAGE);
     options.bounces = 0;
+    options.plane_mm = 0.01;
+    assert_int_equal(weft_acquire(&stitch, &mesh, &up, 1, &options, "no.btf.h5", NULL, &report, &error),
+                     WEFT_BAD_USAGE);
+    options.plane_mm = -100;
+    assert_int_equal(weft_acquire(&stitch, &mesh, &up, 1, &options, "no.btf.h5", NULL, &report, &error),
+                     WEFT_BAD_USAGE);
+    options.plane_mm = 0;
     options.width = 0;
     assert_int_equal(weft_acquire(&stitch, &mesh, &up, 1, &options, "no.btf.h5", NULL, &report, &error),
                      WEFT_BAD_USAGE);
@@ -202,6 +276,8 @@ int main(void)
         cmocka_unit_test(the_threads_do_not_show),
         cmocka_unit_test(holes_show_in_the_opacity_and_close_at_grazing_views),
         cmocka_unit_test(frames_average_normals_and_fibres),
+        cmocka_unit_test(a_deeper_plane_shifts_what_slanted_views_see),
+        cmocka_unit_test(the_mean_height_is_of_what_is_seen),
         cmocka_unit_test(requests_without_sense_are_refused),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

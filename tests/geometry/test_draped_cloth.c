@@ -51,7 +51,7 @@ static void lay_flat(laid_stitch *laid, const char *name, int tiles, weft_vec3 (
         vertex[i].position = turned(vertex[i].position);
         vertex[i].normal = turned(vertex[i].normal);
     }
-    const weft_base_surface surface = {4, 2, vertex, (const uint32_t(*)[3])triangle};
+    const weft_base_surface surface = {4, 2, vertex, (const uint32_t(*)[3])triangle, 0};
     if (weft_draped_cloth_create(&laid->stitch, &laid->mesh, &surface, &laid->cloth, &error) != WEFT_OK)
         fail_msg("%s", error.message);
     assert_int_equal(weft_draped_cloth_triangle_count(laid->cloth), tiles * tiles * laid->mesh.triangle_count);
@@ -166,7 +166,7 @@ static void distant_cloth_casts_shadows_beyond_reach_only(void **state)
     weft_real side = TILES * laid.stitch.width;
     set_patch(vertex, triangle, 0, 0, 0, side, side);
     set_patch(vertex + 4, triangle + 2, 4, side + laid.stitch.width, 30, side, side);
-    const weft_base_surface surface = {8, 4, vertex, (const uint32_t(*)[3])triangle};
+    const weft_base_surface surface = {8, 4, vertex, (const uint32_t(*)[3])triangle, 0};
     assert_int_equal(weft_draped_cloth_create(&laid.stitch, &laid.mesh, &surface, &laid.cloth, &error), WEFT_OK);
     weft_draped_light light = {weft_vec3_of(0, 0, 1), 0, 5};
     weft_draped_radiance mean;
@@ -190,7 +190,7 @@ static void cloth_ends_at_its_hem(void **state)
     laid_stitch laid;
     shipped_stitch_open("plain_weave", COARSE, &laid.stitch, &laid.mesh);
     set_patch(vertex, triangle, 0, 0, 0, laid.stitch.width / 2, laid.stitch.height);
-    const weft_base_surface surface = {4, 2, vertex, (const uint32_t(*)[3])triangle};
+    const weft_base_surface surface = {4, 2, vertex, (const uint32_t(*)[3])triangle, 0};
     assert_int_equal(weft_draped_cloth_create(&laid.stitch, &laid.mesh, &surface, &laid.cloth, &error), WEFT_OK);
     int count = weft_draped_cloth_triangle_count(laid.cloth);
     assert_true(count > 0.4 * laid.mesh.triangle_count && count < 0.6 * laid.mesh.triangle_count);
@@ -211,7 +211,7 @@ static void surfaces_without_sense_are_refused(void **state)
     weft_error error = {0};
     laid_stitch laid;
     shipped_stitch_open("plain_weave", COARSE, &laid.stitch, &laid.mesh);
-    const weft_base_surface surface = {4, 2, vertex, (const uint32_t(*)[3])triangle};
+    const weft_base_surface surface = {4, 2, vertex, (const uint32_t(*)[3])triangle, 0};
     set_patch(vertex, triangle, 0, 0, 0, 4000, 4000);
     assert_int_equal(weft_draped_cloth_create(&laid.stitch, &laid.mesh, &surface, &laid.cloth, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "16000000 tiles"));
