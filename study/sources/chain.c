@@ -35,10 +35,13 @@ void weft_chain_remove(const weft_chain *chain)
     unlink(chain->stored);
 }
 
+/* A name that is cut off is none: it would be removed in the end. */
 static weft_code name_file(const char *folder, const char *name, char path[PATH_MAX], weft_error *error)
 {
-    int length = snprintf(path, PATH_MAX, "%s/%s", folder, name);
-    return length < PATH_MAX ? WEFT_OK : weft_fail(error, WEFT_BAD_USAGE, "'%s' is too long a name", folder);
+    if (snprintf(path, PATH_MAX, "%s/%s", folder, name) < PATH_MAX)
+        return WEFT_OK;
+    path[0] = '\0';
+    return weft_fail(error, WEFT_BAD_USAGE, "'%s' is too long a name", folder);
 }
 
 static weft_code name_files(const char *folder, weft_chain *chain, weft_error *error)

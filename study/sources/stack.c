@@ -74,8 +74,8 @@ static weft_source_share share_with_interval(const sums *all, const sums *draw, 
 static weft_code find_shares(const sums *query, const sums *all, uint64_t seed, weft_error_stack *stack,
                              weft_error *error)
 {
-    sums *draw = malloc(DRAWS * sizeof *draw);
-    double *drawn = malloc(DRAWS * sizeof *drawn);
+    sums *draw = calloc(DRAWS, sizeof *draw);
+    double *drawn = calloc(DRAWS, sizeof *drawn);
     weft_code code = draw && drawn ? WEFT_OK : weft_fail_memory(error, "draws", DRAWS * sizeof *draw);
     for (uint64_t i = 0; code == WEFT_OK && i < DRAWS; i++)
         draw[i] = draw_again(query, stack->query_count, weft_sequence_key(seed, i));
@@ -115,7 +115,7 @@ weft_code weft_error_stack_of(const weft_source_answer *answer, size_t count, ui
                               weft_error *error)
 {
     *stack = (weft_error_stack){.query_count = count};
-    sums all = {0}, *query = malloc((count + 1) * sizeof *query);
+    sums all = {0}, *query = calloc(count + 1, sizeof *query);
     if (!query)
         return weft_fail_memory(error, "queries", count * sizeof *query);
     for (size_t i = 0; i < count; i++) {
