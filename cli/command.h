@@ -30,7 +30,7 @@ extern const weft_command weft_command_capture, weft_command_hand, weft_command_
 extern const weft_command weft_command_tile, weft_command_relief, weft_command_bard, weft_command_compress,
     weft_command_fit_weave, weft_command_prune;
 extern const weft_command weft_command_render, weft_command_play, weft_command_compare, weft_command_tradeoff,
-    weft_command_eval;
+    weft_command_truth, weft_command_eval;
 extern const weft_command weft_command_info, weft_command_verify, weft_command_target, weft_command_lens,
     weft_command_colour, weft_command_calibrate;
 

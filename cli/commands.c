@@ -23,6 +23,7 @@ const weft_command_entry weft_commands[] = {
     {NULL, &weft_command_play},
     {NULL, &weft_command_compare},
     {NULL, &weft_command_tradeoff},
+    {NULL, &weft_command_truth},
     {NULL, &weft_command_eval},
     {NULL, &weft_command_info},
     {NULL, &weft_command_verify},

@@ -429,7 +429,7 @@ static weft_code choose_preset(const compress_command *command, weft_dataset *da
                      prediction->arguments);
     weft_command_say(&command->common, "  predicted: %.3f MB, relative RMSE %.3f on directions that are not fitted%s%s",
                      prediction->bytes * 1e-6, prediction->error, speed[0] ? ", " : "", speed);
-    json_t *object = command->common.json ? weft_preset_to_json(prediction) : NULL;
+    json_t *object = command->common.json ? weft_preset_to_event(prediction) : NULL;
     weft_code code = object ? weft_command_describe(&command->common, "predicted", object, error) : WEFT_OK;
     json_decref(object);
     return code;

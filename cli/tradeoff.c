@@ -21,14 +21,16 @@ static void say_row(const weft_common_options *common, const weft_tradeoff_row *
 {
     const weft_error_summary *held = &row->measured.held[WEFT_SAMPLES_ALL],
                              *fitted = &row->measured.fitted[WEFT_SAMPLES_ALL];
-    char frame[32] = "", beside[32] = "", presets[64];
+    char frame[32] = "", beside[32] = "", width[32] = "", presets[64];
     weft_tradeoff_print_presets(row, presets, sizeof presets);
     if (row->price.frame_ms > 0)
         snprintf(frame, sizeof frame, "%.1f", row->price.frame_ms);
     if (fitted->count > 0)
         snprintf(beside, sizeof beside, "%.4f", fitted->relative_rmse);
-    weft_command_say(common, "%-36s %12.0f %8.1f %9s %12.4f %8s  %s", row->model.name, row->price.bytes,
-                     row->price.fit_s, frame, held->relative_rmse, beside, presets);
+    if (row->measured.interval_width > 0)
+        snprintf(width, sizeof width, "%.3f", row->measured.interval_width);
+    weft_command_say(common, "%-36s %12.0f %8.1f %9s %12.4f %8s %9s  %s", row->model.name, row->price.bytes,
+                     row->price.fit_s, frame, held->relative_rmse, beside, width, presets);
 }
 
 static weft_code say_results(const tradeoff_command *command, const weft_tradeoff *result, weft_error *error)
@@ -38,8 +40,8 @@ static weft_code say_results(const tradeoff_command *command, const weft_tradeof
     weft_tradeoff_print_held(result, held, sizeof held);
     weft_command_say(common, "relative RMSE with %s held out, on %ld of %ld texels:", held, result->measured_texels,
                      result->texels);
-    weft_command_say(common, "%-36s %12s %8s %9s %12s %8s", "model", "bytes", "fit, s", "ms a frame", "not fitted",
-                     "fitted");
+    weft_command_say(common, "%-36s %12s %8s %9s %12s %8s %9s", "model", "bytes", "fit, s", "ms a frame", "not fitted",
+                     "fitted", "95 % wide");
     for (int i = 0; i < result->row_count; i++) {
         say_row(common, &result->row[i]);
         json_t *object = common->json ? weft_tradeoff_row_to_json(&result->row[i]) : NULL;

@@ -293,6 +293,7 @@ static weft_code fit_sparse(fitting *work, weft_material *material, weft_compres
 static weft_code fit_layers(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     weft_layers_options options = {.layer_count = work->options->layer_count,
+                                   .finer = work->options->finer,
                                    .held_out = work->options->held_out,
                                    .for_screen = work->options->weights == WEFT_WEIGHTS_SCREEN,
                                    .budget = work->budget};
@@ -355,7 +356,7 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
     double began = weft_now_s();
     WEFT_TRY(weft_compress_options_check(options, dataset, error));
     if (options->layer_count > 0)
-        WEFT_TRY(weft_layers_check(options->layer_count, error));
+        WEFT_TRY(weft_layers_check(options->finer ? 2 * options->layer_count : options->layer_count, error));
     plan(weft_dataset_get_layout(dataset), options, &own);
     fitting work = {.dataset = dataset,
                     .options = options,

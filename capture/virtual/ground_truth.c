@@ -38,27 +38,6 @@ int weft_truth_choose(const weft_session *session, int image_count, int *shots)
 
 /* ---- Reflectance ---- */
 
-/* One of the samples of a texel's footprint. */
-typedef struct footprint_sample {
-    weft_vec3 at, toward_light, toward_camera;
-    uint64_t texel;
-    uint32_t index;
-} footprint_sample;
-
-static weft_rgb reflect(const weft_virtual_sample *sample, const footprint_sample *from)
-{
-    if (sample->deep) {
-        weft_seen_vertex vertex[1 + WEFT_STITCH_SAMPLE_MAX_BOUNCES];
-        int count = weft_virtual_sample_see(sample, from->at.x, from->at.y, from->toward_camera, from->texel,
-                                            from->index, vertex);
-        return weft_stitch_sample_light(sample->deep, vertex, count, from->toward_light);
-    }
-    weft_weave_point point = weft_virtual_cloth_locate(&sample->flat, from->at.x, from->at.y);
-    weft_rgb brdf = weft_weave_brdf(&sample->flat.weave, &point, from->toward_light, from->toward_camera);
-    double scale = WEFT_PI * from->toward_light.z;
-    return (weft_rgb){brdf.r * scale, brdf.g * scale, brdf.b * scale};
-}
-
 weft_rgb weft_truth_reflectance(const weft_virtual_sample *sample, int size, int x, int y, weft_vec3 light,
                                 weft_vec3 camera)
 {
@@ -69,9 +48,9 @@ weft_rgb weft_truth_reflectance(const weft_virtual_sample *sample, int size, int
         double x_mm = (x + (i % SAMPLES + 0.5) / SAMPLES) * pitch_mm - sample->opening_mm / 2;
         double y_mm = sample->opening_mm / 2 - (y + (i / SAMPLES + 0.5) / SAMPLES) * pitch_mm;
         weft_vec3 at = {x_mm, y_mm, 0};
-        footprint_sample from = {at, weft_unit(weft_subtract(light, at)), weft_unit(weft_subtract(camera, at)),
-                                 (uint64_t)y * (uint64_t)size + (uint64_t)x, (uint32_t)i};
-        weft_rgb value = reflect(sample, &from);
+        weft_rgb value = weft_virtual_sample_reflect(sample, x_mm, y_mm, weft_unit(weft_subtract(light, at)),
+                                                     weft_unit(weft_subtract(camera, at)),
+                                                     (uint64_t)y * (uint64_t)size + (uint64_t)x, (uint32_t)i);
         sum = (weft_rgb){sum.r + value.r, sum.g + value.g, sum.b + value.b};
     }
     double mean = 1.0 / (SAMPLES * SAMPLES);

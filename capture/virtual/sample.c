@@ -40,3 +40,22 @@ int weft_virtual_sample_see(const weft_virtual_sample *sample, double x_mm, doub
     double half = sample->opening_mm / 2;
     return weft_stitch_sample_see(sample->deep, x_mm + half, y_mm + half, view, key, index, vertex);
 }
+
+static weft_rgb reflect_from_depth(const weft_virtual_sample *sample, double x_mm, double y_mm, weft_vec3 light,
+                                   weft_vec3 view, uint64_t key, uint32_t index)
+{
+    weft_seen_vertex vertex[1 + WEFT_STITCH_SAMPLE_MAX_BOUNCES];
+    int count = weft_virtual_sample_see(sample, x_mm, y_mm, view, key, index, vertex);
+    return weft_stitch_sample_light(sample->deep, vertex, count, light);
+}
+
+weft_rgb weft_virtual_sample_reflect(const weft_virtual_sample *sample, double x_mm, double y_mm, weft_vec3 light,
+                                     weft_vec3 view, uint64_t key, uint32_t index)
+{
+    if (sample->deep)
+        return reflect_from_depth(sample, x_mm, y_mm, light, view, key, index);
+    weft_weave_point point = weft_virtual_cloth_locate(&sample->flat, x_mm, y_mm);
+    weft_rgb brdf = weft_weave_brdf(&sample->flat.weave, &point, light, view);
+    double scale = WEFT_PI * light.z;
+    return (weft_rgb){brdf.r * scale, brdf.g * scale, brdf.b * scale};
+}

@@ -27,4 +27,10 @@ const char *weft_virtual_sample_name(const weft_virtual_sample *sample);
 int weft_virtual_sample_see(const weft_virtual_sample *sample, double x_mm, double y_mm, weft_vec3 view, uint64_t key,
                             uint32_t index, weft_seen_vertex *vertex);
 
+/* pi BRDF cos(theta_light) at a point of the opening, mm from its centre, toward `view` under a far light toward
+ * `light`, both unit. Of a sample with depth it is what one path of light says, `index` of the sequence `key`.
+ * Thread-safe. */
+weft_rgb weft_virtual_sample_reflect(const weft_virtual_sample *sample, double x_mm, double y_mm, weft_vec3 light,
+                                     weft_vec3 view, uint64_t key, uint32_t index);
+
 #endif

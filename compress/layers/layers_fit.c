@@ -120,6 +120,8 @@ static weft_code project(fitting *work, weft_layers_report *report, weft_error *
     weft_layer_maps_free(&work->maps);
     report->masked = work->projection.masked;
     report->empty_texels = work->projection.empty;
+    if (code == WEFT_OK && work->options->finer)
+        code = weft_layer_model_double(&work->layers, error);
     if (code == WEFT_OK)
         weft_layers_fill_levels(&work->projection, work->layers);
     return code;

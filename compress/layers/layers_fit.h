@@ -13,6 +13,7 @@
 
 typedef struct weft_layers_options {
     int layer_count;         /* 4 .. 64, a multiple of 4 */
+    bool finer;              /* as many layers again (compress/options/options.h) */
     const uint8_t *held_out; /* [image_count] images that the fit must not see, or NULL */
     bool for_screen;         /* dim images count for more (compress/options/options.h) */
     weft_memory_budget budget;

@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+/* Steps of the finer layers in one of the others. */
+enum { FINER = 2 * WEFT_LAYERS_LARGEST_CODE };
+
 /* The level that is being written, in place over the one below. */
 typedef struct pyramid {
     int width, height;
@@ -23,16 +26,25 @@ static void find_steps(const pyramid *p, float step[WEFT_LAYERS_MAX])
     }
 }
 
-static void write_codes(const pyramid *p, const float step[WEFT_LAYERS_MAX], int8_t *code)
+static int8_t *code_of(weft_layers_level *level, size_t layer, size_t texel)
+{
+    size_t texels = (size_t)level->width * (size_t)level->height;
+    return level->coefficient + (layer / WEFT_LAYERS_GROUP * texels + texel) * WEFT_LAYERS_GROUP +
+           layer % WEFT_LAYERS_GROUP;
+}
+
+/* What rounding leaves is at most half a step, which the finer layer, where there is one, has as its largest code. */
+static void write_codes(const pyramid *p, const float step[WEFT_LAYERS_MAX], bool has_finer, weft_layers_level *level)
 {
     size_t texels = (size_t)p->width * (size_t)p->height;
-    for (size_t k = 0; k < p->layer_count; k++) {
-        int8_t *plane = code + k / WEFT_LAYERS_GROUP * WEFT_LAYERS_GROUP * texels + k % WEFT_LAYERS_GROUP;
+    for (size_t k = 0; k < p->layer_count; k++)
         for (size_t texel = 0; texel < texels; texel++) {
             float value = step[k] > 0 ? p->coefficient[texel * p->layer_count + k] / step[k] : 0;
-            plane[WEFT_LAYERS_GROUP * texel] = (int8_t)lroundf(value);
+            float whole = roundf(value);
+            *code_of(level, k, texel) = (int8_t)whole;
+            if (has_finer)
+                *code_of(level, p->layer_count + k, texel) = (int8_t)lroundf((value - whole) * FINER);
         }
-    }
 }
 
 static float brightest_in(const pyramid *p, int x0, int y0)
@@ -118,14 +130,17 @@ void weft_layers_fill_levels(weft_projection *projection, weft_layers *layers)
                  .coefficient = projection->coefficient,
                  .brightest = projection->brightest,
                  .floor = projection->floor};
+    bool has_finer = layers->layer_count > projection->layer_count;
     find_steps(&p, step);
     for (int k = 0; k < layers->level_count; k++) {
         if (k > 0)
             next_level(&p, k - 1, projection->width, projection->height);
-        write_codes(&p, step, layers->level[k].coefficient);
+        write_codes(&p, step, has_finer, &layers->level[k]);
         write_ceilings(&p, layers->level[k].ceiling);
         write_floors(&p, layers->level[k].floor);
     }
-    for (int k = 0; k < layers->layer_count; k++)
+    for (int k = 0; k < projection->layer_count; k++)
         layers->scale[k] *= step[k];
+    for (int k = projection->layer_count; k < layers->layer_count; k++)
+        layers->scale[k] *= step[k - projection->layer_count] / FINER;
 }

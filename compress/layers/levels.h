@@ -8,8 +8,9 @@
 /* Fills the levels of `layers` and takes the size of a step into layers->scale. A texel of a level has the mean
  * coefficients of the texels of level 0 that it covers: where nothing is masked these are exactly the coefficients of
  * the mean samples. The ceiling of a square is WEFT_BRIGHTEST_MULTIPLE times the largest sample under it. The
- * floor of a square is the least of the floors of its texels, each the mean of those that it covers. `projection` is
- * used up. */
+ * floor of a square is the least of the floors of its texels, each the mean of those that it covers. Where `layers` are
+ * twice those of the projection, the second half, of the same values and scales as the first, takes what rounding left
+ * of the coefficients, in steps 254 times as fine. `projection` is used up. */
 void weft_layers_fill_levels(weft_projection *projection, weft_layers *layers);
 
 #endif

@@ -79,6 +79,30 @@ weft_code weft_layer_model_create(const weft_layer_images *images, const weft_co
     return WEFT_OK;
 }
 
+static void copy_twice(const weft_layers *from, weft_layers *to)
+{
+    size_t count = (size_t)from->layer_count;
+    memcpy(to->view, from->view, 3 * (size_t)from->view_count * sizeof *to->view);
+    memcpy(to->light, from->light, 3 * (size_t)from->image_count * sizeof *to->light);
+    memcpy(to->first, from->first, ((size_t)from->view_count + 1) * sizeof *to->first);
+    for (size_t half = 0; half < 2; half++)
+        memcpy(to->scale + half * count, from->scale, count * sizeof *to->scale);
+    for (size_t i = 0; i < 2 * (size_t)from->image_count; i++)
+        memcpy(to->value + 3 * i * count, from->value + 3 * (i / 2) * count, 3 * count * sizeof *to->value);
+}
+
+weft_code weft_layer_model_double(weft_layers **layers, weft_error *error)
+{
+    const weft_layers *from = *layers;
+    weft_layers shape = *from, *twice;
+    shape.layer_count = 2 * from->layer_count;
+    WEFT_TRY(weft_layers_create(&shape, from->level[0].width, from->level[0].height, from->level_count, &twice, error));
+    copy_twice(from, twice);
+    weft_layers_free(*layers);
+    *layers = twice;
+    return WEFT_OK;
+}
+
 static void factors_of_view(const weft_layer_maps *maps, const weft_layer_images *images, int view, float *factor)
 {
     size_t count = (size_t)maps->layers->layer_count;

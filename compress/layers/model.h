@@ -11,6 +11,10 @@ weft_code weft_layer_model_create(const weft_layer_images *images, const weft_co
                                   weft_layers_kind kind, int width, int height, int level_count, weft_layers **result,
                                   weft_error *error);
 
+/* Puts layers without coefficients, which are freed, into the place of themselves twice over, one half behind the
+ * other. Errors: WEFT_BAD_USAGE for more than WEFT_LAYERS_MAX, WEFT_SYSTEM. */
+weft_code weft_layer_model_double(weft_layers **layers, weft_error *error);
+
 /* What the maps give at the images themselves, times their weights: factor [layer][images->length], aligned to 64
  * bytes. */
 void weft_layer_model_factors(const weft_layer_maps *maps, const weft_layer_images *images, float *factor);

@@ -40,6 +40,8 @@ typedef struct weft_compress_options {
     uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
     uint64_t added_bytes;  /* of a file in the budget: metadata that the caller adds to the material afterwards */
     int layer_count;       /* linear layers beside the lobes: 4..64, a multiple of 4; 0: none; WEFT_LAYERS_AUTOMATIC */
+    bool finer;            /* as many layers again, which hold what rounding to 8 bits leaves of the coefficients of the
+                              first, which have 15 bits then: it tells what rounding costs. At most 32 layers */
     bool heights;          /* layers are seen through those of the dataset, where it has some (`weft relief`) */
     int table_components;  /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */

@@ -14,20 +14,41 @@ static double error_of(const weft_tradeoff_row *row)
 
 /* ---- The choice ---- */
 
+/* A model that several presets choose stands there once. */
+static void put_choice(weft_page *page, const weft_tradeoff_row *row, int number)
+{
+    const char *between = "";
+    fputs("<tr><td>", page->html);
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++) {
+        if (row->is_chosen[preset])
+            fprintf(page->html, "%s<b>%s</b>", between, weft_preset_name(preset));
+        between = row->is_chosen[preset] ? ", " : between;
+    }
+    fprintf(page->html,
+            "</td><td class=\"text\"><a href=\"#model-%d\">%s</a></td><td>%.0f</td><td>%.4f</td><td class=\"text\">",
+            number, row->model.name, row->price.bytes, error_of(row));
+    between = "";
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++) {
+        if (row->is_chosen[preset])
+            fprintf(page->html, "%s%s", between, weft_preset_reason(preset));
+        between = row->is_chosen[preset] ? "<br>" : between;
+    }
+    fprintf(page->html, "</td><td class=\"text\"><code>%s</code></td></tr>\n", row->model.arguments);
+}
+
+/* In the order of the presets. */
 static void put_choices(weft_page *page, const weft_tradeoff *tradeoff)
 {
+    const weft_tradeoff_row *before = NULL;
     fputs("<table>\n", page->html);
     weft_page_columns(page, ":preset|:model|bytes|error, not fitted|:chosen for|:weft compress");
     for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++) {
         for (int i = 0; i < tradeoff->row_count; i++) {
             const weft_tradeoff_row *row = &tradeoff->row[i];
-            if (!row->is_chosen[preset])
+            if (!row->is_chosen[preset] || row == before)
                 continue;
-            fprintf(page->html,
-                    "<tr><td><b>%s</b></td><td class=\"text\"><a href=\"#model-%d\">%s</a></td><td>%.0f</td>"
-                    "<td>%.4f</td><td class=\"text\">%s</td><td class=\"text\"><code>%s</code></td></tr>\n",
-                    weft_preset_name(preset), i + 1, row->model.name, row->price.bytes, error_of(row),
-                    weft_preset_reason(preset), row->model.arguments);
+            put_choice(page, row, i + 1);
+            before = row;
         }
     }
     fputs("</table>\n", page->html);

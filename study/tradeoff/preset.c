@@ -314,3 +314,11 @@ json_t *weft_preset_to_json(const weft_preset_prediction *prediction)
     json_decref(object);
     return NULL;
 }
+
+json_t *weft_preset_to_event(const weft_preset_prediction *prediction)
+{
+    json_t *object = weft_preset_to_json(prediction);
+    if (object && prediction->frame_ms > 0)
+        weft_json_put(&object, "frame_ms", json_real(prediction->frame_ms));
+    return object;
+}

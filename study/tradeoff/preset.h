@@ -40,4 +40,7 @@ weft_code weft_preset_predict(weft_dataset *dataset, const weft_preset_wish *wis
 /* As a JSON object (docs/reference/weft-format.md, "predicted"). The caller owns it; NULL where memory is short. */
 json_t *weft_preset_to_json(const weft_preset_prediction *prediction);
 
+/* The same for those who look on: with the time of a frame wherever one was drawn, asked for or not. */
+json_t *weft_preset_to_event(const weft_preset_prediction *prediction);
+
 #endif

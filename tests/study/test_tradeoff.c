@@ -386,6 +386,51 @@ static double compress_as_chosen(weft_dataset *dataset, const weft_compress_opti
     return (double)bytes;
 }
 
+/* The file says it where it was wished for; those who look on hear it wherever a frame was drawn. */
+static void events_say_how_long_a_frame_takes(void **state)
+{
+    (void)state;
+    weft_preset_prediction prediction = {.wish.preset = WEFT_PRESET_SMALL, .bytes = 1, .error = 1, .frame_ms = 12.5};
+    json_t *kept = weft_preset_to_json(&prediction), *event = weft_preset_to_event(&prediction);
+    assert_null(json_object_get(kept, "frame_ms"));
+    assert_float_equal(json_real_value(json_object_get(event, "frame_ms")), 12.5, 0);
+    json_decref(kept);
+    json_decref(event);
+    prediction.frame_ms = 0;
+    event = weft_preset_to_event(&prediction);
+    assert_null(json_object_get(event, "frame_ms"));
+    json_decref(event);
+}
+
+static int count_of(const char *text, const char *word)
+{
+    int count = 0;
+    for (const char *at = strstr(text, word); at; at = strstr(at + 1, word))
+        count++;
+    return count;
+}
+
+/* A model that all presets choose is named once, with why each does. */
+static void page_names_a_chosen_model_once(void **state)
+{
+    (void)state;
+    static weft_tradeoff tradeoff;
+    char *page;
+    size_t size;
+    weft_error error = {0};
+    tradeoff.row_count = 1;
+    tradeoff.row[0] = (weft_tradeoff_row){.model = {.name = "8 layers", .arguments = "--layers 8"}};
+    for (weft_preset preset = WEFT_PRESET_NONE; preset < WEFT_PRESET_COUNT; preset++)
+        tradeoff.row[0].is_chosen[preset] = true;
+    expect_ok(weft_tradeoff_write_page(&tradeoff, "one.btf.h5", "one-model", &error), &error);
+    expect_ok(weft_read_file("one-model/index.html", 1 << 20, &page, &size, &error), &error);
+    assert_int_equal(count_of(page, "<a href=\"#model-1\">8 layers</a>"), 1);
+    assert_int_equal(count_of(page, "<b>small</b>, <b>balanced</b>, <b>best</b>"), 1);
+    for (weft_preset preset = WEFT_PRESET_SMALL; preset < WEFT_PRESET_COUNT; preset++)
+        assert_int_equal(count_of(page, weft_preset_reason(preset)), 1);
+    free(page);
+}
+
 /* It is written where it was wished for. */
 static void expect_speed(weft_preset_prediction prediction)
 {
@@ -508,6 +553,8 @@ int main(void)
         cmocka_unit_test(offers_are_beaten_by_what_can_be_had),
         cmocka_unit_test(presets_choose_by_their_rules),
         cmocka_unit_test(balanced_is_the_bend),
+        cmocka_unit_test(page_names_a_chosen_model_once),
+        cmocka_unit_test(events_say_how_long_a_frame_takes),
         cmocka_unit_test(a_hundredth_is_not_worth_any_bytes),
         cmocka_unit_test(nothing_is_chosen_of_nothing),
         cmocka_unit_test(the_list_has_what_the_photographs_carry),

@@ -1,0 +1,138 @@
+#include "cli/arguments.h"
+#include "cli/describe.h"
+#include "compress/options/options.h"
+#include "study/sources/sources.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+
+enum { MOST_CLOTHS = 64, LEAST_QUERIES = 10, MOST_QUERIES = 1000000, MOST_PATHS = 65536, MOST_LAYERS = 32 };
+
+typedef struct truth_command {
+    weft_common_options common;
+    int cloth_count, layer_count; /* 0 layers: as weft compress chooses */
+    const char *cloth[MOST_CLOTHS], *rig_file;
+    weft_sources_request request;
+    weft_sources result[MOST_CLOTHS];
+} truth_command;
+
+static weft_code read_cloth(const weft_option *option, const char *text, void *values, weft_error *error)
+{
+    (void)option;
+    truth_command *command = values;
+    if (command->cloth_count == MOST_CLOTHS)
+        return weft_fail(error, WEFT_BAD_USAGE, "more than %d cloths", MOST_CLOTHS);
+    command->cloth[command->cloth_count++] = text;
+    return WEFT_OK;
+}
+
+static const weft_option option_table[] = {
+    {.argument = "CLOTH.wv|.stitch...", .kind = WEFT_OPTION_OTHER, .read = read_cloth, .repeats = true},
+    {"output", 'o', "REPORT/", "The folder for the page and its tables", .is_required = true,
+     .kind = WEFT_OPTION_FOLDER, .offset = offsetof(truth_command, request.folder)},
+    {"rig", .argument = "FILE.json", .help = "Settings of the virtual rig (default: as it stands)",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(truth_command, rig_file)},
+    {"plan", .argument = "ubo81|FILE.csv",
+     .help = "Which photographs: all pairs of 81 directions (default), or a table as weft capture takes it",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(truth_command, request.chain.plan)},
+    {"tiles", .argument = "N",
+     .help = "Tiles of a stitch across the opening, which is scaled for it with the lens (default: 2; 0: as the rig "
+             "is)",
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(truth_command, request.tiles), .low = 0, .high = 1000},
+    {"texels", .argument = "N", .help = "Texels along a side of the opening (default: 32)", .kind = WEFT_OPTION_WHOLE,
+     .offset = offsetof(truth_command, request.chain.size), .low = 1, .high = 1024},
+    {"layers", .argument = "N", .help = "Layers of the material, at most 32 (default: as weft compress chooses)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(truth_command, layer_count), .low = 4, .high = MOST_LAYERS},
+    {"queries", .argument = "N", .help = "Places, lights and views that are asked for (default: 2000)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(truth_command, request.queries.count), .low = LEAST_QUERIES,
+     .high = MOST_QUERIES},
+    {"paths", .argument = "N", .help = "Paths of light for each value of the cloth (default: 64)",
+     .kind = WEFT_OPTION_WHOLE, .offset = offsetof(truth_command, request.queries.paths), .low = 1, .high = MOST_PATHS},
+    {"seed", .argument = "N", .help = "Start of the random numbers (default: 1)", .kind = WEFT_OPTION_SEED,
+     .offset = offsetof(truth_command, request.queries.seed)},
+    {0},
+};
+
+static weft_code check(void *values, weft_error *error)
+{
+    truth_command *command = values;
+    if (command->cloth_count == 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "needs %s", weft_command_truth.needs);
+    command->request.chain.layer_count = command->layer_count > 0 ? command->layer_count : WEFT_LAYERS_AUTOMATIC;
+    return WEFT_OK;
+}
+
+static weft_code say_result(const truth_command *command, const weft_sources *result, weft_error *error)
+{
+    const weft_error_stack *stack = &result->stack;
+    weft_command_say(&command->common, "%-24s %8.4f %11.4f %12.4f %9.4f %9.4f %9.4f %8.4f", result->name,
+                     sqrt(fmax(stack->whole.value, 0)), stack->part[WEFT_SOURCE_DIRECTIONS].value,
+                     stack->part[WEFT_SOURCE_REGISTRATION].value, stack->part[WEFT_SOURCE_MODEL].value,
+                     stack->part[WEFT_SOURCE_STORAGE].value, stack->whole.value, stack->noise);
+    json_t *object = command->common.json ? weft_sources_to_json(result) : NULL;
+    weft_code code = object ? weft_command_describe(&command->common, "sources", object, error) : WEFT_OK;
+    json_decref(object);
+    return command->common.json && !object ? weft_fail_memory(error, "event", 0) : code;
+}
+
+/* What is known so far is on the page and in the table after each cloth. */
+static weft_code write_report(const truth_command *command, int count, weft_error *error)
+{
+    char path[PATH_MAX];
+    if (snprintf(path, sizeof path, "%s/sources.csv", command->request.folder) >= (int)sizeof path)
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is too long a name", command->request.folder);
+    WEFT_TRY(weft_sources_write_csv(command->result, count, path, error));
+    return weft_sources_write_page(command->result, count, &command->request, error);
+}
+
+static weft_code measure_all(truth_command *command, weft_error *error)
+{
+    const weft_common_options *common = &command->common;
+    weft_progress progress = weft_command_progress(common);
+    weft_command_say(common, "squared relative errors, which add up to the square of the relative RMSE:");
+    weft_command_say(common, "%-24s %8s %11s %12s %9s %9s %9s %8s", "cloth", "rel.RMSE", "directions", "registration",
+                     "model", "storage", "sum", "noise");
+    for (int i = 0; i < command->cloth_count; i++) {
+        WEFT_TRY(weft_sources_measure(&command->request, command->cloth[i], &progress, &command->result[i], error));
+        WEFT_TRY(say_result(command, &command->result[i], error));
+        WEFT_TRY(write_report(command, i + 1, error));
+    }
+    weft_command_say(common, "page: %s/index.html", command->request.folder);
+    return WEFT_OK;
+}
+
+static int run(int argc, char **argv)
+{
+    static truth_command command;
+    command.request = (weft_sources_request){.rig = weft_virtual_settings_default(),
+                                             .tiles = 2,
+                                             .chain = {.plan = "ubo81", .size = 32},
+                                             .queries = {.count = 2000, .paths = 64, .seed = 1}};
+    weft_arguments_parse(&weft_command_truth, argc, argv, &command);
+    weft_error error = {0};
+    weft_code code = WEFT_OK;
+    if (command.rig_file)
+        code = weft_virtual_settings_read(command.rig_file, &command.request.rig, &error);
+    if (code == WEFT_OK)
+        code = measure_all(&command, &error);
+    return weft_command_exit("truth", &command.common, code, &error);
+}
+
+const weft_command weft_command_truth = {
+    .name = "truth",
+    .summary = "tell where the error of a material comes from, on cloth whose reflectance is known",
+    .usage = "CLOTH... -o REPORT/",
+    .documentation =
+        "Example: weft truth silk.wv plain_knit.stitch -o report/\n\n"
+        "Photographs each cloth with the virtual rig, registers and compresses it, and asks the material, and each "
+        "stage before it, for places, lights and views drawn at random, where the cloth itself is known. Writes one "
+        "HTML page: a stack for each cloth that says how much of the squared error comes from the choice of "
+        "directions, from photographs and registration, from the model and from storage; and the same as "
+        "comma-separated values. The photographs go when they are registered.",
+    .options = option_table,
+    .needs = "one cloth or more, and -o REPORT/",
+    .surplus = "cloths",
+    .check = check,
+    .run = run,
+};
