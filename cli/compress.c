@@ -502,6 +502,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     if (code == WEFT_OK) {
         const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
         unlink(partial_path);
+        weft_sweep_left_over(command->output);
         say_model(command, &options, dataset, &report);
         say_target(command, &report);
         if (held_out.split_count > 0)
