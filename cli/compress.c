@@ -294,6 +294,9 @@ static weft_code say_hold_out(const weft_common_options *common, const weft_hold
 
 static void say_errors(const weft_common_options *common, const weft_material *material)
 {
+    char errors_of[64] = "";
+    if (material->layers)
+        snprintf(errors_of, sizeof errors_of, ",\"errors_of\":\"%s\"", weft_material_errors_of(material));
     weft_command_say(common, "on the samples that were fitted:");
     weft_command_say(common, "level       texels   median rel.  80 %% rel.  RMSE       rel. RMSE  PSNR dB");
     for (int k = 0; k < material->level_count; k++) {
@@ -305,9 +308,9 @@ static void say_errors(const weft_common_options *common, const weft_material *m
         char event[320];
         snprintf(event, sizeof event,
                  "{\"event\":\"level\",\"level\":%d,\"width\":%d,\"height\":%d,\"median_relative\":%.6g,"
-                 "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%.6g}",
+                 "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%.6g%s}",
                  k, level->width, level->height, error->median_relative, error->percentile80_relative, error->rmse,
-                 error->relative_rmse, isfinite(error->psnr_db) ? error->psnr_db : 0);
+                 error->relative_rmse, isfinite(error->psnr_db) ? error->psnr_db : 0, errors_of);
         weft_command_event(common, event);
     }
 }
@@ -502,6 +505,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     if (code == WEFT_OK) {
         const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
         unlink(partial_path);
+        weft_sweep_left_over(command->output);
         say_model(command, &options, dataset, &report);
         say_target(command, &report);
         if (held_out.split_count > 0)

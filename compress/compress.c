@@ -170,10 +170,13 @@ static weft_code identify(const weft_dataset *dataset, const weft_compress_optio
              "layout %08" PRIx32 ", samples %08" PRIx32 ", %lld bytes of %lld.%09ld", fingerprint->layout,
              fingerprint->samples, (long long)status.st_size, (long long)status.st_mtim.tv_sec,
              (long)status.st_mtim.tv_nsec);
-    snprintf(text->options, sizeof text->options,
-             "%s, %d lobes, lights %d, weights %d, frames %d, N <= %.17g, error <= %.17g, levels %d, held out %08lx",
-             weft_compress_model_name(report->model), report->lobe_count, options->light_table, (int)options->weights,
-             (int)options->frames, options->max_exponent, options->target_error, options->levels, held_out);
+    snprintf(
+        text->options, sizeof text->options,
+        "%s, %d lobes, %d layers, lights %d, weights %d, frames %d, N <= %.17g, error <= %.17g, levels %d, held out "
+        "%08lx",
+        weft_compress_model_name(report->model), report->lobe_count, options->layer_count, options->light_table,
+        (int)options->weights, (int)options->frames, options->max_exponent, options->target_error, options->levels,
+        held_out);
     return WEFT_OK;
 }
 
@@ -188,6 +191,7 @@ typedef struct fitting {
     weft_dataset_fingerprint fingerprint;
     weft_sparse_setting setting;
     weft_texel_counts counts;
+    weft_checkpoint *checkpoint; /* that of the dense model, to which the layers append */
 } fitting;
 
 /* With a target or a budget: which model each texel has is part of the material. */
@@ -226,7 +230,7 @@ static weft_code fit_dense(fitting *work, weft_material *material, weft_compress
 {
     const weft_compress_options *options = work->options;
     identity_text identity = {0};
-    weft_dense_result result;
+    weft_dense_result result = {0};
     WEFT_TRY(weft_given_frames_store(work->dataset, material, error));
     if (options->checkpoint_path)
         WEFT_TRY(identify(work->dataset, options, report, &work->fingerprint, &identity, error));
@@ -248,7 +252,9 @@ static weft_code fit_dense(fitting *work, weft_material *material, weft_compress
     source.options.lobe_count = report->lobe_count;
     source.options.table = report->model == WEFT_COMPRESS_TABLE;
     source.options.max_exponent = options->max_exponent;
-    WEFT_TRY(fit_chosen(work, &source, &job, material, &result, error));
+    weft_code code = fit_chosen(work, &source, &job, material, &result, error);
+    work->checkpoint = result.checkpoint;
+    WEFT_TRY(code);
     if (options->table_components > 0 && material->view_count + material->light_count > 0) {
         WEFT_TRY(reduce_tables(work, &source, &job, material, &result, error));
         report->table_components = options->table_components;
@@ -296,7 +302,9 @@ static weft_code fit_layers(fitting *work, weft_material *material, weft_compres
                                    .finer = work->options->finer,
                                    .held_out = work->options->held_out,
                                    .for_screen = work->options->weights == WEFT_WEIGHTS_SCREEN,
-                                   .budget = work->budget};
+                                   .budget = work->budget,
+                                   .checkpoint = work->checkpoint,
+                                   .log = work->options->log};
     return options.layer_count > 0
                ? weft_layers_fit(work->dataset, &options, work->progress, material, &report->layers, error)
                : WEFT_OK;
@@ -364,6 +372,7 @@ weft_code weft_compress(weft_dataset *dataset, const weft_compress_options *opti
                     .budget = weft_memory_budget_begin(options->memory_bytes)};
     WEFT_TRY(create_material(weft_dataset_get_layout(dataset), options, &own, material, error));
     weft_code code = fit_material(&work, material, &own, error);
+    weft_checkpoint_close(work.checkpoint);
     if (code != WEFT_OK)
         weft_material_free(material);
     own.seconds = weft_now_s() - began;

@@ -60,12 +60,21 @@ static json_t *describe_layers(const weft_compress_options *options, const weft_
     return layers;
 }
 
+/* Layers are what is drawn. What lies beside them is named where it was asked for. */
+static json_t *name_model(const weft_compress_options *options, const weft_compress_report *report)
+{
+    const char *beside = weft_compress_model_name(report->model);
+    if (options->layer_count == 0)
+        return json_string(beside);
+    return report->lobe_count > 0 ? json_sprintf("layers beside %s", beside) : json_string("layers");
+}
+
 static json_t *describe_fit(const weft_compress_options *options, const weft_compress_report *report,
                             const weft_sparse_setting *setting)
 {
     double texels = (double)(report->texel_count > 0 ? report->texel_count : 1);
     json_t *fit = json_pack(
-        "{s:s, s:i, s:f, s:I, s:I, s:I, s:I, s:f, s:f}", "model", weft_compress_model_name(report->model), "lobes",
+        "{s:o, s:i, s:f, s:I, s:I, s:I, s:I, s:f, s:f}", "model", name_model(options, report), "lobes",
         report->lobe_count, "largest_exponent", options->max_exponent, "samples", (json_int_t)report->sample_count,
         "masked_samples", (json_int_t)report->masked_count, "texels", (json_int_t)report->texel_count, "empty_texels",
         (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,

@@ -193,6 +193,13 @@ void weft_material_free(weft_material *material)
     *material = (weft_material){0};
 }
 
+const char *weft_material_errors_of(const weft_material *material)
+{
+    if (!material->layers)
+        return NULL;
+    return material->lobe_count > 0 ? "lobes beside the layers" : "diffuse term beside the layers";
+}
+
 bool weft_material_has_holes(const weft_material *material)
 {
     for (int k = 0; k < material->level_count; k++) {

@@ -88,6 +88,10 @@ void weft_material_take_seen(weft_material *material, weft_seen *seen);
 /* Adds maps of models, all 0. Errors: WEFT_SYSTEM. */
 weft_code weft_material_add_models(weft_material *material, weft_error *error);
 
+/* Whose errors its levels have, where that is not all of it: "lobes beside the layers" or "diffuse term beside the
+ * layers"; NULL without layers. Pure. */
+const char *weft_material_errors_of(const weft_material *material);
+
 /* Whether any texel has an opacity below 1 in any view. Pure. */
 bool weft_material_has_holes(const weft_material *material);
 

@@ -111,11 +111,13 @@ static weft_code project(fitting *work, weft_layers_report *report, weft_error *
 {
     weft_projector projector = {0};
     bool is_near = weft_dataset_get_layout(work->dataset)->distance == WEFT_NEAR;
+    const weft_projection_job job = {&work->options->budget, work->options->checkpoint, &work->options->log,
+                                     work->progress};
     WEFT_TRY(weft_layer_maps_create(work->layers, &work->maps, error));
     weft_code code = is_near ? WEFT_OK : make_projector(work, &projector, error);
     if (code == WEFT_OK)
         code = weft_projection_make(work->dataset, &work->images, is_near ? NULL : &projector, &work->components,
-                                    &work->maps, &work->options->budget, work->progress, &work->projection, error);
+                                    &work->maps, &job, &work->projection, error);
     weft_projector_free(&projector);
     weft_layer_maps_free(&work->maps);
     report->masked = work->projection.masked;

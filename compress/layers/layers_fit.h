@@ -7,6 +7,7 @@
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
 #include "compress/kriging/covariance.h"
+#include "compress/run/checkpoint.h"
 #include "compress/run/memory.h"
 
 #include <stdbool.h>
@@ -16,7 +17,10 @@ typedef struct weft_layers_options {
     bool finer;              /* as many layers again (compress/options/options.h) */
     const uint8_t *held_out; /* [image_count] images that the fit must not see, or NULL */
     bool for_screen;         /* dim images count for more (compress/options/options.h) */
+    /* These change nothing in the result: */
     weft_memory_budget budget;
+    weft_checkpoint *checkpoint; /* whose unread records are blocks of these layers, and which gets more; NULL: none */
+    weft_log log;                /* hears that these blocks are used */
 } weft_layers_options;
 
 typedef struct weft_layers_report {
@@ -40,8 +44,10 @@ weft_code weft_layers_check(int layer_count, weft_error *error);
 bool weft_images_are_scattered(const weft_dataset_layout *layout, const uint8_t *held_out);
 
 /* Adds layers to `material`, which has the size of the dataset and may have lobes as well. The same dataset gives the
- * same layers, for any number of threads and any memory. Errors: WEFT_BAD_USAGE for options out of range and where the
- * memory does not suffice; those of reading; WEFT_SYSTEM. */
+ * same layers, for any number of threads and any memory. What a checkpoint keeps is the coefficients of all texels:
+ * what they are coefficients of is learned anew, which takes as long for a large dataset as for a small one. Errors:
+ * WEFT_BAD_USAGE for options out of range and where the memory does not suffice; those of reading; those of
+ * weft_checkpoint_append; WEFT_BAD_INPUT for a checkpoint of other blocks; WEFT_SYSTEM. */
 weft_code weft_layers_fit(weft_dataset *dataset, const weft_layers_options *options, const weft_progress *progress,
                           weft_material *material, weft_layers_report *report, weft_error *error);
 

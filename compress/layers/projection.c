@@ -2,6 +2,7 @@
 
 #include "base/thread_pool.h"
 #include "compress/layers/darkest.h"
+#include "compress/layers/kept_blocks.h"
 #include "compress/run/block_plan.h"
 
 #include <math.h>
@@ -150,9 +151,10 @@ static weft_code create_workers(run *r, const weft_dataset_layout *layout, weft_
 static weft_code collect(const run *r, weft_error *error)
 {
     for (int i = 0; i < r->thread_count; i++) {
-        const worker *own = &r->worker[i];
+        worker *own = &r->worker[i];
         r->projection->masked += own->masked;
         r->projection->empty += own->empty;
+        own->masked = own->empty = 0;
         if (own->code != WEFT_OK) {
             *error = own->error;
             return own->code;
@@ -162,16 +164,19 @@ static weft_code collect(const run *r, weft_error *error)
 }
 
 static weft_code project_blocks(run *r, weft_block_reader *reader, weft_thread_pool *pool, const weft_block_plan *plan,
-                                const weft_progress *progress, weft_error *error)
+                                size_t first, const weft_projection_job *job, weft_error *error)
 {
-    for (size_t i = 0; i < plan->count; i++) {
-        weft_progress_report(progress, "projecting on layers", (long)i, (long)plan->count);
+    long total = (long)(plan->count - first);
+    for (long i = 0; i < total; i++) {
+        weft_progress_report(job->progress, "projecting on layers", i, total);
         WEFT_TRY(weft_block_reader_next(reader, &r->block, error));
         long texels = (long)r->block->place.width * r->block->place.height;
         weft_thread_pool_run(pool, project_batch, r, (texels + BATCH - 1) / BATCH);
+        WEFT_TRY(collect(r, error));
+        WEFT_TRY(weft_kept_blocks_add(job->checkpoint, r->projection, &r->block->place, error));
     }
-    weft_progress_report(progress, "projecting on layers", (long)plan->count, (long)plan->count);
-    return collect(r, error);
+    weft_progress_report(job->progress, "projecting on layers", total, total);
+    return WEFT_OK;
 }
 
 static int side_level_for(const weft_dataset_layout *layout)
@@ -197,16 +202,18 @@ static weft_code allocate(const weft_dataset_layout *layout, int layer_count, we
 }
 
 static weft_code project(run *r, weft_dataset *dataset, const weft_block_plan *plan, size_t block_texels,
-                         const weft_progress *progress, weft_error *error)
+                         const weft_projection_job *job, weft_error *error)
 {
     weft_block_reader *reader = NULL;
     weft_thread_pool *pool = NULL;
-    WEFT_TRY(weft_block_reader_create(dataset, plan->place, plan->count, block_texels, &reader, error));
+    size_t first;
+    WEFT_TRY(weft_kept_blocks_take(job->checkpoint, job->log, plan, r->projection, &first, error));
+    WEFT_TRY(weft_block_reader_create(dataset, plan->place + first, plan->count - first, block_texels, &reader, error));
     weft_code code = weft_thread_pool_create(r->thread_count, &pool, error);
     if (code == WEFT_OK)
         code = create_workers(r, weft_dataset_get_layout(dataset), error);
     if (code == WEFT_OK)
-        code = project_blocks(r, reader, pool, plan, progress, error);
+        code = project_blocks(r, reader, pool, plan, first, job, error);
     free_workers(r);
     weft_thread_pool_free(pool);
     weft_block_reader_free(reader);
@@ -215,8 +222,7 @@ static weft_code project(run *r, weft_dataset *dataset, const weft_block_plan *p
 
 weft_code weft_projection_make(weft_dataset *dataset, const weft_layer_images *images, const weft_projector *projector,
                                const weft_components *components, const weft_layer_maps *maps,
-                               const weft_memory_budget *budget, const weft_progress *progress,
-                               weft_projection *projection, weft_error *error)
+                               const weft_projection_job *job, weft_projection *projection, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     int side_level = side_level_for(layout);
@@ -229,16 +235,16 @@ weft_code weft_projection_make(weft_dataset *dataset, const weft_layer_images *i
              .projection = projection,
              .thread_count = omp_get_max_threads()};
     weft_block_plan plan;
-    WEFT_TRY(weft_memory_budget_require(budget,
+    WEFT_TRY(weft_memory_budget_require(job->budget,
                                         weft_block_reader_bytes(layout, block_texels) +
-                                            texels * 4 * (uint64_t)(components->count + 4) +
+                                            (texels + 3 * block_texels) * 4 * (uint64_t)(components->count + 4) +
                                             (uint64_t)r.thread_count * (uint64_t)layout->image_count *
                                                 (32 * BATCH + (projector ? 0 : 12 * (uint64_t)components->count + 128)),
                                         weft_dataset_path(dataset), "its layers", error));
     WEFT_TRY(allocate(layout, components->count, projection, error));
     weft_code code = weft_block_plan_create(layout->width, layout->height, side_level, 0, &plan, error);
     if (code == WEFT_OK) {
-        code = project(&r, dataset, &plan, block_texels, progress, error);
+        code = project(&r, dataset, &plan, block_texels, job, error);
         weft_block_plan_free(&plan);
     }
     if (code != WEFT_OK)

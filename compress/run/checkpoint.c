@@ -27,8 +27,8 @@ typedef struct record_header {
 struct weft_checkpoint {
     char *path;
     int descriptor;
-    uint64_t count; /* of records */
-    off_t at, end;  /* of the next record to read, of the whole records */
+    uint64_t count, read; /* records in the file, of these read or appended */
+    off_t at, end;        /* of the next record to read, of the whole records */
 };
 
 static uint32_t checksum_of(const void *bytes, size_t size)
@@ -155,7 +155,7 @@ static weft_code begin_anew(weft_checkpoint *checkpoint, const weft_checkpoint_i
     file_header header = {
         .version = VERSION, .identity_size = (uint32_t)size, .identity_checksum = checksum_of(text, (size_t)size)};
     memcpy(header.magic, magic, sizeof magic);
-    checkpoint->count = 0;
+    checkpoint->count = checkpoint->read = 0;
     checkpoint->at = checkpoint->end = (off_t)(sizeof header + header.identity_size);
     errno = ENOSPC;
     if (ftruncate(checkpoint->descriptor, 0) != 0 || !write_at(checkpoint->descriptor, &header, sizeof header, 0) ||
@@ -241,9 +241,14 @@ void weft_checkpoint_close(weft_checkpoint *checkpoint)
 
 /* ---- Records ---- */
 
-uint64_t weft_checkpoint_count(const weft_checkpoint *checkpoint)
+uint64_t weft_checkpoint_unread(const weft_checkpoint *checkpoint)
 {
-    return checkpoint->count;
+    return checkpoint->count - checkpoint->read;
+}
+
+const char *weft_checkpoint_path(const weft_checkpoint *checkpoint)
+{
+    return checkpoint->path;
 }
 
 weft_code weft_checkpoint_read(weft_checkpoint *checkpoint, weft_record *record, weft_error *error)
@@ -260,6 +265,7 @@ weft_code weft_checkpoint_read(weft_checkpoint *checkpoint, weft_record *record,
         return weft_fail(error, WEFT_SYSTEM, "cannot read '%s' at byte %lld", checkpoint->path,
                          (long long)checkpoint->at);
     checkpoint->at += (off_t)record->size;
+    checkpoint->read++;
     return WEFT_OK;
 }
 
@@ -276,5 +282,6 @@ weft_code weft_checkpoint_append(weft_checkpoint *checkpoint, const weft_record 
                          strerror(errno));
     checkpoint->end += (off_t)(sizeof header + record->size);
     checkpoint->count++;
+    checkpoint->read++;
     return WEFT_OK;
 }

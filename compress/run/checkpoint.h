@@ -26,8 +26,11 @@ typedef struct weft_checkpoint weft_checkpoint;
 weft_code weft_checkpoint_open(const char *path, const weft_checkpoint_identity *identity, weft_checkpoint **result,
                                char why[WEFT_MESSAGE_SIZE], weft_error *error);
 
-/* Records in the file. */
-uint64_t weft_checkpoint_count(const weft_checkpoint *checkpoint);
+/* Records that have not been read yet. */
+uint64_t weft_checkpoint_unread(const weft_checkpoint *checkpoint);
+
+/* The name of the file, which the checkpoint owns. */
+const char *weft_checkpoint_path(const weft_checkpoint *checkpoint);
 
 /* Reads the next record, in the order in which they were appended, into record->bytes, which it allocates anew. Errors:
  * WEFT_SYSTEM. */

@@ -185,13 +185,9 @@ static weft_code resume(run *fit, size_t *done, weft_error *error)
     WEFT_TRY(weft_checkpoint_open(fit->job->checkpoint_path, &identity, &fit->checkpoint, text, error));
     if (text[0])
         weft_log_line(&fit->job->log, text);
-    uint64_t count = weft_checkpoint_count(fit->checkpoint);
-    if (count > fit->plan.count)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has %llu records for %zu blocks; remove the file",
-                         fit->job->checkpoint_path, (unsigned long long)count, fit->plan.count);
-    for (; *done < (size_t)count; (*done)++)
+    for (; *done < fit->plan.count && weft_checkpoint_unread(fit->checkpoint) > 0; (*done)++)
         WEFT_TRY(load_block(fit, *done, error));
-    if (count > 0) {
+    if (*done > 0) {
         snprintf(text, sizeof text, "going on after %zu of %zu blocks, kept in %s", *done, fit->plan.count,
                  fit->job->checkpoint_path);
         weft_log_line(&fit->job->log, text);
@@ -346,6 +342,8 @@ weft_code weft_dense_fit(weft_dataset *dataset, const weft_texel_source *source,
         weft_fitted_finish(&fit.fitted);
         result->counts = fit.fitted.counts;
         result->masked = fit.fitted.masked;
+        result->checkpoint = fit.checkpoint;
+        fit.checkpoint = NULL;
     }
     free_run(&fit);
     return code;

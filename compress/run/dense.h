@@ -22,6 +22,7 @@ typedef struct weft_dense_result {
     long masked;
     size_t block_count, resumed_block_count;
     weft_block_reader_times times;
+    weft_checkpoint *checkpoint; /* still open, for what follows to go on with; the caller closes it. NULL: none */
 } weft_dense_result;
 
 /* Fits and measures all levels of `material`, whose shape and views are set. A block of 2^k x 2^k texels is read once,

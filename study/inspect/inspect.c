@@ -87,9 +87,7 @@ static json_t *describe_level(const weft_material *material, int k)
     put_basis(&described, "components_of_T", level->table_basis);
     put_basis(&described, "components_of_S", level->light_table_basis);
     if (material->layers)
-        weft_json_put(
-            &described, "errors_of",
-            json_string(material->lobe_count > 0 ? "lobes beside the layers" : "diffuse term beside the layers"));
+        weft_json_put(&described, "errors_of", json_string(weft_material_errors_of(material)));
     if (material->has_models)
         weft_json_put(&described, "texels_by_model", describe_models(material, k));
     return described;
@@ -100,6 +98,9 @@ static json_t *describe_level(const weft_material *material, int k)
 static json_t *describe_error(const weft_material *material, const weft_hold_out *held_out)
 {
     json_t *described = json_object();
+    const char *name = !material->layers          ? "fitted_level_0"
+                       : material->lobe_count > 0 ? "fitted_level_0_lobes"
+                                                  : "fitted_level_0_diffuse_term";
     if (held_out) {
         char how[WEFT_HOLD_OUT_LINE];
         weft_hold_out_explain(held_out, how);
@@ -112,8 +113,7 @@ static json_t *describe_error(const weft_material *material, const weft_hold_out
     } else {
         weft_json_put(&described, "not_fitted", json_string("not measured"));
     }
-    weft_json_put(&described, material->layers ? "fitted_level_0_lobes" : "fitted_level_0",
-                  json_real(material->level[0].error.relative_rmse));
+    weft_json_put(&described, name, json_real(material->level[0].error.relative_rmse));
     return described;
 }
 

@@ -88,6 +88,7 @@ grep -q "drawn by its layers: --lobes-on" out.log || fail "nobody says that --lo
 expect_ok render dark.weft --layers 0 --lobes-on none --size 60x40 --samples 1 -o lobes.png
 grep -q "drawn by its layers" out.log && fail "lobes that are drawn are said to be idle"
 expect_ok info dark.weft
+grep -q "fitted_level_0_diffuse_term" out.log || fail "info calls the diffuse term beside layers lobes: $(cat out.log)"
 grep -q "errors_of: diffuse term beside the layers" out.log || fail "info does not say whose errors the levels of a layered material have"
 
 # Of one photograph nothing can be left out, and nothing is said of what the others say.

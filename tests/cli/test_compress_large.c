@@ -3,11 +3,11 @@
 #include "tests/support/cmocka_all.h"
 
 #include "base/atomic_file.h"
+#include "tests/support/disturbed_command.h"
 #include "tests/support/synthetic_dataset.h"
 #include "tests/support/synthetic_texel.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,10 +16,9 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
-enum { WIDTH = 34, HEIGHT = 18, BLOCKS = 6, KINDS = 6, MAX_SAID = 8192 };
+enum { WIDTH = 34, HEIGHT = 18, BLOCKS = 6, KINDS = 6 };
 
 static const char *const dataset_path = "large.btf.h5", *const whole_path = "large-whole.weft",
                          *const path = "large.weft", *const partial_path = "large.weft.partial";
@@ -54,103 +53,26 @@ static void write_dataset(const char *to)
 
 /* ---- Running the command ---- */
 
-typedef struct outcome {
-    int status; /* as waitpid gives it */
-    long peak_kb;
-    char said[MAX_SAID]; /* both streams */
-} outcome;
-
 typedef struct limits {
     off_t kill_at; /* bytes of the partial file at which it is killed; 0: never */
     rlim_t file;   /* largest file; 0: none */
 } limits;
 
-static off_t size_of(const char *name)
-{
-    struct stat status;
-    return stat(name, &status) == 0 ? status.st_size : -1;
-}
-
-static void run_child(const char *const *argument, limits limit)
-{
-    int log = open("large.log", O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    dup2(log, STDOUT_FILENO);
-    dup2(log, STDERR_FILENO);
-    if (limit.file > 0) {
-        signal(SIGXFSZ, SIG_IGN);
-        setrlimit(RLIMIT_FSIZE, &(struct rlimit){limit.file, limit.file});
-    }
-    execv(WEFT_PROGRAM, (char *const *)argument);
-    _exit(127);
-}
-
-static bool has_ended(pid_t child)
-{
-    siginfo_t info = {0};
-    return waitid(P_PID, (id_t)child, &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == child;
-}
-
-static void wait_and_kill(pid_t child, off_t kill_at)
-{
-    while (size_of(partial_path) < kill_at && !has_ended(child))
-        nanosleep(&(struct timespec){.tv_nsec = 500000}, NULL);
-    kill(child, SIGKILL);
-}
-
 /* weft compress with up to four options. What it is not fitted to is measured only where they ask for it: it takes its
  * time. */
-static outcome compress_dataset(const char *from, const char *to, limits limit, const char *const option[4])
+static disturbed compress_dataset(const char *from, const char *to, limits limit, const char *const option[4])
 {
     const char *argument[] = {"weft",       "compress", from,      "-o",      to,        "--lobes", "1",
                               "--hold-out", "off",      option[0], option[1], option[2], option[3], NULL};
-    outcome got = {0};
-    fflush(NULL);
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child == 0)
-        run_child(argument, limit);
-    if (limit.kill_at > 0)
-        wait_and_kill(child, limit.kill_at);
-    struct rusage usage;
-    assert_int_equal(wait4(child, &got.status, 0, &usage), child);
-    got.peak_kb = usage.ru_maxrss;
-    char *text;
-    size_t size;
-    assert_int_equal(weft_read_file("large.log", 1 << 20, &text, &size, NULL), WEFT_OK);
-    snprintf(got.said, sizeof got.said, "%s", text);
-    free(text);
-    return got;
+    return run_disturbed(argument,
+                         (disturbance){.watched = partial_path, .kill_at = limit.kill_at, .largest_file = limit.file});
 }
 
 static const char *const no_option[4];
 static const limits no_limit;
 
-static void expect_says(const outcome *got, int code, const char *what)
-{
-    if (!WIFEXITED(got->status) || WEXITSTATUS(got->status) != code || !strstr(got->said, what))
-        fail_msg("status %x, not %d, or no '%s' in: %s", (unsigned)got->status, code, what, got->said);
-}
-
-static void expect_not_said(const outcome *got, const char *what)
-{
-    if (strstr(got->said, what))
-        fail_msg("'%s' in: %s", what, got->said);
-}
-
-static void expect_same_bytes(const char *one, const char *two)
-{
-    char *bytes[2];
-    size_t size[2];
-    assert_int_equal(weft_read_file(one, SIZE_MAX / 2, &bytes[0], &size[0], NULL), WEFT_OK);
-    assert_int_equal(weft_read_file(two, SIZE_MAX / 2, &bytes[1], &size[1], NULL), WEFT_OK);
-    assert_int_equal(size[0], size[1]);
-    assert_memory_equal(bytes[0], bytes[1], size[0]);
-    free(bytes[0]);
-    free(bytes[1]);
-}
-
 /* Ends with the bytes of the undisturbed run, and without a partial file. */
-static void expect_done(const outcome *got, const char *what)
+static void expect_done(const disturbed *got, const char *what)
 {
     expect_says(got, 0, what);
     expect_same_bytes(path, whole_path);
@@ -173,7 +95,7 @@ static int prepare(void **state)
     write_dataset(dataset_path);
     unlink(partial_path);
     unlink("large-whole.weft.partial");
-    outcome got = compress_dataset(dataset_path, whole_path, no_limit, no_option);
+    disturbed got = compress_dataset(dataset_path, whole_path, no_limit, no_option);
     expect_says(&got, 0, "in 6 blocks");
     assert_int_equal(size_of("large-whole.weft.partial"), -1);
     return 0;
@@ -182,7 +104,7 @@ static int prepare(void **state)
 /* Leaves a partial file of which two thirds still hold a block as "large.kept", and removes the original. */
 static void keep_some_blocks(void)
 {
-    outcome got = compress_dataset(dataset_path, path, (limits){.kill_at = 700000}, no_option);
+    disturbed got = compress_dataset(dataset_path, path, (limits){.kill_at = 700000}, no_option);
     assert_true(WIFSIGNALED(got.status));
     copy_file(partial_path, "large.kept", SIZE_MAX);
     unlink(partial_path);
@@ -194,7 +116,7 @@ static void killed_again_and_again_it_ends_with_the_same_bytes(void **state)
 {
     (void)state;
     unlink(path);
-    outcome got = compress_dataset(dataset_path, path, (limits){.kill_at = 1}, no_option);
+    disturbed got = compress_dataset(dataset_path, path, (limits){.kill_at = 1}, no_option);
     off_t kept = size_of(partial_path);
     assert_true(WIFSIGNALED(got.status) && kept > 0);
     int kills = 1;
@@ -217,7 +139,7 @@ static void other_models_go_on_as_well(void **state)
     (void)state;
     const char *const option[][4] = {{"--error", "25"}, {"--light-table", "on"}, {"--tables", "pca:3"}};
     for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
-        outcome got = compress_dataset(dataset_path, "large-chosen.weft", no_limit, option[i]);
+        disturbed got = compress_dataset(dataset_path, "large-chosen.weft", no_limit, option[i]);
         expect_says(&got, 0, "fitted in");
         got = compress_dataset(dataset_path, path, (limits){.kill_at = 700000}, option[i]);
         assert_true(WIFSIGNALED(got.status));
@@ -236,7 +158,7 @@ static void a_checkpoint_cut_anywhere_goes_on(void **state)
     const off_t cut[] = {7, 100, size * 2 / 3, size - 1};
     for (size_t i = 0; i < sizeof cut / sizeof *cut; i++) {
         copy_file("large.kept", partial_path, (size_t)cut[i]);
-        outcome got = compress_dataset(dataset_path, path, no_limit, no_option);
+        disturbed got = compress_dataset(dataset_path, path, no_limit, no_option);
         expect_not_said(&got, "discarded");
         expect_done(&got, i < 2 ? "in 6 blocks" : "going on after");
     }
@@ -256,7 +178,7 @@ static void a_damaged_checkpoint_is_discarded(void **state)
         byte ^= 0x10;
         assert_int_equal(pwrite(file, &byte, 1, place[i]), 1);
         close(file);
-        outcome got = compress_dataset(dataset_path, path, no_limit, no_option);
+        disturbed got = compress_dataset(dataset_path, path, no_limit, no_option);
         if (place[i] == size - 10 && strstr(got.said, "going on after")) {
             /* The last record had been cut by the kill: it is dropped, damaged or not. */
             expect_done(&got, "going on after");
@@ -271,7 +193,7 @@ static void a_checkpoint_of_other_options_or_another_dataset_is_discarded(void *
     (void)state;
     keep_some_blocks();
     copy_file("large.kept", partial_path, SIZE_MAX);
-    outcome got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){"--max-exponent", "500"});
+    disturbed got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){"--max-exponent", "500"});
     expect_says(&got, 0, "is discarded: it was made with other options");
     copy_file(dataset_path, "other.btf.h5", SIZE_MAX);
     copy_file("large.kept", partial_path, SIZE_MAX);
@@ -284,7 +206,7 @@ static void what_is_no_checkpoint_is_left_alone(void **state)
 {
     (void)state;
     assert_int_equal(weft_write_file(partial_path, "a letter", 8, NULL), WEFT_OK);
-    outcome got = compress_dataset(dataset_path, path, no_limit, no_option);
+    disturbed got = compress_dataset(dataset_path, path, no_limit, no_option);
     expect_says(&got, 2, "'large.weft.partial' is in the way");
     assert_int_equal(size_of(partial_path), 8);
     unlink(partial_path);
@@ -297,7 +219,7 @@ static void what_is_no_checkpoint_is_left_alone(void **state)
 static void a_full_disk_keeps_what_is_done(void **state)
 {
     (void)state;
-    outcome got = compress_dataset(dataset_path, path, (limits){.file = 500000}, no_option);
+    disturbed got = compress_dataset(dataset_path, path, (limits){.file = 500000}, no_option);
     expect_says(&got, 3, "cannot append to 'large.weft.partial'");
     assert_int_equal(size_of(path), -1);
     assert_true(size_of(partial_path) > 150000);
@@ -310,7 +232,7 @@ static void two_at_a_time_to_one_output_are_refused(void **state)
     (void)state;
     int file = open(partial_path, O_RDWR | O_CREAT, 0644);
     assert_int_equal(flock(file, LOCK_EX), 0);
-    outcome got = compress_dataset(dataset_path, path, no_limit, no_option);
+    disturbed got = compress_dataset(dataset_path, path, no_limit, no_option);
     expect_says(&got, 3, "in use by another");
     close(file);
     unlink(partial_path);
@@ -321,7 +243,7 @@ static void threads_change_no_byte(void **state)
     (void)state;
     const char *const count[] = {"1", "2", "3"};
     for (int i = 0; i < 3; i++) {
-        outcome got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){"--threads", count[i]});
+        disturbed got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){"--threads", count[i]});
         expect_done(&got, "fitted in");
     }
 }
@@ -333,7 +255,7 @@ enum { RESIDENT_NOISE_MB = 8 };
 static void expect_little_memory_suffices(const char *option, const char *value)
 {
     const char *const whole[4] = {option, value, "-t", "2"};
-    outcome got = compress_dataset(dataset_path, "large-free.weft", no_limit, whole);
+    disturbed got = compress_dataset(dataset_path, "large-free.weft", no_limit, whole);
     expect_says(&got, 0, "fitted in");
     got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){option, value, "--memory", "1"});
     expect_says(&got, 2, "more than the limit of 1 MB");
@@ -366,7 +288,7 @@ static void little_memory_changes_no_byte_and_is_not_exceeded(void **state)
 #if defined(__SANITIZE_ADDRESS__)
     skip(); /* its allocator keeps what is freed */
 #endif
-    outcome got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){"--memory", "1", "-t", "2"});
+    disturbed got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){"--memory", "1", "-t", "2"});
     expect_says(&got, 2, "more than the limit of 1 MB");
     const char *needs = strstr(got.said, " needs ");
     assert_non_null(needs);

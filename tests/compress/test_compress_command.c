@@ -222,6 +222,33 @@ static void what_only_lobes_have_asks_for_lobes(void **state)
     expect_model(4, 12, "--layers 4 --lobes 1", 4, 1);
 }
 
+/* Programs that read the file or the events are told what the material is, and what the errors of its levels are of. */
+static void a_layered_material_says_that_it_is_one(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *options, *model, *errors_of;
+    } expected[] = {
+        {"--layers 4", "\"model\":\"layers\"", "\"errors_of\":\"diffuse term beside the layers\""},
+        {"--layers 4 --lobes 1", "\"model\":\"layers beside lobes\"", "\"errors_of\":\"lobes beside the layers\""},
+        {"--lobes 1", "\"model\":\"lobes and view table\"", NULL},
+    };
+    write_few_images(4, 12);
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        char arguments[256], said[8192];
+        weft_material material;
+        snprintf(arguments, sizeof arguments, "compress few.btf.h5 -o few.weft --hold-out off --json %s",
+                 expected[i].options);
+        assert_int_equal(run_weft("", arguments, said), 0);
+        assert_int_equal(weft_material_read("few.weft", &material, NULL), WEFT_OK);
+        if (!strstr(material.metadata, expected[i].model))
+            fail_msg("no %s in %s", expected[i].model, material.metadata);
+        if (expected[i].errors_of ? !strstr(said, expected[i].errors_of) : !!strstr(said, "errors_of"))
+            fail_msg("%s: %s", expected[i].options, said);
+        weft_material_free(&material);
+    }
+}
+
 static void bad_input_is_1_and_leaves_nothing(void **state)
 {
     (void)state;
@@ -261,6 +288,7 @@ int main(void)
         cmocka_unit_test(options_that_change_nothing_are_named),
         cmocka_unit_test(layers_are_the_default_and_their_number_is_that_of_the_photographs),
         cmocka_unit_test(what_only_lobes_have_asks_for_lobes),
+        cmocka_unit_test(a_layered_material_says_that_it_is_one),
         cmocka_unit_test(bad_input_is_1_and_leaves_nothing),
         cmocka_unit_test(a_full_disk_is_3_and_leaves_nothing),
     };

@@ -150,10 +150,8 @@ void weft_page_models(weft_page *page, const weft_comparison *comparison)
 
 static void print_levels(weft_page *page, const weft_material *material)
 {
-    const char *which = !material->layers          ? "material"
-                        : material->lobe_count > 0 ? "lobes beside the layers"
-                                                   : "diffuse term beside the layers";
-    fprintf(page->html, "<h2>Error of the %s on the samples it was fitted to, level by level</h2>\n", which);
+    fprintf(page->html, "<h2>Error of the %s on the samples it was fitted to, level by level</h2>\n",
+            material->layers ? weft_material_errors_of(material) : "material");
     if (material->layers)
         fputs("<p class=\"note\">This is what players without layers show. The errors of the layers stand above and "
               "below.</p>\n",
