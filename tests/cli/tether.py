@@ -67,6 +67,36 @@ for folder, _, names in os.walk("session"):
             assert 0.3 < level / 65535 < 0.9, "metered"
 assert sum(name.endswith(".original.TIF") for _, _, names in os.walk("session") for name in names) == SHOTS
 
+# A card that is full stops the night with one line, and the session goes on when there is room.
+camera = Camera(2 * SIDE, room=5)
+done = capture(camera, "full")
+assert done.returncode == 3, (done.returncode, done.stderr)
+assert done.stderr.endswith("weft capture: camera: its card is full\n") and done.stderr.count("card") == 1, done.stderr
+before = journal("full")
+assert 0 < len(before) < SHOTS and subprocess.run([WEFT, "verify", "full"], capture_output=True).returncode == 0
+camera.room = 1000
+done = capture(camera, "full")
+assert done.returncode == 0, done.stderr
+lines = journal("full")
+assert lines[:len(before)] == before and sorted(line["shot"] for line in lines) == list(range(SHOTS)), lines
+
+# Exposures longer than the longest that has a name: by bulb, timed by the clock, for the file has whole seconds.
+camera = Camera(2 * SIDE, bulb=True)
+done = capture(camera, "bulb")
+assert done.returncode == 0, done.stderr
+lines = journal("bulb")
+opened = [exposure for exposure, _ in camera.taken]
+assert len(lines) == SHOTS
+for line in lines:
+    assert line["exposure_s"] > 0.3, line  # no named time is longer than 0.1 s
+    assert min(abs(line["exposure_s"] - exposure) for exposure in opened) < 0.2, (line, opened)
+
+# One whose shutter did not do what it was told.
+camera = Camera(2 * SIDE, bulb=True, off=2)
+done = capture(camera, "stuck")
+assert done.returncode == 3 and "its shutter was open for" in done.stderr, (done.returncode, done.stderr)
+assert not os.path.exists("stuck/journal.jsonl")
+
 # Nobody there.
 camera.port = "ptpip:127.0.0.1:1:1"
 done = capture(camera, "nobody")
