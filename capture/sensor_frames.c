@@ -9,7 +9,7 @@
 /* Far from the numbers of all exposures of shots. */
 static const uint64_t first_number = (uint64_t)1 << 40;
 
-enum { NUMBERS_PER_FRAME = 256, MAX_METERED = 8 };
+enum { NUMBERS_PER_FRAME = 512, MAX_METERED = 8 };
 
 int weft_sensor_frames_missing(const weft_session *session)
 {
@@ -66,11 +66,15 @@ static weft_code meter_field(taking *t, int frame, const weft_meter *meter, weft
 {
     const weft_rig_settings *settings = &t->rig->settings;
     const weft_exposure_limits limits = {settings->shortest_exposure_s, settings->longest_exposure_s};
-    double next_s = weft_exposure_in_thirds(1.0 / 60, limits), read_back_s;
-    for (int metered = 0; metered < MAX_METERED && next_s != t->flat_s; metered++) {
+    double next_s = weft_exposure_in_thirds(1.0 / 60, limits), before_s = 0, read_back_s;
+    for (int metered = 0; metered < MAX_METERED; metered++) {
         t->flat_s = next_s;
         WEFT_TRY(expose(t, frame, 32 * (metered + 1), t->flat_s, &read_back_s, error));
-        next_s = weft_exposure_after(t->flat_s, weft_meter_read(meter, t->session, t->samples), limits);
+        double taken_s = weft_exposure_taken(t->flat_s, read_back_s);
+        next_s = weft_exposure_after(taken_s, weft_meter_read(meter, t->session, t->samples), limits);
+        if (next_s == taken_s || taken_s == before_s)
+            break;
+        before_s = taken_s;
     }
     return WEFT_OK;
 }
