@@ -133,8 +133,10 @@ int main(int argc, char **argv)
     snprintf(plan, sizeof plan, "%.4000s.plan.csv", argv[1]);
     idle devices = {.count = (size_t)side * (size_t)side * 3, .wait_s = 1e-3 * wait_ms};
     devices.photograph = malloc(devices.count * sizeof *devices.photograph);
-    if (!devices.photograph || !write_plan(plan, shots))
+    if (!devices.photograph || !write_plan(plan, shots)) {
+        free(devices.photograph);
         return 3;
+    }
     for (size_t i = 0; i < devices.count; i++)
         devices.photograph[i] = (uint16_t)(LEVEL + i * 2654435761u % 512);
     const weft_capture_request request = {.folder = argv[1], .plan = plan};

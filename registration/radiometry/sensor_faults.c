@@ -57,10 +57,11 @@ static weft_code mean_of_frames(const weft_session *session, weft_frame_kind kin
     weft_code code = *mean && samples ? sum_frames(session, kind, samples, *mean, exposure_s, &count, error)
                                       : weft_fail_memory(error, "frames of the sensor", values * sizeof **mean);
     free(samples);
+    WEFT_TRY(code);
     *exposure_s /= count;
-    for (size_t i = 0; code == WEFT_OK && i < values; i++)
+    for (size_t i = 0; i < values; i++)
         (*mean)[i] /= (float)count;
-    return code;
+    return WEFT_OK;
 }
 
 /* Of the values of one channel; `scratch` holds as many. */

@@ -5,6 +5,7 @@
 #include "capture/virtual/sensor.h"
 #include "registration/radiometry/sensor_faults.h"
 #include "tests/support/cmocka_all.h"
+#include "tests/support/expect_ok.h"
 #include "tests/support/ground_truth.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/virtual_session.h"
@@ -89,15 +90,11 @@ static outcome take_and_register(const virtual_session *request)
     weft_registration registration;
     weft_error error = {0};
     outcome found = {0};
-    weft_code code = virtual_session_take(request, NULL, NULL, &summary, &error);
-    if (code == WEFT_OK)
-        code = weft_session_open(request->capture.folder, &session, &error);
-    assert_string_equal(error.message, "");
+    expect_ok(virtual_session_take(request, NULL, NULL, &summary, &error), &error);
+    expect_ok(weft_session_open(request->capture.folder, &session, &error), &error);
     weft_registration_settings settings = weft_registration_defaults(&session);
     settings.width = settings.height = TEXELS;
-    code = weft_register_session(&session, "made.btf.h5", &settings, NULL, &registration, &error);
-    assert_string_equal(error.message, "");
-    assert_int_equal(code, WEFT_OK);
+    expect_ok(weft_register_session(&session, "made.btf.h5", &settings, NULL, &registration, &error), &error);
     compare(request, &found);
     found.sensor = registration.found.sensor;
     print_message("%s: median %.2f %%, 95th percentile %.2f %%, longest exposure %.2f s\n", request->capture.folder,
