@@ -85,7 +85,7 @@ static weft_code say_outcome(const register_command *command, const weft_session
                          sensor->dark_frames, sensor->dark_frames, sensor->dark_rate, sensor->hot);
     if (sensor->flat_frames > 0)
         weft_command_say(&command->common,
-                         "the sensor, from %d flat frames: a response of %.1f to %.1f %% divided out, %+.1f %% toward "
+                         "the sensor, from %d flat frames: a response of %.1f to %.1f %% divided out, %+.2f %% toward "
                          "the rim; %d dead pixels masked",
                          sensor->flat_frames, 100 * sensor->least, 100 * sensor->most, 100 * sensor->fall_off,
                          sensor->dead);

@@ -61,7 +61,7 @@ void weft_write_rig(weft_page *page, const weft_session *session, const weft_reg
     if (sensor->flat_frames > 0)
         fprintf(page->html,
                 "<li>Pixels respond with %.1f to %.1f %% of the usual one (0.1st and 99.9th percentile, from %d flat "
-                "frames), and %+.1f %% toward the rim beside the calibrated vignetting; this is divided out. %d dead "
+                "frames), and %+.2f %% toward the rim beside the calibrated vignetting; this is divided out. %d dead "
                 "pixels are masked.</li>\n",
                 100 * sensor->least, 100 * sensor->most, sensor->flat_frames, 100 * sensor->fall_off, sensor->dead);
     fputs("</ul>\n<h2>What they cannot tell</h2>\n<ul>\n<li>The scale of the print: millimetres are those that are "
