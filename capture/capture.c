@@ -4,6 +4,7 @@
 #include "capture/kept_file.h"
 #include "capture/photograph_writer.h"
 #include "capture/planned_session.h"
+#include "capture/sensor_frames.h"
 #include "capture/shooting.h"
 #include "capture/status_page.h"
 
@@ -28,7 +29,8 @@ static weft_code check_space(const weft_session *session, int missing, int brack
     struct statvfs disk;
     if (statvfs(session->folder, &disk) != 0)
         return weft_fail_errno(error, "look at the disk of", session->folder);
-    double needed = (double)missing * (1 + brackets) * (double)weft_photograph_bytes(session);
+    double photographs = (double)missing * (1 + brackets) + weft_sensor_frames_missing(session);
+    double needed = photographs * (double)weft_photograph_bytes(session);
     double available = (double)disk.f_bavail * (double)disk.f_frsize;
     if (needed > available)
         return weft_fail(error, WEFT_SYSTEM, "session '%s' needs %.2f GB for %d photographs, the disk has %.2f GB",
@@ -186,10 +188,12 @@ static weft_code choose_order(run *r, weft_error *error)
 
 static weft_code take_missing(run *r, weft_error *error)
 {
-    const weft_held_session *held = &r->capture->held;
+    weft_held_session *held = &r->capture->held;
     weft_code code = choose_order(r, error);
     if (code == WEFT_OK)
         code = weft_shooting_begin(r->capture->rig, &held->session, held->next_stay, &r->shooting, error);
+    if (code == WEFT_OK)
+        code = weft_sensor_frames_take(r->capture->rig, &held->session, r->stop, r->progress, error);
     if (code == WEFT_OK)
         code = weft_status_page_begin(r->capture->status, &held->session, &r->status, error);
     if (code == WEFT_OK)
@@ -204,10 +208,10 @@ weft_code weft_capture_take(weft_capture *capture, const volatile sig_atomic_t *
 {
     const weft_session *session = &capture->held.session;
     run r = {.capture = capture, .stop = stop, .progress = progress};
-    if (count_missing(session) > 0)
+    if (count_missing(session) > 0 || weft_sensor_frames_missing(session) > 0)
         WEFT_TRY(take_missing(&r, error));
     int missing = count_missing(session);
-    if (missing > 0)
+    if (missing > 0 || weft_sensor_frames_missing(session) > 0)
         return weft_fail(error, WEFT_SYSTEM, "stopped, %d of %d photographs; run again to go on",
                          session->shot_count - missing, session->shot_count);
     return WEFT_OK;

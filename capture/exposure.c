@@ -115,6 +115,12 @@ double weft_exposure_after(double exposure_s, double level, weft_exposure_limits
     return weft_exposure_in_thirds(exposure_s * factor, limits);
 }
 
+double weft_exposure_taken(double asked_s, double read_back_s)
+{
+    const double rounding = 0.01;
+    return fabs(read_back_s / asked_s - 1) < rounding ? asked_s : read_back_s;
+}
+
 /* ---- Brackets ---- */
 
 static uint16_t darkest(const uint16_t rgb[3])

@@ -36,6 +36,10 @@ double weft_exposure_in_thirds(double exposure_s, weft_exposure_limits limits);
  * one third stop and a little below the aim) or the limits allow no better. Pure. */
 double weft_exposure_after(double exposure_s, double level, weft_exposure_limits limits);
 
+/* The exposure that was taken where `asked_s` was asked for: what a camera does that has only so many exposure times is
+ * another one; what it rounds, by less than a hundredth, is not. Pure. */
+double weft_exposure_taken(double asked_s, double read_back_s);
+
 /* Exposure of the next photograph of a bracket, 0 where none is needed or possible. `samples` holds the photographs of
  * the shot so far, [1 + record->bracket_count][height][width][3]. Where the sensor clipped in the opening of the first:
  * an eighth of it. Then, from the histogram of the longest so far: so long that the 0.5th percentile of the opening (of

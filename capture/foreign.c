@@ -75,6 +75,8 @@ static bool is_folder_of_views(const expected_shots *expected, const char *folde
 
 /* ---- Looking through the folders ---- */
 
+static const char sensor_folder[] = "sensor";
+
 typedef struct search {
     const weft_session *session;
     expected_shots expected;
@@ -89,14 +91,28 @@ static weft_code add(const search *s, const char *folder, const char *file, cons
     return weft_session_faults_add(s->faults, WEFT_FAULT_FOREIGN, -1, found.message, error);
 }
 
-static weft_code look_at_view(const search *s, const char *folder, weft_error *error)
+static bool is_frame(const weft_session *session, const char *file)
+{
+    size_t skipped = strlen(session->folder) + strlen("/sensor/");
+    for (int frame = 0; frame < weft_session_frame_count(session); frame++) {
+        char path[PATH_MAX];
+        weft_session_frame_path(session, frame, path, sizeof path);
+        if (strcmp(path + skipped, file) == 0)
+            return true;
+    }
+    return false;
+}
+
+static weft_code look_into(const search *s, const char *folder, weft_error *error)
 {
     char path[PATH_MAX];
     snprintf(path, sizeof path, "%s/%s", s->session->folder, folder);
     DIR *listing = opendir(path);
     weft_code code = listing ? WEFT_OK : weft_fail_errno(error, "list folder", path);
     for (struct dirent *entry; code == WEFT_OK && (entry = readdir(listing));) {
-        if (entry->d_name[0] != '.' && !belongs(&s->expected, folder, entry->d_name))
+        bool known = strcmp(folder, sensor_folder) == 0 ? is_frame(s->session, entry->d_name)
+                                                        : belongs(&s->expected, folder, entry->d_name);
+        if (entry->d_name[0] != '.' && !known)
             code = add(s, folder, entry->d_name, "belongs to no shot of the plan", error);
     }
     if (listing)
@@ -110,8 +126,9 @@ static weft_code look_at_entry(const search *s, const char *name, weft_error *er
         return add(s, "", name, "was left by a capture that was killed, or still runs", error);
     if (name[0] == '.' || strcmp(name, "session.json") == 0 || strcmp(name, "journal.jsonl") == 0)
         return WEFT_OK;
-    if (is_folder_of_views(&s->expected, name))
-        return look_at_view(s, name, error);
+    bool is_sensor = strcmp(name, sensor_folder) == 0 && weft_session_frame_count(s->session) > 0;
+    if (is_sensor || is_folder_of_views(&s->expected, name))
+        return look_into(s, name, error);
     return add(s, "", name, "is no part of a session", error);
 }
 

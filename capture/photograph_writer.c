@@ -58,13 +58,10 @@ static bool begins_stay(const weft_photograph_writer *writer)
     return before >= 0 && writer->session->record[before].stay != writer->record.stay;
 }
 
-/* Photograph `index` of the shot appears under its name when it is on the disk. */
-static weft_code store_photograph(const weft_photograph_writer *writer, const char *path, int index, uint64_t *bytes,
-                                  uint32_t *crc32, weft_error *error)
+weft_code weft_photograph_store(const weft_session *session, const char *path, const uint16_t *samples, uint64_t *bytes,
+                                uint32_t *crc32, weft_error *error)
 {
-    const weft_session *session = writer->session;
     const weft_camera *camera = &session->camera;
-    const uint16_t *samples = writer->writing + (size_t)index * sample_count(session);
     char temporary[PATH_MAX];
     snprintf(temporary, sizeof temporary, "%s/%s", session->folder, weft_unfinished_photograph);
     WEFT_TRY(make_folder_of(path, error));
@@ -72,6 +69,13 @@ static weft_code store_photograph(const weft_photograph_writer *writer, const ch
     WEFT_TRY(weft_file_crc(temporary, bytes, crc32, error));
     WEFT_TRY(weft_sync_file(temporary, error));
     return rename(temporary, path) == 0 ? WEFT_OK : weft_fail_errno(error, "write", path);
+}
+
+static weft_code store_photograph(const weft_photograph_writer *writer, const char *path, int index, uint64_t *bytes,
+                                  uint32_t *crc32, weft_error *error)
+{
+    const uint16_t *samples = writer->writing + (size_t)index * sample_count(writer->session);
+    return weft_photograph_store(writer->session, path, samples, bytes, crc32, error);
 }
 
 /* Of a shot that had more before. */

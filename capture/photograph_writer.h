@@ -7,6 +7,12 @@
 /* Name, in the folder of the session, of the photograph that is being written. */
 extern const char weft_unfinished_photograph[];
 
+/* Writes one photograph of the session: it appears under its name when it is complete and on the disk. Makes its
+ * folder. *bytes and *crc32 receive what the journal is to say. Errors: WEFT_SYSTEM; the unfinished one may lie there
+ * then. */
+weft_code weft_photograph_store(const weft_session *session, const char *path, const uint16_t *samples, uint64_t *bytes,
+                                uint32_t *crc32, weft_error *error);
+
 typedef struct weft_photograph_writer weft_photograph_writer;
 
 /* Starts the thread, for shots of up to `brackets` photographs beyond the first. It writes session->record and the

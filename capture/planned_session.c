@@ -51,6 +51,8 @@ static weft_code describe(const char *folder, const weft_rig *rig, weft_session 
     session->bits = (int)settings->bits;
     session->black_level = (int)settings->black_level;
     session->noise = rig->noise;
+    session->dark_frames = rig->dark_frames;
+    session->flat_frames = rig->flat_frames;
     session->target = weft_target_for_opening(settings->opening_mm);
     if (!session->folder || !session->rig || !session->sample || !session->rig_settings)
         return weft_fail_memory(error, "session", 0);

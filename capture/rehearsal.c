@@ -66,6 +66,8 @@ static weft_code rehearse(weft_rig *rig, int brackets, weft_capture_rehearsal *r
 {
     count_plan(&rehearsal->session, rehearsal);
     rehearsal->bytes *= 1 + (uint64_t)brackets;
+    rehearsal->bytes +=
+        (uint64_t)weft_session_frame_count(&rehearsal->session) * weft_photograph_bytes(&rehearsal->session);
     WEFT_TRY(choose_order(&rig->stage, rehearsal, error));
     rehearsal->seconds_per_photograph = rig->seconds_per_photograph;
     return rig->seconds_per_photograph > 0 ? WEFT_OK : measure_photograph(rig, rehearsal, error);

@@ -168,6 +168,10 @@ static weft_code check_same(const weft_session *wanted, const weft_session *foun
         return weft_fail(error, WEFT_BAD_INPUT,
                          "session '%s' was begun with another colour: go on without one, and give it to weft register",
                          wanted->folder);
+    if (wanted->dark_frames != found->dark_frames || wanted->flat_frames != found->flat_frames)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "session '%s' was begun with %d dark and %d flat frames; repeat them or choose another folder",
+                         wanted->folder, found->dark_frames, found->flat_frames);
     if (!same_poses(wanted, found))
         return weft_fail(error, WEFT_BAD_INPUT,
                          "session '%s' was begun with other poses of the rig; repeat them or choose another folder",
@@ -181,7 +185,9 @@ static weft_code check_same(const weft_session *wanted, const weft_session *foun
 static void forget_faulty(const weft_session_faults *faults, weft_held_session *held)
 {
     for (int i = 0; i < faults->count; i++) {
-        int shot = faults->fault[i].shot;
+        int shot = faults->fault[i].shot, frame = faults->fault[i].frame;
+        if (frame >= 0)
+            held->session.frame[frame].taken = false;
         if (shot < 0 || !held->session.record[shot].taken)
             continue;
         held->session.record[shot].taken = false;

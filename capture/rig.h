@@ -57,6 +57,19 @@ typedef struct weft_rig_light {
     weft_code (*power)(void *device, bool on, weft_error *error);
 } weft_rig_light;
 
+/* What the camera is to see. */
+typedef enum weft_curtain {
+    WEFT_CURTAIN_OPEN, /* the plate, as on any other day */
+    WEFT_CURTAIN_DARK, /* nothing: no light reaches it */
+    WEFT_CURTAIN_EVEN  /* a field of even brightness, all over the photograph */
+} weft_curtain;
+
+/* Whoever puts it there. Before and after, it is the sample; light.power comes on top. */
+typedef struct weft_rig_curtain {
+    void *device;
+    weft_code (*show)(void *device, weft_curtain scene, weft_error *error);
+} weft_rig_curtain;
+
 /* The texts are what session.json remembers of the rig. They belong to the back end. */
 typedef struct weft_rig {
     const char *name;     /* of the back end: "virtual" */
@@ -68,10 +81,12 @@ typedef struct weft_rig {
     const weft_rig_poses *poses;   /* where the axes truly are, with the camera that goes with them; NULL: not known */
     const char *poses_path;        /* their file, for messages */
     weft_sensor_noise noise;       /* of a raw value */
+    int dark_frames, flat_frames;  /* of the sensor, that a session begins with (docs/reference/session-format.md) */
     double seconds_per_photograph; /* beyond moving, as the operator knows it; 0: a rehearsal measures it on one */
     weft_rig_camera camera;
     weft_rig_stage stage;
     weft_rig_light light;
+    weft_rig_curtain curtain; /* NULL: for sessions without frames of the sensor alone */
 } weft_rig;
 
 #endif

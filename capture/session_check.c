@@ -32,7 +32,7 @@ weft_code weft_session_faults_add(weft_session_faults *faults, weft_session_faul
         return weft_fail_memory(error, "faults of a session", bytes);
     }
     faults->fault = grown;
-    faults->fault[faults->count++] = (weft_session_fault){kind, shot, copy};
+    faults->fault[faults->count++] = (weft_session_fault){kind, shot, -1, copy};
     return WEFT_OK;
 }
 
@@ -143,17 +143,45 @@ static weft_code check_shots(const weft_session *session, const weft_progress *p
     return checks.code;
 }
 
+/* ---- Frames of the sensor ---- */
+
+static weft_code check_frames(const weft_session *session, weft_session_faults *faults, weft_error *error)
+{
+    for (int frame = 0; frame < weft_session_frame_count(session); frame++) {
+        const weft_frame_record *record = &session->frame[frame];
+        char path[PATH_MAX];
+        weft_error what = {0};
+        weft_session_fault_kind kind = WEFT_FAULT_MISSING;
+        weft_session_frame_path(session, frame, path, sizeof path);
+        weft_code found = record->taken
+                              ? check_file(session, path, (expected_file){record->bytes, record->crc32}, &kind, &what)
+                              : WEFT_OK;
+        if (found == WEFT_BAD_INPUT) {
+            WEFT_TRY(weft_session_faults_add(faults, kind, -1, what.message, error));
+            faults->fault[faults->count - 1].frame = frame;
+        } else if (found != WEFT_OK) {
+            if (error)
+                *error = what;
+            return found;
+        }
+    }
+    return WEFT_OK;
+}
+
 static int compare_faults(const void *a, const void *b)
 {
     const weft_session_fault *p = a, *q = b;
-    return (p->shot > q->shot) - (p->shot < q->shot);
+    int shots = (p->shot > q->shot) - (p->shot < q->shot);
+    return shots ? shots : p->frame - q->frame;
 }
 
 weft_code weft_session_check(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,
                              weft_error *error)
 {
     *faults = (weft_session_faults){0};
-    weft_code code = check_shots(session, progress, faults, error);
+    weft_code code = check_frames(session, faults, error);
+    if (code == WEFT_OK)
+        code = check_shots(session, progress, faults, error);
     if (code == WEFT_OK)
         code = weft_find_doubled(session, faults, error);
     if (faults->count > 1)

@@ -19,16 +19,18 @@ extern const char *const weft_session_fault_name[WEFT_FAULT_KINDS];
 
 typedef struct weft_session_fault {
     weft_session_fault_kind kind;
-    int shot;   /* which is to be taken again; -1 for a foreign file */
+    int shot;   /* which is to be taken again; -1 for a foreign file and for a frame of the sensor */
+    int frame;  /* of the sensor, to be taken again; -1 for others */
     char *text; /* one line that names the file and what is wrong; owned */
 } weft_session_fault;
 
 typedef struct weft_session_faults {
     int count;
-    weft_session_fault *fault; /* [count] those of shots in the order of the plan, then foreign files; owned */
+    weft_session_fault *fault; /* [count] those of frames of the sensor, of shots in the order of the plan, then foreign
+                                  files; owned */
 } weft_session_faults;
 
-/* Reads every photograph that the journal names: a shot that was never taken is no fault, and counts in
+/* Reads every photograph and frame that the journal names: a shot that was never taken is no fault, and counts in
  * session->record. A hidden file is foreign only where a capture leaves it that is killed. Parallel (OpenMP).
  * The caller frees with weft_session_faults_free. Errors: WEFT_SYSTEM for memory; a fault is none. */
 weft_code weft_session_check(const weft_session *session, const weft_progress *progress, weft_session_faults *faults,

@@ -74,13 +74,6 @@ static weft_code expose(weft_shooting *shooting, int shot, double exposure_s, ui
     return code;
 }
 
-/* What a camera does that has only so many exposure times is another exposure; what it rounds is not. */
-static double exposure_taken(double asked_s, double read_back_s)
-{
-    const double rounding = 0.01;
-    return fabs(read_back_s / asked_s - 1) < rounding ? asked_s : read_back_s;
-}
-
 static weft_code meter_and_expose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
                                   weft_error *error)
 {
@@ -88,7 +81,7 @@ static weft_code meter_and_expose(weft_shooting *shooting, int shot, uint16_t *s
     shooting->frames = 0;
     for (int metered = 0; metered < MAX_METERED; metered++) {
         WEFT_TRY(expose(shooting, shot, exposure_s, samples, read_back_s, error));
-        double taken_s = exposure_taken(exposure_s, *read_back_s);
+        double taken_s = weft_exposure_taken(exposure_s, *read_back_s);
         double level = weft_meter_read(&shooting->meter, shooting->session, samples);
         exposure_s = weft_exposure_after(taken_s, level, shooting->limits);
         shooting->exposure_s = taken_s;

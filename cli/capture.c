@@ -145,6 +145,9 @@ static weft_code rehearse(const capture_command *command, weft_rig *rig, const c
     if (rig->stage.order)
         say_order(&command->common, &rehearsal);
     (rig->stage.order ? say_stage : say_rehearsal)(&command->common, &rehearsal);
+    if (weft_session_frame_count(&rehearsal.session) > 0)
+        weft_command_say(&command->common, "before them %d + %d dark and %d flat frames of the sensor",
+                         rehearsal.session.dark_frames, rehearsal.session.dark_frames, rehearsal.session.flat_frames);
     weft_capture_rehearsal_free(&rehearsal);
     return WEFT_OK;
 }

@@ -79,6 +79,18 @@ static weft_code say_outcome(const register_command *command, const weft_session
             "calibration of %.2f %% (standard error %.2f)",
             weft_bend_depth_mm(&r->found.bend), r->found.bend.standard_error_mm,
             100 * weft_vignetting_loss(&r->found.vignetting), 100 * r->found.vignetting.standard_error);
+    const weft_sensor_summary *sensor = &r->found.sensor;
+    if (sensor->dark_frames > 0)
+        weft_command_say(&command->common,
+                         "the sensor, from %d + %d dark frames: %.3g raw values per second subtracted; %d hot pixels "
+                         "masked",
+                         sensor->dark_frames, sensor->dark_frames, sensor->dark_rate, sensor->hot);
+    if (sensor->flat_frames > 0)
+        weft_command_say(&command->common,
+                         "the sensor, from %d flat frames: a response of %.1f to %.1f %% divided out, %+.2f %% toward "
+                         "the rim; %d dead pixels masked",
+                         sensor->flat_frames, 100 * sensor->least, 100 * sensor->most, 100 * sensor->fall_off,
+                         sensor->dead);
     weft_lamp_drift drift = weft_lamp_drift_of(r);
     if (drift.stays > 1)
         weft_command_say(

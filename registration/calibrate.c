@@ -30,6 +30,7 @@ typedef struct witness {
 
 typedef struct court {
     const weft_session *session;
+    const weft_sensor_faults *faults;
     weft_registration *registration;
     weft_sight *sight;
     int count;
@@ -57,7 +58,7 @@ static void call_witnesses(court *c)
 static weft_code read_average(court *c, witness *w, weft_error *error)
 {
     weft_photographs photographs;
-    WEFT_TRY(weft_photographs_read(c->session, c->sight, &w->some, 0, c->registration->fault, &photographs, error));
+    WEFT_TRY(weft_photographs_read(c->faults, c->sight, &w->some, 0, c->registration->fault, &photographs, error));
     if (photographs.usable_count > 0) {
         w->average = photographs.average;
         photographs.average = NULL;
@@ -174,7 +175,7 @@ static weft_code add_vignetting(const court *c, const witness *w, const weft_ref
     if (!scratch)
         return weft_fail_memory(error, "a photograph", weft_photograph_sample_count(c->session) * sizeof *scratch);
     weft_code code =
-        weft_photographs_read(c->session, c->sight, &w->some, 0, c->registration->fault, &photographs, error);
+        weft_photographs_read(c->faults, c->sight, &w->some, 0, c->registration->fault, &photographs, error);
     for (int i = 0; code == WEFT_OK && i < w->some.count; i++) {
         const uint16_t *samples = photographs.usable[i] ? weft_photographs_samples(&photographs, i, scratch) : NULL;
         weft_exposure exposure = weft_exposure_of(c->session, w->shot[i]);
@@ -206,13 +207,13 @@ static weft_code find_vignetting(court *c, weft_error *error)
     return WEFT_OK;
 }
 
-weft_code weft_calibrate(const weft_session *session, weft_registration *registration, weft_sight *sight,
+weft_code weft_calibrate(const weft_sensor_faults *faults, weft_registration *registration, weft_sight *sight,
                          weft_error *error)
 {
     court *c = calloc(1, sizeof *c);
     if (!c)
         return weft_fail_memory(error, "a calibration", sizeof *c);
-    *c = (court){.session = session, .registration = registration, .sight = sight};
+    *c = (court){.session = &faults->seen, .faults = faults, .registration = registration, .sight = sight};
     call_witnesses(c);
     weft_code code = locate_all(c, error);
     if (code == WEFT_OK)

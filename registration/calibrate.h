@@ -5,11 +5,12 @@
 #define WEFT_REGISTRATION_CALIBRATE_H
 
 #include "registration/outcome/outcome.h"
+#include "registration/radiometry/sensor_faults.h"
 
 /* Finds both, writes them into registration->found and makes `sight` see by them. Photographs that cannot be used are
  * named in registration->fault. Where no stay shows the target, nothing is found and nothing is changed. Errors:
  * WEFT_SYSTEM. Uses OpenMP. Memory: 256 MB of photographs at most, or those of one stay. */
-weft_code weft_calibrate(const weft_session *session, weft_registration *registration, weft_sight *sight,
+weft_code weft_calibrate(const weft_sensor_faults *faults, weft_registration *registration, weft_sight *sight,
                          weft_error *error);
 
 #endif

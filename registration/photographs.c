@@ -1,7 +1,5 @@
 #include "registration/photographs.h"
 
-#include "base/picture/image.h"
-
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -53,14 +51,14 @@ static void add_photograph(const weft_session *session, const uint16_t *samples,
     }
 }
 
-static weft_code read_one(const weft_session *session, int shot, uint16_t *samples, int64_t *brightness,
+static weft_code read_one(const weft_sensor_faults *faults, int shot, uint16_t *samples, int64_t *brightness,
                           weft_fault *fault)
 {
+    const weft_session *session = &faults->seen;
     char path[PATH_MAX];
     weft_error error = {0};
     weft_session_photograph_path(session, shot, path, sizeof path);
-    weft_code code =
-        weft_photograph_read(path, session->camera.width, session->camera.height, session->bits, samples, &error);
+    weft_code code = weft_sensor_read(faults, path, session->record[shot].exposure_s, samples, &error);
     *brightness = code == WEFT_OK ? brightness_of(session, samples) : 0;
     if (code != WEFT_OK)
         snprintf(fault->reason, sizeof fault->reason, "%.*s", (int)sizeof fault->reason - 1, error.message);
@@ -76,7 +74,8 @@ static void finish_average(const weft_sight *sight, const sums *sum, float *aver
         double mean = sum->brightness[i] > 0
                           ? (double)brightness_scale * (double)sum->light[i] / (double)sum->brightness[i]
                           : NAN;
-        average[i] = (float)(mean * sight->inverse_vignetting[i]);
+        bool is_blind = sight->inverse_vignetting[i] == 0;
+        average[i] = is_blind ? NAN : (float)(mean * sight->inverse_vignetting[i]);
     }
 }
 
@@ -84,14 +83,14 @@ static void finish_average(const weft_sight *sight, const sums *sum, float *aver
 static weft_code take_in(weft_photographs *photographs, int index, bool keep, uint16_t *scratch, sums *sum,
                          weft_fault *fault)
 {
-    const weft_session *session = photographs->session;
+    const weft_session *session = &photographs->faults->seen;
     size_t bytes = weft_photograph_sample_count(session) * sizeof(uint16_t);
     uint16_t *samples = keep ? malloc(bytes) : scratch;
     int64_t brightness;
     if (!samples)
         return WEFT_SYSTEM;
     weft_code code =
-        read_one(session, photographs->shot[index], samples, &brightness, &fault[photographs->shot[index]]);
+        read_one(photographs->faults, photographs->shot[index], samples, &brightness, &fault[photographs->shot[index]]);
     photographs->usable[index] = code == WEFT_OK;
     if (keep)
         photographs->samples[index] = samples;
@@ -104,7 +103,7 @@ static weft_code take_in(weft_photographs *photographs, int index, bool keep, ui
 
 static weft_code read_all(weft_photographs *photographs, bool keep, sums *sum, weft_fault *fault, weft_error *error)
 {
-    size_t bytes = weft_photograph_sample_count(photographs->session) * sizeof(uint16_t);
+    size_t bytes = weft_photograph_sample_count(&photographs->faults->seen) * sizeof(uint16_t);
     bool short_of_memory = false;
 #pragma omp parallel reduction(|| : short_of_memory)
     {
@@ -120,12 +119,13 @@ static weft_code read_all(weft_photographs *photographs, bool keep, sums *sum, w
     return short_of_memory ? weft_fail_memory(error, "the photographs of a stay", bytes) : WEFT_OK;
 }
 
-weft_code weft_photographs_read(const weft_session *session, const weft_sight *sight, const weft_stay *stay,
+weft_code weft_photographs_read(const weft_sensor_faults *faults, const weft_sight *sight, const weft_stay *stay,
                                 size_t memory_bytes, weft_fault *fault, weft_photographs *photographs,
                                 weft_error *error)
 {
+    const weft_session *session = &faults->seen;
     size_t count = (size_t)stay->count, values = weft_photograph_sample_count(session), pixels = values / 3;
-    *photographs = (weft_photographs){.session = session, .count = stay->count, .shot = stay->shot};
+    *photographs = (weft_photographs){.faults = faults, .count = stay->count, .shot = stay->shot};
     photographs->samples = calloc(count, sizeof *photographs->samples);
     photographs->usable = calloc(count, 1);
     photographs->average = malloc(pixels * sizeof(float));
@@ -159,12 +159,12 @@ void weft_photographs_free(weft_photographs *photographs)
 
 const uint16_t *weft_photographs_samples(const weft_photographs *photographs, int index, uint16_t *scratch)
 {
-    const weft_session *session = photographs->session;
+    const weft_session *session = &photographs->faults->seen;
+    int shot = photographs->shot[index];
     char path[PATH_MAX];
     if (photographs->samples[index])
         return photographs->samples[index];
-    weft_session_photograph_path(session, photographs->shot[index], path, sizeof path);
-    weft_code code =
-        weft_photograph_read(path, session->camera.width, session->camera.height, session->bits, scratch, NULL);
+    weft_session_photograph_path(session, shot, path, sizeof path);
+    weft_code code = weft_sensor_read(photographs->faults, path, session->record[shot].exposure_s, scratch, NULL);
     return code == WEFT_OK ? scratch : NULL;
 }

@@ -1,6 +1,5 @@
 #include "registration/rectify.h"
 
-#include "base/picture/image.h"
 #include "registration/radiometry/bracket.h"
 #include "registration/resample/resample.h"
 
@@ -108,16 +107,17 @@ static weft_code provide_for_brackets(const weft_session *session, bench *b, wef
     return b->bracket && b->value && b->variance ? WEFT_OK : weft_fail_memory(error, "brackets", samples * 16);
 }
 
-static weft_code read_brackets(const weft_session *session, int shot, const bench *b, weft_bracket_frame *frame,
+static weft_code read_brackets(const weft_sensor_faults *faults, int shot, const bench *b, weft_bracket_frame *frame,
                                weft_error *error)
 {
+    const weft_session *session = &faults->seen;
     const weft_shot_record *record = &session->record[shot];
     size_t samples = weft_photograph_sample_count(session);
     for (int i = 0; i < record->bracket_count; i++) {
         char path[PATH_MAX];
         uint16_t *to = b->bracket + (size_t)i * samples;
         weft_session_bracket_path(session, shot, i, path, sizeof path);
-        WEFT_TRY(weft_photograph_read(path, session->camera.width, session->camera.height, session->bits, to, error));
+        WEFT_TRY(weft_sensor_read(faults, path, record->bracket[i].exposure_s, to, error));
         frame[i + 1] = (weft_bracket_frame){to, record->bracket[i].exposure_s, 1};
     }
     return WEFT_OK;
@@ -130,7 +130,7 @@ static weft_code resample_bracket(const job *j, int shot, const uint16_t *sample
     size_t sample_count = weft_photograph_sample_count(session);
     weft_bracket_frame frame[1 + WEFT_SESSION_MAX_BRACKETS] = {{samples, record->exposure_s, 1}};
     WEFT_TRY(provide_for_brackets(session, b, error));
-    WEFT_TRY(read_brackets(session, shot, b, frame, error));
+    WEFT_TRY(read_brackets(j->rectifier->faults, shot, b, frame, error));
     weft_bracket_compare(session, frame, 1 + record->bracket_count, sample_count);
     weft_bracket_merge(session, frame, 1 + record->bracket_count, sample_count, b->value, b->variance);
     weft_resampler_apply_merged(&j->resampler, b->value, b->variance, b->texel, b->mask);

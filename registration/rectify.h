@@ -7,7 +7,8 @@
 
 /* What the stays of a registration share. */
 typedef struct weft_rectifier {
-    const weft_session *session;
+    const weft_session *session; /* as the faults of its sensor let it be seen: &faults->seen */
+    const weft_sensor_faults *faults;
     const weft_sight *sight;
     weft_dataset_writer *writer;
     weft_registration *registration;

@@ -14,6 +14,7 @@ static const size_t kept_bytes = (size_t)512 << 20;
 
 /* Everything at work. */
 typedef struct work {
+    const weft_sensor_faults *faults;
     weft_rectifier rectifier;
     weft_sight sight;
     const weft_progress *progress;
@@ -128,7 +129,7 @@ static weft_code register_stay(work *w, int stay, weft_error *error)
     weft_registration *registration = w->rectifier.registration;
     weft_view_pose *pose = &registration->pose[stay];
     weft_photographs photographs;
-    WEFT_TRY(weft_photographs_read(w->rectifier.session, &w->sight, &registration->survey.stay[stay], kept_bytes,
+    WEFT_TRY(weft_photographs_read(w->faults, &w->sight, &registration->survey.stay[stay], kept_bytes,
                                    registration->fault, &photographs, error));
     weft_code code = WEFT_OK;
     if (photographs.usable_count > 0)
@@ -151,7 +152,7 @@ static weft_code rectify_again(work *w, int stay, const weft_white *estimated, w
     weft_registration *registration = w->rectifier.registration;
     bool unseen = w->shown && registration->used[stay] == 0;
     weft_photographs photographs;
-    WEFT_TRY(weft_photographs_read(w->rectifier.session, &w->sight, &registration->survey.stay[stay], kept_bytes,
+    WEFT_TRY(weft_photographs_read(w->faults, &w->sight, &registration->survey.stay[stay], kept_bytes,
                                    registration->fault, &photographs, error));
     weft_code code = weft_rectify_stay(&w->rectifier, stay, &photographs, estimated, unseen ? w->shown : NULL, error);
     weft_photographs_free(&photographs);
@@ -208,7 +209,8 @@ static weft_code run(work *w, weft_error *error)
     const weft_session *session = w->rectifier.session;
     long total = session->shot_count - registration->survey.untaken;
     weft_progress_report(w->progress, "calibrating", 0, total);
-    WEFT_TRY(weft_calibrate(session, registration, &w->sight, error));
+    weft_sensor_blind(w->faults, &w->sight);
+    WEFT_TRY(weft_calibrate(w->faults, registration, &w->sight, error));
     for (int stay = 0; stay < registration->survey.stay_count; stay++) {
         weft_progress_report(w->progress, "registering views", w->done, total);
         WEFT_TRY(register_stay(w, stay, error));
@@ -240,10 +242,11 @@ static double frontal_scale(const weft_session *session)
 }
 
 /* Writes dataset and report from a surveyed session. */
-static weft_code produce(const weft_session *session, const char *output, const weft_progress *progress,
-                         weft_registration *registration, weft_error *error)
+static weft_code produce(const weft_session *session, const weft_sensor_faults *faults, const char *output,
+                         const weft_progress *progress, weft_registration *registration, weft_error *error)
 {
-    work w = {.rectifier = {session, &w.sight, NULL, registration}, .progress = progress};
+    work w = {
+        .faults = faults, .rectifier = {&faults->seen, faults, &w.sight, NULL, registration}, .progress = progress};
     weft_dataset_layout layout = {0};
     char *provenance = NULL;
     double began_s = weft_now_s();
@@ -268,13 +271,25 @@ static weft_code produce(const weft_session *session, const char *output, const 
     }
     registration->seconds = weft_now_s() - began_s;
     if (code == WEFT_OK && registration->settings.report_folder)
-        code = weft_report_write_page(session, registration, output, error);
+        code = weft_report_write_page(&faults->seen, registration, output, error);
     free(provenance);
     free(w.fitted);
     free(w.shown);
     weft_dataset_writer_abandon(w.rectifier.writer);
     weft_dataset_layout_free(&layout);
     weft_sight_free(&w.sight);
+    return code;
+}
+
+static weft_code correct_and_produce(const weft_session *session, const char *output, const weft_progress *progress,
+                                     weft_registration *registration, weft_error *error)
+{
+    weft_sensor_faults faults;
+    weft_code code = weft_sensor_faults_find(session, &faults, error);
+    registration->found.sensor = faults.summary;
+    if (code == WEFT_OK)
+        code = produce(session, &faults, output, progress, registration, error);
+    weft_sensor_faults_free(&faults);
     return code;
 }
 
@@ -289,7 +304,7 @@ weft_code weft_register_session(const weft_session *session, const char *output,
     if (code == WEFT_OK)
         code = allocate(session, registration, error);
     if (code == WEFT_OK)
-        code = produce(session, output, progress, registration, error);
+        code = correct_and_produce(session, output, progress, registration, error);
     if (code != WEFT_OK)
         weft_registration_free(registration);
     return code;

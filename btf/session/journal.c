@@ -62,6 +62,18 @@ static bool unpack_record(json_t *json, json_int_t *shot, weft_shot_record *reco
     return true;
 }
 
+/* A line {"frame":...} is of a frame of the sensor. */
+static bool unpack_frame(json_t *json, weft_session *session)
+{
+    json_int_t frame;
+    weft_bracket_record file;
+    if (json_unpack(json, "{sI}", "frame", &frame) != 0 || frame < 0 || frame >= weft_session_frame_count(session) ||
+        !unpack_bracket(json, &file))
+        return false;
+    session->frame[frame] = (weft_frame_record){true, file.exposure_s, file.bytes, file.crc32};
+    return true;
+}
+
 static weft_code read_line(weft_session *session, const char *path, int line, const char *text, size_t length,
                            weft_error *error)
 {
@@ -70,10 +82,13 @@ static weft_code read_line(weft_session *session, const char *path, int line, co
     json_t *json = json_loadb(text, length, 0, &where);
     json_int_t shot = -1;
     weft_shot_record record = {0};
-    bool understood = json && unpack_record(json, &shot, &record);
+    bool is_frame = json && json_object_get(json, "frame");
+    bool understood = json && (is_frame ? unpack_frame(json, session) : unpack_record(json, &shot, &record));
     json_decref(json);
     if (!understood)
         return weft_json_fail(error, WEFT_BAD_INPUT, "'%s': line %d is not a journal line", path, line);
+    if (is_frame)
+        return WEFT_OK;
     if (shot < 0 || shot >= session->shot_count)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': line %d names shot %lld, the plan has %d", path, line,
                          (long long)shot, session->shot_count);
@@ -169,5 +184,19 @@ weft_code weft_session_append(weft_session *session, int shot, const weft_shot_r
         return weft_fail_errno(error, "append to", path);
     session->record[shot] = *record;
     session->record[shot].taken = true;
+    return WEFT_OK;
+}
+
+weft_code weft_session_append_frame(weft_session *session, int frame, const weft_frame_record *record,
+                                    weft_error *error)
+{
+    char path[PATH_MAX], line[LINE_SIZE];
+    journal_path(session, path);
+    int length = snprintf(line, sizeof line, "{\"frame\":%d,\"exposure_s\":%.9g,\"bytes\":%llu,\"crc32\":%u}\n", frame,
+                          record->exposure_s, (unsigned long long)record->bytes, record->crc32);
+    if (append_text(path, line, (size_t)length) != 0)
+        return weft_fail_errno(error, "append to", path);
+    session->frame[frame] = *record;
+    session->frame[frame].taken = true;
     return WEFT_OK;
 }

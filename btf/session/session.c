@@ -78,6 +78,8 @@ static json_t *pack_session(const weft_session *s)
                              "noise", pack_noise(&s->noise), "target", pack_target(&s->target), "plan", pack_plan(s));
     if (s->colour.terms > 0)
         weft_json_put(&root, "colour", weft_colour_pack(&s->colour));
+    if (weft_session_frame_count(s) > 0)
+        weft_json_put(&root, "sensor_frames", json_pack("{si si}", "dark", s->dark_frames, "flat", s->flat_frames));
     return root;
 }
 
@@ -260,6 +262,23 @@ static weft_code unpack_fields(json_t *root, const char *path, weft_session *s, 
     return copy_texts(rig, sample, settings, s, error);
 }
 
+/* Most sessions have none. */
+static weft_code unpack_frames(json_t *json, const char *path, weft_session *session, weft_error *error)
+{
+    json_int_t dark = 0, flat = 0;
+    if (!json)
+        return WEFT_OK;
+    if (json_unpack(json, "{sI sI}", "dark", &dark, "flat", &flat) != 0 || dark < 0 || flat < 0 ||
+        dark > WEFT_SESSION_MAX_FRAMES || flat > WEFT_SESSION_MAX_FRAMES)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'sensor_frames' must name 0 to %d frames 'dark' and 'flat'",
+                         path, WEFT_SESSION_MAX_FRAMES);
+    session->dark_frames = (int)dark;
+    session->flat_frames = (int)flat;
+    size_t count = (size_t)weft_session_frame_count(session);
+    session->frame = calloc(count + 1, sizeof *session->frame);
+    return session->frame ? WEFT_OK : weft_fail_memory(error, session_name, count * sizeof *session->frame);
+}
+
 static weft_code unpack_session(json_t *root, const char *path, weft_session *s, weft_error *error)
 {
     json_int_t version = 0;
@@ -273,6 +292,7 @@ static weft_code unpack_session(json_t *root, const char *path, weft_session *s,
     WEFT_TRY(check_values(s, path, error));
     if (json_object_get(root, "colour"))
         WEFT_TRY(weft_colour_unpack(json_object_get(root, "colour"), path, &s->colour, error));
+    WEFT_TRY(unpack_frames(json_object_get(root, "sensor_frames"), path, s, error));
     return unpack_plan(json_object_get(root, "plan"), path, s, error);
 }
 
@@ -308,6 +328,7 @@ void weft_session_free(weft_session *session)
     free(session->record);
     free(session->turns);
     free(session->pose);
+    free(session->frame);
     *session = (weft_session){0};
 }
 
@@ -340,4 +361,24 @@ void weft_session_bracket_path(const weft_session *session, int shot, int bracke
     weft_session_photograph_path(session, shot, path, size);
     size_t stem = strlen(path) - strlen(".tif");
     snprintf(path + stem, (size_t)size - stem, ".bracket%d.tif", bracket + 1);
+}
+
+int weft_session_frame_count(const weft_session *session)
+{
+    return 2 * session->dark_frames + session->flat_frames;
+}
+
+weft_frame_kind weft_session_frame_kind(const weft_session *session, int frame)
+{
+    return frame < session->dark_frames       ? WEFT_FRAME_DARK_BRIEF
+           : frame < 2 * session->dark_frames ? WEFT_FRAME_DARK_LONG
+                                              : WEFT_FRAME_FLAT;
+}
+
+void weft_session_frame_path(const weft_session *session, int frame, char *path, int size)
+{
+    static const char *const names[] = {"dark_brief", "dark_long", "flat"};
+    weft_frame_kind kind = weft_session_frame_kind(session, frame);
+    snprintf(path, (size_t)size, "%s/sensor/%s_%03d.tif", session->folder, names[kind],
+             frame - (int)kind * session->dark_frames + 1);
 }

@@ -1,6 +1,7 @@
 /* The session: what capture hands to registration. A folder with
  *   session.json   what was planned, with which rig and calibration (docs/reference/session-format.md)
  *   journal.jsonl  one line for every photograph taken, appended after the photograph is complete
+ *   sensor/...     frames of the sensor, where the rig takes any
  *   tvTTT_pvPPP/tlTTT_plPPP_tvTTT_pvPPP.tif  the photographs, raw linear camera values
  * A shot exists when its photograph lies under its final name and its journal line is complete. */
 #ifndef WEFT_BTF_SESSION_SESSION_H
@@ -14,7 +15,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { WEFT_SESSION_MAX_SHOTS = 1000000, WEFT_SESSION_MAX_BRACKETS = 4 };
+enum { WEFT_SESSION_MAX_SHOTS = 1000000, WEFT_SESSION_MAX_BRACKETS = 4, WEFT_SESSION_MAX_FRAMES = 256 };
 
 /* One planned photograph. */
 typedef struct weft_shot {
@@ -42,6 +43,21 @@ typedef struct weft_shot_record {
     weft_bracket_record bracket[WEFT_SESSION_MAX_BRACKETS];
 } weft_shot_record;
 
+/* What the camera alone is photographed for, before the shots: the faults of its sensor. */
+typedef enum weft_frame_kind {
+    WEFT_FRAME_DARK_BRIEF, /* without light, as briefly as the rig exposes */
+    WEFT_FRAME_DARK_LONG,  /* without light, as long as it exposes */
+    WEFT_FRAME_FLAT        /* of an even field */
+} weft_frame_kind;
+
+/* What the journal says of such a frame. */
+typedef struct weft_frame_record {
+    bool taken;
+    double exposure_s;
+    uint64_t bytes;
+    uint32_t crc32;
+} weft_frame_record;
+
 /* How much a raw value of the camera varies: by shot noise, by read noise and by rounding. */
 typedef struct weft_sensor_noise {
     double electrons_per_value;  /* 0: not known */
@@ -65,6 +81,9 @@ typedef struct weft_session {
     weft_shot_record *record; /* [shot_count] */
     weft_turns *turns;        /* [shot_count] of the axes of camera and sample; NULL: not known */
     weft_motion *pose;        /* [shot_count] where the rig is known to put the camera; NULL: as the view says */
+    int dark_frames;          /* of each of the two exposures; 0: none */
+    int flat_frames;
+    weft_frame_record *frame; /* [weft_session_frame_count] of an open session; NULL where there are none */
 } weft_session;
 
 /* Where the rig promises the camera for a view: the pose of the first shot of it, or where nothing better is known,
@@ -85,6 +104,18 @@ void weft_session_photograph_path(const weft_session *session, int shot, char *p
 
 /* The same for bracket `bracket` of a shot: "NAME.bracket1.tif" and so on. Pure. */
 void weft_session_bracket_path(const weft_session *session, int shot, int bracket, char *path, int size);
+
+/* Frames of the sensor that belong to the session: the brief dark ones, the long dark ones, then the flat ones. Pure.
+ */
+int weft_session_frame_count(const weft_session *session);
+weft_frame_kind weft_session_frame_kind(const weft_session *session, int frame);
+
+/* "sensor/dark_brief_001.tif" and so on. Pure. */
+void weft_session_frame_path(const weft_session *session, int frame, char *path, int size);
+
+/* Appends a frame of the sensor to the journal, as below. Errors: WEFT_SYSTEM. */
+weft_code weft_session_append_frame(weft_session *session, int frame, const weft_frame_record *record,
+                                    weft_error *error);
 
 /* Appends a shot to the journal with one write() and updates session->record[shot]. A cut last line left by a
  * crash is removed first. Errors: WEFT_SYSTEM. */

@@ -6,9 +6,11 @@
 
 #include <gphoto2/gphoto2.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 static const char name[] = "camera";
@@ -19,13 +21,29 @@ struct weft_tethered_camera {
     Camera *camera;  /* NULL: not open */
     char folder[64]; /* of files that the session has not taken yet */
     char original[PATH_MAX];
+    char told[128];    /* what libgphoto2 last said was wrong; empty: nothing */
+    double largest_kb; /* of the files so far */
+    double longest_s;  /* of the times that its shutter has names for; 0: not known */
 };
 
-static weft_code fail_with(int result, const char *what, weft_error *error)
+static weft_code fail_with(const weft_tethered_camera *c, int result, const char *what, weft_error *error)
 {
     if (result == GP_ERROR_NO_SPACE)
         return weft_fail(error, WEFT_SYSTEM, "%s: its card is full", name);
-    return weft_fail(error, WEFT_SYSTEM, "%s: cannot %s: %s", name, what, gp_result_as_string(result));
+    return weft_fail(error, WEFT_SYSTEM, "%s: cannot %s: %s", name, what,
+                     *c->told ? c->told : gp_result_as_string(result));
+}
+
+static void note_error(GPContext *context, const char *text, void *data)
+{
+    weft_tethered_camera *c = data;
+    (void)context;
+    snprintf(c->told, sizeof c->told, "%.*s", (int)strcspn(text, "\n"), text);
+}
+
+static bool stop_asked(const weft_tethered_camera *c)
+{
+    return c->settings.stop && *c->settings.stop;
 }
 
 /* ---- Opening ---- */
@@ -109,11 +127,12 @@ static int get_shutter(weft_tethered_camera *c, CameraWidget **widget, const cha
     return result;
 }
 
+static const double rounding = 1.05; /* "1/60" is 1/64 */
+
 /* The longest choice that is no longer than asked, for what is clipped is lost; else the shortest. NULL where none is a
  * time. */
 static const char *best_choice(CameraWidget *widget, double exposure_s)
 {
-    const double rounding = 1.05; /* "1/60" is 1/64 */
     const char *best = NULL;
     double found_s = 0;
     for (int i = 0; i < gp_widget_count_choices(widget); i++) {
@@ -161,6 +180,125 @@ static double shutter_said(weft_tethered_camera *c)
     return seconds;
 }
 
+/* ---- Exposures longer than the longest that the camera names ---- */
+
+/* The longest of its times; 0 where it names none. */
+static double longest_choice(CameraWidget *widget)
+{
+    double longest_s = 0;
+    for (int i = 0; i < gp_widget_count_choices(widget); i++) {
+        const char *choice;
+        if (gp_widget_get_choice(widget, i, &choice) >= GP_OK)
+            longest_s = fmax(longest_s, weft_shutter_seconds(choice));
+    }
+    return longest_s;
+}
+
+/* What opens the shutter until it is told to close. */
+static const char bulb_key[] = "bulb";
+
+static bool has_bulb(weft_tethered_camera *c)
+{
+    CameraWidget *widget;
+    if (gp_camera_get_single_config(c->camera, bulb_key, &widget, c->context) < GP_OK)
+        return false;
+    gp_widget_free(widget);
+    return true;
+}
+
+/* Asked once: an answer may take a tenth of a second. */
+static double longest_named(weft_tethered_camera *c)
+{
+    CameraWidget *widget;
+    const char *key;
+    if (c->longest_s > 0 || get_shutter(c, &widget, &key) < GP_OK)
+        return c->longest_s;
+    c->longest_s = longest_choice(widget);
+    gp_widget_free(widget);
+    return c->longest_s;
+}
+
+static bool needs_bulb(weft_tethered_camera *c, double exposure_s)
+{
+    double longest_s = longest_named(c);
+    return longest_s > 0 && exposure_s > rounding * longest_s && has_bulb(c);
+}
+
+/* Some cameras want their shutter at "bulb" first. */
+static int choose_bulb(weft_tethered_camera *c)
+{
+    CameraWidget *widget;
+    const char *key, *choice;
+    int result = get_shutter(c, &widget, &key);
+    if (result < GP_OK)
+        return result;
+    for (int i = 0; i < gp_widget_count_choices(widget); i++) {
+        if (gp_widget_get_choice(widget, i, &choice) < GP_OK || strcasecmp(choice, "bulb") != 0)
+            continue;
+        gp_widget_set_value(widget, choice);
+        result = gp_camera_set_single_config(c->camera, key, widget, c->context);
+    }
+    gp_widget_free(widget);
+    return result;
+}
+
+/* Opens or closes the shutter. */
+static int press(weft_tethered_camera *c, int down)
+{
+    CameraWidget *widget;
+    int result = gp_camera_get_single_config(c->camera, bulb_key, &widget, c->context);
+    if (result < GP_OK)
+        return result;
+    gp_widget_set_value(widget, &down);
+    result = gp_camera_set_single_config(c->camera, bulb_key, widget, c->context);
+    gp_widget_free(widget);
+    return result;
+}
+
+static void wait_until(const weft_tethered_camera *c, double end_s)
+{
+    const double slice_s = 0.05;
+    for (double left_s; (left_s = end_s - weft_now_s()) > 0 && !stop_asked(c);) {
+        double pause_s = fmin(left_s, slice_s);
+        const struct timespec pause = {0, (long)(pause_s * 1e9)};
+        nanosleep(&pause, NULL);
+    }
+}
+
+/* The file that the camera says it has made since; its shutter may be open for `exposure_s` yet. */
+static int wait_for_file(weft_tethered_camera *c, double exposure_s, CameraFilePath *path)
+{
+    enum { WAIT_MS = 100 };
+    double end_s = weft_now_s() + exposure_s + c->settings.timeout_s;
+    while (weft_now_s() < end_s && !stop_asked(c)) {
+        CameraEventType type = GP_EVENT_UNKNOWN;
+        void *data = NULL;
+        int result = gp_camera_wait_for_event(c->camera, WAIT_MS, &type, &data, c->context);
+        bool is_file = result >= GP_OK && type == GP_EVENT_FILE_ADDED && data;
+        if (is_file)
+            *path = *(CameraFilePath *)data;
+        free(data);
+        if (is_file || result < GP_OK)
+            return result;
+    }
+    return GP_ERROR_TIMEOUT;
+}
+
+/* *lasted_s receives how long the shutter was open, by the clock: drivers open it last, and close it first. */
+static int expose_by_bulb(weft_tethered_camera *c, double exposure_s, CameraFilePath *path, double *lasted_s)
+{
+    int result = choose_bulb(c);
+    if (result >= GP_OK)
+        result = press(c, 1);
+    if (result < GP_OK)
+        return result;
+    double opened_s = weft_now_s();
+    wait_until(c, opened_s + exposure_s);
+    *lasted_s = weft_now_s() - opened_s;
+    result = press(c, 0);
+    return result >= GP_OK ? wait_for_file(c, 0, path) : result;
+}
+
 /* ---- Photographs ---- */
 
 /* What the camera has to say of before: else it would be taken for an answer. */
@@ -180,6 +318,8 @@ static int drain_events(weft_tethered_camera *c)
 static int fetch(weft_tethered_camera *c, const CameraFilePath *path)
 {
     CameraFile *file;
+    const char *data;
+    unsigned long bytes = 0;
     const char *ending = strrchr(path->name, '.');
     snprintf(c->original, sizeof c->original, "%s/photograph%s", c->folder, ending ? ending : "");
     int result = gp_file_new(&file);
@@ -188,24 +328,62 @@ static int fetch(weft_tethered_camera *c, const CameraFilePath *path)
     result = gp_camera_file_get(c->camera, path->folder, path->name, GP_FILE_TYPE_NORMAL, file, c->context);
     if (result >= GP_OK)
         result = gp_file_save(file, c->original);
+    if (result >= GP_OK && gp_file_get_data_and_size(file, &data, &bytes) >= GP_OK)
+        c->largest_kb = fmax(c->largest_kb, (double)bytes / 1024);
     gp_file_free(file);
     return result;
 }
 
-static int take_once(weft_tethered_camera *c, double exposure_s, double *said_s)
+/* gp_camera_capture waits a minute for the file of a camera that has refused to take it. */
+static int release(weft_tethered_camera *c, double exposure_s, CameraFilePath *path)
+{
+    int result = gp_camera_trigger_capture(c->camera, c->context);
+    if (result == GP_ERROR_NOT_SUPPORTED)
+        return gp_camera_capture(c->camera, GP_CAPTURE_IMAGE, path, c->context);
+    return result >= GP_OK ? wait_for_file(c, exposure_s, path) : result;
+}
+
+/* Whether no card has room for another file like those before: drivers say of it that something is wrong, no more. */
+static bool is_card_full(weft_tethered_camera *c)
+{
+    CameraStorageInformation *card = NULL;
+    int count = 0, full = 0;
+    if (!c->camera || gp_camera_get_storageinfo(c->camera, &card, &count, c->context) < GP_OK)
+        return false;
+    for (int i = 0; i < count; i++) {
+        bool known = card[i].fields & GP_STORAGEINFO_FREESPACEKBYTES;
+        full += known && (double)card[i].freekbytes < fmax(c->largest_kb, 1);
+    }
+    free(card);
+    return count > 0 && full == count;
+}
+
+/* *said_s is what the camera says of its shutter, or nothing is: then *bulb_s is what the clock says. */
+static int expose_once(weft_tethered_camera *c, double exposure_s, CameraFilePath *path, double *said_s, double *bulb_s)
+{
+    if (needs_bulb(c, exposure_s))
+        return expose_by_bulb(c, exposure_s, path, bulb_s);
+    int result = set_shutter(c, exposure_s);
+    if (result >= GP_OK)
+        result = release(c, exposure_s, path);
+    if (result >= GP_OK)
+        *said_s = shutter_said(c);
+    return result;
+}
+
+static int take_once(weft_tethered_camera *c, double exposure_s, double *said_s, double *bulb_s)
 {
     CameraFilePath path;
+    *said_s = *bulb_s = 0;
+    c->told[0] = 0;
     int result = open_camera(c);
     if (result >= GP_OK)
         result = drain_events(c);
     if (result >= GP_OK)
-        result = set_shutter(c, exposure_s);
+        result = expose_once(c, exposure_s, &path, said_s, bulb_s);
     if (result >= GP_OK)
-        result = gp_camera_capture(c->camera, GP_CAPTURE_IMAGE, &path, c->context);
-    if (result >= GP_OK)
-        result = fetch(c, &path);
-    *said_s = result >= GP_OK ? shutter_said(c) : 0;
-    return result;
+        return fetch(c, &path);
+    return is_card_full(c) ? GP_ERROR_NO_SPACE : result;
 }
 
 /* Nothing is gained by asking again. */
@@ -215,25 +393,32 @@ static bool is_final(int result)
            result == GP_ERROR_UNKNOWN_PORT;
 }
 
-static bool stop_asked(const weft_tethered_camera *c)
-{
-    return c->settings.stop && *c->settings.stop;
-}
-
 /* Again where the camera is busy or gone, opened anew, until the time is up. */
-static weft_code take(weft_tethered_camera *c, double exposure_s, double *said_s, weft_error *error)
+static weft_code take(weft_tethered_camera *c, double exposure_s, double *said_s, double *bulb_s, weft_error *error)
 {
     const struct timespec pause = {0, 300000000};
     double end_s = weft_now_s() + c->settings.timeout_s;
-    int result = take_once(c, exposure_s, said_s);
+    int result = take_once(c, exposure_s, said_s, bulb_s);
     while (result < GP_OK && !is_final(result) && weft_now_s() < end_s) {
         if (stop_asked(c))
             return weft_fail(error, WEFT_SYSTEM, "%s: stopped", name);
         close_camera(c);
         nanosleep(&pause, NULL);
-        result = take_once(c, exposure_s, said_s);
+        result = take_once(c, exposure_s, said_s, bulb_s);
     }
-    return result >= GP_OK ? WEFT_OK : fail_with(result, "take a photograph", error);
+    return result >= GP_OK ? WEFT_OK : fail_with(c, result, "take a photograph", error);
+}
+
+/* Cameras note the time of bulb in whole seconds, if at all: the clock knows better, where both agree as far as that
+ * goes. */
+static weft_code bulb_exposure(double lasted_s, double noted_s, double *read_back_s, weft_error *error)
+{
+    const double whole_s = 1.1;
+    if (noted_s > 0 && fabs(noted_s - lasted_s) > whole_s)
+        return weft_fail(error, WEFT_SYSTEM, "%s: its shutter was open for %.2f s by the clock, %.2f s by the file",
+                         name, lasted_s, noted_s);
+    *read_back_s = lasted_s;
+    return WEFT_OK;
 }
 
 static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_t *samples, double *read_back_s,
@@ -241,13 +426,16 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
 {
     weft_tethered_camera *c = device;
     const weft_frame_format *format = &c->settings.format;
-    double said_s;
+    double said_s, bulb_s;
     weft_exif exif;
     weft_image image;
     (void)frame;
-    WEFT_TRY(take(c, exposure_s, &said_s, error));
+    WEFT_TRY(take(c, exposure_s, &said_s, &bulb_s, error));
     WEFT_TRY(weft_exif_read(c->original, &exif, error));
-    WEFT_TRY(weft_frame_exposure(exif.exposure_s > 0 ? exif.exposure_s : said_s, format, name, read_back_s, error));
+    if (bulb_s > 0)
+        WEFT_TRY(bulb_exposure(bulb_s, exif.exposure_s, read_back_s, error));
+    else
+        WEFT_TRY(weft_frame_exposure(exif.exposure_s > 0 ? exif.exposure_s : said_s, format, name, read_back_s, error));
     WEFT_TRY(weft_image_read(c->original, &image, NULL, error));
     weft_code code = weft_frame_develop(&image, format, name, samples, error);
     weft_image_free(&image);
@@ -270,10 +458,11 @@ static weft_code begin(weft_tethered_camera *c, weft_error *error)
     c->context = gp_context_new();
     if (!c->context)
         return weft_fail_memory(error, name, 0);
+    gp_context_set_error_func(c->context, note_error, c);
     int result = open_camera(c);
     if (result == GP_ERROR_MODEL_NOT_FOUND)
         return weft_fail(error, WEFT_SYSTEM, "%s: none is connected that libgphoto2 knows", name);
-    return result >= GP_OK ? WEFT_OK : fail_with(result, "open it", error);
+    return result >= GP_OK ? WEFT_OK : fail_with(c, result, "open it", error);
 }
 
 weft_code weft_tethered_camera_create(const weft_tethered_camera_settings *settings, weft_tethered_camera **result,

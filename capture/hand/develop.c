@@ -20,7 +20,7 @@ static weft_code make_sensor(double full_well, weft_virtual_sensor *sensor, weft
     settings.read_noise_electrons = read_noise;
     settings.rig.bits = bits;
     settings.rig.black_level = black_level;
-    return weft_virtual_sensor_make(&settings, sensor, error);
+    return weft_virtual_sensor_make(&settings, 0, sensor, error);
 }
 
 static void balance(const weft_snap_exposure *exposure, const uint16_t *raw, size_t count, float *linear)
@@ -43,7 +43,7 @@ weft_code weft_snap_sense(const weft_snap_exposure *exposure, const float *radia
         return weft_fail_memory(error, "a photograph", count * sizeof *raw);
     weft_code code = make_sensor(full_well, &sensor, error);
     if (code == WEFT_OK) {
-        weft_virtual_sensor_read(&sensor, radiance, count, exposure->gain * full_well, key, raw);
+        weft_virtual_sensor_read(&sensor, radiance, count, exposure->gain * full_well, 0, key, raw);
         balance(exposure, raw, count, linear);
         weft_virtual_sensor_free(&sensor);
     }

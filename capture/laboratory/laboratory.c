@@ -31,6 +31,7 @@ struct weft_laboratory {
     weft_video_camera *video;
     weft_tethered_camera *tethered;
     weft_poses_file poses;
+    bool asked_to_show; /* something else than the sample */
     weft_rig rig;
 };
 
@@ -184,6 +185,23 @@ static weft_code create_stage(weft_laboratory *lab, weft_error *error)
     return weft_stage_create(&parts, &lab->stage, error);
 }
 
+/* ---- What the camera sees ---- */
+
+/* A person does it; but a lamp that has a switch is dark without. */
+static weft_code show(void *device, weft_curtain scene, weft_error *error)
+{
+    static const char *const asked[] = {[WEFT_CURTAIN_OPEN] = "Let the camera see the sample again.",
+                                        [WEFT_CURTAIN_DARK] = "Cover the lens: no light may reach the camera.",
+                                        [WEFT_CURTAIN_EVEN] =
+                                            "Put an evenly lit white field, out of focus, before the whole lens."};
+    weft_laboratory *lab = device;
+    bool covered = lab->file.light.backend == WEFT_LIGHT_NONE, was_asked = lab->asked_to_show;
+    lab->asked_to_show = scene == WEFT_CURTAIN_EVEN || (scene == WEFT_CURTAIN_DARK && covered);
+    if (!lab->asked_to_show && !was_asked)
+        return WEFT_OK;
+    return lab->request.person.ask(lab->request.person.context, asked[scene], error);
+}
+
 /* ---- Opening ---- */
 
 static weft_code prepare(weft_laboratory *lab, weft_error *error)
@@ -204,6 +222,9 @@ static weft_code prepare(weft_laboratory *lab, weft_error *error)
     lab->rig.identity = lab->identity;
     lab->rig.settings = settings;
     lab->rig.noise = (weft_sensor_noise){lab->file.camera.electrons_per_value, lab->file.camera.read_noise_electrons};
+    lab->rig.dark_frames = (int)lab->file.camera.dark_frames;
+    lab->rig.flat_frames = (int)lab->file.camera.flat_frames;
+    lab->rig.curtain = (weft_rig_curtain){lab, show};
     lab->rig.seconds_per_photograph = lab->file.camera.seconds_per_photograph;
     lab->rig.stage = weft_stage_for_rig(lab->stage);
     lab->rig.light = weft_stage_light(lab->stage);

@@ -42,7 +42,7 @@ typedef struct weft_camera_description {
     char pattern[WEFT_RIG_TEXT_SIZE]; /* of file names in the folder */
     char lens[WEFT_RIG_TEXT_SIZE];    /* its calibration, beside the rig file */
     double theta_deg, phi_deg, distance_mm, half_angle_deg;
-    double electrons_per_value, read_noise_electrons;
+    double electrons_per_value, read_noise_electrons, dark_frames, flat_frames;
     double bin, black_level, shortest_exposure_s, longest_exposure_s, retries, timeout_s, seconds_per_photograph,
         pulse_s;
 } weft_camera_description;

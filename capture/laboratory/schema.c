@@ -1,5 +1,7 @@
 #include "capture/laboratory/schema.h"
 
+#include "btf/session/session.h"
+
 #include <string.h>
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
@@ -120,6 +122,8 @@ static const weft_rig_key camera_keys[] = {
     WHOLE(weft_camera_description, black_level, 0, 0, 1023),
     NUMBER(weft_camera_description, electrons_per_value, 1, 1e-3, 1e5),
     NUMBER(weft_camera_description, read_noise_electrons, 10, 0, 1e5),
+    WHOLE(weft_camera_description, dark_frames, 0, 0, WEFT_SESSION_MAX_FRAMES),
+    WHOLE(weft_camera_description, flat_frames, 0, 0, WEFT_SESSION_MAX_FRAMES),
     NUMBER(weft_camera_description, shortest_exposure_s, 1.0 / 4000, 1e-6, 3600),
     NUMBER(weft_camera_description, longest_exposure_s, 2, 1e-6, 3600),
     WHOLE(weft_camera_description, retries, 3, 0, 20),

@@ -19,7 +19,8 @@ typedef enum weft_purpose {
     WEFT_RANDOM_PIXEL,
     WEFT_RANDOM_CLOTH,
     WEFT_RANDOM_HAND,
-    WEFT_RANDOM_AXIS
+    WEFT_RANDOM_AXIS,
+    WEFT_RANDOM_SENSOR
 } weft_purpose;
 
 /* 64 random bits (the finaliser of SplitMix64, Steele, Lea and Flood 2014, applied to each argument in turn). */

@@ -1,5 +1,7 @@
 #include "capture/virtual/sensor.h"
 
+#include "capture/virtual/sensor_faults.h"
+
 #include <stdlib.h>
 
 /* The value below which a fraction p of the standard normal lies: Newton on its distribution function. */
@@ -29,7 +31,8 @@ static float *make_quantiles(void)
     return quantiles;
 }
 
-weft_code weft_virtual_sensor_make(const weft_virtual_settings *s, weft_virtual_sensor *sensor, weft_error *error)
+weft_code weft_virtual_sensor_make(const weft_virtual_settings *s, uint64_t seed, weft_virtual_sensor *sensor,
+                                   weft_error *error)
 {
     int full_scale = (1 << (int)s->rig.bits) - 1, black_level = (int)s->rig.black_level;
     *sensor = (weft_virtual_sensor){
@@ -39,12 +42,15 @@ weft_code weft_virtual_sensor_make(const weft_virtual_settings *s, weft_virtual_
         .full_scale = full_scale,
         .normal = make_quantiles(),
     };
-    return sensor->normal ? WEFT_OK : weft_fail_memory(error, "noise table", WEFT_NORMAL_COUNT * sizeof(float));
+    if (!sensor->normal)
+        return weft_fail_memory(error, "noise table", WEFT_NORMAL_COUNT * sizeof(float));
+    return s->sensor_faults != 0 ? weft_virtual_sensor_faults_make(s, seed, &sensor->faults, error) : WEFT_OK;
 }
 
 void weft_virtual_sensor_free(weft_virtual_sensor *sensor)
 {
     free((float *)sensor->normal);
+    weft_virtual_sensor_faults_free(&sensor->faults);
     *sensor = (weft_virtual_sensor){0};
 }
 
@@ -59,8 +65,21 @@ static inline uint32_t hash_sample(uint32_t index, uint32_t key, uint32_t second
     return h ^ h >> 16;
 }
 
-WEFT_HOT static void read_block(const weft_virtual_sensor *s, const float *radiance, uint32_t first, int count,
-                                float gain, uint64_t key, uint16_t *samples)
+/* What the faults of the sensor make of the electrons of samples from `first` on. */
+static void spoil(const weft_virtual_sensor_faults *faults, size_t first, int count, float exposure_s, uint64_t key,
+                  float *electrons)
+{
+    for (int i = 0; i < count; i++) {
+        size_t at = first + (size_t)i;
+        float dark = faults->dark_electrons[at] * exposure_s;
+        bool more = hash_sample((uint32_t)at, (uint32_t)(key >> 32), (uint32_t)key) >> 31;
+        float blink = !faults->hot[at] ? 1 : more ? 1.5f : 0.5f;
+        electrons[i] = electrons[i] * faults->response[at] + dark * blink;
+    }
+}
+
+WEFT_HOT static void read_block(const weft_virtual_sensor *s, const float *gathered, uint32_t first, int count,
+                                uint64_t key, uint16_t *samples)
 {
     const float *normal = s->normal;
     float read_variance = s->read_noise * s->read_noise;
@@ -68,7 +87,7 @@ WEFT_HOT static void read_block(const weft_virtual_sensor *s, const float *radia
     float full_scale = (float)s->full_scale;
     uint32_t low = (uint32_t)key, high = (uint32_t)(key >> 32);
     for (int i = 0; i < count; i++) {
-        float electrons = radiance[i] * gain;
+        float electrons = gathered[i];
         uint32_t quantile = hash_sample(first + (uint32_t)i, low, high) >> (32 - WEFT_NORMAL_BITS);
         float noisy = electrons + sqrtf(electrons + read_variance) * normal[quantile];
         float raw = zero + noisy * per_electron;
@@ -78,7 +97,7 @@ WEFT_HOT static void read_block(const weft_virtual_sensor *s, const float *radia
 }
 
 void weft_virtual_sensor_read(const weft_virtual_sensor *sensor, const float *radiance, size_t count, double gain,
-                              uint64_t key, uint16_t *samples)
+                              double exposure_s, uint64_t key, uint16_t *samples)
 {
     enum { BLOCK = 8192 };
     long blocks = (long)((count + BLOCK - 1) / BLOCK);
@@ -86,6 +105,11 @@ void weft_virtual_sensor_read(const weft_virtual_sensor *sensor, const float *ra
     for (long block = 0; block < blocks; block++) {
         size_t first = (size_t)block * BLOCK;
         int length = count - first < BLOCK ? (int)(count - first) : BLOCK;
-        read_block(sensor, radiance + first, (uint32_t)first, length, (float)gain, key, samples + first);
+        float electrons[BLOCK];
+        for (int i = 0; i < length; i++)
+            electrons[i] = radiance[first + (size_t)i] * (float)gain;
+        if (sensor->faults.response)
+            spoil(&sensor->faults, first, length, (float)exposure_s, key, electrons);
+        read_block(sensor, electrons, (uint32_t)first, length, key, samples + first);
     }
 }

@@ -24,6 +24,8 @@ typedef struct virtual_devices {
     weft_virtual_view seen;
     bool seen_valid; /* whether `seen` belongs to this stay */
     float *radiance; /* [height][width][3] under full power, where the light is placed */
+    weft_curtain scene;
+    float *field; /* [height][width][3] of the even field; NULL before it was seen */
 } virtual_devices;
 
 /* ---- Stage ---- */
@@ -100,6 +102,33 @@ static weft_code power_light(void *device, bool on, weft_error *error)
     return WEFT_OK;
 }
 
+/* ---- What the camera sees ---- */
+
+/* An opal glass before the lens, as bright as a white plate may be, and a little brighter on one side. */
+static weft_code see_field(virtual_devices *devices, weft_error *error)
+{
+    const weft_virtual_optics *optics = &devices->optics;
+    size_t pixels = (size_t)optics->width * (size_t)optics->height;
+    const double brightness = 0.2, slope = devices->world->settings.field_slope;
+    devices->field = malloc(pixels * 3 * sizeof *devices->field);
+    if (!devices->field)
+        return weft_fail_memory(error, "virtual camera", pixels * 3 * sizeof *devices->field);
+    for (size_t i = 0; i < 3 * pixels; i++) {
+        double across = (double)(i / 3 % (size_t)optics->width) / optics->width - 0.5;
+        devices->field[i] = (float)(brightness * (1 + slope * across)) * optics->vignetting[i / 3];
+    }
+    return WEFT_OK;
+}
+
+static weft_code show(void *device, weft_curtain scene, weft_error *error)
+{
+    virtual_devices *devices = device;
+    if (scene == WEFT_CURTAIN_EVEN && !devices->field)
+        WEFT_TRY(see_field(devices, error));
+    devices->scene = scene;
+    return WEFT_OK;
+}
+
 /* ---- Camera ---- */
 
 /* Shutters are timed in microseconds. */
@@ -116,14 +145,16 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
     uint64_t seed = devices->world->seed;
     if (weft_random_uniform(seed, WEFT_RANDOM_FAULT, frame) < settings->timeout_probability)
         return weft_fail(error, WEFT_SYSTEM, "virtual camera: frame %llu timed out", (unsigned long long)frame);
-    if (!devices->light_placed)
+    bool sees_sample = devices->scene == WEFT_CURTAIN_OPEN;
+    if (sees_sample && !devices->light_placed)
         return weft_fail(error, WEFT_SYSTEM, "virtual camera: camera and light have not been driven anywhere");
     *read_back_s = shutter_time(exposure_s);
     double drift = 1 + settings->light_power_drift * weft_random_normal(seed, WEFT_RANDOM_POWER, frame);
-    double gain = devices->light_on ? settings->sensitivity_electrons * *read_back_s * drift : 0;
+    bool is_lit = sees_sample ? devices->light_on : devices->scene == WEFT_CURTAIN_EVEN;
+    double gain = is_lit ? settings->sensitivity_electrons * *read_back_s * drift : 0;
     size_t count = (size_t)devices->optics.width * (size_t)devices->optics.height * 3;
-    weft_virtual_sensor_read(&devices->sensor, devices->radiance, count, gain,
-                             weft_random_bits(seed, WEFT_RANDOM_NOISE, frame), samples);
+    weft_virtual_sensor_read(&devices->sensor, sees_sample || !is_lit ? devices->radiance : devices->field, count, gain,
+                             *read_back_s, weft_random_bits(seed, WEFT_RANDOM_NOISE, frame), samples);
     return WEFT_OK;
 }
 
@@ -135,6 +166,7 @@ static void free_devices(virtual_devices *devices)
     weft_virtual_optics_free(&devices->optics);
     weft_virtual_sensor_free(&devices->sensor);
     free(devices->radiance);
+    free(devices->field);
     free(devices->identity);
     free(devices);
 }
@@ -158,10 +190,10 @@ static weft_code prepare(const weft_virtual_request *request, virtual_devices *d
 {
     WEFT_TRY(identify(request, &devices->identity, error));
     WEFT_TRY(weft_virtual_optics_make(devices->world, &devices->optics, error));
-    WEFT_TRY(weft_virtual_sensor_make(&devices->world->settings, &devices->sensor, error));
-    size_t bytes = (size_t)devices->optics.width * (size_t)devices->optics.height * 3 * sizeof *devices->radiance;
-    devices->radiance = malloc(bytes);
-    return devices->radiance ? WEFT_OK : weft_fail_memory(error, "virtual camera", bytes);
+    WEFT_TRY(weft_virtual_sensor_make(&devices->world->settings, devices->world->seed, &devices->sensor, error));
+    size_t count = (size_t)devices->optics.width * (size_t)devices->optics.height * 3;
+    devices->radiance = calloc(count, sizeof *devices->radiance);
+    return devices->radiance ? WEFT_OK : weft_fail_memory(error, "virtual camera", count * sizeof *devices->radiance);
 }
 
 static weft_code open_devices(const weft_virtual_request *request, weft_virtual_rig *rig, weft_error *error)
@@ -186,7 +218,10 @@ static weft_code open_devices(const weft_virtual_request *request, weft_virtual_
         .noise = {devices->sensor.electrons_per_step, devices->sensor.read_noise},
         .camera = {devices, expose},
         .stage = {.device = devices, .home = home, .move = move, .turns = request->settings.axes != 0 ? turns : NULL},
-        .light = {devices, power_light}};
+        .light = {devices, power_light},
+        .dark_frames = (int)request->settings.dark_frames,
+        .flat_frames = (int)request->settings.flat_frames,
+        .curtain = {devices, show}};
     return WEFT_OK;
 }
 

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { GROUP_COUNT = 3 };
+enum { GROUP_COUNT = 4 };
 
 #define REAL(name, value, low, high) WEFT_SETTING(weft_virtual_settings, name, value, low, high, false)
 #define WHOLE(name, value, low, high) WEFT_SETTING(weft_virtual_settings, name, value, low, high, true)
@@ -39,11 +39,28 @@ static const weft_rig_setting axes_table[] = {
     REAL(axis_wobble_deg, 0, 0, 5), REAL(aim_rotation_deg, 0, 0, 5), REAL(aim_mm, 0, 0, 50),
 };
 
+/* Nor do those of sensors without faults and frames. Dark current: 4 binned pixels of 50 electrons/s (Kodak KAF-0400 at
+ * 25 degrees C), hot ones 10 to 20 times that (Dalsa 1M150, manual); response: 1 % a pixel, halved by binning. */
+static const weft_rig_setting sensor_table[] = {
+    WHOLE(sensor_faults, 0, 0, 1),
+    REAL(dark_electrons, 200, 0, 1e6),
+    REAL(dark_spread, 0.2, 0, 1),
+    REAL(hot_share, 0.001, 0, 0.1),
+    REAL(hot_factor, 15, 1, 1e4),
+    REAL(response_spread, 0.005, 0, 0.2),
+    WHOLE(dust_specks, 20, 0, 1000),
+    REAL(dust_depth, 0.1, 0, 0.9),
+    REAL(field_slope, 0.005, -0.5, 0.5),
+    WHOLE(dark_frames, 0, 0, WEFT_SESSION_MAX_FRAMES),
+    WHOLE(flat_frames, 0, 0, WEFT_SESSION_MAX_FRAMES),
+};
+
 static void list_groups(weft_virtual_settings *settings, weft_setting_group groups[GROUP_COUNT])
 {
     groups[0] = weft_rig_settings_group(&settings->rig);
     groups[1] = (weft_setting_group){table, sizeof table / sizeof *table, settings};
     groups[2] = (weft_setting_group){axes_table, sizeof axes_table / sizeof *axes_table, settings};
+    groups[3] = (weft_setting_group){sensor_table, sizeof sensor_table / sizeof *sensor_table, settings};
 }
 
 weft_virtual_settings weft_virtual_settings_default(void)
@@ -73,8 +90,12 @@ char *weft_virtual_settings_text(const weft_virtual_settings *settings, uint64_t
     json_t *root =
         json_pack("{sI so sI}", "seed", (json_int_t)seed, "sample_file",
                   weft_json_text(sample_file, strlen(sample_file)), "sample_crc32", (json_int_t)sample_crc32);
-    for (int i = 0; root && i < GROUP_COUNT - (copy.axes == 0); i++)
-        weft_setting_group_write(&groups[i], &root);
+    bool sensor = copy.sensor_faults != 0 || copy.dark_frames > 0 || copy.flat_frames > 0;
+    const bool told[GROUP_COUNT] = {true, true, copy.axes != 0, sensor};
+    for (int i = 0; root && i < GROUP_COUNT; i++) {
+        if (told[i])
+            weft_setting_group_write(&groups[i], &root);
+    }
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     json_decref(root);
     return text;

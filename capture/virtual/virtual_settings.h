@@ -11,7 +11,16 @@ typedef struct weft_virtual_settings {
     double read_noise_electrons;
     double sensitivity_electrons; /* per second, for radiance 1; the light gives irradiance 1 at the origin along its
                                      normal */
-    double aperture_mm;           /* diameter of the entrance pupil; focused on the camera distance */
+    /* Faults of the sensor, which calibration has to find. */
+    double sensor_faults;            /* 1 = with what follows; 0 = a sensor without faults */
+    double dark_electrons;           /* per second, of the usual pixel */
+    double dark_spread;              /* relative standard deviation from pixel to pixel */
+    double hot_share, hot_factor;    /* of the pixels; their mean dark current, of the usual one */
+    double response_spread;          /* relative standard deviation of the response from pixel to pixel */
+    double dust_specks, dust_depth;  /* shadows on the sensor: how many, and the deepest, of the light */
+    double field_slope;              /* by which the even field is not: relative, from edge to edge */
+    double dark_frames, flat_frames; /* of the sensor, before the first shot */
+    double aperture_mm;              /* diameter of the entrance pupil; focused on the camera distance */
     double samples_per_pixel;
     /* Errors: what calibration and nominal pose do not know. */
     double focal_length_error; /* relative */

@@ -11,6 +11,7 @@ static const double least_correlation = 0.8;
 
 typedef struct work {
     const weft_session *session;
+    weft_sensor_faults faults;
     weft_survey survey;
     weft_sight sight;
     weft_fault *fault; /* [shot_count] */
@@ -59,7 +60,7 @@ static weft_code read_stay(const work *w, const weft_stay *stay, weft_axes_shot 
     weft_photographs photographs;
     shot->turns = w->session->turns[stay->shot[0]];
     WEFT_TRY(name_shot(w, stay, shot, error));
-    WEFT_TRY(weft_photographs_read(w->session, &w->sight, stay, 0, w->fault, &photographs, error));
+    WEFT_TRY(weft_photographs_read(&w->faults, &w->sight, stay, 0, w->fault, &photographs, error));
     weft_code code = WEFT_OK;
     if (photographs.usable_count > 0)
         code = look(w, stay, photographs.average, shot, error);
@@ -102,8 +103,11 @@ static weft_code prepare(work *w, weft_error *error)
     if (!w->fault)
         return weft_fail_memory(error, "shots", (size_t)session->shot_count * sizeof *w->fault);
     WEFT_TRY(weft_survey_make(session, &w->survey, error));
-    return weft_sight_create(&session->camera, &session->target, session->camera.fx / session->camera_distance_mm,
-                             &w->sight, error);
+    WEFT_TRY(weft_sensor_faults_find(session, &w->faults, error));
+    WEFT_TRY(weft_sight_create(&session->camera, &session->target, session->camera.fx / session->camera_distance_mm,
+                               &w->sight, error));
+    weft_sensor_blind(&w->faults, &w->sight);
+    return WEFT_OK;
 }
 
 weft_code weft_axes_sightings_read(const weft_session *session, const weft_progress *progress,
@@ -118,6 +122,7 @@ weft_code weft_axes_sightings_read(const weft_session *session, const weft_progr
         code = read_stays(&w, progress, sightings, error);
     if (code != WEFT_OK)
         weft_axes_sightings_free(sightings);
+    weft_sensor_faults_free(&w.faults);
     weft_sight_free(&w.sight);
     weft_survey_free(&w.survey);
     free(w.fault);

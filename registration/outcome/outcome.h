@@ -4,6 +4,7 @@
 
 #include "registration/outcome/survey.h"
 #include "registration/pose/pose_chain.h"
+#include "registration/radiometry/sensor_faults.h"
 #include "registration/radiometry/vignetting.h"
 
 typedef struct weft_registration_settings {
@@ -29,6 +30,7 @@ typedef struct weft_bend_found {
 typedef struct weft_rig_found {
     weft_bend_found bend;
     weft_vignetting vignetting;
+    weft_sensor_summary sensor;
 } weft_rig_found;
 
 /* Indices of shots and stays are those of the session and the survey. */

@@ -44,6 +44,13 @@ static json_t *pack_found(const weft_rig_found *found)
                      v->standard_error, "photographs", v->photographs);
 }
 
+static json_t *pack_sensor(const weft_sensor_summary *s)
+{
+    return json_pack("{si si sf sf sf sf si si}", "dark_frames", s->dark_frames, "flat_frames", s->flat_frames,
+                     "dark_values_per_s", s->dark_rate, "least_response", s->least, "most_response", s->most,
+                     "fall_off", s->fall_off, "hot_pixels", s->hot, "dead_pixels", s->dead);
+}
+
 static json_t *pack_faults(const weft_session *session, const weft_registration *r)
 {
     json_t *faults = json_array();
@@ -65,6 +72,8 @@ char *weft_registration_provenance(const weft_session *session, const weft_regis
                              r->settings.height, "tolerance_mm", r->settings.limits.tolerance_mm, "least_correlation",
                              r->settings.limits.least_correlation, "images", r->image_count, "white_levels_estimated",
                              r->estimated_whites, "faults", pack_faults(session, r), "stays", stays);
+    if (r->found.sensor.dark_frames > 0 || r->found.sensor.flat_frames > 0)
+        weft_json_put(&root, "sensor", pack_sensor(&r->found.sensor));
     if (session->colour.terms > 0)
         weft_json_put(&root, "colour", weft_colour_pack(&session->colour));
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;

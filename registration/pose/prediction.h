@@ -21,7 +21,7 @@ typedef struct weft_sight {
     double opening_mm;
     weft_bend bend;            /* of the plate; weft_sight_create makes it flat */
     float (*undistorted)[2];   /* [height][width] undistorted pixel coordinates of the pixel centres */
-    float *inverse_vignetting; /* [height][width] */
+    float *inverse_vignetting; /* [height][width]; 0: the pixel counts for nothing */
 } weft_sight;
 
 /* Per pixel, [height][width], of the size of the camera. */

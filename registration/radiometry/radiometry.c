@@ -88,7 +88,7 @@ static weft_code find_patch(const weft_sight *sight, weft_rectangle r, const wef
     for (int y = low[1]; y < end[1]; y++) {
         for (int x = low[0]; x < end[0]; x++) {
             int32_t at = y * sight->camera.width + x;
-            if (!well_inside(r, view, sight->undistorted[at], border))
+            if (sight->inverse_vignetting[at] == 0 || !well_inside(r, view, sight->undistorted[at], border))
                 continue;
             weft_pixel plate = weft_plate_view_meet(view, sight->undistorted[at][0], sight->undistorted[at][1]);
             sum_x += plate.x;

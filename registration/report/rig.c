@@ -51,12 +51,25 @@ void weft_write_rig(weft_page *page, const weft_session *session, const weft_reg
             "<li>Beside the calibrated vignetting, the outermost white patch loses %.2f %% (standard error %.2f %%, "
             "from %d photographs); this is taken out.</li>\n",
             100 * weft_vignetting_loss(v), 100 * v->standard_error, v->photographs);
+    const weft_sensor_summary *sensor = &r->found.sensor;
+    if (sensor->dark_frames > 0)
+        fprintf(
+            page->html,
+            "<li>The sensor gathers %.3g raw values per second without light (from %d dark frames at %.3g s, and as "
+            "many brief ones); this is subtracted. %d hot pixels are masked.</li>\n",
+            sensor->dark_rate, sensor->dark_frames, sensor->longest_s, sensor->hot);
+    if (sensor->flat_frames > 0)
+        fprintf(page->html,
+                "<li>Pixels respond with %.1f to %.1f %% of the usual one (0.1st and 99.9th percentile, from %d flat "
+                "frames), and %+.2f %% toward the rim beside the calibrated vignetting; this is divided out. %d dead "
+                "pixels are masked.</li>\n",
+                100 * sensor->least, 100 * sensor->most, sensor->flat_frames, 100 * sensor->fall_off, sensor->dead);
     fputs("</ul>\n<h2>What they cannot tell</h2>\n<ul>\n<li>The scale of the print: millimetres are those that are "
           "printed.</li>\n<li>How high the cloth lies over the paper: 0.1 mm moves it by 0.17 mm in a view from 60 "
           "degrees. It is taken to lie in the surface that continues the print.</li>\n<li>The reflectance of the white "
           "patches: all reflectances scale with it.</li>\n",
           page->html);
-    if (white > 0)
+    if (white > 0 && sensor->dark_frames + sensor->flat_frames == 0)
         fprintf(
             page->html,
             "<li>The black level: where it is off by one raw value, a reflectance of 0.05 is off by %.2f %%.</li>\n",

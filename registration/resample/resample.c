@@ -102,6 +102,11 @@ static weft_code reserve_taps(weft_resampler *resampler, taps *t, long count, we
     return WEFT_OK;
 }
 
+static bool is_blind(const weft_resampling *r, int x, int y)
+{
+    return r->inverse_vignetting && r->inverse_vignetting[(size_t)y * (size_t)r->camera->width + (size_t)x] == 0;
+}
+
 /* Appends the clear pixels of a quadrangle behind `first`, weighted by area; returns the end of its taps. `view` is
  * NULL where all are clear. *share receives how much of the quadrangle they cover. */
 static long append_taps(const weft_resampling *r, const weft_plate_view *view, const weft_pixel corner[4], box b,
@@ -115,7 +120,7 @@ static long append_taps(const weft_resampling *r, const weft_plate_view *view, c
             if (area <= 0)
                 continue;
             whole += area;
-            if (view && !is_clear(r, view, x, y))
+            if (is_blind(r, x, y) || (view && !is_clear(r, view, x, y)))
                 continue;
             clear += area;
             resampler->pixel[end] = y * r->camera->width + x;

@@ -23,7 +23,7 @@ typedef struct weft_resampler {
 /* What a photograph is resampled under. */
 typedef struct weft_resampling {
     const weft_camera *camera;
-    const float *inverse_vignetting; /* [camera height][width]; NULL: none */
+    const float *inverse_vignetting; /* [camera height][width]; 0: a pixel that counts for nothing; NULL: none */
     weft_homography homography;      /* plate mm to undistorted pixels */
     weft_bend bend;                  /* of the plate */
     double opening_mm;

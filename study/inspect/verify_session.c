@@ -11,6 +11,8 @@ static json_t *pack_fault(const weft_session_fault *fault)
     json_t *packed = json_pack("{s:s}", "kind", weft_session_fault_name[fault->kind]);
     if (fault->shot >= 0)
         weft_json_put(&packed, "shot", json_integer(fault->shot));
+    if (fault->frame >= 0)
+        weft_json_put(&packed, "frame", json_integer(fault->frame));
     weft_json_put(&packed, "text", weft_json_text(fault->text, strlen(fault->text)));
     return packed;
 }
@@ -24,12 +26,23 @@ static weft_code put_faults(const weft_session_faults *faults, json_t *descripti
     return put ? WEFT_OK : weft_fail_memory(error, "faults of a session", 0);
 }
 
+static int count_frames(const weft_session *session)
+{
+    int taken = 0;
+    for (int frame = 0; frame < weft_session_frame_count(session); frame++)
+        taken += session->frame[frame].taken;
+    return taken;
+}
+
 static weft_code put_count(const weft_session *session, json_t *description, weft_error *error)
 {
     int taken = 0;
     for (int shot = 0; shot < session->shot_count; shot++)
         taken += session->record[shot].taken;
-    bool put = json_object_set_new(description, "verified", json_pack("{s:i}", "photographs", taken)) == 0;
+    json_t *verified = json_pack("{s:i}", "photographs", taken);
+    if (session->frame)
+        weft_json_put(&verified, "sensor_frames", json_integer(count_frames(session)));
+    bool put = verified && json_object_set_new(description, "verified", verified) == 0;
     return put ? WEFT_OK : weft_fail_memory(error, "description", 0);
 }
 

@@ -27,6 +27,11 @@ const weft_preflight_meaning weft_preflight_meaning_of[WEFT_CHECK_KINDS] = {
                               "see that its shutter keeps its times"},
     [WEFT_CHECK_STRAY] = {"stray light", "% of white without the lamp", 0.005, false, 100, true,
                           "darken the room, and cover what glows"},
+    [WEFT_CHECK_DARK] = {"dark level", "% of full scale without light, in the longest exposure", 0.05, false, 100, true,
+                         "darken the room, brighten the lamp for shorter exposures, or cool the camera"},
+    /* The light meter reads the 99.5th percentile. */
+    [WEFT_CHECK_HOT] = {"hot pixels", "% of the pixels, in the longest exposure", 0.005, false, 100, true,
+                        "brighten the lamp for shorter exposures, or cool the camera"},
     [WEFT_CHECK_VIBRATION] = {"vibration", "pixels between two photographs", 0.1, false, 1, true,
                               "raise settle_s, release without touching, and look what shakes the rig"},
     [WEFT_CHECK_DISK] = {"disk", "GB free", 0, true, 1, false, "make room, or choose another disk"},

@@ -1,5 +1,6 @@
 #include "study/preflight/measure.h"
 
+#include "base/numeric/statistics.h"
 #include "registration/pose/pose_chain.h"
 
 #include <stdlib.h>
@@ -92,6 +93,36 @@ static void measure_values(const weft_session *session, const weft_meter *meter,
     if (p->brief_share < longest_brief && share_at_full_scale(session, meter->white, meter->white_count, p->first) == 0)
         note(check, WEFT_CHECK_LINEARITY, departure_from_linear(session, meter->white, meter->white_count, p), view);
     note(check, WEFT_CHECK_STRAY, unlit / fmax(white, 1e-6), view);
+}
+
+/* ---- The sensor ---- */
+
+static double share_above(const uint16_t *samples, size_t pixels, double level)
+{
+    size_t above = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        const uint16_t *s = samples + 3 * i;
+        above += s[0] > level || s[1] > level || s[2] > level;
+    }
+    return (double)above / (double)pixels;
+}
+
+weft_code weft_preflight_measure_dark(const weft_session *session, weft_angles view, const uint16_t *samples,
+                                      weft_preflight_check *check, weft_error *error)
+{
+    const double glow = 0.01;
+    size_t pixels = (size_t)session->camera.width * (size_t)session->camera.height;
+    double range = (1 << session->bits) - 1 - session->black_level;
+    float *values = malloc(3 * pixels * sizeof *values);
+    if (!values)
+        return weft_fail_memory(error, "photograph", 3 * pixels * sizeof *values);
+    for (size_t i = 0; i < 3 * pixels; i++)
+        values[i] = samples[i];
+    double median = (double)weft_quantile_of_floats(values, 3 * pixels, 0.5);
+    free(values);
+    note(check, WEFT_CHECK_DARK, (median - session->black_level) / range, view);
+    note(check, WEFT_CHECK_HOT, share_above(samples, pixels, median + glow * range), view);
+    return WEFT_OK;
 }
 
 /* ---- The plate ---- */

@@ -19,6 +19,10 @@ weft_code weft_preflight_measure(const weft_session *session, const weft_sight *
                                  const weft_preflight_photographs *photographs, weft_preflight_check *check,
                                  weft_error *error);
 
+/* Measures the sensor, in a photograph without light. Errors: WEFT_SYSTEM. */
+weft_code weft_preflight_measure_dark(const weft_session *session, weft_angles view, const uint16_t *samples,
+                                      weft_preflight_check *check, weft_error *error);
+
 /* Keeps `value` where nothing or something better is known. Pure. */
 void weft_preflight_note(weft_preflight_check *check, weft_preflight_kind kind, double value, double limit,
                          weft_angles view);

@@ -105,6 +105,16 @@ static weft_code repeat(flight *f, double exposure_s, double *brief_share, weft_
                           error);
 }
 
+/* The lamp is off. */
+static weft_code look_at_sensor(flight *f, int shot, weft_error *error)
+{
+    weft_rig_camera *camera = &f->rig->camera;
+    double ignored;
+    WEFT_TRY(camera->expose(camera->device, f->shooting.last_frame + 4, f->rig->settings.longest_exposure_s, f->samples,
+                            &ignored, error));
+    return weft_preflight_measure_dark(f->session, f->session->shot[shot].view, f->samples, f->result->check, error);
+}
+
 static weft_code visit(flight *f, int shot, int number, weft_error *error)
 {
     size_t size = sample_count(f->session);
@@ -115,7 +125,8 @@ static weft_code visit(flight *f, int shot, int number, weft_error *error)
     const weft_preflight_photographs photographs = {f->samples, f->samples + size, f->samples + 2 * size,
                                                     f->samples + 3 * size, brief_share};
     weft_sheet_put(f->session, number, &photographs, &f->result->sheet);
-    return weft_preflight_measure(f->session, &f->sight, shot, number == 0, &photographs, f->result->check, error);
+    WEFT_TRY(weft_preflight_measure(f->session, &f->sight, shot, number == 0, &photographs, f->result->check, error));
+    return number == 0 ? look_at_sensor(f, shot, error) : WEFT_OK;
 }
 
 static weft_code visit_all(flight *f, weft_error *error)

@@ -17,6 +17,8 @@ typedef enum weft_preflight_kind {
     WEFT_CHECK_NOISE,         /* of a pixel of the white patches, from two photographs, relative */
     WEFT_CHECK_LINEARITY,     /* how far white patches are from growing with the exposure, relative */
     WEFT_CHECK_STRAY,         /* what is seen without the lamp, of what the white patches show with it */
+    WEFT_CHECK_DARK,          /* what the sensor shows without light, in the longest exposure, of full scale */
+    WEFT_CHECK_HOT,           /* share of the pixels that show more than that there, by a hundredth of full scale */
     WEFT_CHECK_VIBRATION,     /* largest move of the plate between two photographs, pixels */
     WEFT_CHECK_DISK,          /* GB that the disk has */
     WEFT_CHECK_CALIBRATION,   /* age of the lens, days */
@@ -56,9 +58,9 @@ typedef struct weft_preflight {
 } weft_preflight;
 
 /* Goes to the frontal view and to the lowest ones of the plan, up to four round the sample, each under its highest
- * light. Takes two photographs with the lamp, one with a quarter of the exposure, and one without the lamp. Writes
- * nothing. The caller frees with weft_preflight_free. Errors: those of the plan and of the rig; WEFT_SYSTEM. A check
- * that is not passed is none. */
+ * light. Takes two photographs with the lamp, one with a quarter of the exposure, and one without the lamp; in the
+ * first view one more without, as long as the rig exposes. Writes nothing. The caller frees with weft_preflight_free.
+ * Errors: those of the plan and of the rig; WEFT_SYSTEM. A check that is not passed is none. */
 weft_code weft_preflight_run(const weft_preflight_request *request, weft_rig *rig, const weft_progress *progress,
                              weft_preflight *result, weft_error *error);
 void weft_preflight_free(weft_preflight *result);

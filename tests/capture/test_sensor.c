@@ -14,7 +14,7 @@ static weft_virtual_sensor make_sensor(double full_well, double read_noise)
     settings.full_well_electrons = full_well;
     settings.read_noise_electrons = read_noise;
     weft_virtual_sensor sensor;
-    assert_int_equal(weft_virtual_sensor_make(&settings, &sensor, NULL), WEFT_OK);
+    assert_int_equal(weft_virtual_sensor_make(&settings, 0, &sensor, NULL), WEFT_OK);
     return sensor;
 }
 
@@ -26,7 +26,7 @@ static void read_uniform(const weft_virtual_sensor *sensor, double electrons, do
     assert_true(radiance && samples);
     for (int i = 0; i < COUNT; i++)
         radiance[i] = (float)electrons;
-    weft_virtual_sensor_read(sensor, radiance, COUNT, 1, weft_random_bits(7, WEFT_RANDOM_NOISE, 1), samples);
+    weft_virtual_sensor_read(sensor, radiance, COUNT, 1, 0, weft_random_bits(7, WEFT_RANDOM_NOISE, 1), samples);
     double sum = 0, squares = 0, step = sensor->electrons_per_step;
     for (int i = 0; i < COUNT; i++) {
         double value = (samples[i] - sensor->black_level) * step;
@@ -72,8 +72,8 @@ static void noise_differs_from_frame_to_frame_and_sample_to_sample(void **state)
     assert_true(radiance && first && second);
     for (int i = 0; i < COUNT; i++)
         radiance[i] = 10000;
-    weft_virtual_sensor_read(&sensor, radiance, COUNT, 1, weft_random_bits(7, WEFT_RANDOM_NOISE, 1), first);
-    weft_virtual_sensor_read(&sensor, radiance, COUNT, 1, weft_random_bits(7, WEFT_RANDOM_NOISE, 2), second);
+    weft_virtual_sensor_read(&sensor, radiance, COUNT, 1, 0, weft_random_bits(7, WEFT_RANDOM_NOISE, 1), first);
+    weft_virtual_sensor_read(&sensor, radiance, COUNT, 1, 0, weft_random_bits(7, WEFT_RANDOM_NOISE, 2), second);
     double mean = 0, variance = 0, across_frames = 0, across_samples = 0;
     for (int i = 0; i < COUNT; i++)
         mean += (double)first[i] / COUNT;
@@ -102,9 +102,9 @@ static void bytes_do_not_depend_on_the_number_of_threads(void **state)
     for (int i = 0; i < COUNT; i++)
         radiance[i] = (float)(i % 30000);
     omp_set_num_threads(1);
-    weft_virtual_sensor_read(&sensor, radiance, COUNT, 0.5, 42, one);
+    weft_virtual_sensor_read(&sensor, radiance, COUNT, 0.5, 0, 42, one);
     omp_set_num_threads(3);
-    weft_virtual_sensor_read(&sensor, radiance, COUNT, 0.5, 42, three);
+    weft_virtual_sensor_read(&sensor, radiance, COUNT, 0.5, 0, 42, three);
     assert_memory_equal(one, three, COUNT * sizeof *one);
     free(radiance);
     free(one);

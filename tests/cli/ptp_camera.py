@@ -5,8 +5,9 @@ Its photographs are even, as bright as their exposure is long, and say how long 
 import socket
 import struct
 import threading
+import time
 
-OK, BUSY, UNSUPPORTED, BAD_HANDLE = 0x2001, 0x2019, 0x2005, 0x2009
+OK, BUSY, UNSUPPORTED, BAD_HANDLE, FULL = 0x2001, 0x2019, 0x2005, 0x2009, 0x200C
 STORAGE, FOLDER, TIFF, ASSOCIATION = 0x00010001, 1, 0x300D, 0x3001
 EXPOSURES = [10, 20, 40, 80, 125, 250, 500, 1000, 2500, 5000, 10000, 20000]  # 0.1 ms
 
@@ -19,9 +20,10 @@ def numbers(values):
     return struct.pack("<I", len(values)) + b"".join(struct.pack("<H", value) for value in values)
 
 
-def tiff(side, level, exposure_s):
-    """An even grey of 16 bits; exposure_s None: the file does not say it."""
-    pixels = struct.pack("<H", level) * (side * side * 3)
+def tiff(side, level, exposure_s, mark):
+    """An even grey of 16 bits, but for a mark in its corner, for no two photographs are alike; exposure_s None: the file
+    does not say it."""
+    pixels = struct.pack("<H", 64 * mark) + struct.pack("<H", level) * (side * side * 3 - 1)
     entries = [(256, 4, 1, side), (257, 4, 1, side), (258, 3, 3, None), (259, 3, 1, 1), (262, 3, 1, 2), (273, 4, 1, None),
                (277, 3, 1, 3), (278, 4, 1, side), (279, 4, 1, len(pixels)), (284, 3, 1, 1)]
     if exposure_s is not None:
@@ -39,10 +41,15 @@ def tiff(side, level, exposure_s):
 
 class Camera:
     """Serves any number of connections. `drop` and `silent` are numbers of captures at which it misbehaves, `busy` those
-    of settings of the shutter: there the EOS 60D answers that it is busy."""
+    of settings of the shutter: there the EOS 60D answers that it is busy. Its card is full after `room` photographs of
+    its own. With `bulb` its shutter can stay open until it is told to close, and the file says how long, in whole
+    seconds, `off` by so much."""
 
-    def __init__(self, side, busy=(), drop=(), silent=()):
-        self.side, self.busy, self.drop, self.silent = side, busy, drop, silent
+    def __init__(self, side, busy=(), drop=(), silent=(), room=1000, bulb=False, off=0):
+        self.side, self.busy, self.drop, self.silent, self.room = side, busy, drop, silent, room
+        self.times = EXPOSURES[:7] if bulb else EXPOSURES  # that have a name: up to 0.1 s, or 2 s
+        self.bulb, self.off, self.opened, self.release, self.fresh = bulb, off, 0, 0, None
+        self.speed = 2  # per second: full after half of one
         self.exposure, self.settings, self.asked, self.taken, self.sessions = EXPOSURES[0], 0, 0, [], 0
         self.objects = {}  # handle: (name, bytes)
         self.events = None
@@ -63,6 +70,7 @@ class Camera:
         def exactly(size):
             data = b""
             while len(data) < size:
+                connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_QUICKACK, 1)  # libgphoto2 waits for that
                 piece = connection.recv(size - len(data))
                 if not piece:
                     raise ConnectionError
@@ -102,7 +110,7 @@ class Camera:
             self.send(connection, 9, struct.pack("<IQ", transaction, len(out)))
             self.send(connection, 12, struct.pack("<I", transaction) + out)
         self.send(connection, 7, struct.pack("<HI", answer, transaction))
-        if code == 0x100E and answer == OK:
+        if code == 0x100E and answer == OK and self.fresh:
             self.announce()
 
     def receive_data(self, connection):
@@ -131,6 +139,11 @@ class Camera:
                 return BUSY, None
             self.exposure = struct.unpack("<I", data)[0]
             return OK, None
+        if code == 0x1016 and parameters[0] == 0xD208 and self.bulb:
+            self.release = struct.unpack("<H", data)[0]
+            return OK, None
+        if code == 0x100E and self.release:
+            return self.press_release()
         if code == 0x100E:
             return self.capture(connection)
         return (OK, None) if code == 0x1003 else (UNSUPPORTED, None)
@@ -149,7 +162,8 @@ class Camera:
         return OK, struct.pack("<II", 1, STORAGE)
 
     def storage_info(self, *_):
-        return OK, struct.pack("<HHHQQI", 3, 2, 0, 1 << 34, 1 << 33, 1000) + text("card") + text("card")
+        left = self.room - len(self.taken)
+        return OK, struct.pack("<HHHQQI", 3, 2, 0, 1 << 34, left << 20, left) + text("card") + text("card")
 
     def handles(self, _storage=0, _form=0, parent=0, *_):
         found = [FOLDER] if parent in (0, 0xFFFFFFFF) else sorted(self.objects) if parent == FOLDER else []
@@ -170,8 +184,8 @@ class Camera:
     def describe_exposure(self, code, *_):
         if code != 0x500D:
             return UNSUPPORTED, None
-        return OK, (struct.pack("<HHBIIBH", 0x500D, 6, 1, EXPOSURES[0], self.exposure, 2, len(EXPOSURES)) +
-                    b"".join(struct.pack("<I", value) for value in EXPOSURES))
+        return OK, (struct.pack("<HHBIIBH", 0x500D, 6, 1, EXPOSURES[0], self.exposure, 2, len(self.times)) +
+                    b"".join(struct.pack("<I", value) for value in self.times))
 
     def get_exposure(self, *_):
         return OK, struct.pack("<I", self.exposure)
@@ -180,7 +194,7 @@ class Camera:
 
     def add(self, level, exposure_s):
         handle = 100 + len(self.objects)
-        self.objects[handle] = ("IMG_%04d.TIF" % handle, tiff(self.side, level, exposure_s))
+        self.objects[handle] = ("IMG_%04d.TIF" % handle, tiff(self.side, level, exposure_s, handle))
         return handle
 
     def capture(self, connection):
@@ -190,9 +204,24 @@ class Camera:
             connection.shutdown(socket.SHUT_RDWR)
             raise ConnectionError
         exposure_s = self.exposure * 1e-4
-        level = min(65535, round(65535 * exposure_s * 2))  # full after half a second
+        return self.shoot(exposure_s, None if self.asked in self.silent else exposure_s)
+
+    def press_release(self):
+        """As Fujifilm's do: half down, down for as long as it takes, up."""
+        release, self.fresh = self.release, None
+        if release == 0x0500:
+            self.opened = time.monotonic()
+        if release == 0x000C:
+            self.release, lasted_s = 0, time.monotonic() - self.opened
+            return self.shoot(lasted_s, round(lasted_s) + self.off)
+        return OK, None
+
+    def shoot(self, exposure_s, noted_s):
+        if len(self.taken) >= self.room:
+            return FULL, None
+        level = min(65535, round(65535 * exposure_s * self.speed))
         self.taken.append((exposure_s, level))
-        self.fresh = self.add(level, None if self.asked in self.silent else exposure_s)
+        self.fresh = self.add(level, noted_s)
         return OK, None
 
     def announce(self):

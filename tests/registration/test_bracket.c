@@ -43,7 +43,7 @@ static void make_scene(scene *s, double read_noise_electrons)
             .bits = (int)settings.rig.bits,
             .black_level = (int)settings.rig.black_level,
             .target = weft_target_for_opening(32)}};
-    assert_int_equal(weft_virtual_sensor_make(&settings, &s->sensor, NULL), WEFT_OK);
+    assert_int_equal(weft_virtual_sensor_make(&settings, 0, &s->sensor, NULL), WEFT_OK);
     s->session.noise = (weft_sensor_noise){s->sensor.electrons_per_step, s->sensor.read_noise};
     assert_int_equal(weft_meter_make(&s->session, (weft_angles){0, 0}, &s->meter, NULL), WEFT_OK);
     s->radiance = malloc(SAMPLES * sizeof *s->radiance);
@@ -67,7 +67,7 @@ static void free_scene(scene *s)
 
 static void expose(const scene *s, int index, double exposure_s, double lamp)
 {
-    weft_virtual_sensor_read(&s->sensor, s->radiance, SAMPLES, sensitivity * exposure_s * lamp,
+    weft_virtual_sensor_read(&s->sensor, s->radiance, SAMPLES, sensitivity * exposure_s * lamp, exposure_s,
                              weft_random_bits(5, WEFT_RANDOM_NOISE, (uint64_t)index),
                              s->samples + (size_t)index * SAMPLES);
 }

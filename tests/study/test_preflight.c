@@ -14,7 +14,7 @@ enum { SIZE = 160, FULL_SCALE = 4095, BLACK = 64 };
 static const char plan[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n"
                            "60,0,0,0\n30,0,0,0\n60,90,60,0\n30,90,60,0\n30,90,30,90\n";
 
-typedef enum fault { NOTHING, DEFOCUS, STRAY, SHAKING, WHITE_CLIPPED, COVERED, NOISE, CURVED } fault;
+typedef enum fault { NOTHING, DEFOCUS, STRAY, SHAKING, WHITE_CLIPPED, COVERED, NOISE, CURVED, WARM, GLOWING } fault;
 
 /* The virtual rig, with something wrong with what its camera delivers. */
 typedef struct faulty {
@@ -105,6 +105,15 @@ static void curve(uint16_t *samples)
     }
 }
 
+/* Dark current: of every pixel, or of one in so many. */
+static void be_warm(uint16_t *samples, double lift, int apart)
+{
+    for (int i = 0; i < SIZE * SIZE; i += apart) {
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = clip(samples[3 * i + c] + lift);
+    }
+}
+
 /* A cloth over the three quarters of the picture at the right. */
 static void cover(uint16_t *samples)
 {
@@ -136,6 +145,10 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
         be_noisy(samples);
     else if (f->fault == CURVED)
         curve(samples);
+    else if (f->fault == WARM)
+        be_warm(samples, 150 * exposure_s, 1);
+    else if (f->fault == GLOWING)
+        be_warm(samples, 50 * exposure_s, 100);
     return WEFT_OK;
 }
 
@@ -209,6 +222,8 @@ static void each_check_finds_its_fault(void **state)
         {COVERED, WEFT_CHECK_TARGET, ~0u},
         {NOISE, WEFT_CHECK_NOISE, 0},
         {CURVED, WEFT_CHECK_LINEARITY, 0},
+        {WARM, WEFT_CHECK_DARK, 0},
+        {GLOWING, WEFT_CHECK_HOT, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         weft_preflight result = check(cases[i].fault);
