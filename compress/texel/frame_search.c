@@ -9,7 +9,7 @@
 /* The fit of the grey samples is a start, not worth its last steps. */
 #define GREY_TOLERANCE 3e-3
 
-enum { TABLES = 4 * WEFT_FINALISTS };
+enum { TABLES = 6 * WEFT_FINALISTS };
 
 weft_code weft_frame_search_create(int view_count, weft_frame_search *search, weft_error *error)
 {
@@ -19,9 +19,10 @@ weft_code weft_frame_search_create(int view_count, weft_frame_search *search, we
     if (!tables)
         return weft_fail_memory(error, "view tables of grey fits", TABLES * views * sizeof *tables);
     for (size_t i = 0; i < WEFT_FINALISTS; i++) {
-        double *own = tables + 4 * i * views;
+        double *own = tables + 6 * i * views;
         search->surface[i] = (weft_finalist){.upright_table = own, .turned_table = own + views};
         search->given[i] = (weft_finalist){.upright_table = own + 2 * views, .turned_table = own + 3 * views};
+        search->bare[i] = (weft_finalist){.upright_table = own + 4 * views, .turned_table = own + 5 * views};
     }
     return WEFT_OK;
 }
@@ -42,6 +43,7 @@ static weft_grey_fit choose_frame(const weft_finalist *from, bool turn)
 void weft_frame_search_forget(weft_frame_search *search)
 {
     search->starts[0].found = search->starts[1].found = false;
+    search->lobes_vanished = false;
 }
 
 /* A diffuse term has no use for a frame. */
@@ -68,6 +70,44 @@ static const weft_starts *find_starts(weft_frame_search *search, const weft_bund
     return &starts->surface;
 }
 
+static bool has_vanished_lobe(const weft_fit *fit)
+{
+    bool vanished = false;
+    for (int i = 0; i < fit->lobe_count; i++)
+        vanished |= !(fit->lobe[i].amplitude > 0);
+    return vanished;
+}
+
+static void challenge(weft_frame_search *search, weft_grey_fit fit)
+{
+    bool is_better = fit.fit.residual < search->best.fit.residual;
+    if (is_better) {
+        search->other = search->best;
+        search->best = fit;
+        search->has_other = true;
+    }
+}
+
+/* T alone may explain so much that no lobe is found beside it. Lobes that are found without T mostly leave less with
+ * it, too. */
+static void try_bare_starts(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,
+                            weft_fit_workspace *workspace, const weft_frame_request *request)
+{
+    weft_frame_request bare = *request;
+    weft_fit_options options = request->options;
+    bool turn = may_turn(request);
+    bare.options.table = false;
+    bare.options.tolerance = options.tolerance = GREY_TOLERANCE;
+    search->lobes_vanished = true;
+    const weft_starts *starts = find_starts(search, bundle, samples, workspace, &bare);
+    weft_fit_refine_starts(bundle, samples, WEFT_GREY, &bare.options, turn, workspace, starts, WEFT_FINALISTS,
+                           search->bare);
+    weft_grey_fit found = choose_frame(&search->bare[0], turn);
+    options.fit_frame = found.turns;
+    weft_fit_refine(bundle, samples, WEFT_GREY, &options, workspace, &found.fit, found.table);
+    challenge(search, found);
+}
+
 void weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,
                            weft_fit_workspace *workspace, const weft_frame_request *request)
 {
@@ -81,17 +121,14 @@ void weft_frame_search_run(weft_frame_search *search, const weft_bundle *bundle,
     search->has_other = count > 1;
     if (count > 1)
         search->other = choose_frame(&search->surface[1], turn);
+    if (request->options.table && has_vanished_lobe(&search->best.fit))
+        try_bare_starts(search, bundle, samples, workspace, request);
     if (!turn || !request->given)
         return;
     starts = &search->starts[request->options.table].given;
     weft_fit_refine_starts(bundle, samples, WEFT_GREY, &options, turn, workspace, starts, WEFT_FINALISTS,
                            search->given);
-    weft_grey_fit given = choose_frame(&search->given[0], turn);
-    if (given.fit.residual < search->best.fit.residual) {
-        search->other = search->best;
-        search->best = given;
-        search->has_other = true;
-    }
+    challenge(search, choose_frame(&search->given[0], turn));
 }
 
 bool weft_frame_search_other(weft_frame_search *search, const weft_bundle *bundle, const weft_samples *samples,

@@ -200,6 +200,7 @@ enum { MANY_SAMPLES = 2000 };
 #define CLEARLY_LESS 0.97
 #define CLEARLY_LESS_LIT 0.7 /* where S is to be fitted, of which the grey fit knows nothing */
 #define BARELY_MORE 1.01
+#define SPOILT 1.03
 
 static void swap_results(weft_texel_fitter *fitter)
 {
@@ -211,6 +212,7 @@ static void swap_results(weft_texel_fitter *fitter)
 /* A model of the texel and what the last ones of its kind left. */
 typedef struct contest {
     double least;      /* squared error of the best, as it will be read */
+    double promised;   /* the least that a model left before it was rounded and held */
     double grey;       /* of the grey fit that the whole model began from */
     bool is_sure;      /* that only a grey fit which leaves about as much needs a look */
     bool stepped_down; /* the best is not the whole model */
@@ -226,6 +228,7 @@ static bool try_start(weft_texel_fitter *fitter, const weft_fit_options *options
     if (!is_beaten)
         hold(fitter, options);
     double own = is_beaten ? INFINITY : weft_texel_weighted_error(fitter);
+    state->promised = fmin(state->promised, fitter->now.residual);
     bool spoilt = !is_beaten && (fitter->now.held || own >= BARELY_MORE * fitter->now.residual);
     if (own < state->least)
         state->least = own;
@@ -256,6 +259,13 @@ static bool may_serve(weft_texel_fitter *fitter, const weft_fit_options *options
     return !(state->is_sure && state->grey < clear * left);
 }
 
+/* With many samples models without T or S serve only where T left the lobes nothing to explain, or where those with
+ * them ended far above what they promised, since they were held from glaring. */
+static bool needs_more(const weft_texel_fitter *fitter, const contest *state)
+{
+    return fitter->frames.lobes_vanished || state->least > SPOILT * state->promised;
+}
+
 /* Without S, without T and with fewer lobes. */
 static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given,
                             contest *state)
@@ -267,7 +277,7 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
             for (int with_light = light; with_light >= 0; with_light--) {
                 bool is_part = with_table != whole->table || with_light != light;
                 options.table = with_table;
-                if (is_part ? !is_few : options.lobe_count == whole->lobe_count)
+                if (is_part ? !is_few && !needs_more(fitter, state) : options.lobe_count == whole->lobe_count)
                     continue;
                 double before = state->least;
                 if (may_serve(fitter, &options, given, state))
@@ -282,7 +292,7 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
  * whole one. */
 static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
 {
-    contest state = {.least = INFINITY, .grey = find_start(fitter, whole, given)->fit.residual};
+    contest state = {.least = INFINITY, .promised = INFINITY, .grey = find_start(fitter, whole, given)->fit.residual};
     bool spoilt = try_model(fitter, whole, fitter->light_count > 0, given, &state);
     state.is_sure = !spoilt && fitter->samples.valid_count > MANY_SAMPLES;
     try_all_smaller(fitter, whole, given, &state);
