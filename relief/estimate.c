@@ -3,6 +3,7 @@
 #include "relief/relief.h"
 #include "relief/sweep.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -220,8 +221,9 @@ static bool helps(const weft_relief_report *report, int level)
 static void decide(weft_relief_report *report)
 {
     report->error = report->level_error[0];
+    double against_flat = report->on_its_plane ? WEFT_RELIEF_GAIN : WEFT_RELIEF_PLANE_GAIN;
     if (report->error.heights <= WEFT_RELIEF_GAIN * report->error.plane &&
-        report->error.heights <= WEFT_RELIEF_PLANE_GAIN * report->error.flat)
+        report->error.heights <= against_flat * report->error.flat)
         report->verdict = WEFT_RELIEF_HEIGHTS;
     else if (report->error.plane <= WEFT_RELIEF_PLANE_GAIN * report->error.flat)
         report->verdict = WEFT_RELIEF_PLANE;
@@ -315,12 +317,24 @@ static weft_code find(estimate *e, const weft_relief_options *options, weft_erro
     return WEFT_OK;
 }
 
+/* Whether the texels were put where the views agree, by a simulation or by `weft relief --move`. */
+static bool lie_on_their_plane(const weft_dataset_layout *layout)
+{
+    json_t *provenance = json_loads(layout->provenance, 0, NULL);
+    const json_t *relief = json_object_get(provenance, "relief");
+    bool result = json_number_value(json_object_get(provenance, "plane_below_top_mm")) > 0 ||
+                  json_is_true(json_object_get(relief, "moved"));
+    json_decref(provenance);
+    return result;
+}
+
 static weft_code estimate_with(weft_dataset *dataset, const weft_relief_views *views,
                                const weft_relief_options *options, estimate *e, weft_error *error)
 {
     WEFT_TRY(weft_features_read(dataset, views, e->progress, &e->features, error));
     WEFT_TRY(allocate(e, error));
     note_features(e, views, options);
+    e->report->on_its_plane = lie_on_their_plane(weft_dataset_get_layout(dataset));
     WEFT_TRY(find_compared(e, weft_dataset_path(dataset), error));
     name_views(e, views);
     return find(e, options, error);

@@ -27,7 +27,8 @@ typedef struct weft_relief_options {
 } weft_relief_options;
 
 /* Heights are used where their error is at most this part of that of the plane, and the plane where its error is at
- * most this part of that without. */
+ * most this part of that without. Heights have to gain as much as a plane does, too, unless the texels lie on their
+ * best plane already: there is no more to gain from one. */
 #define WEFT_RELIEF_GAIN 0.9
 #define WEFT_RELIEF_PLANE_GAIN 0.8
 
@@ -53,7 +54,8 @@ typedef struct weft_relief_report {
     double plane_mm;
     double low_mm, high_mm; /* where heights were looked for */
     bool repeats;
-    double seam; /* how much opposite borders differ, as a multiple of neighbouring texels */
+    bool on_its_plane; /* the texels were put where the views agree */
+    double seam;       /* how much opposite borders differ, as a multiple of neighbouring texels */
     weft_relief_errors error;
     int level_count; /* mip levels that were judged */
     weft_relief_errors level_error[WEFT_RELIEF_LEVELS];

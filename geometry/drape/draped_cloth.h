@@ -13,10 +13,11 @@ typedef struct weft_draped_cloth weft_draped_cloth;
 
 enum { WEFT_DRAPED_MAX_TRIANGLES = 1 << 24 };
 
-/* Maps every tile through the surface, on it the plane on which an acquisition places its texels: vertex (x, y, z) comes
- * to lie at P(x, y) + (z - top - plane_mm) N(x, y), with interpolated positions P and normals N. Tiles begin at (0, 0) of the flat cloth and are cut at its hem. Keeps references to stitch and mesh, which
- * must stay, none to the surface. The caller frees with weft_draped_cloth_free. Errors: WEFT_BAD_INPUT for more than
- * WEFT_DRAPED_MAX_TRIANGLES triangles or a surface that is mirrored somewhere; WEFT_SYSTEM. */
+/* Maps every tile through the surface, on it the plane on which an acquisition places its texels: vertex (x, y, z)
+ * comes to lie at P(x, y) + (z - top - plane_mm) N(x, y), with interpolated positions P and normals N. Tiles begin at
+ * (0, 0) of the flat cloth and are cut at its hem. Keeps references to stitch and mesh, which must stay, none to the
+ * surface. The caller frees with weft_draped_cloth_free. Errors: WEFT_BAD_INPUT for more than WEFT_DRAPED_MAX_TRIANGLES
+ * triangles or a surface that is mirrored somewhere; WEFT_SYSTEM. */
 weft_code weft_draped_cloth_create(const weft_stitch *stitch, const weft_tile_mesh *mesh,
                                    const weft_base_surface *surface, weft_draped_cloth **result, weft_error *error);
 void weft_draped_cloth_free(weft_draped_cloth *cloth);

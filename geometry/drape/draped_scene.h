@@ -17,9 +17,10 @@ typedef struct weft_draped_hit {
 } weft_draped_hit;
 
 /* The surface carries the top of the cloth, or a plane in it: a vertex at height z of the tile lies top + plane_mm - z
- * below it along the normal. Tiles begin at (0, 0) of the flat cloth; triangles that reach beyond the hem are left out. Keeps a reference to
- * `mesh`, which must stay. The caller frees with weft_draped_scene_free. Errors: WEFT_BAD_INPUT for more than `most`
- * triangles or a surface that weft_base_map_create refuses, WEFT_SYSTEM with the text of Embree. */
+ * below it along the normal. Tiles begin at (0, 0) of the flat cloth; triangles that reach beyond the hem are left out.
+ * Keeps a reference to `mesh`, which must stay. The caller frees with weft_draped_scene_free. Errors: WEFT_BAD_INPUT
+ * for more than `most` triangles or a surface that weft_base_map_create refuses, WEFT_SYSTEM with the text of Embree.
+ */
 weft_code weft_draped_scene_create(const weft_tile_mesh *mesh, const weft_base_surface *surface, int most,
                                    weft_draped_scene **result, weft_error *error);
 void weft_draped_scene_free(weft_draped_scene *scene);
