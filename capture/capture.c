@@ -153,8 +153,11 @@ static weft_code first_of(weft_code code, weft_code later, const weft_error *las
 static weft_code take_and_write(run *r, weft_error *error)
 {
     weft_error own = {0}, last = {0};
+    weft_held_session *held = &r->capture->held;
+    weft_code code = weft_sensor_frames_take(r->capture->rig, &held->session, r->stop, r->progress, &own);
     r->start_s = weft_now_s();
-    weft_code code = weft_photograph_writer_start(&r->capture->held.session, r->capture->brackets, &r->writer, &own);
+    if (code == WEFT_OK)
+        code = weft_photograph_writer_start(&held->session, r->capture->brackets, &r->writer, &own);
     if (code == WEFT_OK) {
         code = take_shots(r, &own);
         code = first_of(code, weft_photograph_writer_finish(r->writer, &last), &last, &own);
@@ -192,8 +195,6 @@ static weft_code take_missing(run *r, weft_error *error)
     weft_code code = choose_order(r, error);
     if (code == WEFT_OK)
         code = weft_shooting_begin(r->capture->rig, &held->session, held->next_stay, &r->shooting, error);
-    if (code == WEFT_OK)
-        code = weft_sensor_frames_take(r->capture->rig, &held->session, r->stop, r->progress, error);
     if (code == WEFT_OK)
         code = weft_status_page_begin(r->capture->status, &held->session, &r->status, error);
     if (code == WEFT_OK)

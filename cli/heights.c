@@ -32,19 +32,22 @@ weft_code weft_heights_estimate(const weft_common_options *common, const char *p
     return code;
 }
 
-weft_code weft_heights_look(const weft_common_options *common, const char *path, weft_error *error)
+/* What is found is a gain, no need: the dataset is complete without it. */
+static void say_without(const weft_common_options *common, const weft_error *error)
+{
+    weft_command_say(common, "no heights: %s", error->message);
+}
+
+void weft_heights_look(const weft_common_options *common, const char *path)
 {
     weft_relief_report report;
-    weft_code code = weft_heights_estimate(common, path, &report, error);
-    if (code == WEFT_BAD_INPUT) {
-        weft_command_say(common, "no heights: %s", error->message);
-        return WEFT_OK;
+    weft_error error = {0};
+    if (weft_heights_estimate(common, path, &report, &error) != WEFT_OK) {
+        say_without(common, &error);
+        return;
     }
-    if (code != WEFT_OK)
-        return code;
     weft_heights_say(common, &report);
-    if (report.verdict != WEFT_RELIEF_NOTHING)
-        code = weft_relief_keep(path, path, &report, error);
+    if (report.verdict != WEFT_RELIEF_NOTHING && weft_relief_keep(path, path, &report, &error) != WEFT_OK)
+        say_without(common, &error);
     weft_relief_report_free(&report);
-    return code;
 }

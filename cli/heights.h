@@ -23,8 +23,8 @@ weft_code weft_heights_estimate(const weft_common_options *common, const char *p
                                 weft_error *error);
 
 /* Looks for heights in the closed dataset `path`, which was written just now, and keeps what was decided. The file
- * stays as it is where that is nothing, and where its photographs can show no parallax; then the reason is said.
- * Errors: those of reading and writing; the dataset then is as it was. */
-weft_code weft_heights_look(const weft_common_options *common, const char *path, weft_error *error);
+ * stays as it is where that is nothing, where its photographs can show no parallax, and where memory or disk do not
+ * suffice, for the file is written anew; then the reason is said. */
+void weft_heights_look(const weft_common_options *common, const char *path);
 
 #endif

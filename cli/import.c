@@ -63,7 +63,7 @@ static int run(int argc, char **argv)
         weft_import_report_free(&report);
     }
     if (code == WEFT_OK && command.heights)
-        code = weft_heights_look(&command.common, command.output, &error);
+        weft_heights_look(&command.common, command.output);
     return weft_command_exit("import", &command.common, code, &error);
 }
 

@@ -132,7 +132,7 @@ static int run(int argc, char **argv)
         weft_registration_free(&registration);
     }
     if (code == WEFT_OK && command.heights)
-        code = weft_heights_look(&command.common, command.output, &error);
+        weft_heights_look(&command.common, command.output);
     weft_session_free(&session);
     return weft_command_exit("register", &command.common, code, &error);
 }

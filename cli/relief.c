@@ -108,6 +108,7 @@ static weft_code move(const relief_command *command, const weft_relief_report *r
     weft_dataset *dataset;
     json_t *made = weft_relief_report_pack(report);
     weft_json_put(&made, "moved", json_true());
+    weft_json_put(&made, "moved_mm", json_real(report->plane_mm + report->moved_mm));
     heights.value = malloc(count * sizeof *heights.value);
     weft_code code = made && heights.value ? weft_dataset_open(command->input, &dataset, error)
                                            : weft_fail_memory(error, "heights", count * sizeof *heights.value);

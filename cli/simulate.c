@@ -6,9 +6,12 @@
 #include "cli/heights.h"
 #include "geometry/acquisition/acquisition.h"
 
+#include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Where texels lie. */
 typedef enum plane { PLANE_AUTO, PLANE_TOP, PLANE_MEAN } plane;
@@ -129,38 +132,41 @@ typedef struct request {
 } request;
 
 /* The best plane of a dataset; the top where its views tell none. */
-static weft_code find_best(const weft_common_options *common, const char *path, double *plane_mm, weft_error *error)
+static weft_code find_best(const weft_common_options *common, const char *path, double depth_mm, double *plane_mm,
+                           weft_error *error)
 {
     weft_relief_report report;
     weft_code code = weft_heights_estimate(common, path, &report, error);
     if (code == WEFT_BAD_INPUT) {
-        weft_command_say(common, "plane: the top of the cloth, for the best cannot be told: %s", error->message);
+        weft_command_say(common, "plane: the top of the cloth, for too few views lie among others to tell the best");
         return WEFT_OK;
     }
     if (code != WEFT_OK)
         return code;
-    *plane_mm = report.verdict == WEFT_RELIEF_NOTHING ? 0 : fmin(report.plane_mm, 0);
+    *plane_mm = report.verdict == WEFT_RELIEF_NOTHING ? 0 : fmax(fmin(report.plane_mm, 0), -depth_mm);
     weft_relief_report_free(&report);
     return WEFT_OK;
 }
 
-/* The same from a rough simulation, in a temporary file beside the output. */
+/* The same from a rough simulation, in a file beside the output that goes when it has been looked at. */
 static weft_code find_best_roughly(const simulate_command *command, const request *wanted, double *plane_mm,
                                    weft_error *error)
 {
     weft_progress progress = weft_command_progress(&command->common);
     weft_acquisition_options rough = wanted->options;
     weft_acquisition_report report;
-    weft_atomic_file scratch;
+    char path[PATH_MAX];
+    if (snprintf(path, sizeof path, "%s.rough", command->output) >= (int)sizeof path)
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is too long a name", command->output);
     rough.noise = fmax(rough.noise, ROUGH_NOISE);
     rough.width = weft_larger(rough.width / 2, weft_smaller(rough.width, FEWEST_ROUGH));
     rough.height = weft_larger(rough.height / 2, weft_smaller(rough.height, FEWEST_ROUGH));
-    WEFT_TRY(weft_atomic_file_begin(command->output, &scratch, error));
-    weft_code code = weft_acquire(wanted->stitch, wanted->mesh, wanted->direction, wanted->count, &rough,
-                                  scratch.temporary_path, &progress, &report, error);
+    weft_sweep_left_over(path);
+    weft_code code = weft_acquire(wanted->stitch, wanted->mesh, wanted->direction, wanted->count, &rough, path,
+                                  &progress, &report, error);
     if (code == WEFT_OK)
-        code = find_best(&command->common, scratch.temporary_path, plane_mm, error);
-    weft_atomic_file_abandon(&scratch);
+        code = find_best(&command->common, path, (double)(wanted->mesh->top - wanted->mesh->bottom), plane_mm, error);
+    unlink(path);
     return code;
 }
 
@@ -185,6 +191,7 @@ static weft_code acquire(const simulate_command *command, const weft_stitch *sti
     weft_acquisition_report report;
     weft_progress progress = weft_command_progress(common);
     WEFT_TRY(choose_directions(command->directions, wanted.direction, &wanted.count, error));
+    weft_sweep_left_over(command->output);
     WEFT_TRY(choose_plane(command, &wanted, error));
     int count = wanted.count;
     WEFT_TRY(weft_acquire(stitch, mesh, wanted.direction, count, &wanted.options, command->output, &progress, &report,
@@ -195,7 +202,9 @@ static weft_code acquire(const simulate_command *command, const weft_stitch *sti
     weft_command_say(
         common, "noise of the worst view: %.2f %%, with %.0f paths per texel and view; %.1f %% of the tile covered",
         100 * report.noise, report.paths_per_texel, 100 * report.covered);
-    return command->heights ? weft_heights_look(common, command->output, error) : WEFT_OK;
+    if (command->heights)
+        weft_heights_look(common, command->output);
+    return WEFT_OK;
 }
 
 static weft_code simulate(const simulate_command *command, weft_error *error)

@@ -318,14 +318,13 @@ static weft_code find(estimate *e, const weft_relief_options *options, weft_erro
 }
 
 /* Whether the texels were put where the views agree, by a simulation or by `weft relief --move`. */
-static bool lie_on_their_plane(const weft_dataset_layout *layout)
+static void note_plane(const weft_dataset_layout *layout, weft_relief_report *report)
 {
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
-    const json_t *relief = json_object_get(provenance, "relief");
-    bool result = json_number_value(json_object_get(provenance, "plane_below_top_mm")) > 0 ||
-                  json_is_true(json_object_get(relief, "moved"));
+    const json_t *moved = json_object_get(json_object_get(provenance, "relief"), "moved_mm");
+    report->moved_mm = json_number_value(moved);
+    report->on_its_plane = moved || json_number_value(json_object_get(provenance, "plane_below_top_mm")) > 0;
     json_decref(provenance);
-    return result;
 }
 
 static weft_code estimate_with(weft_dataset *dataset, const weft_relief_views *views,
@@ -334,7 +333,7 @@ static weft_code estimate_with(weft_dataset *dataset, const weft_relief_views *v
     WEFT_TRY(weft_features_read(dataset, views, e->progress, &e->features, error));
     WEFT_TRY(allocate(e, error));
     note_features(e, views, options);
-    e->report->on_its_plane = lie_on_their_plane(weft_dataset_get_layout(dataset));
+    note_plane(weft_dataset_get_layout(dataset), e->report);
     WEFT_TRY(find_compared(e, weft_dataset_path(dataset), error));
     name_views(e, views);
     return find(e, options, error);

@@ -22,6 +22,8 @@ weft_code weft_relief_keep(const char *path, const char *output, const weft_reli
     const weft_dataset_heights heights = {report->width, report->height, report->levels_used, report->height_mm_of};
     double plane_mm = report->verdict == WEFT_RELIEF_NOTHING ? 0 : report->plane_mm;
     json_t *object = weft_relief_report_pack(report);
+    if (report->moved_mm != 0)
+        weft_json_put(&object, "moved_mm", json_real(report->moved_mm));
     char *made = object ? json_dumps(object, JSON_COMPACT) : NULL;
     json_decref(object);
     if (!made)

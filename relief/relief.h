@@ -54,7 +54,8 @@ typedef struct weft_relief_report {
     double plane_mm;
     double low_mm, high_mm; /* where heights were looked for */
     bool repeats;
-    bool on_its_plane; /* the texels were put where the views agree */
+    bool on_its_plane; /* the texels were put where the views agree, */
+    double moved_mm;   /* this far above where they had been, by earlier moves */
     double seam;       /* how much opposite borders differ, as a multiple of neighbouring texels */
     weft_relief_errors error;
     int level_count; /* mip levels that were judged */

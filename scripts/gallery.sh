@@ -29,7 +29,7 @@ held_out() { printf '%.3f' "$("$weft" info "$1" | sed -n "s/^  $2: //p" | head -
 compare() {
     name=$1
     shift
-    [ -s "$name.scenes" ] || "$weft" compare "$name.btf.h5" "$name.weft" "$@" -o "$name-page" >"$name.scenes" 2>/dev/null
+    [ -s "$name.scenes" ] || { "$weft" compare "$name.btf.h5" "$name.weft" "$@" -o "$name-page" >scenes 2>/dev/null && mv scenes "$name.scenes"; }
 }
 
 # of_scene NAME MODEL FIELD, from these: 1 decibels beside raw, 2 milliseconds a frame, 3 of raw.

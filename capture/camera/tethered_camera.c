@@ -284,6 +284,19 @@ static int wait_for_file(weft_tethered_camera *c, double exposure_s, CameraFileP
     return GP_ERROR_TIMEOUT;
 }
 
+/* A busy camera refuses it at first. A shutter that stays open would end only with its battery. */
+static int let_go(weft_tethered_camera *c)
+{
+    enum { TRIES = 20 };
+    const struct timespec pause = {0, 100000000};
+    int result = press(c, 0);
+    for (int i = 1; result < GP_OK && i < TRIES; i++) {
+        nanosleep(&pause, NULL);
+        result = press(c, 0);
+    }
+    return result;
+}
+
 /* *lasted_s receives how long the shutter was open, by the clock: drivers open it last, and close it first. */
 static int expose_by_bulb(weft_tethered_camera *c, double exposure_s, CameraFilePath *path, double *lasted_s)
 {
@@ -295,7 +308,7 @@ static int expose_by_bulb(weft_tethered_camera *c, double exposure_s, CameraFile
     double opened_s = weft_now_s();
     wait_until(c, opened_s + exposure_s);
     *lasted_s = weft_now_s() - opened_s;
-    result = press(c, 0);
+    result = let_go(c);
     return result >= GP_OK ? wait_for_file(c, 0, path) : result;
 }
 
@@ -383,7 +396,7 @@ static int take_once(weft_tethered_camera *c, double exposure_s, double *said_s,
         result = expose_once(c, exposure_s, &path, said_s, bulb_s);
     if (result >= GP_OK)
         return fetch(c, &path);
-    return is_card_full(c) ? GP_ERROR_NO_SPACE : result;
+    return result;
 }
 
 /* Nothing is gained by asking again. */
@@ -396,12 +409,17 @@ static bool is_final(int result)
 /* Again where the camera is busy or gone, opened anew, until the time is up. */
 static weft_code take(weft_tethered_camera *c, double exposure_s, double *said_s, double *bulb_s, weft_error *error)
 {
+    enum { BUSY = 3 }; /* failures that may be a camera that is busy, whatever its card: it may write elsewhere */
     const struct timespec pause = {0, 300000000};
-    double end_s = weft_now_s() + c->settings.timeout_s;
+    double end_s = weft_now_s() + exposure_s + c->settings.timeout_s;
     int result = take_once(c, exposure_s, said_s, bulb_s);
-    while (result < GP_OK && !is_final(result) && weft_now_s() < end_s) {
+    for (int failed = 1; result < GP_OK && !is_final(result) && weft_now_s() < end_s; failed++) {
         if (stop_asked(c))
             return weft_fail(error, WEFT_SYSTEM, "%s: stopped", name);
+        if (failed >= BUSY && is_card_full(c)) {
+            result = GP_ERROR_NO_SPACE;
+            break;
+        }
         close_camera(c);
         nanosleep(&pause, NULL);
         result = take_once(c, exposure_s, said_s, bulb_s);

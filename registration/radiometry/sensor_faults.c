@@ -143,14 +143,34 @@ static void take_out_known(const weft_session *session, const weft_sensor_faults
     }
 }
 
+/* Frames that are clipped, or next to black, tell nothing of the response, and would spoil all photographs. */
+static weft_code check_field(const weft_session *session, const float *flat, size_t count, float *scratch,
+                             weft_error *error)
+{
+    const double clipped = 0.98, least = 0.05, most_clipped = 0.001;
+    double range = (1 << session->bits) - 1 - session->black_level;
+    for (size_t c = 0; c < 3; c++) {
+        double median = (channel_quantile(flat, count, c, 0.5, scratch) - session->black_level) / range;
+        double high = (channel_quantile(flat, count, c, 1 - most_clipped, scratch) - session->black_level) / range;
+        if (high >= clipped || median < least)
+            return weft_fail(
+                error, WEFT_BAD_INPUT,
+                "the flat frames of '%s' are too %s: half of channel %zu lies below %.1f %% of full scale, and "
+                "99.9 %% below %.1f %%",
+                session->folder, high >= clipped ? "bright" : "dark", c, 100 * median, 100 * high);
+    }
+    return WEFT_OK;
+}
+
 /* Makes a channel relative to its median, and marks what is dead. */
 static weft_code relate(float *flat, size_t count, size_t channel, float *scratch, weft_sensor_faults *faults,
                         weft_error *error)
 {
-    const float least = 0.25f, most = 4;
+    const float least = 0.5f, most = 4;
     double median = channel_quantile(flat, count, channel, 0.5, scratch);
     if (!(median >= 1))
-        return weft_fail(error, WEFT_BAD_INPUT, "the flat frames of '%s' are dark", faults->seen.folder);
+        return weft_fail(error, WEFT_BAD_INPUT, "the flat frames of '%s' are as dark as its dark frames",
+                         faults->seen.folder);
     for (size_t i = channel; i < count; i += 3) {
         flat[i] = (float)((double)flat[i] / median);
         bool dead = !(flat[i] >= least && flat[i] <= most);
@@ -192,12 +212,16 @@ static void summarise(weft_sensor_faults *faults, const float *flat, size_t coun
     faults->summary.most = (double)weft_quantile_of_floats(scratch, taken, 0.999);
 }
 
-/* Scaled by the least response of what sees, so that no value grows beyond full scale. */
+/* The response of nearly the least that sees: what is corrected by it keeps within full scale. The few that respond
+ * less count as clipped there a little early; by the very least, one speck of dust would dim all photographs. */
+static float common_response(const weft_sensor_faults *faults)
+{
+    return faults->summary.flat_frames > 0 ? (float)fmin(faults->summary.least, 1) : 1;
+}
+
 static void invert(const weft_sensor_faults *faults, float *flat, size_t count)
 {
-    float least = 1;
-    for (size_t i = 0; i < count; i++)
-        least = !faults->blind[i / 3] && flat[i] < least ? flat[i] : least;
+    float least = common_response(faults);
     for (size_t i = 0; i < count; i++)
         flat[i] = faults->blind[i / 3] ? 1 : least / flat[i];
 }
@@ -210,6 +234,7 @@ static weft_code find_response(const weft_session *session, float *scratch, weft
     if (session->flat_frames == 0)
         return WEFT_OK;
     WEFT_TRY(mean_of_frames(session, WEFT_FRAME_FLAT, &faults->inverse, &exposure_s, error));
+    WEFT_TRY(check_field(session, faults->inverse, count, scratch, error));
     take_out_known(session, faults, exposure_s, faults->inverse);
     for (size_t c = 0; c < 3; c++)
         WEFT_TRY(relate(faults->inverse, count, c, scratch, faults, error));
@@ -241,7 +266,7 @@ static weft_code find_all(const weft_session *session, weft_sensor_faults *fault
     free(scratch);
     faults->seen.bits = CORRECTED_BITS;
     faults->seen.black_level = CORRECTED_BLACK;
-    faults->seen.noise.electrons_per_value /= scale_of(faults);
+    faults->seen.noise.electrons_per_value /= scale_of(faults) * (double)common_response(faults);
     return code;
 }
 
@@ -269,8 +294,8 @@ static void correct(const weft_sensor_faults *faults, double exposure_s, size_t 
     for (size_t i = 0; i < count; i++) {
         double inverse = faults->inverse ? (double)faults->inverse[i] : 1;
         double value = CORRECTED_BLACK + scale * inverse * (samples[i] - dark_value(faults, i, exposure_s));
-        samples[i] = samples[i] >= full_scale ? (uint16_t)((1 << CORRECTED_BITS) - 1)
-                                              : (uint16_t)lrint(fmin(fmax(value, 0), highest));
+        samples[i] = samples[i] >= full_scale || value > highest ? (uint16_t)((1 << CORRECTED_BITS) - 1)
+                                                                 : (uint16_t)lrint(fmax(value, 0));
     }
 }
 

@@ -69,7 +69,7 @@ void weft_write_rig(weft_page *page, const weft_session *session, const weft_reg
           "degrees. It is taken to lie in the surface that continues the print.</li>\n<li>The reflectance of the white "
           "patches: all reflectances scale with it.</li>\n",
           page->html);
-    if (white > 0 && sensor->dark_frames + sensor->flat_frames == 0)
+    if (white > 0 && sensor->dark_frames == 0)
         fprintf(
             page->html,
             "<li>The black level: where it is off by one raw value, a reflectance of 0.05 is off by %.2f %%.</li>\n",

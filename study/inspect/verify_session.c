@@ -40,8 +40,10 @@ static weft_code put_count(const weft_session *session, json_t *description, wef
     for (int shot = 0; shot < session->shot_count; shot++)
         taken += session->record[shot].taken;
     json_t *verified = json_pack("{s:i}", "photographs", taken);
-    if (session->frame)
+    if (session->frame) {
         weft_json_put(&verified, "sensor_frames", json_integer(count_frames(session)));
+        weft_json_put(&verified, "sensor_frames_wanted", json_integer(weft_session_frame_count(session)));
+    }
     bool put = verified && json_object_set_new(description, "verified", verified) == 0;
     return put ? WEFT_OK : weft_fail_memory(error, "description", 0);
 }

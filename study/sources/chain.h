@@ -1,4 +1,4 @@
-/* From virtual cloth to a file, as a user would do it: photographs, dataset, material. */
+/* From virtual cloth to a file, as a user would do it, but without heights: photographs, dataset, material. */
 #ifndef WEFT_STUDY_SOURCES_CHAIN_H
 #define WEFT_STUDY_SOURCES_CHAIN_H
 

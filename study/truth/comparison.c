@@ -66,9 +66,8 @@ static void put_away(truth_stage *stage)
 static double plane_of(const json_t *provenance)
 {
     const json_t *relief = json_object_get(provenance, "relief");
-    bool is_moved = json_is_true(json_object_get(relief, "moved"));
     double below_mm = json_number_value(json_object_get(provenance, "plane_below_top_mm"));
-    return (is_moved ? json_number_value(json_object_get(relief, "plane_mm")) : 0) - below_mm;
+    return json_number_value(json_object_get(relief, "moved_mm")) - below_mm;
 }
 
 /* Where its texels lie, as many bounces as the simulation followed, and whether it was one of this stitch. */

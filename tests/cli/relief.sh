@@ -49,6 +49,11 @@ expect_says "^texels lie 0.[12]" simulate "$assets/stitches/plain_knit.stitch" -
 expect_says "^plane  *-*0.0" relief best.btf.h5
 expect_says "plane_below_top_mm: 0.[12]" info best.btf.h5
 
+# Another search keeps in mind that texels were moved.
+expect_ok relief knit.btf.h5 --move on -o moved.btf.h5
+expect_ok relief moved.btf.h5
+expect_says "moved_mm: -0.[12]" info moved.btf.h5
+
 # In place, as events, without what was there before.
 expect_ok relief knit.btf.h5 --json --range=-0.5,0.125
 grep -q '"event":"relief"' out.log || fail "there is no event"

@@ -21,7 +21,7 @@ theta_deg,phi_deg
 60,300
 CSV
 
-expect_says "^plane: the top of the cloth, for the best cannot be told" simulate "$stitch" -o open.btf.h5 --size 8x8 --noise 20 --directions directions.csv --bounces 1
+expect_says "^plane: the top of the cloth, for too few views" simulate "$stitch" -o open.btf.h5 --size 8x8 --noise 20 --directions directions.csv --bounces 1
 expect_ok verify open.btf.h5
 expect_ok info open.btf.h5
 grep -q "Open weave" out.log || fail "the dataset does not name its stitch"
