@@ -25,28 +25,20 @@ kilobytes() { echo "$(($(stat -c %s "$1") / 1000)) kB"; }
 title() { sed -n 's/.*name *= *"\([^"]*\)".*/\1/p' "$1" | head -n 1; }
 held_out() { printf '%.3f' "$("$weft" info "$1" | sed -n "s/^  $2: //p" | head -n 1)"; }
 
-# compare NAME [ARGUMENT...]: NAME.scenes holds how the models look on a drape, and what a frame costs.
+# compare NAME: NAME.scenes holds how the material looks on a drape, and what a frame costs.
 compare() {
-    name=$1
-    shift
-    [ -s "$name.scenes" ] || { "$weft" compare "$name.btf.h5" "$name.weft" "$@" -o "$name-page" >scenes 2>/dev/null && mv scenes "$name.scenes"; }
+    [ -s "$1.scenes" ] || { "$weft" compare "$1.btf.h5" "$1.weft" -o "$1-page" >scenes 2>/dev/null && mv scenes "$1.scenes"; }
 }
 
-# of_scene NAME MODEL FIELD, from these: 1 decibels beside raw, 2 milliseconds a frame, 3 of raw.
+# of_scene NAME FIELD, from these: 1 decibels beside raw, 2 milliseconds a frame, 3 of raw.
 of_scene() {
-    sed -n "s/.*, $2 beside raw: PSNR \([0-9.]*\) dB.*; \([0-9.]*\) ms a frame, raw \([0-9.]*\) ms.*/\\$3/p" "$1.scenes"
-}
-analytic_too() {
-    value=$(of_scene "$1" analytic "$2")
-    [ -z "$value" ] || printf ' / %s' "$value"
+    sed -n "s/.*, compressed beside raw: PSNR \([0-9.]*\) dB.*; \([0-9.]*\) ms a frame, raw \([0-9.]*\) ms.*/\\$2/p" "$1.scenes"
 }
 
-# row NAME: bytes, milliseconds and error of a dataset and its material, and of the analytic cloth where there is one.
+# row NAME: bytes, milliseconds and error of a dataset and its material.
 row() {
-    echo "| $(kilobytes "$1.btf.h5") / $(kilobytes "$1.weft")" \
-        "| $(of_scene "$1" compressed 3) / $(of_scene "$1" compressed 2)$(analytic_too "$1" 2)" \
-        "| $(held_out "$1.weft" photographs_interpolated) / $(held_out "$1.weft" not_fitted)" \
-        "| $(of_scene "$1" compressed 1)$(analytic_too "$1" 1) dB |"
+    echo "| $(kilobytes "$1.btf.h5") / $(kilobytes "$1.weft") | $(of_scene "$1" 3) / $(of_scene "$1" 2)" \
+        "| $(held_out "$1.weft" photographs_interpolated) / $(held_out "$1.weft" not_fitted) | $(of_scene "$1" 1) dB |"
 }
 
 {
@@ -90,30 +82,6 @@ TEXT
         draw "$name" --weave "$file"
         draw "$name-ball" --weave "$file" --mesh sphere --mesh-size 30
         echo "| $(title "$file") | ![cloth](images/gallery/$name.jpg) | ![ball](images/gallery/$name-ball.jpg) |"
-    done
-    cat <<'TEXT'
-
-### The same, photographed and compressed
-
-The virtual rig takes 6561 photographs of each, `weft register` makes 64 x 64 texels of them. The rig shows large threads: here
-a dataset is a cloth of 2 m. *Analytic* is the weave itself, laid as the rig lays it.
-
-| weave | raw | compressed | analytic | bytes, raw / compressed | ms a frame, analytic too | error, raw interpolated / compressed | drape, analytic too |
-| --- | --- | --- | --- | --- | --- | --- | --- |
-TEXT
-    for file in "$source_dir"/assets/weaves/*.wv; do
-        weave=$(basename "$file" .wv)
-        name=$weave-photographed
-        [ -s "$name.btf.h5" ] || "$weft" capture --rig virtual --sample "$file" --seed 1 -o "$weave-session" -q >&2
-        [ -s "$name.btf.h5" ] || "$weft" register "$weave-session" --size 64x64 -o "$name.btf.h5" -q >&2
-        rm -rf "$weave-session"
-        [ -s "$name.weft" ] || "$weft" compress "$name.btf.h5" -o "$name.weft" -q >&2
-        compare "$name" --weave "$file"
-        draw "$name-raw" --raw "$name.btf.h5" --mesh drape --repeat 40
-        draw "$name" "$name.weft" --mesh drape --repeat 40
-        draw "$name-analytic" --raw "$name.btf.h5" --weave "$file" --mode analytic --mesh drape --repeat 40
-        echo "| $(title "$file") | ![raw](images/gallery/$name-raw.jpg) | ![compressed](images/gallery/$name.jpg)" \
-            "| ![analytic](images/gallery/$name-analytic.jpg) $(row "$name")"
     done
     cat <<'TEXT'
 

@@ -159,7 +159,7 @@ static void a_large_plane_far_away_has_the_mean_of_the_dataset(void **state)
     for (int view = 0; view < 5; view += 2) {
         int light = (view + 3) % DIRECTIONS;
         weft_scene scene = distant_scene(view, light, REPEAT);
-        weft_traced traced = trace(&flat, &scene, SIDE, 1024, 1);
+        weft_traced traced = trace(&flat, &scene, SIDE, 512, 1);
         for (int c = 0; c < 3; c++) {
             double expected = mean_of_image(view * DIRECTIONS + light, c);
             assert_float_equal(middle(&traced.all, c), expected, noise * expected);
@@ -199,7 +199,7 @@ static void the_player_shows_that_plane_alike(void **state)
     weft_player *player = player_of(&flat);
     weft_scene scene = distant_scene(3, 1, REPEAT);
     expect_ok(weft_player_picture(player, &scene, SIDE, SIDE, 2, NULL, &raw, &error), &error);
-    weft_traced traced = trace(&flat, &scene, SIDE, 1024, 1);
+    weft_traced traced = trace(&flat, &scene, SIDE, 512, 1);
     for (int c = 0; c < 3; c++)
         assert_float_equal(middle(&raw, c), middle(&traced.all, c), 2 * noise * middle(&traced.all, c));
     weft_traced_free(&traced);
