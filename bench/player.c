@@ -104,10 +104,22 @@ static weft_image picture(weft_player *player, const weft_scene *scene, long fra
     return image;
 }
 
+/* What so many frames of a resting picture lack against a reference. */
+static void judge_frames(weft_player *player, const weft_scene *scene, const weft_image *reference,
+                         const weft_image *background, weft_canvas *canvas)
+{
+    static const int frames[] = {1, 4, 8, 16, 32, 64};
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+        weft_image image = picture(player, scene, 0, frames[i], canvas);
+        printf(" %d %.2f %%", frames[i], 100 * bench_relative_rmse(&image, reference, background));
+        weft_image_free(&image);
+    }
+    printf("\n");
+}
+
 /* What a moving and a resting picture lack against all lights of the map, every neighbour evaluated. */
 static void judge_environment(weft_player *player, weft_scene scene, weft_canvas *canvas)
 {
-    static const int frames[] = {4, 16, 64};
     weft_scene away = scene;
     away.orbit.distance = 500;
     weft_image background = picture(player, &away, 0, 1, canvas);
@@ -116,15 +128,10 @@ static void judge_environment(weft_player *player, weft_scene scene, weft_canvas
     weft_image exact = picture(player, &scene, -1, 1, canvas);
     scene.filter = WEFT_FILTER_STOCHASTIC;
     weft_image moving = picture(player, &scene, -1, 1, canvas);
-    printf("    against all lights: moving, exact %.2f %%, stochastic %.2f %%; resting",
+    printf("    against all lights: moving, exact %.2f %%, stochastic %.2f %%; resting, by frames:",
            100 * bench_relative_rmse(&exact, &reference, &background),
            100 * bench_relative_rmse(&moving, &reference, &background));
-    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
-        weft_image image = picture(player, &scene, 0, frames[i], canvas);
-        printf(", %d frames %.2f %%", frames[i], 100 * bench_relative_rmse(&image, &reference, &background));
-        weft_image_free(&image);
-    }
-    printf("\n");
+    judge_frames(player, &scene, &reference, &background, canvas);
     weft_image_free(&background);
     weft_image_free(&reference);
     weft_image_free(&exact);
@@ -135,19 +142,13 @@ static void judge_environment(weft_player *player, weft_scene scene, weft_canvas
 static void judge_rest(weft_player *player, weft_scene scene, weft_canvas *canvas)
 {
     enum { MANY = 4 * WEFT_ENVIRONMENT_PARTS };
-    static const int frames[] = {1, 4, 8, 16, 32, 64};
     weft_scene away = scene;
     away.orbit.distance = 500;
     away.ground = false;
     weft_image background = picture(player, &away, 0, 1, canvas);
     weft_image reference = picture(player, &scene, 0, MANY, canvas);
     printf("    at rest, against %d frames:", MANY);
-    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
-        weft_image image = picture(player, &scene, 0, frames[i], canvas);
-        printf(" %d %.2f %%", frames[i], 100 * bench_relative_rmse(&image, &reference, &background));
-        weft_image_free(&image);
-    }
-    printf("\n");
+    judge_frames(player, &scene, &reference, &background, canvas);
     weft_image_free(&background);
     weft_image_free(&reference);
 }

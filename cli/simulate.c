@@ -148,7 +148,15 @@ static weft_code find_best(const weft_common_options *common, const char *path, 
     return WEFT_OK;
 }
 
-/* The same from a rough simulation, in a file beside the output that goes when it has been looked at. */
+/* A hidden file beside the output. */
+static weft_code rough_path(const char *output, char path[PATH_MAX], weft_error *error)
+{
+    const char *slash = strrchr(output, '/'), *name = slash ? slash + 1 : output;
+    int length = snprintf(path, PATH_MAX, "%.*s.%s.rough", (int)(name - output), output, name);
+    return length < PATH_MAX ? WEFT_OK : weft_fail(error, WEFT_BAD_USAGE, "'%s' is too long a name", output);
+}
+
+/* The same from a rough simulation, whose file goes when it has been looked at. */
 static weft_code find_best_roughly(const simulate_command *command, const request *wanted, double *plane_mm,
                                    weft_error *error)
 {
@@ -156,8 +164,7 @@ static weft_code find_best_roughly(const simulate_command *command, const reques
     weft_acquisition_options rough = wanted->options;
     weft_acquisition_report report;
     char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s.rough", command->output) >= (int)sizeof path)
-        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is too long a name", command->output);
+    WEFT_TRY(rough_path(command->output, path, error));
     rough.noise = fmax(rough.noise, ROUGH_NOISE);
     rough.width = weft_larger(rough.width / 2, weft_smaller(rough.width, FEWEST_ROUGH));
     rough.height = weft_larger(rough.height / 2, weft_smaller(rough.height, FEWEST_ROUGH));

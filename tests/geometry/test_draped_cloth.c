@@ -203,6 +203,29 @@ static void cloth_ends_at_its_hem(void **state)
     take_up(&laid);
 }
 
+/* A ray just above the surface passes over cloth whose top lies on it, and meets cloth of which a deeper plane does. */
+static void a_plane_in_the_cloth_may_lie_on_the_surface(void **state)
+{
+    (void)state;
+    const weft_draped_light light = {{0, 0, 1}, 0, 5};
+    for (int deeper = 0; deeper < 2; deeper++) {
+        weft_base_vertex vertex[4];
+        uint32_t triangle[2][3];
+        weft_error error = {0};
+        weft_draped_radiance radiance = {0};
+        laid_stitch laid;
+        shipped_stitch_open("plain_weave", COARSE, &laid.stitch, &laid.mesh);
+        weft_real depth = (weft_real)(laid.mesh.top - laid.mesh.bottom), side = 2 * laid.stitch.width;
+        set_patch(vertex, triangle, 0, 0, 0, side, side);
+        const weft_base_surface surface = {4, 2, vertex, (const uint32_t(*)[3])triangle, -deeper * depth / 2};
+        assert_int_equal(weft_draped_cloth_create(&laid.stitch, &laid.mesh, &surface, &laid.cloth, &error), WEFT_OK);
+        weft_vec3 place = weft_vec3_of(-1, side / 2 + 0.01, depth / 8);
+        assert_true(weft_draped_cloth_path(laid.cloth, place, weft_vec3_of(1, 0, 0), &light, 1, 0, &radiance) ==
+                    deeper);
+        take_up(&laid);
+    }
+}
+
 static void surfaces_without_sense_are_refused(void **state)
 {
     (void)state;
@@ -231,6 +254,7 @@ int main(void)
         cmocka_unit_test(turning_everything_changes_nothing),
         cmocka_unit_test(distant_cloth_casts_shadows_beyond_reach_only),
         cmocka_unit_test(cloth_ends_at_its_hem),
+        cmocka_unit_test(a_plane_in_the_cloth_may_lie_on_the_surface),
         cmocka_unit_test(surfaces_without_sense_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
