@@ -193,7 +193,9 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
                          "leave one out: relative RMSE %.4f, median relative error %.4f (means of %d photographs)",
                          comparison->left_out.mean_relative_rmse, comparison->left_out.mean_median_relative,
                          comparison->left_out.count);
-    say_scene(common, &comparison->scenes);
+    /* Interpolated, a handful of photographs is no picture to be compared with. */
+    if (comparison->left_out.count == 0)
+        say_scene(common, &comparison->scenes);
     if (!comparison->scenes.drawn)
         weft_command_say(common, "no pictures of scenes: %s", comparison->scenes.why_not);
     say_truth(common, &comparison->truth);
