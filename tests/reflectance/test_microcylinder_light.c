@@ -7,13 +7,15 @@
 
 #include <string.h>
 
-/* Single precision, which shares the formulas, is held to every sixth row. */
+/* Light that comes from everywhere takes its time: every third row is tested, and every one under sanitizers. Single
+ * precision, which shares the formulas, is held to every sixth of both. */
 enum {
     ENVIRONMENT_ROWS = 204,
     TABLE_ROWS = 204,
     LIGHTS = 2,
     IS_SINGLE = sizeof(weft_real) == sizeof(float),
-    ROW_STEP = IS_SINGLE ? 6 : 1
+    TABLE_STEP = IS_SINGLE ? 6 : 1,
+    ENVIRONMENT_STEP = IS_SINGLE ? 6 : ENVIRONMENT_ROW_STEP
 };
 
 /* Both files say that they are converged to about 1e-5, and hold no condition. */
@@ -142,7 +144,7 @@ static void table_entries_match_every_row(void **state)
     reference_cloths_read(cloths);
     reference_vectors v = vectors_open("microcylinder_T.csv", TABLE_ROWS);
     int named = 0;
-    for (int row = 0; row < TABLE_ROWS; row += ROW_STEP)
+    for (int row = 0; row < TABLE_ROWS; row += TABLE_STEP)
         check_integral(&v, row, "T", table_entry(&v, row, cloths), unconverged_entry, UNCONVERGED_ENTRIES, &named);
     assert_true(IS_SINGLE || named == UNCONVERGED_ENTRIES);
     vectors_close(&v);
@@ -185,14 +187,14 @@ static void add_tangents(lit_tangent *lit)
     }
 }
 
-static void environment_light_matches_every_row(void **state)
+static void environment_light_matches_the_rows(void **state)
 {
     (void)state;
     static reference_cloth cloths[REFERENCE_CLOTHS];
     reference_cloths_read(cloths);
     reference_vectors v = vectors_open("microcylinder_env.csv", ENVIRONMENT_ROWS);
     int named = 0;
-    for (int row = 0; row < ENVIRONMENT_ROWS; row += ROW_STEP) {
+    for (int row = ENVIRONMENT_STEP - 1; row < ENVIRONMENT_ROWS; row += ENVIRONMENT_STEP) {
         lit_tangent lit = {.cloth = reference_cloth_named(cloths, vectors_text(&v, row, "cloth")),
                            .view = vectors_direction(&v, row, "wo"),
                            .light = {light_at(&v, row, 0), light_at(&v, row, 1)}};
@@ -209,7 +211,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(table_entries_match_every_row),
-        cmocka_unit_test(environment_light_matches_every_row),
+        cmocka_unit_test(environment_light_matches_the_rows),
     };
     return cmocka_run_group_tests_name("microcylinder light", tests, NULL, NULL);
 }

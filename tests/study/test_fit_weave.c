@@ -153,7 +153,7 @@ static void filament_fabrics_are_found_again_from_30_percent_off(void **state)
     assert_recovered("silk_charmeuse", 2);
 }
 
-enum { CAPTURES = 12, GROUPS = 2 };
+enum { CAPTURES = 8, GROUPS = 2 };
 
 /* Of one parameter over repeated captures: sums of squared errors and of squared standard errors. */
 typedef struct spread {
