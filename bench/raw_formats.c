@@ -1,6 +1,6 @@
 /* What each format of the samples of a dataset costs and loses: graphics memory, processor time of streaming and of a
  * frame, and the errors of samples and of a picture against half floats. Usage: bench_raw_formats NAME.btf.h5 */
-#include "../tests/player/bc6h_decode.h"
+#include "../tests/player/raw/bc6h_decode.h"
 #include "bench/measure.h"
 #include "player/draw/canvas.h"
 #include "player/draw/player_parts.h"

@@ -1,5 +1,5 @@
 /* Writes example.weft and example.btf.h5 into the working folder, for the scripts that read them with other tools. */
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/weft_bytes.h"
 #include "tests/support/tiny_dataset.h"
 
 #include <stdio.h>

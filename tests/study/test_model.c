@@ -3,7 +3,7 @@
 #include "reflectance/lafortune/lafortune.h"
 #include "reflectance/layers/layers.h"
 #include "study/model/model.h"
-#include "tests/btf/layers_example.h"
+#include "tests/btf/material/layers_example.h"
 
 #include <math.h>
 #include <stdio.h>

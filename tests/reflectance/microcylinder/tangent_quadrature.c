@@ -1,4 +1,4 @@
-#include "tests/reflectance/tangent_quadrature.h"
+#include "tests/reflectance/microcylinder/tangent_quadrature.h"
 
 enum { NODES = 8, MAX_CUTS = 40, LEVELS = 3 };
 

@@ -1,10 +1,10 @@
 /* Blocks that the encoder makes, as the specification decodes them, and as the graphics driver does. */
-#include "../support/keep_modules.h"
+#include "../../support/keep_modules.h"
+#include "../stage.h"
 #include "base/processor.h"
 #include "bc6h_decode.h"
 #include "player/gl/gl.h"
 #include "player/raw/bc6h.h"
-#include "stage.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* Reading microcylinder files: the shipped ones are the reference cloths; a line and column for every mistake. */
 #include "btf/direction/direction.h"
 #include "reflectance/microcylinder/file.h"
-#include "tests/reflectance/microcylinder_cloths.h"
-#include "tests/reflectance/microcylinder_text.h"
+#include "tests/reflectance/microcylinder/microcylinder_cloths.h"
+#include "tests/reflectance/microcylinder/microcylinder_text.h"
 #include "tests/reflectance/vectors.h"
 
 #include <stdio.h>

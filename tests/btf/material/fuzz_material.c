@@ -1,4 +1,4 @@
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/weft_bytes.h"
 #include "tests/support/fuzz.h"
 
 void fuzz_write_seed(const char *path)

@@ -1,8 +1,8 @@
 /* Microcylinder cloth under spherical-Gaussian light: the reference vectors of environment light and of table entries.
  * Built twice: in double, and in single precision. */
 #include "reflectance/gaussian/spherical_gaussian.h"
-#include "tests/reflectance/microcylinder_cloths.h"
-#include "tests/reflectance/tangent_quadrature.h"
+#include "tests/reflectance/microcylinder/microcylinder_cloths.h"
+#include "tests/reflectance/microcylinder/tangent_quadrature.h"
 #include "tests/reflectance/vectors.h"
 
 #include <string.h>

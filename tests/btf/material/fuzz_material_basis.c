@@ -1,5 +1,5 @@
 #include "btf/material/material.h"
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/weft_bytes.h"
 #include "tests/support/fuzz.h"
 
 #include <stdlib.h>

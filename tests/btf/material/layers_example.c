@@ -1,7 +1,7 @@
-#include "tests/btf/layers_example.h"
+#include "tests/btf/material/layers_example.h"
 
 #include "btf/material/material.h"
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/weft_bytes.h"
 
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/weft_bytes.h"
 
 #include "btf/direction/direction.h"
 #include "btf/material/models.h"

@@ -1,6 +1,6 @@
 /* A material made of the texels of another: what is moved, what is mixed, and where its levels come from. */
 #include "btf/material/gather.h"
-#include "tests/btf/layers_example.h"
+#include "tests/btf/material/layers_example.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/scratch_folder.h"

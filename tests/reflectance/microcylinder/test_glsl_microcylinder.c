@@ -1,7 +1,7 @@
 /* microcylinder.glsl gives what weft_microcylinder_scattering gives, both weightings, in both dialects of GLSL, on
  * random and extreme directions. */
 #include "player/gl/shaders.h"
-#include "tests/reflectance/microcylinder_cloths.h"
+#include "tests/reflectance/microcylinder/microcylinder_cloths.h"
 #include "tests/reflectance/random.h"
 #include "tests/reflectance/twin_stage.h"
 #include "tests/support/cmocka_all.h"

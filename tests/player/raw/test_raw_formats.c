@@ -1,6 +1,6 @@
 /* The same dataset in every format: what is drawn is what the evaluator in C finds in the file. */
+#include "../stage.h"
 #include "player/draw/player_parts.h"
-#include "stage.h"
 #include "study/model/raw_btf.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* A .weft file of whatever seed. */
 #include "btf/material/material.h"
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/weft_bytes.h"
 #include "tests/support/fuzz.h"
 
 #include <stdlib.h>

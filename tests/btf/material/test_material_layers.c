@@ -2,8 +2,8 @@
 #include "tests/support/cmocka_all.h"
 
 #include "btf/material/material.h"
-#include "tests/btf/layers_example.h"
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/layers_example.h"
+#include "tests/btf/material/weft_bytes.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/scratch_folder.h"
 

@@ -1,7 +1,7 @@
 /* Tables stored by components: their decoding, and files that hold them. */
 #include "btf/direction/direction.h"
 #include "btf/material/material.h"
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/weft_bytes.h"
 #include "tests/support/cmocka_all.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "tests/reflectance/microcylinder_cloths.h"
+#include "tests/reflectance/microcylinder/microcylinder_cloths.h"
 #include "tests/reflectance/vectors.h"
 
 #include <stdio.h>

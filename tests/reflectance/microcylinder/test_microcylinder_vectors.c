@@ -1,5 +1,5 @@
 /* The reference vectors of microcylinder threads and cloth. Built twice: in double, and in single precision. */
-#include "tests/reflectance/microcylinder_cloths.h"
+#include "tests/reflectance/microcylinder/microcylinder_cloths.h"
 #include "tests/reflectance/representable.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "tests/btf/heights_example.h"
+#include "tests/btf/material/heights_example.h"
 #include "tests/support/fuzz.h"
 
 /* Heights that layers are seen through. */

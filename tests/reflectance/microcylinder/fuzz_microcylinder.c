@@ -1,6 +1,6 @@
 /* Mutated microcylinder files: refused with a message, or read and evaluated to finite values. */
 #include "reflectance/microcylinder/file.h"
-#include "tests/reflectance/microcylinder_text.h"
+#include "tests/reflectance/microcylinder/microcylinder_text.h"
 #include "tests/support/fuzz.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Sections that leave out the texels without such a part. */
 #include "btf/material/models.h"
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/weft_bytes.h"
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
 

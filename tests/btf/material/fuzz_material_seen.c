@@ -1,4 +1,4 @@
-#include "tests/btf/seen_example.h"
+#include "tests/btf/material/seen_example.h"
 #include "tests/support/fuzz.h"
 
 /* Maps of what a scene reaches. */

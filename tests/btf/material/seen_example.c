@@ -1,6 +1,6 @@
-#include "tests/btf/seen_example.h"
+#include "tests/btf/material/seen_example.h"
 
-#include "tests/btf/layers_example.h"
+#include "tests/btf/material/layers_example.h"
 
 #include <stdlib.h>
 

@@ -2,8 +2,8 @@
  */
 #include "tests/support/cmocka_all.h"
 
-#include "tests/btf/seen_example.h"
-#include "tests/btf/weft_bytes.h"
+#include "tests/btf/material/seen_example.h"
+#include "tests/btf/material/weft_bytes.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/scratch_folder.h"
 

@@ -1,4 +1,4 @@
-#include "tests/btf/layers_example.h"
+#include "tests/btf/material/layers_example.h"
 #include "tests/support/fuzz.h"
 
 /* Linear layers. */
