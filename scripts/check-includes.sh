@@ -1,6 +1,7 @@
 #!/bin/sh
 # What the include paths cannot refuse: an include that climbs out of its folder, or a bare name that belongs to another folder; and
-# the order of the stages along the corridor. And that nothing lies beside the rooms: what a test left behind was once committed.
+# the order of the stages along the corridor. And that nothing lies beside the rooms: what a test left behind was once committed. And
+# that a folder can be taken in at a glance.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -47,5 +48,8 @@ git ls-files | grep -v / | grep -vxE '[.](clang-format|clang-tidy|gitignore)|CMa
     sed 's|$|: lies beside the rooms|' >>"$faults" || true
 git ls-files | grep / | cut -d/ -f1 | sort -u | grep -vxE "$(echo $rooms $beside | tr ' ' '|')" |
     sed 's|$|/: is no room|' >>"$faults" || true
+# Golden files and mutants are lists of cases, which nobody reads as a whole.
+git ls-files | grep / | grep -vE '^tests/(golden|mutants)/' | sed 's|/[^/]*$||' | sort | uniq -c |
+    awk '$1 > 40 { print $2 "/: holds " $1 " files, more than 40" }' >>"$faults"
 cat "$faults"
 [ ! -s "$faults" ]
