@@ -48,6 +48,9 @@ git ls-files | grep -v / | grep -vxE '[.](clang-format|clang-tidy|gitignore)|CMa
     sed 's|$|: lies beside the rooms|' >>"$faults" || true
 git ls-files | grep / | cut -d/ -f1 | sort -u | grep -vxE "$(echo $rooms $beside | tr ' ' '|')" |
     sed 's|$|/: is no room|' >>"$faults" || true
+for room in $rooms; do
+    grep -qE "^HeaderFilterRegex:.*[(|]$room[|)]" .clang-tidy || echo "$room/: .clang-tidy does not look at its headers" >>"$faults"
+done
 # Golden files and mutants are lists of cases, which nobody reads as a whole.
 git ls-files | grep / | grep -vE '^tests/(golden|mutants)/' | sed 's|/[^/]*$||' | sort | uniq -c |
     awk '$1 > 40 { print $2 "/: holds " $1 " files, more than 40" }' >>"$faults"
