@@ -113,8 +113,8 @@ static void expect_the_same_mean(void **state, weft_scene scene, int samples, do
     scene.filter = WEFT_FILTER_STOCHASTIC;
     weft_image one = draw(state, scene, 1), mean = draw(state, scene, samples);
     double far = relative_rmse(&one, &exact), near = relative_rmse(&mean, &exact);
-    printf("%s: one frame %.2f %%, mean of %d %.3f %%\n", weft_mode_name(scene.pane[0]), 100 * far,
-           samples * samples, 100 * near);
+    printf("%s: one frame %.2f %%, mean of %d %.3f %%\n", weft_mode_name(scene.pane[0]), 100 * far, samples * samples,
+           100 * near);
     assert_true(far > 5 * near);
     assert_true(near < most);
     weft_image_free(&exact);
