@@ -267,7 +267,9 @@ static tally torture(int kills)
 {
     tally t = {0};
     weft_shot_record *before = calloc((size_t)shot_count, sizeof *before);
-    while (before && t.kills < kills && journal_lines() < shot_count) {
+    if (!before)
+        fail("no memory");
+    while (t.kills < kills && journal_lines() < shot_count) {
         t.kills += kill_somewhere(start("session"));
         look_after_kill(before, &t);
     }
