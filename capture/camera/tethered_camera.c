@@ -467,6 +467,19 @@ static const char *original(void *device)
 
 /* ---- The camera ---- */
 
+/* Some cameras hand over their files and no more. */
+static weft_code expect_release(const weft_tethered_camera *c, weft_error *error)
+{
+    CameraAbilities abilities;
+    int result = gp_camera_get_abilities(c->camera, &abilities);
+    if (result < GP_OK)
+        return fail_with(c, result, "ask what it can do", error);
+    if (!(abilities.operations & (GP_OPERATION_CAPTURE_IMAGE | GP_OPERATION_TRIGGER_CAPTURE)))
+        return weft_fail(error, WEFT_SYSTEM, "%s: a computer cannot release the shutter of a %s: use a watched folder",
+                         name, abilities.model);
+    return WEFT_OK;
+}
+
 static weft_code begin(weft_tethered_camera *c, weft_error *error)
 {
     const char *temporary = getenv("TMPDIR");
@@ -480,7 +493,7 @@ static weft_code begin(weft_tethered_camera *c, weft_error *error)
     int result = open_camera(c);
     if (result == GP_ERROR_MODEL_NOT_FOUND)
         return weft_fail(error, WEFT_SYSTEM, "%s: none is connected that libgphoto2 knows", name);
-    return result >= GP_OK ? WEFT_OK : fail_with(c, result, "open it", error);
+    return result >= GP_OK ? expect_release(c, error) : fail_with(c, result, "open it", error);
 }
 
 weft_code weft_tethered_camera_create(const weft_tethered_camera_settings *settings, weft_tethered_camera **result,

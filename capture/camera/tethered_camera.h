@@ -14,7 +14,8 @@ typedef struct weft_tethered_camera_settings {
 
 typedef struct weft_tethered_camera weft_tethered_camera;
 
-/* Opens the camera. The caller frees with weft_tethered_camera_free. Errors: WEFT_SYSTEM where it does not answer. */
+/* Opens the camera. The caller frees with weft_tethered_camera_free. Errors: WEFT_SYSTEM where it does not answer, or
+ * hands over its files but cannot be released. */
 weft_code weft_tethered_camera_create(const weft_tethered_camera_settings *settings, weft_tethered_camera **camera,
                                       weft_error *error);
 void weft_tethered_camera_free(weft_tethered_camera *camera);

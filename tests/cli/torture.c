@@ -248,6 +248,8 @@ static void compare_with_reference(tally *t)
         worst = fmax(worst, own);
         nearest_other = fmin(nearest_other, difference(&session, shot, &reference, (shot + 1) % shot_count));
         t->wrong += own > noise;
+        if (own > noise)
+            fprintf(stderr, "shot %d differs by %.4f\n", shot, own);
     }
     printf("photographs differ from those of the undisturbed session by %.4f at most, from the next shot's by %.4f at "
            "least\n",
@@ -265,7 +267,9 @@ static tally torture(int kills)
 {
     tally t = {0};
     weft_shot_record *before = calloc((size_t)shot_count, sizeof *before);
-    while (before && t.kills < kills && journal_lines() < shot_count) {
+    if (!before)
+        fail("no memory");
+    while (t.kills < kills && journal_lines() < shot_count) {
         t.kills += kill_somewhere(start("session"));
         look_after_kill(before, &t);
     }
@@ -287,9 +291,20 @@ static void enter_scratch_folder(char folder[])
                            "\"light_rotation_deg\":0,\"light_power_drift\":0}");
 }
 
+/* What failed stays, to be looked at. */
+static void leave(const char *folder, bool survived)
+{
+    char command[64];
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    if (!survived)
+        fprintf(stderr, "torture: left in %s\n", folder);
+    else if (chdir("/") != 0 || system(command) != 0)
+        fail("cannot remove the scratch folder");
+}
+
 int main(int argc, char **argv)
 {
-    char folder[] = "/tmp/weft-torture-XXXXXX", assets[PATH_MAX], command[64];
+    char folder[] = "/tmp/weft-torture-XXXXXX", assets[PATH_MAX];
     if (argc < 3)
         fail("usage: torture PROGRAM ASSETS [KILLS]");
     int kills = argc > 3 ? atoi(argv[3]) : 30;
@@ -307,11 +322,9 @@ int main(int argc, char **argv)
         "%d photographs, %d kills: %d lost, %d wrong, %d faults, %d journal errors, %d taken without a line (at most "
         "%d at once), %d files left over\n",
         shot_count, t.kills, t.lost, t.wrong, t.faults, t.journal_errors, t.in_flight, t.most_in_flight, t.left_over);
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    if (chdir("/") != 0 || system(command) != 0)
-        fail("cannot remove the scratch folder");
     /* A machine that is busy while the session is timed, and idle afterwards, is through with it before all kills. */
     bool survived = t.kills >= (kills + 3) / 4 && t.lost + t.wrong + t.faults + t.journal_errors + t.left_over == 0 &&
                     t.most_in_flight <= 1;
+    leave(folder, survived);
     return survived ? 0 : 1;
 }
