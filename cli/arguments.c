@@ -30,6 +30,7 @@ typedef struct arguments {
     struct {
         const weft_option *option;
         const weft_setting *setting; /* of the scene, or NULL */
+        bool is_given;
     } row[MAX_ROWS];
     struct argp_option option[MAX_ROWS + 8]; /* with headings and the end */
 } arguments;
@@ -109,9 +110,14 @@ static void insist(weft_code code, const weft_error *error, struct argp_state *s
 static void set(arguments *a, int row, const char *text, struct argp_state *state)
 {
     weft_error error = {0};
+    const weft_option *option = a->row[row].option;
     const weft_setting *setting = a->row[row].setting;
+    /* Of two values one would be lost without a word. */
+    if (a->row[row].is_given && option->name && option->argument)
+        argp_error(state, "--%s is given twice", option->name);
+    a->row[row].is_given = true;
     weft_code code = setting ? weft_scene_request_add(scene_of(a), setting, text, &error)
-                             : weft_option_set(a->row[row].option, text, a->values, &error);
+                             : weft_option_set(option, text, a->values, &error);
     insist(code, &error, state);
 }
 
@@ -191,6 +197,17 @@ static void check_outputs(const arguments *a, struct argp_state *state)
     }
 }
 
+static void check_inputs(const arguments *a, struct argp_state *state)
+{
+    weft_error error = {0};
+    for (int row = 0; row < a->row_count; row++) {
+        const weft_option *option = a->row[row].option;
+        const char *name = text_of(a, row);
+        if (name && option->kind == WEFT_OPTION_INPUT)
+            insist(weft_argument_belongs(option->argument, name, &error), &error, state);
+    }
+}
+
 static void complete(arguments *a, struct argp_state *state)
 {
     weft_error error = {0};
@@ -202,6 +219,7 @@ static void complete(arguments *a, struct argp_state *state)
         insist(weft_scene_request_complete(scene_of(a), &error), &error, state);
         refuse_overwriting(a, state); /* what the settings of another picture name, too */
     }
+    check_inputs(a, state);
     check_outputs(a, state);
     if (a->command->check)
         insist(a->command->check(a->values, &error), &error, state);

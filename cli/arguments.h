@@ -15,6 +15,11 @@ typedef struct weft_scene_values {
  * WEFT_BAD_USAGE; a picture with settings that cannot be read with the code of that. */
 void weft_arguments_parse(const weft_command *command, int argc, char **argv, void *values);
 
+/* Whether a file is of a kind that the name of an argument allows, as far as both tell: "NAME.weft" is a material,
+ * "SESSION" a folder. What is not there, or tells nothing, is left to its reader. Errors: WEFT_BAD_INPUT naming the
+ * file, what it is and what belongs in its place. */
+weft_code weft_argument_belongs(const char *argument, const char *path, weft_error *error);
+
 /* Visits every option of a command: its own, those of a scene with their setting (else NULL), the common ones. Options
  * without a name are arguments that are known by their place, in the order of the places. */
 typedef void weft_arguments_visit(void *context, const weft_option *option, const weft_setting *setting);

@@ -103,6 +103,12 @@ void weft_command_say(const weft_common_options *common, const char *format, ...
     fflush(stdout);
 }
 
+void weft_command_say_page(const weft_common_options *common, const char *name, const char *folder)
+{
+    bool ends_in_slash = *folder && folder[strlen(folder) - 1] == '/';
+    weft_command_say(common, "%s: %s%sindex.html", name, folder, ends_in_slash ? "" : "/");
+}
+
 static void say_line(void *context, const char *text)
 {
     weft_command_say(context, "%s", text);

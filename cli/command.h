@@ -51,6 +51,9 @@ weft_progress weft_command_progress(const weft_common_options *common);
 /* A result for the user, on stdout (nothing with --quiet; an event {"event":"note","text":...} with --json). */
 void weft_command_say(const weft_common_options *common, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Where the page is that was written: "NAME: FOLDER/index.html". */
+void weft_command_say_page(const weft_common_options *common, const char *name, const char *folder);
+
 /* One machine-readable event with --json, nothing otherwise. `json_object` is the text of a JSON object. */
 void weft_command_event(const weft_common_options *common, const char *json_object);
 

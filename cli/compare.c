@@ -199,7 +199,7 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
     if (!comparison->scenes.drawn)
         weft_command_say(common, "no pictures of scenes: %s", comparison->scenes.why_not);
     say_truth(common, &comparison->truth);
-    weft_command_say(common, "page: %s/index.html", command->options.folder);
+    weft_command_say_page(common, "page", command->options.folder);
 }
 
 static int run(int argc, char **argv)

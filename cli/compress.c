@@ -349,9 +349,13 @@ static void say_sizes(const compress_command *command, const weft_dataset_layout
 {
     double samples = 6.0 * layout->width * layout->height * layout->image_count;
     double material = (double)weft_file_bytes(command->output);
-    weft_command_say(&command->common,
-                     "%s: %.2f MB, 1:%.0f of the samples as half floats (%.1f MB; the file has %.1f MB)",
-                     command->output, material * 1e-6, material > 0 ? samples / material : 0, samples * 1e-6,
+    char share[64];
+    if (material <= samples)
+        snprintf(share, sizeof share, "1:%.0f", samples / fmax(material, 1));
+    else /* the tables weigh more than a few small photographs */
+        snprintf(share, sizeof share, "%.1f times the size", material / samples);
+    weft_command_say(&command->common, "%s: %.2f MB, %s of the samples as half floats (%.1f MB; the file has %.1f MB)",
+                     command->output, material * 1e-6, share, samples * 1e-6,
                      (double)weft_file_bytes(command->input) * 1e-6);
     if (report->read_seconds > 0)
         weft_command_say(&command->common, "read %.1f MB in %ld blocks at %.0f MB/s; the fit waited for it %.1f s",

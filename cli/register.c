@@ -103,7 +103,7 @@ static weft_code say_outcome(const register_command *command, const weft_session
                          "the mean",
                          session->colour.left_out.mean);
     if (command->report_folder)
-        weft_command_say(&command->common, "report: %s/index.html", command->report_folder);
+        weft_command_say_page(&command->common, "report", command->report_folder);
     return WEFT_OK;
 }
 

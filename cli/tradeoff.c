@@ -51,7 +51,7 @@ static weft_code say_results(const tradeoff_command *command, const weft_tradeof
     }
     if (result->why_not_drawn[0])
         weft_command_say(common, "no times of frames: %s", result->why_not_drawn);
-    weft_command_say(common, "page: %s/index.html", command->folder);
+    weft_command_say_page(common, "page", command->folder);
     return WEFT_OK;
 }
 

@@ -1,3 +1,4 @@
+#include "btf/file_kind.h"
 #include "cli/arguments.h"
 #include "cli/describe.h"
 #include "compress/options/options.h"
@@ -19,12 +20,13 @@ typedef struct truth_command {
 
 static weft_code read_cloth(const weft_option *option, const char *text, void *values, weft_error *error)
 {
-    (void)option;
     truth_command *command = values;
     if (command->cloth_count == MOST_CLOTHS)
         return weft_fail(error, WEFT_BAD_USAGE, "more than %d cloths", MOST_CLOTHS);
     command->cloth[command->cloth_count++] = text;
-    return WEFT_OK;
+    weft_file_kind kind;
+    WEFT_TRY(weft_file_kind_of(text, &kind, error));
+    return weft_argument_belongs(option->argument, text, error);
 }
 
 static const weft_option option_table[] = {
@@ -98,7 +100,7 @@ static weft_code measure_all(truth_command *command, weft_error *error)
         WEFT_TRY(say_result(command, &command->result[i], error));
         WEFT_TRY(write_report(command, i + 1, error));
     }
-    weft_command_say(common, "page: %s/index.html", command->request.folder);
+    weft_command_say_page(common, "page", command->request.folder);
     return WEFT_OK;
 }
 

@@ -33,6 +33,81 @@ expect_no_file out.weft
 expect_no_file out.btf.h5
 expect_no_file report
 
+# A file of the wrong kind is named as what it is, by the command that was given it. CODE WORD | ARGUMENTS
+mkdir folder empty_files
+: >empty
+: >zero.png
+: >empty_files/a.jpg
+: >empty_files/b.jpg
+convert -size 32x32 xc:gray picture.png
+cp "$weave" cloth.wv
+cp "$assets/stitches/plain_knit.stitch" knit.stitch
+while IFS='|' read -r code word arguments; do
+    # shellcheck disable=SC2086
+    expect_one_line "$code" "$word" $arguments </dev/null
+    expect_no_file out
+done <<'TABLE'
+1|'cloth.wv' is a weave: NAME.btf.h5 belongs|compress cloth.wv -o out
+1|'knit.stitch' is a stitch|compress knit.stitch -o out
+1|'picture.png' is a picture|compress picture.png -o out
+1|'empty' is empty|compress empty -o out
+1|'plan.csv' is neither|compress plan.csv -o out
+1|'folder' is a folder|compress folder -o out
+1|'good' is a folder|compress good -o out
+2|--output is given twice|compress good.btf.h5 -o out -o other
+2|--layers is given twice|compress good.btf.h5 --layers 4 --layers 8 -o out
+2|not 'many'|compress good.btf.h5 --layers many -o out
+2|not a regular file|compress good.btf.h5 -o /dev/full
+2|one too many|compress good.weft good.btf.h5 -o out
+2|would overwrite|compress good.btf.h5 -o good.btf.h5
+1|'picture.png' is a picture: NAME.weft belongs|compare good.btf.h5 picture.png -o out
+1|'knit.stitch' is a stitch: CLOTH.wv or CLOTH.mc belongs|compare good.btf.h5 good.weft --weave knit.stitch -o out
+1|'cloth.wv' is a weave: FILE.stitch belongs|compare good.btf.h5 good.weft --truth cloth.wv -o out
+1|'good' is a folder|compare good good.weft -o out
+3|'/dev/full' is a file|compare good.btf.h5 good.weft -o /dev/full
+2|needs --weave|compare good.btf.h5 good.weft --fit -o out
+1|'picture.png' is a picture: NAME.btf.h5 or NAME.weft belongs|tile picture.png -o out
+1|'cloth.wv' is a weave|relief cloth.wv -o out
+1|'cloth.wv' is a weave|bard cloth.wv -o out
+1|'knit.stitch' is a stitch: START.wv belongs|fit-weave good.btf.h5 --weave knit.stitch -o out
+1|'good.weft' is a material|tradeoff good.weft -o out
+1|'good.btf.h5' is a dataset: SESSION belongs|register good.btf.h5 -o out
+1|'folder' is no session|register folder -o out
+1|'folder' is no session|calibrate folder -o out
+2|WxH|register good --size 5 -o out
+2|one too many|register good folder -o out
+1|'good.btf.h5' is a dataset: FOLDER belongs|photographs good.btf.h5 -o out
+1|holds no photograph|photographs folder -o out
+1|can be read|photographs empty_files -o out
+1|'picture.png' is a picture: LENS.json belongs|photographs empty_files --lens picture.png -o out
+1|'cloth.wv' is a weave: CHART.jpg or SESSION belongs|colour cloth.wv -o out
+1|not a folder of photographs|import picture.png -o out
+1|use `weft register`|import good -o out
+1|expected 'stitch'|simulate cloth.wv -o out
+2|--noise needs|simulate knit.stitch --noise -1 -o out
+1|'good.weft' is a material: CLOTH.wv or .stitch... belongs|truth good.weft -o out
+1|no file 'absent.wv'|truth cloth.wv absent.wv -o out
+1|'picture.png' is a picture: DIRECTIONS.csv belongs|eval good.weft --at picture.png
+1|'empty' is empty|eval good.weft --at empty
+1|'cloth.wv' is a weave: PATH.csv belongs|render good.weft --path cloth.wv -o out-%d.png
+1|'cloth.wv' is a weave: PATH.csv belongs|prune good.weft --path cloth.wv -o out
+1|'picture.png' is no .weft file|render picture.png -o out.png
+1|'zero.png' is cut|render zero.png -o out.png
+1|twice as wide as high|render good.weft --environment picture.png -o out.png
+1|carries no settings|render good.weft --settings picture.png -o out.png
+2|--light is given twice|render good.weft --light 10,0 --light 20,0 -o out.png
+2|not 'nan,0'|render good.weft --light nan,0 -o out.png
+2|not '0x0'|render good.weft --size 0x0 -o out.png
+2|one place for a number|render good.weft --path plan.csv -o out.png
+1|none of|info picture.png
+2|needs a file|verify
+TABLE
+
+# What may be a word is not taken for the file of that name.
+mkdir virtual
+expect_ok capture --rig virtual --sample "$weave" --plan plan.csv -o named
+rm -r virtual named
+
 # Outputs that cannot be.
 expect_one_line 2 "'out.gif' names no kind of picture" render good.weft -o out.gif
 expect_one_line 2 "'out' names no kind of picture" render good.weft -o out
