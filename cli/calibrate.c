@@ -27,10 +27,10 @@ static const weft_option option_table[] = {
      .offset = offsetof(calibrate_command, session)},
     {"output", 'o', "POSES.json", "Where the axes truly are", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(calibrate_command, output)},
-    {"plan", .argument = "ubo81|FILE.csv",
-     .help =
-         "The night that errors are expected for: the views of 81 directions (default), or those of a table as weft "
-         "capture takes it",
+    {"plan", .argument = "ubo81|ubo151|FILE.csv",
+     .help = "The night that errors are expected for: the views of 81 directions (default) or 151, or those of a table "
+             "as weft "
+             "capture takes it",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(calibrate_command, plan)},
     {"lens", .argument = "WHICH",
      .help = "Whether the lens stays as it is (held, default) or is found with the axes where the photographs tell it "
