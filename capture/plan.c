@@ -21,12 +21,12 @@ void weft_plan_free(weft_plan *plan)
 }
 
 /* All pairs, view by view. */
-static weft_code plan_of_ubo81(weft_plan *plan, weft_error *error)
+static weft_code plan_of_pairs(weft_angles (*angles)(int index), int count, weft_plan *plan, weft_error *error)
 {
-    WEFT_TRY(allocate_plan(WEFT_UBO81_COUNT * WEFT_UBO81_COUNT, plan, error));
+    WEFT_TRY(allocate_plan(count * count, plan, error));
     for (int i = 0; i < plan->shot_count; i++) {
-        weft_angles light = weft_ubo81_angles(i % WEFT_UBO81_COUNT);
-        plan->shot[i] = (weft_shot){light, weft_ubo81_angles(i / WEFT_UBO81_COUNT), light};
+        weft_angles light = angles(i % count);
+        plan->shot[i] = (weft_shot){light, angles(i / count), light};
     }
     return WEFT_OK;
 }
@@ -160,7 +160,9 @@ weft_code weft_plan_read(const char *name, weft_plan *plan, weft_error *error)
 {
     *plan = (weft_plan){0};
     if (strcmp(name, "ubo81") == 0)
-        return plan_of_ubo81(plan, error);
+        return plan_of_pairs(weft_ubo81_angles, WEFT_UBO81_COUNT, plan, error);
+    if (strcmp(name, "ubo151") == 0)
+        return plan_of_pairs(weft_ubo151_angles, WEFT_UBO151_COUNT, plan, error);
     weft_csv csv;
     WEFT_TRY(weft_csv_read(name, true, &csv, error));
     weft_code code = csv.row_count > 0 ? order_shots(&csv, plan, error)

@@ -9,10 +9,11 @@ typedef struct weft_plan {
     weft_shot *shot; /* [shot_count], owned */
 } weft_plan;
 
-/* "ubo81" (all pairs of the 81 directions), or the path of a CSV file with the columns theta_light_deg,
- * phi_light_deg, theta_view_deg and phi_view_deg. Shots of one view follow each other, so that the camera axes move
- * once for each view; views and lights keep their order. light_driven is light. The caller frees with weft_plan_free.
- * Errors: WEFT_BAD_INPUT "FILE:LINE: ..." also where two shots would have photographs of the same name. */
+/* "ubo81" or "ubo151" (all pairs of the 81 or 151 directions), or the path of a CSV file with the columns
+ * theta_light_deg, phi_light_deg, theta_view_deg and phi_view_deg. Shots of one view follow each other, so that the
+ * camera axes move once for each view; views and lights keep their order. light_driven is light. The caller frees with
+ * weft_plan_free. Errors: WEFT_BAD_INPUT "FILE:LINE: ..." also where two shots would have photographs of the same name.
+ */
 weft_code weft_plan_read(const char *name, weft_plan *plan, weft_error *error);
 
 void weft_plan_free(weft_plan *plan);

@@ -27,10 +27,10 @@ static const weft_option option_table[] = {
      .offset = offsetof(calibrate_command, session)},
     {"output", 'o', "POSES.json", "Where the axes truly are", .is_required = true, .kind = WEFT_OPTION_OUTPUT,
      .offset = offsetof(calibrate_command, output)},
-    {"plan", .argument = "ubo81|FILE.csv",
-     .help =
-         "The night that errors are expected for: the views of 81 directions (default), or those of a table as weft "
-         "capture takes it",
+    {"plan", .argument = "ubo81|ubo151|FILE.csv",
+     .help = "The night that errors are expected for: the views of 81 directions (default) or 151, or those of a table "
+             "as weft "
+             "capture takes it",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(calibrate_command, plan)},
     {"lens", .argument = "WHICH",
      .help = "Whether the lens stays as it is (held, default) or is found with the axes where the photographs tell it "
@@ -151,6 +151,21 @@ static void say_night(const weft_common_options *common, const night *n)
                                  "every axis");
 }
 
+/* They are off by chance, from shot to shot, so the error falls with the root of the number of shots
+ * (docs/notes/axes.md#what-can-be-known). */
+static void say_more_shots(const weft_common_options *common, const weft_axes_report *report)
+{
+    double worst_rad = 0;
+    for (int k = 0; k < WEFT_JOINTS; k++)
+        worst_rad = fmax(worst_rad, report->file.error[k].direction_rad);
+    if (worst_rad == 0)
+        return;
+    double angle_deg = weft_deg_of_rad(worst_rad * sqrt(2)); /* of two components */
+    weft_command_say(common,
+                     "  lines are known to %.3f degrees by these %d shots; to %.3f by %d, to %.3f by %d like them",
+                     angle_deg, report->used, angle_deg / sqrt(2), 2 * report->used, angle_deg / 2, 4 * report->used);
+}
+
 static void say_poses(const calibrate_command *command, const weft_axes_sightings *sightings,
                       const weft_axes_report *report, const night *n)
 {
@@ -161,6 +176,7 @@ static void say_poses(const calibrate_command *command, const weft_axes_sighting
                      "that were (RMS)",
                      command->output, report->used, sightings->count, file->held_out_rms_px, file->rms_px);
     say_lines(common, "  ", &report->told);
+    say_more_shots(common, report);
     say_lines(common, "not told: ", &report->not_told);
     weft_command_say(common, "not told: the axes of the light are not seen by the camera; they stay as specified");
     say_night(common, n);

@@ -34,8 +34,9 @@ static const weft_option option_table[] = {
      .help = "What the virtual rig photographs: a weave, flat, or a stitch, which has depth; what you call that which "
              "lies on a rig of yours",
      .is_required = true, .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, rig.sample)},
-    {"plan", .argument = "ubo81|FILE.csv",
-     .help = "Which photographs: all pairs of 81 directions (default), or a table with the columns theta_light_deg, "
+    {"plan", .argument = "ubo81|ubo151|FILE.csv",
+     .help = "Which photographs: all pairs of 81 directions (default) or of 151, or a table with the columns "
+             "theta_light_deg, "
              "phi_light_deg, theta_view_deg, phi_view_deg",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, request.plan)},
     {"seed", .argument = "N", .help = "Start of the random numbers of the virtual rig (default: 1)",

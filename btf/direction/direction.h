@@ -9,7 +9,7 @@ typedef struct weft_angles {
     weft_real theta_rad, phi_rad;
 } weft_angles;
 
-enum { WEFT_UBO81_COUNT = 81 };
+enum { WEFT_UBO81_COUNT = 81, WEFT_UBO151_COUNT = 151 };
 
 /* (sin theta cos phi, sin theta sin phi, cos theta), unit. Pure. */
 weft_vec3 weft_direction_of_angles(weft_angles angles);
@@ -21,6 +21,11 @@ weft_angles weft_angles_of_direction(weft_vec3 direction);
  * 0, 15, 30, 45, 60, 75 degrees, each ring equally spaced from phi = 0.
  * index in [0, WEFT_UBO81_COUNT). Pure. */
 weft_angles weft_ubo81_angles(int index);
+
+/* That of the first dome of Bonn (UBO2014): 1, 6, 12, 12, 12, 18, 18, 24, 24, 24 directions at theta 0, 11, 23.5, 30,
+ * 37.5, 45, 52.5, 60, 67.5, 75 degrees, from phi = 0, 15, 0, 15, 0, 0, 7.5, 0, 7.5, 0. index in [0,
+ * WEFT_UBO151_COUNT). Pure. */
+weft_angles weft_ubo151_angles(int index);
 
 /* Rings of ubo81: theta 0, 15, 30, 45, 60, 75 degrees. */
 enum { WEFT_RING_COUNT = 6 };

@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "base/picture/exif.h"
-#include "capture/camera/shutter_choice.h"
+#include "capture/camera/tethered_shutter.h"
 
 #include <gphoto2/gphoto2.h>
 #include <limits.h>
@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 static const char name[] = "camera";
@@ -114,145 +113,11 @@ static int open_camera(weft_tethered_camera *c)
 
 /* ---- Exposure ---- */
 
-static int get_shutter(weft_tethered_camera *c, CameraWidget **widget, const char **key)
-{
-    static const char *const keys[] = {"shutterspeed", "shutterspeed2", "exptime"};
-    int result = GP_ERROR_NOT_SUPPORTED;
-    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        result = gp_camera_get_single_config(c->camera, keys[i], widget, c->context);
-        *key = keys[i];
-        if (result >= GP_OK)
-            return result;
-    }
-    return result;
-}
-
-static const double rounding = 1.05; /* "1/60" is 1/64 */
-
-/* The longest choice that is no longer than asked, for what is clipped is lost; else the shortest. NULL where none is a
- * time. */
-static const char *best_choice(CameraWidget *widget, double exposure_s)
-{
-    const char *best = NULL;
-    double found_s = 0;
-    for (int i = 0; i < gp_widget_count_choices(widget); i++) {
-        const char *choice;
-        double seconds = gp_widget_get_choice(widget, i, &choice) >= GP_OK ? weft_shutter_seconds(choice) : 0;
-        bool fits = seconds <= rounding * exposure_s, fitted = found_s <= rounding * exposure_s;
-        bool better = !best || (fits && (!fitted || seconds > found_s)) || (!fits && !fitted && seconds < found_s);
-        if (seconds > 0 && better) {
-            found_s = seconds;
-            best = choice;
-        }
-    }
-    return best;
-}
-
-/* A camera whose shutter no program can set keeps what it has. */
-static int set_shutter(weft_tethered_camera *c, double exposure_s)
-{
-    CameraWidget *widget;
-    const char *key, *value = NULL;
-    int result = get_shutter(c, &widget, &key);
-    if (result < GP_OK)
-        return result == GP_ERROR_NOT_SUPPORTED || result == GP_ERROR_BAD_PARAMETERS ? GP_OK : result;
-    const char *choice = best_choice(widget, exposure_s);
-    gp_widget_get_value(widget, &value);
-    if (choice && (!value || strcmp(value, choice) != 0)) {
-        gp_widget_set_value(widget, choice);
-        result = gp_camera_set_single_config(c->camera, key, widget, c->context);
-    }
-    gp_widget_free(widget);
-    return result;
-}
-
-/* What the camera says its shutter is set to; 0: nothing. */
-static double shutter_said(weft_tethered_camera *c)
-{
-    CameraWidget *widget;
-    const char *key, *value = NULL;
-    double seconds = 0;
-    if (get_shutter(c, &widget, &key) < GP_OK)
-        return 0;
-    if (gp_widget_get_value(widget, &value) >= GP_OK && value)
-        seconds = weft_shutter_seconds(value);
-    gp_widget_free(widget);
-    return seconds;
-}
-
-/* ---- Exposures longer than the longest that the camera names ---- */
-
-/* The longest of its times; 0 where it names none. */
-static double longest_choice(CameraWidget *widget)
-{
-    double longest_s = 0;
-    for (int i = 0; i < gp_widget_count_choices(widget); i++) {
-        const char *choice;
-        if (gp_widget_get_choice(widget, i, &choice) >= GP_OK)
-            longest_s = fmax(longest_s, weft_shutter_seconds(choice));
-    }
-    return longest_s;
-}
-
-/* What opens the shutter until it is told to close. */
-static const char bulb_key[] = "bulb";
-
-static bool has_bulb(weft_tethered_camera *c)
-{
-    CameraWidget *widget;
-    if (gp_camera_get_single_config(c->camera, bulb_key, &widget, c->context) < GP_OK)
-        return false;
-    gp_widget_free(widget);
-    return true;
-}
-
-/* Asked once: an answer may take a tenth of a second. */
-static double longest_named(weft_tethered_camera *c)
-{
-    CameraWidget *widget;
-    const char *key;
-    if (c->longest_s > 0 || get_shutter(c, &widget, &key) < GP_OK)
-        return c->longest_s;
-    c->longest_s = longest_choice(widget);
-    gp_widget_free(widget);
-    return c->longest_s;
-}
-
 static bool needs_bulb(weft_tethered_camera *c, double exposure_s)
 {
-    double longest_s = longest_named(c);
-    return longest_s > 0 && exposure_s > rounding * longest_s && has_bulb(c);
-}
-
-/* Some cameras want their shutter at "bulb" first. */
-static int choose_bulb(weft_tethered_camera *c)
-{
-    CameraWidget *widget;
-    const char *key, *choice;
-    int result = get_shutter(c, &widget, &key);
-    if (result < GP_OK)
-        return result;
-    for (int i = 0; i < gp_widget_count_choices(widget); i++) {
-        if (gp_widget_get_choice(widget, i, &choice) < GP_OK || strcasecmp(choice, "bulb") != 0)
-            continue;
-        gp_widget_set_value(widget, choice);
-        result = gp_camera_set_single_config(c->camera, key, widget, c->context);
-    }
-    gp_widget_free(widget);
-    return result;
-}
-
-/* Opens or closes the shutter. */
-static int press(weft_tethered_camera *c, int down)
-{
-    CameraWidget *widget;
-    int result = gp_camera_get_single_config(c->camera, bulb_key, &widget, c->context);
-    if (result < GP_OK)
-        return result;
-    gp_widget_set_value(widget, &down);
-    result = gp_camera_set_single_config(c->camera, bulb_key, widget, c->context);
-    gp_widget_free(widget);
-    return result;
+    if (c->longest_s == 0)
+        c->longest_s = weft_shutter_longest(c->camera, c->context);
+    return weft_shutter_needs_bulb(c->camera, c->context, c->longest_s, exposure_s);
 }
 
 static void wait_until(const weft_tethered_camera *c, double end_s)
@@ -289,10 +154,10 @@ static int let_go(weft_tethered_camera *c)
 {
     enum { TRIES = 20 };
     const struct timespec pause = {0, 100000000};
-    int result = press(c, 0);
+    int result = weft_shutter_press(c->camera, c->context, 0);
     for (int i = 1; result < GP_OK && i < TRIES; i++) {
         nanosleep(&pause, NULL);
-        result = press(c, 0);
+        result = weft_shutter_press(c->camera, c->context, 0);
     }
     return result;
 }
@@ -300,9 +165,9 @@ static int let_go(weft_tethered_camera *c)
 /* *lasted_s receives how long the shutter was open, by the clock: drivers open it last, and close it first. */
 static int expose_by_bulb(weft_tethered_camera *c, double exposure_s, CameraFilePath *path, double *lasted_s)
 {
-    int result = choose_bulb(c);
+    int result = weft_shutter_choose_bulb(c->camera, c->context);
     if (result >= GP_OK)
-        result = press(c, 1);
+        result = weft_shutter_press(c->camera, c->context, 1);
     if (result < GP_OK)
         return result;
     double opened_s = weft_now_s();
@@ -376,11 +241,11 @@ static int expose_once(weft_tethered_camera *c, double exposure_s, CameraFilePat
 {
     if (needs_bulb(c, exposure_s))
         return expose_by_bulb(c, exposure_s, path, bulb_s);
-    int result = set_shutter(c, exposure_s);
+    int result = weft_shutter_set(c->camera, c->context, exposure_s);
     if (result >= GP_OK)
         result = release(c, exposure_s, path);
     if (result >= GP_OK)
-        *said_s = shutter_said(c);
+        *said_s = weft_shutter_said(c->camera, c->context);
     return result;
 }
 

@@ -22,6 +22,21 @@ static void ubo81_equals_the_reference_table(void **state)
     weft_csv_free(&csv);
 }
 
+/* Theta of the first direction of each ring, and its phi, as Bonn's readers have them. */
+static void ubo151_has_the_rings_of_the_dome(void **state)
+{
+    (void)state;
+    static const double known[][3] = {
+        {0, 0, 0},       {1, 11, 15},   {7, 23.5, 0},      {19, 30, 15},   {31, 37.5, 0},     {43, 45, 0},
+        {61, 52.5, 7.5}, {79, 60, 0},   {103, 67.5, 7.5},  {127, 75, 0},   {6, 11, 315},      {18, 23.5, 330},
+        {30, 30, 345},   {60, 45, 340}, {78, 52.5, 347.5}, {150, 75, 345}, {126, 67.5, 352.5}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        weft_angles angles = weft_ubo151_angles((int)known[i][0]);
+        assert_true(fabs(weft_deg_of_rad(angles.theta_rad) - known[i][1]) < 1e-9);
+        assert_true(fabs(weft_deg_of_rad(angles.phi_rad) - known[i][2]) < 1e-9);
+    }
+}
+
 static void angles_and_directions_are_inverse(void **state)
 {
     (void)state;
@@ -38,6 +53,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ubo81_equals_the_reference_table),
+        cmocka_unit_test(ubo151_has_the_rings_of_the_dome),
         cmocka_unit_test(angles_and_directions_are_inverse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,6 +2,7 @@
 #include "tests/support/cmocka_all.h"
 #include "tests/support/scratch_folder.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static weft_angles degrees(double theta_deg, double phi_deg)
@@ -41,6 +42,31 @@ static void ubo81_has_all_pairs_and_moves_the_camera_once_per_view(void **state)
         assert_true(angle_deg(plan.shot[i].view, weft_ubo81_angles(i / 81)) < 1e-9);
         assert_true(angle_deg(plan.shot[i].light, weft_ubo81_angles(i % 81)) < 1e-9);
     }
+    weft_plan_free(&plan);
+}
+
+static int compare_paths(const void *a, const void *b)
+{
+    return strcmp(a, b);
+}
+
+/* Half a degree does not fit into names: no two photographs may have the same for all that. */
+static void ubo151_has_all_pairs_and_names_of_their_own(void **state)
+{
+    (void)state;
+    enum { SHOTS = 151 * 151, LENGTH = 64 };
+    static char path[SHOTS][LENGTH];
+    weft_plan plan;
+    assert_int_equal(weft_plan_read("ubo151", &plan, NULL), WEFT_OK);
+    assert_int_equal(plan.shot_count, SHOTS);
+    const weft_session session = {.folder = "", .shot = plan.shot, .shot_count = SHOTS};
+    for (int i = 0; i < SHOTS; i++)
+        weft_session_photograph_path(&session, i, path[i], LENGTH);
+    qsort(path, SHOTS, LENGTH, compare_paths);
+    for (int i = 1; i < SHOTS; i++)
+        assert_string_not_equal(path[i], path[i - 1]);
+    assert_true(angle_deg(plan.shot[SHOTS - 1].view, degrees(75, 345)) < 1e-9);
+    assert_true(angle_deg(plan.shot[1].light, degrees(11, 15)) < 1e-9);
     weft_plan_free(&plan);
 }
 
@@ -131,6 +157,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ubo81_has_all_pairs_and_moves_the_camera_once_per_view),
+        cmocka_unit_test(ubo151_has_all_pairs_and_names_of_their_own),
         cmocka_unit_test(a_plan_file_is_grouped_by_view_and_keeps_its_order),
         cmocka_unit_test(a_full_turn_is_no_turn),
         cmocka_unit_test(a_bad_plan_file_is_refused_with_file_and_line),

@@ -22,13 +22,17 @@ truncate -s 20000 series/tv000_pv000/*.tif
 convert -size 176x176 xc:gray -depth 16 -type TrueColor series/tv020_pv030/tl030_pl150_tv020_pv030.tif
 expect_ok calibrate series --plan plan.csv --json -o rig.poses.json
 "$python" - out.log <<'PYTHON' || fail "the events are not what they should be"
-import json, sys
+import json, re, sys
 events = [json.loads(line) for line in open(sys.argv[1])]
 notes = "\n".join(e["text"] for e in events if e["event"] == "note")
 for words in ("left out tv000_pv000/", "left out tv020_pv030/", "the target", "9 of 11 shots",
               "expected before the target is looked at, 11 poses", "axes of the light are not seen"):
     assert words in notes, (words, notes)
 poses = [e for e in events if e["event"] == "poses"][0]
+known = re.search(r"lines are known to (\S+) degrees by these 9 shots; to (\S+) by 18, to (\S+) by 36 like them", notes)
+worst = max(joint["direction_error_deg"] for joint in poses["joints"]) * 2 ** 0.5
+for number, share in zip(known.groups(), (1, 0.5 ** 0.5, 0.5)):
+    assert worst > 0.005 and abs(float(number) - worst * share) < 0.0006, (known[0], worst)
 assert poses["good_enough"] is True and poses["unreachable"] == 0, poses
 assert poses["used"] == 9 and poses["shots"] == 11 and poses["poses"] == 11, poses
 assert 0 < poses["held_out_rms_px"] < 1.5 and poses["expected_worst_texels"] >= poses["expected_median_texels"] > 0

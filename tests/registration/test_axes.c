@@ -1,9 +1,7 @@
-/* The axes of a goniometer out of 20 shots, against what they truly are. The shots come from the virtual goniometer
- * (capture/virtual/goniometer.h): parts that carry each other, with errors of its own, its true lens, and scatter from
- * shot to shot. What is fitted are lines in the frame of the plate. */
-#include "capture/virtual/random.h"
-#include "capture/virtual/world.h"
+/* The axes of a goniometer out of 20 shots, against what they truly are. The shots come from the virtual goniometer:
+ * what is fitted are lines in the frame of the plate. */
 #include "registration/axes/expectation.h"
+#include "tests/support/axes_series.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>
@@ -11,97 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SHOTS = 20, TEXELS = 64 };
-
-/* Rings of theta, and how many shots on each: those of assets/plans/calibration.csv. */
-typedef struct ring {
-    double theta_deg;
-    int shots;
-    double phi_deg;
-} ring;
-
-static const ring rings[] = {{0, 1, 0}, {20, 4, 30}, {40, 5, 0}, {60, 5, 36}, {75, 5, 10}};
-
-typedef struct series {
-    weft_virtual_world world;
-    weft_axes_shot shot[SHOTS];
-    weft_rig_poses nominal;
-} series;
-
-static weft_angles degrees(double theta_deg, double phi_deg)
-{
-    return (weft_angles){weft_rad_of_deg(theta_deg), weft_rad_of_deg(phi_deg)};
-}
-
-static weft_virtual_settings off_settings(void)
-{
-    weft_virtual_settings s = weft_virtual_settings_default();
-    s.axes = 1;
-    s.axis_tilt_deg = s.axis_zero_deg = s.aim_rotation_deg = 0.5;
-    s.axis_offset_mm = 1;
-    s.aim_mm = 2;
-    return s;
-}
-
-static void see(const weft_virtual_world *world, weft_angles view, int stay, weft_axes_shot *shot)
-{
-    weft_pose pose = weft_virtual_world_pose(world, view, stay);
-    weft_homography map = weft_homography_of_pose(&world->camera, &pose);
-    *shot = (weft_axes_shot){.name = "shot", .turns = weft_turns_of_view(view)};
-    for (int i = 0; i < WEFT_AXES_POINTS; i++) {
-        double x = i % 2 ? 27 : -27, y = i / 2 ? 27 : -27;
-        weft_pixel at = weft_camera_distort(&world->camera, weft_homography_apply(&map, x, y));
-        weft_vec3 noise = weft_random_normal3(world->seed, WEFT_RANDOM_NOISE, 16 * (uint64_t)stay + (uint64_t)i);
-        shot->point[i] = (weft_axes_point){{x, y}, {at.x + 0.01 * noise.x, at.y + 0.01 * noise.y}};
-    }
-}
-
-static series take(const weft_virtual_settings *settings, uint64_t seed)
-{
-    series s = {.world = weft_virtual_world_of(settings, seed)};
-    weft_camera camera = weft_rig_settings_camera(&settings->rig);
-    int taken = 0;
-    for (size_t r = 0; r < sizeof rings / sizeof *rings; r++) {
-        for (int i = 0; i < rings[r].shots; i++, taken++)
-            see(&s.world, degrees(rings[r].theta_deg, rings[r].phi_deg + 360.0 * i / rings[r].shots), taken,
-                &s.shot[taken]);
-    }
-    s.nominal = weft_rig_poses_nominal(&camera, settings->rig.camera_distance_mm);
-    return s;
-}
-
-/* The rig as it stands, without what differs from shot to shot. */
-static weft_virtual_world at_rest(const weft_virtual_world *world)
-{
-    weft_virtual_world rest = *world;
-    rest.settings.stay_rotation_deg = rest.settings.stay_translation_mm = 0;
-    return rest;
-}
-
-/* What brings the plate from where one pose sees it to where another does: a turn about the line of the axis. */
-static weft_pose true_turn(const weft_virtual_world *rest, weft_angles from, weft_angles to)
-{
-    weft_pose a = weft_virtual_world_pose(rest, from, 0), b = weft_virtual_world_pose(rest, to, 0),
-              turn = {{{0}}, {0, 0, 0}};
-    double shift[3] = {b.translation.x - a.translation.x, b.translation.y - a.translation.y,
-                       b.translation.z - a.translation.z};
-    double back[3] = {0};
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) {
-            back[i] += a.rotation[k][i] * shift[k];
-            for (int j = 0; j < 3; j++)
-                turn.rotation[i][j] += a.rotation[k][i] * b.rotation[k][j];
-        }
-    }
-    turn.translation = (weft_vec3){back[0], back[1], back[2]};
-    return turn;
-}
-
-static weft_vec3 direction_of(const weft_pose *turn)
-{
-    const double(*r)[3] = turn->rotation;
-    return weft_unit((weft_vec3){r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]});
-}
+enum { SHOTS = AXES_SERIES_SHOTS, TEXELS = 64 };
 
 /* How far a turn moves a point, for a turn of one rad: its distance from the line. */
 static double off_line_mm(const weft_pose *turn, weft_vec3 point)
@@ -112,11 +20,6 @@ static double off_line_mm(const weft_pose *turn, weft_vec3 point)
                        r[2][0] * point.x + r[2][1] * point.y + r[2][2] * point.z};
     double angle = acos((r[0][0] + r[1][1] + r[2][2] - 1) / 2);
     return weft_length(weft_subtract(weft_add(there, turn->translation), point)) / (2 * sin(angle / 2));
-}
-
-static double angle_deg(weft_vec3 a, weft_vec3 b)
-{
-    return weft_deg_of_rad(atan2(weft_length(weft_cross(a, b)), weft_dot(a, b)));
 }
 
 typedef struct errors {
@@ -142,24 +45,24 @@ static double shift_texels(const weft_virtual_world *rest, const weft_pose *trut
     return sqrt(sum / 25) * TEXELS / opening;
 }
 
-static errors compare(const series *s, const weft_axes_report *report)
+static errors compare(const axes_series *s, const weft_axes_report *report)
 {
-    weft_virtual_world rest = at_rest(&s->world);
+    weft_virtual_world rest = axes_at_rest(&s->world);
     const weft_rig_poses *found = &report->file.poses;
     errors e = {0};
     weft_axes_fit still = report->fit;
     still.scatter.rotation_rad = still.scatter.translation_mm = 0;
-    const weft_pose turn[2] = {true_turn(&rest, degrees(0, 0), degrees(60, 0)),
-                               true_turn(&rest, degrees(0, 0), degrees(0, 90))};
+    const weft_pose turn[2] = {axes_true_turn(&rest, axes_degrees(0, 0), axes_degrees(60, 0)),
+                               axes_true_turn(&rest, axes_degrees(0, 0), axes_degrees(0, 90))};
     for (int k = 0; k < 2; k++) {
-        e.line_deg[k] = angle_deg(direction_of(&turn[k]), found->joint[k].direction);
+        e.line_deg[k] = axes_angle_deg(axes_direction(&turn[k]), found->joint[k].direction);
         e.line_mm[k] = off_line_mm(&turn[k], found->joint[k].point);
     }
     for (int i = 0; i < WEFT_UBO81_COUNT; i++) {
         weft_angles view = weft_ubo81_angles(i);
         weft_turns turns = weft_turns_of_view(view);
         weft_pose truth = weft_virtual_world_pose(&rest, view, 0), pose = weft_rig_poses_at(found, &turns);
-        double angle = angle_deg(weft_pose_camera_position(&truth), weft_pose_camera_position(&pose));
+        double angle = axes_angle_deg(weft_pose_camera_position(&truth), weft_pose_camera_position(&pose));
         double texels = shift_texels(&rest, &truth, found, &pose);
         weft_expected_pose expected =
             weft_axes_expect_pose(&still, &s->nominal, rest.settings.rig.opening_mm, TEXELS, &turns);
@@ -176,7 +79,7 @@ static errors compare(const series *s, const weft_axes_report *report)
     return e;
 }
 
-static weft_axes_report calibrate(series *s)
+static weft_axes_report calibrate(axes_series *s)
 {
     weft_axes_report report;
     weft_error error = {0};
@@ -191,7 +94,7 @@ static errors calibrate_seeds(const weft_virtual_settings *settings, int seeds, 
 {
     errors sum = {0};
     for (int seed = 1; seed <= seeds; seed++) {
-        series s = take(settings, (uint64_t)seed);
+        axes_series s = axes_series_take(settings, (uint64_t)seed, 1);
         weft_axes_report report = calibrate(&s);
         errors e = compare(&s, &report);
         sum.line_deg[0] += e.line_deg[0] * e.line_deg[0] / seeds;
@@ -226,7 +129,7 @@ static errors calibrate_seeds(const weft_virtual_settings *settings, int seeds, 
 static void lines_are_found(void **state)
 {
     (void)state;
-    weft_virtual_settings s = off_settings();
+    weft_virtual_settings s = axes_off_settings();
     s.stay_rotation_deg = s.stay_translation_mm = 0;
     errors still = calibrate_seeds(&s, 2, "without scatter");
     assert_true(still.line_deg[0] < 0.006 && still.line_deg[1] < 0.003);
@@ -246,8 +149,8 @@ static void lines_are_found(void **state)
 static void scatter_is_found(void **state)
 {
     (void)state;
-    weft_virtual_settings settings = off_settings();
-    series s = take(&settings, 3);
+    weft_virtual_settings settings = axes_off_settings();
+    axes_series s = axes_series_take(&settings, 3, 1);
     weft_axes_report report = calibrate(&s);
     const weft_poses_file *file = &report.file;
     print_message("scatter %.4f degrees, %.4f mm, %.4f pixels\n", weft_deg_of_rad(file->scatter_rad), file->scatter_mm,
@@ -263,12 +166,12 @@ static void scatter_is_found(void **state)
 static void bearings_are_found_where_they_are_told(void **state)
 {
     (void)state;
-    weft_virtual_settings settings = off_settings();
+    weft_virtual_settings settings = axes_off_settings();
     settings.axis_scale = 0.002;
     settings.axis_uneven_deg = settings.axis_wobble_deg = 0.1;
     settings.stay_rotation_deg = 0.01;
     settings.stay_translation_mm = 0.02;
-    series s = take(&settings, 1);
+    axes_series s = axes_series_take(&settings, 1, 1);
     weft_axes_report report = calibrate(&s);
     errors e = compare(&s, &report);
     const weft_joint *phi = &report.file.poses.joint[WEFT_CAMERA_PHI];
@@ -292,8 +195,8 @@ static void bearings_are_found_where_they_are_told(void **state)
 static void a_bumped_target_is_left_out(void **state)
 {
     (void)state;
-    weft_virtual_settings settings = off_settings();
-    series s = take(&settings, 2);
+    weft_virtual_settings settings = axes_off_settings();
+    axes_series s = axes_series_take(&settings, 2, 1);
     for (int i = 0; i < WEFT_AXES_POINTS; i++)
         s.shot[7].point[i].pixel[0] += 8;
     weft_axes_report report = calibrate(&s);
@@ -307,12 +210,12 @@ static void a_bumped_target_is_left_out(void **state)
 static void the_lens_is_found_where_it_may(void **state)
 {
     (void)state;
-    weft_virtual_settings settings = off_settings();
+    weft_virtual_settings settings = axes_off_settings();
     settings.focal_length_error = 0.01;
     settings.principal_point_error_px = 6;
     settings.stay_rotation_deg = 0.01;
     settings.stay_translation_mm = 0.02;
-    series s = take(&settings, 4);
+    axes_series s = axes_series_take(&settings, 4, 1);
     weft_axes_report report;
     weft_error error = {0};
     assert_int_equal(weft_axes_calibrate(s.shot, SHOTS, &s.nominal, true, &report, &error), WEFT_OK);
@@ -330,29 +233,29 @@ static void the_lens_is_found_where_it_may(void **state)
 static void a_turntable_is_found(void **state)
 {
     (void)state;
-    weft_virtual_settings settings = off_settings();
+    weft_virtual_settings settings = axes_off_settings();
     settings.stay_rotation_deg = settings.stay_translation_mm = 0;
-    series s = take(&settings, 5);
+    axes_series s = axes_series_take(&settings, 5, 1);
     for (int i = 0; i < SHOTS; i++) {
         s.shot[i].turns.deg[WEFT_SAMPLE_PHI] = -s.shot[i].turns.deg[WEFT_CAMERA_PHI];
         s.shot[i].turns.deg[WEFT_CAMERA_PHI] = 0;
     }
     weft_axes_report report = calibrate(&s);
-    weft_virtual_world rest = at_rest(&s.world);
-    weft_pose turn = true_turn(&rest, degrees(0, 0), degrees(0, 90));
-    weft_vec3 truth = weft_scale(direction_of(&turn), -1);
-    assert_true(angle_deg(truth, report.file.poses.joint[WEFT_SAMPLE_PHI].direction) < 0.005);
+    weft_virtual_world rest = axes_at_rest(&s.world);
+    weft_pose turn = axes_true_turn(&rest, axes_degrees(0, 0), axes_degrees(0, 90));
+    weft_vec3 truth = weft_scale(axes_direction(&turn), -1);
+    assert_true(axes_angle_deg(truth, report.file.poses.joint[WEFT_SAMPLE_PHI].direction) < 0.005);
     assert_true(report.file.error[WEFT_CAMERA_PHI].direction_rad == 0);
     assert_string_equal(report.not_told.line[0], "camera phi does not turn in these shots: its line is as specified");
     weft_turns turns;
-    assert_true(weft_axes_turns_like(s.shot, SHOTS, degrees(50, 100), &turns));
+    assert_true(weft_axes_turns_like(s.shot, SHOTS, axes_degrees(50, 100), &turns));
     assert_true(fabs(turns.deg[WEFT_CAMERA_THETA] - 50) < 1e-9 && fabs(turns.deg[WEFT_SAMPLE_PHI] + 100) < 1e-9);
     /* A turntable that goes from 0 to 360 stands at 290 where another stands at -70. */
     for (int i = 0; i < SHOTS; i++)
         s.shot[i].turns.deg[WEFT_SAMPLE_PHI] += 180;
-    assert_true(weft_axes_turns_like(s.shot, SHOTS, degrees(50, 70), &turns));
+    assert_true(weft_axes_turns_like(s.shot, SHOTS, axes_degrees(50, 70), &turns));
     assert_true(fabs(turns.deg[WEFT_SAMPLE_PHI] - 290) < 1e-9);
-    assert_false(weft_axes_turns_like(s.shot, 1, degrees(50, 70), &turns));
+    assert_false(weft_axes_turns_like(s.shot, 1, axes_degrees(50, 70), &turns));
     weft_axes_report_free(&report);
 }
 
@@ -360,8 +263,8 @@ static void a_turntable_is_found(void **state)
 static void what_is_expected_is_the_worst_and_the_median(void **state)
 {
     (void)state;
-    weft_virtual_settings settings = off_settings();
-    series s = take(&settings, 7);
+    weft_virtual_settings settings = axes_off_settings();
+    axes_series s = axes_series_take(&settings, 7, 1);
     weft_axes_report report = calibrate(&s);
     /* From the zenith the opening is in front of this camera; from the side it is not. */
     const weft_turns turns[] = {{{0, 0, 0}}, {{170, 0, 0}}, {{10, 0, 0}}};
@@ -386,15 +289,15 @@ static void what_is_expected_is_the_worst_and_the_median(void **state)
 static void shots_that_tell_too_little_are_refused(void **state)
 {
     (void)state;
-    weft_virtual_settings settings = off_settings();
-    series s = take(&settings, 6);
+    weft_virtual_settings settings = axes_off_settings();
+    axes_series s = axes_series_take(&settings, 6, 1);
     weft_axes_report report;
     weft_error error = {0};
     assert_int_equal(weft_axes_calibrate(s.shot, 7, &s.nominal, false, &report, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "found in 7 of 7 shots: at least 8"));
     weft_axes_report_free(&report);
     for (int i = 0; i < SHOTS; i++)
-        see(&s.world, degrees(30, 40), i, &s.shot[i]);
+        axes_see(&s.world, axes_degrees(30, 40), i, &s.shot[i]);
     assert_int_equal(weft_axes_calibrate(s.shot, SHOTS, &s.nominal, false, &report, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "all 20 shots are of one pose"));
     weft_axes_report_free(&report);
