@@ -1,57 +1,65 @@
 #!/bin/sh
-# docs/gallery.md and its pictures: the cloths that come with Weft, in the same light. Usage: gallery.sh WEFT [DATASETS]
-# Datasets and materials are kept in DATASETS, and taken from there the next time. Frames are timed: let nothing else run.
+# docs/gallery.md and its pictures: the cloths that come with Weft, in the same light.
+# Usage: gallery.sh WEFT [DATASETS [SECTION...]]
+# A SECTION is one of stitches, photographed, weaves, microcylinders, cards; without one all are drawn. The others stay as the page
+# has them. Photographs of a weave take about 3.5 minutes of a processor and 1 GB of disk while they are taken. The real card
+# photographs are looked for beside the checkout. Datasets and materials are kept in DATASETS, and taken from there the next
+# time. Frames are timed: let nothing else run.
 set -eu
 weft=$(realpath "$1")
 source_dir=$(cd "$(dirname "$0")/.." && pwd)
 pictures="$source_dir/docs/images/gallery"
 page="$source_dir/docs/gallery.md"
+cards="$source_dir/../shared/real/cards-blue"
 work=${2:-$(mktemp -d)}
+[ -n "${2:-}" ] || trap 'rm -rf "$work"' EXIT
+[ $# -lt 2 ] || shift
+shift
+all="stitches photographed weaves microcylinders cards"
+wanted=${*:-$all}
+for section in $wanted; do
+    case " $all " in
+    *" $section "*) ;;
+    *) echo "gallery.sh: '$section' is none of $all" >&2 && exit 2 ;;
+    esac
+done
 mkdir -p "$work" "$pictures"
 cd "$work"
-[ -n "${2:-}" ] || trap 'rm -rf "$work"' EXIT
 
 # draw FILE ARGUMENT...: one picture of a cloth.
 draw() {
     out=$1
     shift
-    "$weft" render "$@" --size 400x300 -o drawn.png >&2
+    "$weft" render "$@" --size 400x300 -q -o drawn.png >&2
     convert drawn.png -quality 88 "$pictures/$out.jpg"
     rm drawn.png
 }
 
-# kilobytes FILE, title FILE, held_out FILE ROW: what stands in the table.
-kilobytes() { echo "$(($(stat -c %s "$1") / 1000)) kB"; }
+# picture NAME WORD: how the page shows it.
+picture() { echo "![$2](images/gallery/$1.jpg)"; }
+
+# kilobytes FILE, title FILE, held_out FILE ROW: what stands in the tables.
+kilobytes() { echo "$((($(stat -c %s "$1") + 999) / 1000)) kB"; }
 title() { sed -n 's/.*name *= *"\([^"]*\)".*/\1/p' "$1" | head -n 1; }
 held_out() { printf '%.3f' "$("$weft" info "$1" | sed -n "s/^  $2: //p" | head -n 1)"; }
 
-# compare NAME: NAME.scenes holds how the material looks on a drape, and what a frame costs.
+# compare NAME ARGUMENT...: NAME.scenes holds how the material looks on a drape, and what a frame costs.
 compare() {
-    [ -s "$1.scenes" ] || { "$weft" compare "$1.btf.h5" "$1.weft" -o "$1-page" >scenes 2>/dev/null && mv scenes "$1.scenes"; }
+    name=$1
+    shift
+    [ -s "$name.scenes" ] || { "$weft" compare "$name.btf.h5" "$name.weft" "$@" -o "$name-page" >scenes 2>/dev/null && mv scenes "$name.scenes"; }
 }
 
-# of_scene NAME FIELD, from these: 1 decibels beside raw, 2 milliseconds a frame, 3 of raw.
+# of_scene NAME MODEL FIELD, from these: 1 decibels beside raw, 2 milliseconds a frame, 3 of raw.
 of_scene() {
-    sed -n "s/.*, compressed beside raw: PSNR \([0-9.]*\) dB.*; \([0-9.]*\) ms a frame, raw \([0-9.]*\) ms.*/\\$2/p" "$1.scenes"
+    sed -n "s/.*, $2 beside raw: PSNR \([0-9.]*\) dB.*; \([0-9.]*\) ms a frame, raw \([0-9.]*\) ms.*/\\$3/p" "$1.scenes"
 }
 
-# row NAME: bytes, milliseconds and error of a dataset and its material.
-row() {
-    echo "| $(kilobytes "$1.btf.h5") / $(kilobytes "$1.weft") | $(of_scene "$1" 3) / $(of_scene "$1" 2)" \
-        "| $(held_out "$1.weft" photographs_interpolated) / $(held_out "$1.weft" not_fitted) | $(of_scene "$1" 1) dB |"
-}
+# samples NAME MODEL: its relative RMSE over all samples.
+samples() { printf '%.3f' "$(sed -n "s/^$2, samples: relative RMSE \([0-9.]*\),.*/\1/p" "$1.scenes")"; }
 
-{
+stitches() {
     cat <<'TEXT'
-# Gallery
-
-Every cloth that comes with Weft, in the studio that a first picture begins in. `scripts/gallery.sh WEFT` draws this page.
-
-*Raw* is the dataset, interpolated. *Compressed* is the same as a material of 32 layers, the default. Where the cloth is deep,
-both are seen through the [heights](guide/relief.md) that were found in the views. Frames are those of `weft compare`: a drape
-of 400 x 400 pixels, exact, on a software rasteriser. Errors are relative RMSEs on directions that were held out: what the
-other photographs, interpolated, and what a material of them say there. Decibels compare the two pictures of the drape.
-
 ## Stitches: yarns in space, simulated, compressed
 
 `weft simulate` traces light through yarns. 32 x 32 texels, 64 views x 64 lights; a napkin of 60 mm.
@@ -66,10 +74,53 @@ TEXT
         compare "$name"
         draw "$name-raw" --raw "$name.btf.h5" --mesh drape --mesh-size 60
         draw "$name" "$name.weft" --mesh drape --mesh-size 60
-        echo "| $(title "$file") | ![raw](images/gallery/$name-raw.jpg) | ![compressed](images/gallery/$name.jpg) $(row "$name")"
+        echo "| $(title "$file") | $(picture "$name-raw" raw) | $(picture "$name" compressed)" \
+            "| $(kilobytes "$name.btf.h5") / $(kilobytes "$name.weft")" \
+            "| $(of_scene "$name" compressed 3) / $(of_scene "$name" compressed 2)" \
+            "| $(held_out "$name.weft" photographs_interpolated) / $(held_out "$name.weft" not_fitted)" \
+            "| $(of_scene "$name" compressed 1) dB |"
     done
-    cat <<'TEXT'
+}
 
+# photograph NAME: its dataset and material, by the virtual rig.
+photograph() {
+    if [ ! -s "$1.btf.h5" ]; then
+        "$weft" capture --rig virtual --sample "$source_dir/assets/weaves/$1.wv" --seed 1 -q -o "$1.session" >&2
+        "$weft" register "$1.session" --size 64x64 -q -o "$1.btf.h5" >&2
+        rm -rf "$1.session"
+    fi
+    [ -s "$1.weft" ] || "$weft" compress "$1.btf.h5" -q -o "$1.weft" >&2
+    compare "$1" --weave "$source_dir/assets/weaves/$1.wv"
+}
+
+photographed() {
+    cat <<'TEXT'
+## Weaves: photographed, compressed, analytic
+
+The virtual rig photographs six weaves under 81 views x 81 lights, magnified; `weft register` makes 64 x 64 texels of that. The
+analytic cloth is the very one that was photographed, so that its error is that of photographs and model together: the rig
+adds irregular yarns, noise and a lens, and texels blur what lies within them. Its error is over all samples. A cloth of 300 mm.
+
+| weave | raw | compressed | analytic | bytes, raw / compressed / analytic | ms a frame, the same | error, raw interpolated / compressed / analytic | drape, compressed / analytic |
+| --- | --- | --- | --- | --- | --- | --- | --- |
+TEXT
+    for file in "$source_dir"/assets/weaves/*.wv; do
+        name=$(basename "$file" .wv)
+        photograph "$name"
+        draw "$name-photographed-raw" --raw "$name.btf.h5" --mesh drape
+        draw "$name-photographed" "$name.weft" --mesh drape
+        draw "$name-photographed-analytic" "$name.weft" --weave "$file" --mode analytic --mesh drape
+        echo "| $(title "$file") | $(picture "$name-photographed-raw" raw) | $(picture "$name-photographed" compressed)" \
+            "| $(picture "$name-photographed-analytic" analytic)" \
+            "| $(kilobytes "$name.btf.h5") / $(kilobytes "$name.weft") / $(kilobytes "$file")" \
+            "| $(of_scene "$name" compressed 3) / $(of_scene "$name" compressed 2) / $(of_scene "$name" analytic 2)" \
+            "| $(held_out "$name.weft" photographs_interpolated) / $(held_out "$name.weft" not_fitted) / $(samples "$name" analytic)" \
+            "| $(of_scene "$name" compressed 1) / $(of_scene "$name" analytic 1) dB |"
+    done
+}
+
+weaves() {
+    cat <<'TEXT'
 ## Weaves: analytic, from published parameters
 
 A few numbers a yarn, no photographs: Irawan and Marschner's model. A cloth of 300 mm, and a ball of 30 mm that shows the yarns.
@@ -81,25 +132,87 @@ TEXT
         name=$(basename "$file" .wv)
         draw "$name" --weave "$file"
         draw "$name-ball" --weave "$file" --mesh sphere --mesh-size 30
-        echo "| $(title "$file") | ![cloth](images/gallery/$name.jpg) | ![ball](images/gallery/$name-ball.jpg) |"
+        echo "| $(title "$file") | $(picture "$name" cloth) | $(picture "$name-ball" ball) |"
     done
-    cat <<'TEXT'
+}
 
+# A frame of such a cloth costs the same beside any dataset: that of one weave serves.
+microcylinders() {
+    photograph polyester_lining
+    cat <<'TEXT'
 ## Cloth of threads without yarns: the microcylinder model
 
-| cloth | drape | ball |
-| --- | --- | --- |
+Nobody has photographed these: there is nothing to compress, and no error.
+
+| cloth | drape | ball | bytes | ms a frame |
+| --- | --- | --- | --- | --- |
 TEXT
     for file in "$source_dir"/assets/microcylinder/*.mc; do
         name=$(basename "$file" .mc)
         draw "$name" --weave "$file"
         draw "$name-ball" --weave "$file" --mesh sphere
-        echo "| $(title "$file") | ![cloth](images/gallery/$name.jpg) | ![ball](images/gallery/$name-ball.jpg) |"
+        [ -s "$name.scenes" ] || "$weft" compare polyester_lining.btf.h5 polyester_lining.weft --weave "$file" -o "$name-page" >"$name.scenes" 2>/dev/null
+        echo "| $(title "$file") | $(picture "$name" cloth) | $(picture "$name-ball" ball)" \
+            "| $(kilobytes "$file") | $(of_scene "$name" analytic 2) |"
     done
-    montage -geometry 200x150+2+2 -tile 6x $(for name in plain_knit twill two_colour_loops open_weave ribs satin silk_charmeuse \
-        wool_gabardine-ball cotton_denim-ball cotton_twill shot satin_face; do echo "$pictures/$name.jpg"; done) -quality 88 \
-        "$pictures/all.jpg" >&2
-    echo
+}
+
+cards() {
+    [ -d "$cards" ] || { section_of_page cards && return; }
+    [ -s cards.btf.h5 ] || "$weft" import "$cards" --size 256 -q -o cards.btf.h5 >&2
+    [ -s cards.weft ] || "$weft" compress cards.btf.h5 -q -o cards.weft >&2
+    compare cards
+    cat <<'TEXT'
+## A card, really photographed
+
+Nine flash photographs of a card with paper, foil and print, by a phone, from the MaterialGAN project. They may be measured with,
+not passed on, so no picture of them is here. Each is predicted from the other eight; beside so few photographs no frame is
+timed.
+
+| texels | bytes, raw / compressed | error, raw interpolated / compressed | median error of a photograph left out |
+| --- | --- | --- | --- |
+TEXT
+    echo "| 256 x 256 | $(kilobytes cards.btf.h5) / $(kilobytes cards.weft)" \
+        "| $(held_out cards.weft photographs_interpolated) / $(held_out cards.weft not_fitted)" \
+        "| $(sed -n 's/^leave one out: .*median relative error \([0-9.]*\) .*/\1/p' cards.scenes) |"
+}
+
+heading_of() {
+    case $1 in
+    stitches) echo "## Stitches: yarns" ;;
+    photographed) echo "## Weaves: photographed" ;;
+    weaves) echo "## Weaves: analytic" ;;
+    microcylinders) echo "## Cloth of threads" ;;
+    cards) echo "## A card" ;;
+    esac
+}
+
+# section_of_page SECTION: as the page has it, without the empty line at its end.
+section_of_page() {
+    awk -v heading="$(heading_of "$1")" '/^(## |\[All pages\])/ { inside = index($0, heading) == 1 } inside' "$page" | sed '${/^$/d}'
+}
+
+{
+    cat <<'TEXT'
+# Gallery
+
+Every cloth that comes with Weft, in the studio that a first picture begins in. `scripts/gallery.sh WEFT` draws this page.
+
+*Raw* is the dataset, interpolated. *Compressed* is the same as a material of 32 layers, the default. Where the cloth is deep,
+both are seen through the [heights](guide/relief.md) that were found in the views. Frames are those of `weft compare`: a drape
+of 400 x 400 pixels, exact, on a software rasteriser. Errors are relative RMSEs on directions that were held out: what the
+other photographs, interpolated, and what a material of them say there. Decibels compare the two pictures of the drape.
+
+TEXT
+    for section in $all; do
+        case " $wanted " in
+        *" $section "*) "$section" && echo ;;
+        *) grep -qF "$(heading_of "$section")" "$page" && section_of_page "$section" && echo ;;
+        esac || [ -z "$wanted" ]
+    done
     echo "[All pages](README.md)"
 } >"$work/gallery.md"
+montage -geometry 200x150+2+2 -tile 6x $(for name in plain_knit twill two_colour_loops open_weave ribs satin silk_charmeuse \
+    wool_gabardine-ball cotton_denim-ball cotton_twill shot satin_face; do echo "$pictures/$name.jpg"; done) -quality 88 \
+    "$pictures/all.jpg" >&2
 cp "$work/gallery.md" "$page"

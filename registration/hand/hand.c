@@ -428,10 +428,12 @@ static weft_code note_tone(weft_hand *hand, weft_error *error)
     const double most = 0.05;
     if (!(hand->lamps.dark_error > most))
         return WEFT_OK;
-    return weft_lines_add(&hand->notes, error,
-                          "the tone curve leaves reflectances near a tenth of the paper's uncertain by %.0f %% (a "
-                          "standard error): take some photographs twice, the second two stops darker, or use RAW files",
-                          100 * hand->lamps.dark_error);
+    return weft_lines_add(
+        &hand->notes, error,
+        "dark cloth, a tenth as bright as the paper, may be off by %.0f %% (a standard error), bright "
+        "cloth by less: the tone curve is known no better. Next time take four photographs twice, the "
+        "second two stops darker, or use raw files",
+        100 * hand->lamps.dark_error);
 }
 
 static weft_code run(work *w, const char *output, weft_error *error)
