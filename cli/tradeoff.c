@@ -4,7 +4,7 @@
 
 typedef struct tradeoff_command {
     weft_common_options common;
-    const char *input, *folder;
+    const char *input, *folder, *weave;
 } tradeoff_command;
 
 static const weft_option option_table[] = {
@@ -14,6 +14,8 @@ static const weft_option option_table[] = {
      .offset = offsetof(tradeoff_command, input)},
     {"output", 'o', "REPORT/", "The folder for the page and its pictures", .is_required = true,
      .kind = WEFT_OPTION_FOLDER, .offset = offsetof(tradeoff_command, folder)},
+    {"weave", 0, "NAME.wv", "Price a weave, fitted to the dataset, or microcylinder cloth (.mc) as it is",
+     .kind = WEFT_OPTION_INPUT, .offset = offsetof(tradeoff_command, weave)},
     {0},
 };
 
@@ -62,7 +64,7 @@ static int run(int argc, char **argv)
     weft_progress progress = weft_command_progress(&command.common);
     weft_tradeoff result;
     weft_error error = {0};
-    weft_code code = weft_tradeoff_study(command.input, command.folder, &progress, &result, &error);
+    weft_code code = weft_tradeoff_study(command.input, command.weave, command.folder, &progress, &result, &error);
     if (code == WEFT_OK) {
         code = say_results(&command, &result, &error);
         weft_tradeoff_free(&result);
@@ -77,7 +79,8 @@ const weft_command weft_command_tradeoff = {
     .documentation =
         "Example: weft tradeoff silk.btf.h5 -o silk-prices\n\n"
         "Fits every model that the dataset can carry: lobes with and without tables, layers, smaller tables, fewer "
-        "photographs and texels. Writes one HTML page: bytes, time of the fit and of a frame, and the error on "
+        "photographs and texels, BARD from one light, and a weave with --weave. Writes one HTML page: bytes, time of "
+        "the fit and of a frame, and the error on "
         "photographs that were held out of the fit, beside that on those that were not; plots of one against the "
         "other; which models are worth their price; and the same as comma-separated values. Takes minutes.",
     .options = option_table,

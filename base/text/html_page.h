@@ -12,7 +12,7 @@
  *                                  stacks, by study/sources/page.c;
  *                                  <div class="plots"> holds two or three
  *     <div class="pairs">          rows of two small pictures side by side
- *     class="colour0" to "colour4" what belongs together
+ *     class="colour0" to "colour6" what belongs together
  *
  * It is light or dark as the reader's system is. Pictures enlarge at a click; those of one row, figure or gallery may
  * then be wiped one against the other. */

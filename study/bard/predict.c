@@ -246,7 +246,7 @@ weft_code weft_bard_predict(weft_dataset *dataset, const char *output, const wef
     predicting pass = {.dataset = dataset, .layout = layout, .options = options, .report = report};
     *report = (weft_bard_report){.image_count = layout->image_count};
     WEFT_TRY(weft_derived_dataset_check(dataset, output, "predictions would replace its photographs", error));
-    WEFT_TRY(weft_bard_plan_create(layout, weft_dataset_path(dataset), options->map, &pass.plan, error));
+    WEFT_TRY(weft_bard_plan_create(layout, NULL, weft_dataset_path(dataset), options->map, &pass.plan, error));
     report->photograph_count = pass.plan.count;
     report->largest_tilt_deg = pass.plan.largest_tilt_deg;
     weft_code code = allocate(&pass, error);

@@ -16,13 +16,15 @@ static double tilt_deg(weft_vec3 light)
     return weft_deg_of_rad(weft_angles_of_direction(light).theta_rad);
 }
 
-/* For each view the image lit from nearest the normal, or -1. */
-static void find_highest_lights(const weft_dataset_layout *layout, int *highest)
+/* For each view the image lit from nearest the normal of those that are not left out, or -1. */
+static void find_highest_lights(const weft_dataset_layout *layout, const uint8_t *left_out, int *highest)
 {
     for (int view = 0; view < layout->view_count; view++)
         highest[view] = -1;
     for (int i = 0; i < layout->image_count; i++) {
         int *of_view = &highest[layout->view_of_image[i]];
+        if (left_out && left_out[i])
+            continue;
         if (*of_view < 0 || layout->light[i].z > layout->light[*of_view].z)
             *of_view = i;
     }
@@ -44,13 +46,14 @@ static void choose_photographs(const weft_dataset_layout *layout, const int *hig
     }
 }
 
-static weft_code find_photographs(const weft_dataset_layout *layout, weft_bard_plan *plan, weft_error *error)
+static weft_code find_photographs(const weft_dataset_layout *layout, const uint8_t *left_out, weft_bard_plan *plan,
+                                  weft_error *error)
 {
     int *highest = calloc((size_t)layout->view_count, sizeof *highest);
     if (!highest)
         return weft_fail_memory(error, "views", (size_t)layout->view_count * sizeof *highest);
     plan->least_tilt_deg = INFINITY;
-    find_highest_lights(layout, highest);
+    find_highest_lights(layout, left_out, highest);
     choose_photographs(layout, highest, plan);
     free(highest);
     return WEFT_OK;
@@ -94,24 +97,24 @@ static weft_code mix_images(const weft_dataset_layout *layout, weft_bard_map map
     return WEFT_OK;
 }
 
-static weft_code make(const weft_dataset_layout *layout, const char *path, weft_bard_map map, weft_bard_plan *plan,
-                      weft_error *error)
+static weft_code make(const weft_dataset_layout *layout, const uint8_t *left_out, const char *path, weft_bard_map map,
+                      weft_bard_plan *plan, weft_error *error)
 {
     if (layout->distance == WEFT_NEAR)
         return weft_fail(
             error, WEFT_BAD_INPUT,
             "'%s' has near lights and cameras; BARD maps directions, which differ from texel to texel there", path);
     WEFT_TRY(allocate(layout, plan, error));
-    WEFT_TRY(find_photographs(layout, plan, error));
+    WEFT_TRY(find_photographs(layout, left_out, plan, error));
     WEFT_TRY(check_photographs(plan, path, error));
     return mix_images(layout, map, plan, error);
 }
 
-weft_code weft_bard_plan_create(const weft_dataset_layout *layout, const char *path, weft_bard_map map,
-                                weft_bard_plan *plan, weft_error *error)
+weft_code weft_bard_plan_create(const weft_dataset_layout *layout, const uint8_t *left_out, const char *path,
+                                weft_bard_map map, weft_bard_plan *plan, weft_error *error)
 {
     *plan = (weft_bard_plan){0};
-    weft_code code = make(layout, path, map, plan, error);
+    weft_code code = make(layout, left_out, path, map, plan, error);
     if (code != WEFT_OK)
         weft_bard_plan_free(plan);
     return code;

@@ -17,10 +17,10 @@ typedef struct weft_bard_plan {
     weft_bard_mix *mix; /* [image_count] what an image takes from the table; a photograph that is used takes itself */
 } weft_bard_plan;
 
-/* Errors: WEFT_BAD_INPUT with messages that start with `path`: near lights, no light near the normal, too few views
- * under it; WEFT_SYSTEM for memory. */
-weft_code weft_bard_plan_create(const weft_dataset_layout *layout, const char *path, weft_bard_map map,
-                                weft_bard_plan *plan, weft_error *error);
+/* Images with left_out[image] != 0 are not taken (NULL: all are). Errors: WEFT_BAD_INPUT with messages that start with
+ * `path`: near lights, no light near the normal, too few views under it; WEFT_SYSTEM for memory. */
+weft_code weft_bard_plan_create(const weft_dataset_layout *layout, const uint8_t *left_out, const char *path,
+                                weft_bard_map map, weft_bard_plan *plan, weft_error *error);
 void weft_bard_plan_free(weft_bard_plan *plan);
 
 #endif

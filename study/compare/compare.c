@@ -60,9 +60,11 @@ static weft_code measure_weave(const compared_files *files, const weft_progress 
     const weft_compared_weave *weave = &files->weave;
     weft_predictor *predictor;
     if (weave->is_threads)
-        WEFT_TRY(weft_predictor_of_threads(files->dataset, &weave->threads.cloth, &predictor, error));
+        WEFT_TRY(weft_predictor_of_threads(weft_dataset_get_layout(files->dataset), &weave->threads.cloth, &predictor,
+                                           error));
     else
-        WEFT_TRY(weft_predictor_of_weave(files->dataset, &weave->weave, &comparison->weave_layout, &predictor, error));
+        WEFT_TRY(weft_predictor_of_weave(weft_dataset_get_layout(files->dataset), &weave->weave,
+                                         &comparison->weave_layout, &predictor, error));
     weft_code code = measure_texture(files->dataset, predictor, NULL, "analytic", progress, comparison, error);
     weft_predictor_free(predictor);
     return code;

@@ -26,7 +26,7 @@ struct weft_predictor {
     weft_prepared_cloth threads;
     weft_dataset *other;
     int first_row;
-    weft_half *samples; /* of the other dataset: [rows][width][image_count][3] */
+    weft_half *samples; /* given, or of the other dataset: [rows][width][image_count][3] */
     uint8_t *mask;
 };
 
@@ -326,12 +326,12 @@ static void predict_by_weave(const weft_predictor *predictor, int x, int y, cons
     }
 }
 
-weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,
-                                  weft_predictor **result, weft_error *error)
+weft_code weft_predictor_of_weave(const weft_dataset_layout *layout, const weft_weave *weave,
+                                  const weft_weave_layout *tiles, weft_predictor **result, weft_error *error)
 {
-    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_weave, result, error));
+    WEFT_TRY(create(layout, predict_by_weave, result, error));
     (*result)->weave = weave;
-    (*result)->tiles = *layout;
+    (*result)->tiles = *tiles;
     weft_code code = weft_woven_table_create(weave, &(*result)->table, error);
     if (code != WEFT_OK)
         weft_predictor_free(*result);
@@ -352,17 +352,17 @@ static void predict_by_threads(const weft_predictor *predictor, int x, int y, co
     }
 }
 
-weft_code weft_predictor_of_threads(const weft_dataset *dataset, const weft_microcylinder_cloth *cloth,
+weft_code weft_predictor_of_threads(const weft_dataset_layout *layout, const weft_microcylinder_cloth *cloth,
                                     weft_predictor **result, weft_error *error)
 {
-    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_threads, result, error));
+    WEFT_TRY(create(layout, predict_by_threads, result, error));
     (*result)->threads = weft_microcylinder_prepare(cloth);
     return WEFT_OK;
 }
 
-/* ---- Another dataset ---- */
+/* ---- Samples, and another dataset ---- */
 
-static void predict_by_dataset(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
+static void predict_by_samples(const weft_predictor *predictor, int x, int y, const int *image, int image_count,
                                weft_rgb *prediction)
 {
     const weft_dataset_layout *layout = predictor->layout;
@@ -373,6 +373,17 @@ static void predict_by_dataset(const weft_predictor *predictor, int x, int y, co
         prediction[i] = (weft_rgb){(double)weft_float_of_half(half[0]), (double)weft_float_of_half(half[1]),
                                    (double)weft_float_of_half(half[2])};
     }
+}
+
+weft_code weft_predictor_of_samples(const weft_dataset_layout *layout, weft_half *samples, weft_predictor **result,
+                                    weft_error *error)
+{
+    weft_code code = create(layout, predict_by_samples, result, error);
+    if (code == WEFT_OK)
+        (*result)->samples = samples;
+    else
+        free(samples);
+    return code;
 }
 
 static bool same_place(weft_vec3 a, weft_vec3 b)
@@ -394,7 +405,7 @@ weft_code weft_predictor_of_dataset(const weft_dataset *dataset, const char *pat
                                     weft_error *error)
 {
     weft_predictor *predictor;
-    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_dataset, &predictor, error));
+    WEFT_TRY(create(weft_dataset_get_layout(dataset), predict_by_samples, &predictor, error));
     weft_code code = weft_dataset_open(path, &predictor->other, error);
     if (code == WEFT_OK && !same_images(predictor->layout, weft_dataset_get_layout(predictor->other)))
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' does not have the texels, images and quantity of '%s'", path,

@@ -32,16 +32,21 @@ weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, 
 
 /* A weave without its noise, laid on the material; a texel is the mean of 4 x 4 points. The weave stays the caller's.
  */
-weft_code weft_predictor_of_weave(const weft_dataset *dataset, const weft_weave *weave, const weft_weave_layout *layout,
-                                  weft_predictor **result, weft_error *error);
+weft_code weft_predictor_of_weave(const weft_dataset_layout *layout, const weft_weave *weave,
+                                  const weft_weave_layout *tiles, weft_predictor **result, weft_error *error);
 
 /* Microcylinder cloth, which is alike at all texels; threads count by area. */
-weft_code weft_predictor_of_threads(const weft_dataset *dataset, const weft_microcylinder_cloth *cloth,
+weft_code weft_predictor_of_threads(const weft_dataset_layout *layout, const weft_microcylinder_cloth *cloth,
                                     weft_predictor **result, weft_error *error);
 
 /* The samples of another dataset, such as `weft bard` writes. Errors: WEFT_BAD_INPUT where it cannot be read, or its
  * size, images or quantity are not those of the dataset. */
 weft_code weft_predictor_of_dataset(const weft_dataset *dataset, const char *path, weft_predictor **result,
+                                    weft_error *error);
+
+/* Samples [height][width][image_count][3] in the quantity of the layout, which the predictor takes over and frees,
+ * also on failure. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_predictor_of_samples(const weft_dataset_layout *layout, weft_half *samples, weft_predictor **result,
                                     weft_error *error);
 
 void weft_predictor_free(weft_predictor *predictor);

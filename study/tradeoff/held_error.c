@@ -1,10 +1,11 @@
 #include "study/tradeoff/held_error.h"
 
-#include "base/numeric/statistics.h"
 #include "compress/compress.h"
+#include "study/bard/texels.h"
 #include "study/error/coverage.h"
 #include "study/hold_out/certify.h"
 #include "study/hold_out/hold_out.h"
+#include "study/tradeoff/cloth.h"
 #include "study/tradeoff/held_pictures.h"
 #include "study/tradeoff/variant.h"
 
@@ -17,7 +18,6 @@ enum { MOST_SPLITS = 4 /* of a handful of images, each held out in turn */ };
 
 static const size_t enough_residuals = 1 << 20;
 static const double certified = 0.95;
-static const double highlight_share = 0.95, shadow_share = 0.2, grazing_cosine = 0.6088; /* of 52.5 degrees */
 
 struct weft_held_bench {
     const char *scratch_path;
@@ -37,72 +37,10 @@ struct weft_held_bench {
     weft_material material[MOST_SPLITS];
 };
 
-const char *weft_sample_kind_name(weft_sample_kind kind)
-{
-    static const char *const name[] = {"all", "grazing", "highlights", "shadows"};
-    return name[kind];
-}
-
 void weft_held_error_free(weft_held_error *measured)
 {
     weft_image_free(&measured->sample);
     weft_image_free(&measured->predicted);
-}
-
-/* ---- Kinds of samples ---- */
-
-static float brightness(const weft_excerpt *excerpt, int x, int y, size_t texel, int image)
-{
-    const weft_dataset_layout *layout = &excerpt->layout;
-    size_t at = texel * (size_t)layout->image_count + (size_t)image;
-    double sum = 0, cosine = (double)weft_dataset_light_direction(layout, image, x, y).z;
-    for (size_t c = 0; c < 3; c++)
-        sum += (double)weft_float_of_half(excerpt->samples[3 * at + c]);
-    if (layout->values == WEFT_REFLECTANCE_COSINE)
-        sum /= fmax(cosine, 1e-3);
-    return excerpt->mask[at] || !(cosine > 0) ? NAN : (float)(sum / 3);
-}
-
-static bool is_grazing(const weft_dataset_layout *layout, int image, int x, int y)
-{
-    weft_vec3 light = weft_dataset_light_direction(layout, image, x, y);
-    weft_vec3 view = weft_dataset_view_direction(layout, layout->view_of_image[image], x, y);
-    return light.z < grazing_cosine || view.z < grazing_cosine;
-}
-
-/* `value` and `sorted` are [image_count]. */
-static void mark_texel(weft_held_bench *bench, int x, int y, float *value, float *sorted)
-{
-    const weft_dataset_layout *layout = &bench->excerpt.layout;
-    size_t texel = (size_t)y * (size_t)layout->width + (size_t)x, images = (size_t)layout->image_count, count = 0;
-    uint8_t *kinds = bench->kinds + texel * images;
-    for (int i = 0; i < layout->image_count; i++) {
-        value[i] = brightness(&bench->excerpt, x, y, texel, i);
-        if (!isnan(value[i]))
-            sorted[count++] = value[i];
-    }
-    float bright = weft_quantile_of_floats(sorted, count, highlight_share),
-          dark = weft_quantile_of_floats(sorted, count, shadow_share);
-    for (int i = 0; i < layout->image_count; i++)
-        kinds[i] =
-            (uint8_t)(1 << WEFT_SAMPLES_ALL | is_grazing(layout, i, x, y) << WEFT_SAMPLES_GRAZING |
-                      (value[i] >= bright) << WEFT_SAMPLES_HIGHLIGHTS | (value[i] <= dark) << WEFT_SAMPLES_SHADOWS);
-}
-
-static weft_code mark_samples(weft_held_bench *bench, weft_error *error)
-{
-    const weft_dataset_layout *layout = &bench->excerpt.layout;
-    size_t images = (size_t)layout->image_count, texels = (size_t)layout->width * (size_t)layout->height;
-    float *value = malloc(2 * images * sizeof *value);
-    bench->kinds = malloc(texels * images);
-    if (!value || !bench->kinds) {
-        free(value);
-        return weft_fail_memory(error, "samples", texels * images);
-    }
-    for (int texel = 0; texel < (int)texels; texel++)
-        mark_texel(bench, texel % layout->width, texel / layout->width, value, value + images);
-    free(value);
-    return WEFT_OK;
 }
 
 /* ---- The bench ---- */
@@ -125,7 +63,7 @@ static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side
     bench->asked = weft_excerpt_middle(&bench->excerpt, side);
     if (has_surface)
         WEFT_TRY(weft_excerpt_crop(&bench->excerpt, &bench->asked, &bench->alone, error));
-    return mark_samples(bench, error);
+    return weft_sample_kinds_mark(&bench->excerpt, &bench->kinds, error);
 }
 
 weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, uint64_t split,
@@ -210,10 +148,10 @@ static weft_code make_masks(const weft_held_bench *bench, const weft_priced_mode
     return WEFT_OK;
 }
 
-/* Lobes need no neighbours. */
+/* Lobes and BARD need no neighbours. */
 static bool is_fitted_alone(const weft_held_bench *bench, const weft_priced_model *model)
 {
-    return bench->alone.samples && model->options.layer_count == 0;
+    return bench->alone.samples && model->options.layer_count == 0 && model->family != WEFT_PRICED_CLOTH;
 }
 
 static const weft_excerpt *fitted_excerpt(const weft_held_bench *bench, const weft_priced_model *model)
@@ -371,11 +309,65 @@ static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *m
     return code;
 }
 
+static weft_code ask_bard(const weft_held_bench *bench, const weft_priced_model *model, const weft_trial *trial,
+                          const uint8_t *unseen, said *answer, weft_error *error)
+{
+    const weft_excerpt *excerpt = fitted_excerpt(bench, model);
+    const weft_dataset_layout *layout = &excerpt->layout;
+    const weft_bard_options options = weft_bard_defaults();
+    long texels = (long)layout->width * layout->height;
+    size_t values = 3 * (size_t)texels * (size_t)layout->image_count;
+    weft_half *predicted = malloc(values * sizeof *predicted);
+    weft_predictor *predictor;
+    if (!predicted)
+        return weft_fail_memory(error, "predictions", values * sizeof *predicted);
+    weft_code code =
+        weft_bard_predict_texels(layout, unseen, &options, excerpt->samples, excerpt->mask, texels, predicted, error);
+    if (code != WEFT_OK) {
+        free(predicted);
+        return code;
+    }
+    WEFT_TRY(weft_predictor_of_samples(layout, predicted, &predictor, error));
+    code = weft_trial_ask(trial, predictor, &answer->held, &answer->fitted, error);
+    weft_predictor_free(predictor);
+    return code;
+}
+
+static weft_code ask_fitted_cloth(weft_held_bench *bench, const weft_trial *trial, const uint8_t *unseen,
+                                  weft_priced_cloth *cloth, said *answer, weft_error *error)
+{
+    weft_dataset *others;
+    weft_predictor *predictor;
+    WEFT_TRY(weft_excerpt_write(&bench->excerpt, unseen, bench->scratch_path, &others, error));
+    weft_code code = weft_priced_cloth_fit(cloth, others, error);
+    weft_dataset_close(others);
+    WEFT_TRY(code);
+    WEFT_TRY(weft_priced_cloth_predictor(cloth, &bench->excerpt.layout, &predictor, error));
+    code = weft_trial_ask(trial, predictor, &answer->held, &answer->fitted, error);
+    weft_predictor_free(predictor);
+    return code;
+}
+
+static weft_code ask_cloth(weft_held_bench *bench, const weft_priced_model *model, const weft_trial *trial,
+                           const uint8_t *unseen, said *answer, weft_error *error)
+{
+    weft_priced_cloth cloth;
+    weft_code code = weft_priced_cloth_open(model->cloth, &cloth, error);
+    if (code == WEFT_OK)
+        code = ask_fitted_cloth(bench, trial, unseen, &cloth, answer, error);
+    weft_priced_cloth_free(&cloth);
+    return code;
+}
+
 static weft_code ask_model(weft_held_bench *bench, const weft_priced_model *model, int split, const weft_trial *trial,
                            const uint8_t *unseen, said *answer, weft_weight *weight, weft_error *error)
 {
     if (model->family == WEFT_PRICED_RAW)
         return weft_trial_ask_photographs(trial, model->options.heights, &answer->held, error);
+    if (model->family == WEFT_PRICED_BARD)
+        return ask_bard(bench, model, trial, unseen, answer, error);
+    if (model->family == WEFT_PRICED_CLOTH)
+        return ask_cloth(bench, model, trial, unseen, answer, error);
     if (!bench->is_fitted)
         WEFT_TRY(fit_split(bench, model, unseen, &bench->material[split], error));
     return ask_material(bench, model, &bench->material[split], trial, answer, weight, error);
@@ -465,13 +457,13 @@ weft_code weft_held_bench_measure(weft_held_bench *bench, const weft_priced_mode
 {
     said all = {0};
     *measured = (weft_held_error){0};
-    if (model->family != WEFT_PRICED_RAW &&
+    if (weft_priced_model_is_fit(model) &&
         !(bench->is_fitted && weft_priced_models_share_fit(model, &bench->fitted_model))) {
         forget_fit(bench);
         bench->fit_s = 0;
     }
     weft_code code = measure_splits(bench, model, &all, measured, error);
-    if (code == WEFT_OK && model->family != WEFT_PRICED_RAW) {
+    if (code == WEFT_OK && weft_priced_model_is_fit(model)) {
         bench->is_fitted = true;
         bench->fitted_model = *model;
     }

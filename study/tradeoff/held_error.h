@@ -7,20 +7,8 @@
 #include "study/hold_out/split.h"
 #include "study/hold_out/trial.h"
 #include "study/tradeoff/priced_model.h"
+#include "study/tradeoff/sample_kind.h"
 #include "study/tradeoff/weight.h"
-
-/* Which samples. A texel's brightness in an image is the mean of its channels, divided by the cosine of the light where
- * the dataset holds that. */
-typedef enum weft_sample_kind {
-    WEFT_SAMPLES_ALL,
-    WEFT_SAMPLES_GRAZING,    /* view or light 52.5 degrees or more from the normal: the ring of 60 degrees or beyond */
-    WEFT_SAMPLES_HIGHLIGHTS, /* the brightest twentieth of each texel over all images */
-    WEFT_SAMPLES_SHADOWS,    /* the darkest fifth */
-    WEFT_SAMPLE_KINDS
-} weft_sample_kind;
-
-/* "all", "grazing", "highlights", "shadows". Pure. */
-const char *weft_sample_kind_name(weft_sample_kind kind);
 
 typedef struct weft_held_error {
     weft_error_summary held[WEFT_SAMPLE_KINDS], fitted[WEFT_SAMPLE_KINDS];

@@ -121,8 +121,9 @@ static weft_code put_plot(weft_page *page, const weft_tradeoff *tradeoff, int wh
 
 static weft_code put_plots(weft_page *page, const weft_tradeoff *tradeoff, weft_error *error)
 {
-    static const char *const family[] = {"lobes", "lobes and tables", "layers", "fewer photographs or texels",
-                                         "the photographs, interpolated"};
+    static const char *const family[] = {
+        "lobes", "lobes and tables", "layers", "fewer photographs or texels", "the photographs, interpolated",
+        "BARD",  "analytic cloth"};
     fputs("<p class=\"key\">", page->html);
     for (int i = 0; i < WEFT_PRICED_FAMILIES; i++)
         fprintf(page->html, "<span class=\"colour%d\">\u25cf</span> %s ", i, family[i]);
@@ -165,19 +166,22 @@ static void put_errors(weft_page *page, const weft_held_error *m)
 static void put_row(weft_page *page, const weft_tradeoff_row *row, int number)
 {
     const weft_price *price = &row->price;
-    bool is_fitted = row->model.family != WEFT_PRICED_RAW;
+    bool is_fitted = weft_priced_model_is_fit(&row->model) || price->fit_s > 0;
     char presets[NAME];
     weft_tradeoff_print_presets(row, presets, sizeof presets);
     fprintf(page->html, "<tr id=\"model-%d\"%s><td>%d</td><td class=\"text\">%s%s%s%s</td><td class=\"text\">", number,
             row->is_chosen[WEFT_PRESET_NONE] ? " class=\"weak\"" : "", number, row->model.name,
             row->is_chosen[WEFT_PRESET_NONE] ? " <b>(" : "", presets, row->is_chosen[WEFT_PRESET_NONE] ? ")</b>" : "");
-    fprintf(page->html, "<code>%s</code></td><td>%d</td><td>%.0f</td><td>%.4g</td>", row->model.arguments,
-            price->photograph_count, price->bytes, price->bits_a_texel);
+    fprintf(page->html, "<code>%s</code></td><td>%d</td><td>%.0f</td><td>%.*f</td>", row->model.arguments,
+            price->photograph_count, price->bytes, price->bits_a_texel < 1000, price->bits_a_texel);
     put_number(page, "%.1f", price->fit_s, is_fitted);
-    put_number(page, "%.3g", price->evaluations_a_second, true);
+    put_number(page, "%.0f", price->evaluations_a_second, price->evaluations_a_second > 0);
     put_number(page, "%.1f", price->frame_ms, price->frame_ms > 0);
-    fprintf(page->html, "<td>%d</td><td>%d</td>", price->fetches.reads, price->fetches.bytes);
+    put_number(page, "%.1f", price->large_frame_ms, price->large_frame_ms > 0);
+    put_number(page, "%.0f", price->fetches.reads, price->fetches.reads > 0);
+    put_number(page, "%.0f", price->fetches.bytes, price->fetches.bytes > 0);
     put_errors(page, &row->measured);
+    put_number(page, "%.2f", price->strobing, price->has_strobing);
     fputs("</tr>\n", page->html);
 }
 
@@ -185,9 +189,10 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
 {
     fputs("<h2 id=\"prices\">Prices</h2>\n<table class=\"long\">\n", page->html);
     weft_page_columns(
-        page, "|:model|:weft compress|photographs|bytes|bits a texel|fit, s|evaluations/s|ms a frame|reads a "
-              "pixel|bytes a pixel|error, not fitted|fitted|95 % interval|median|80th percentile|grazing|highlights|"
-              "shadows|PSNR dB|SSIM|FLIP");
+        page,
+        "|:model|:weft compress|photographs|bytes|bits a texel|fit, s|evaluations/s|ms a frame|ms at 1080p|"
+        "reads a pixel|bytes a pixel|error, not fitted|fitted|95 % interval|median|80th percentile|grazing|highlights|"
+        "shadows|PSNR dB|SSIM|FLIP|strobing");
     for (int i = 0; i < tradeoff->row_count; i++)
         put_row(page, &tradeoff->row[i], i + 1);
     fputs(
@@ -200,7 +205,11 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
         "from the normal; highlights: the brightest twentieth of each texel; shadows: its darkest fifth, whose error "
         "is relative to what little light there is. All of these, and PSNR, SSIM and FLIP of pictures, are of "
         "photographs that were not fitted; a texel is a pixel of these pictures. 95 % interval: the mean width "
-        "of an interval that held so many of these samples, in units of the mean sample.</p>\n",
+        "of an interval that held so many of these samples, in units of the mean sample. Strobing: while a light "
+        "sweeps "
+        "across, how much farther the brightness of a place goes up and down than once; 0 is smooth. Nothing plays "
+        "BARD, "
+        "which has no frames.</p>\n",
         page->html);
 }
 

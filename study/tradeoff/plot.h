@@ -9,7 +9,7 @@
 typedef struct weft_plot_point {
     double x, y;         /* above 0, else the point is left out */
     int number;          /* in its disc */
-    int colour;          /* 0..4, of the style "plot" */
+    int colour;          /* 0..6, of the style "plot" */
     const char *label;   /* text; beside the point where it is marked, else shown when pointed at */
     const char *picture; /* a file of the page, shown when pointed at; NULL: none */
     const char *target;  /* anchor in the page that a click leads to */

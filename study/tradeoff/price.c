@@ -4,9 +4,11 @@
 #include "base/clock.h"
 #include "btf/direction/direction.h"
 #include "compress/compress.h"
+#include "study/bard/texels.h"
 #include "study/hold_out/excerpt.h"
-#include "study/model/model.h"
+#include "study/tradeoff/cloth.h"
 #include "study/tradeoff/frame_timer.h"
+#include "study/tradeoff/strobing.h"
 #include "study/tradeoff/variant.h"
 #include "study/tradeoff/weight.h"
 
@@ -131,12 +133,9 @@ static weft_query query_of(long number)
 }
 
 /* At least some, then as many as a tenth of a second allows. */
-static weft_code time_evaluations(const char *path, bool through_heights, double *per_second, weft_error *error)
+static weft_code time_evaluations(weft_model *model, double *per_second, weft_error *error)
 {
-    const weft_model_options options = {.flat = !through_heights};
-    weft_model *model;
     long count = 0;
-    WEFT_TRY(weft_model_open(path, &options, &model, error));
     weft_code code = WEFT_OK;
     double began = weft_now_s(), elapsed = 0;
     while (code == WEFT_OK && elapsed < evaluating_s) {
@@ -147,8 +146,21 @@ static weft_code time_evaluations(const char *path, bool through_heights, double
         }
         elapsed = weft_now_s() - began;
     }
-    weft_model_close(model);
     *per_second = (double)count / elapsed;
+    return code;
+}
+
+/* How fast the model in a file is evaluated, and how much it strobes. */
+static weft_code evaluate(const char *path, bool through_heights, weft_price *price, weft_error *error)
+{
+    const weft_model_options options = {.flat = !through_heights};
+    weft_model *model;
+    WEFT_TRY(weft_model_open(path, &options, &model, error));
+    weft_code code = time_evaluations(model, &price->evaluations_a_second, error);
+    if (code == WEFT_OK)
+        code = weft_strobing_measure(model, &price->strobing, error);
+    price->has_strobing = code == WEFT_OK;
+    weft_model_close(model);
     return code;
 }
 
@@ -197,10 +209,11 @@ static weft_code price_material(weft_price_shop *shop, const weft_material *mate
     price->fit_s = shop->fit_s / shop->share;
     price->fetches = weft_fetches_of_material(material);
     WEFT_TRY(weft_material_write(shop->material_path, material, error));
-    weft_code code = time_evaluations(shop->material_path, true, &price->evaluations_a_second, error);
+    weft_code code = evaluate(shop->material_path, true, price, error);
     unlink(shop->material_path);
     WEFT_TRY(code);
-    return weft_frame_timer_of_material(shop->timer, material, &price->frame_ms, error);
+    WEFT_TRY(weft_frame_timer_of_material(shop->timer, material, &price->frame_ms, error));
+    return weft_frame_timer_again_large(shop->timer, &price->large_frame_ms, error);
 }
 
 static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_price *price, weft_error *error)
@@ -209,9 +222,48 @@ static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_pri
     price->bits_a_texel = 8.0 * 3 * sizeof(weft_half) * layout->image_count;
     price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
     price->fetches = weft_fetches_of_raw(through_heights);
-    WEFT_TRY(time_evaluations(weft_dataset_path(shop->dataset), through_heights, &price->evaluations_a_second, error));
-    return weft_frame_timer_of_dataset(shop->timer, shop->block, through_heights, shop->progress, &price->frame_ms,
-                                       error);
+    WEFT_TRY(evaluate(weft_dataset_path(shop->dataset), through_heights, price, error));
+    WEFT_TRY(weft_frame_timer_of_dataset(shop->timer, shop->block, through_heights, shop->progress, &price->frame_ms,
+                                         error));
+    return weft_frame_timer_again_large(shop->timer, &price->large_frame_ms, error);
+}
+
+/* Its photographs as half floats. */
+static void price_bard(const weft_price_shop *shop, weft_price *price)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
+    price->photograph_count = weft_bard_count_photographs(layout, NULL);
+    price->bits_a_texel = 8.0 * 3 * sizeof(weft_half) * price->photograph_count;
+    price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
+}
+
+static weft_code price_opened_cloth(weft_price_shop *shop, const char *given, weft_priced_cloth *cloth,
+                                    weft_price *price, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
+    WEFT_TRY(weft_priced_cloth_fit(cloth, shop->block, error));
+    if (!cloth->is_threads)
+        WEFT_TRY(weft_priced_cloth_write(cloth, shop->material_path, error));
+    const char *path = cloth->is_threads ? given : shop->material_path;
+    price->fit_s = cloth->fit_s;
+    price->bytes = (double)weft_file_bytes(path);
+    price->bits_a_texel = 8 * price->bytes / ((double)layout->width * layout->height);
+    weft_code code = evaluate(path, false, price, error);
+    unlink(shop->material_path);
+    WEFT_TRY(code);
+    WEFT_TRY(weft_frame_timer_of_cloth(shop->timer, cloth->is_threads ? NULL : &cloth->weave, &cloth->threads.cloth,
+                                       &price->frame_ms, error));
+    return weft_frame_timer_again_large(shop->timer, &price->large_frame_ms, error);
+}
+
+static weft_code price_cloth(weft_price_shop *shop, const char *given, weft_price *price, weft_error *error)
+{
+    weft_priced_cloth cloth;
+    weft_code code = weft_priced_cloth_open(given, &cloth, error);
+    if (code == WEFT_OK)
+        code = price_opened_cloth(shop, given, &cloth, price, error);
+    weft_priced_cloth_free(&cloth);
+    return code;
 }
 
 static weft_code price_model(weft_price_shop *shop, const weft_priced_model *model, const uint8_t *left_out,
@@ -219,6 +271,12 @@ static weft_code price_model(weft_price_shop *shop, const weft_priced_model *mod
 {
     if (model->family == WEFT_PRICED_RAW)
         return price_raw(shop, model->options.heights, price, error);
+    if (model->family == WEFT_PRICED_CLOTH)
+        return price_cloth(shop, model->cloth, price, error);
+    if (model->family == WEFT_PRICED_BARD) {
+        price_bard(shop, price);
+        return WEFT_OK;
+    }
     WEFT_TRY(fit(shop, model, left_out, error));
     *has_parts = !model->options.light_table || shop->fitted.light_count > 0;
     if (!*has_parts)

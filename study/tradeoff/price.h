@@ -12,8 +12,11 @@ typedef struct weft_price {
     double bits_a_texel;         /* of the dataset */
     double fit_s;                /* of the whole dataset */
     double evaluations_a_second; /* of one thread: BRDFs at places and directions drawn at random */
-    double frame_ms;             /* 730 x 400 pixels; 0 where it was not drawn */
-    weft_fetches fetches;        /* of a pixel */
+    double frame_ms;             /* 730 x 400 pixels; 0 where it was not drawn, as BARD, which nothing plays */
+    double large_frame_ms;       /* 1920 x 1080 pixels */
+    weft_fetches fetches;        /* of a pixel; 0 for BARD and microcylinder cloth */
+    bool has_strobing;           /* of BARD there is none */
+    double strobing;             /* study/tradeoff/strobing.h */
 } weft_price;
 
 /* A shop that fits all of the texels of a dataset, or the middle ones. */

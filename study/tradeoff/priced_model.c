@@ -2,11 +2,16 @@
 
 #include "btf/direction/direction.h"
 #include "compress/compress.h"
+#include "study/bard/texels.h"
 #include "study/hold_out/hold_out.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* BARD is offered where so many views were photographed under the light along the normal: then none of these lights is
+ * held out (study/hold_out/split.h). */
+enum { FEWEST_VIEWS_OF_BARD = 10, FEWEST_LAYERS = 4 };
 
 /* Of the images this share at least is left where a tenth of the views and a tenth of the lights are held out. */
 static const double least_share = 0.8;
@@ -152,7 +157,7 @@ static bool add_flat(model_list *list, const weft_compress_options *options, int
 
 static void add_layers(model_list *list)
 {
-    for (int layers = 8; layers <= WEFT_LAYERS_MAX; layers *= 2) {
+    for (int layers = FEWEST_LAYERS; layers <= WEFT_LAYERS_MAX; layers *= 2) {
         weft_compress_options options = layers_alone(list, layers);
         char name[WEFT_PRICED_NAME];
         bool added = list->dataset->has_surface ? add_pair(list, &options, layers) : add_flat(list, &options, layers);
@@ -180,15 +185,28 @@ static void add_subsets(model_list *list)
     if (list->layout->view_count < 61 || list->layout->image_count < 41 * list->layout->view_count)
         return;
     add_subset(list, WEFT_PHOTOGRAPHS_SECOND_RINGS, "every second ring");
+    add_subset(list, WEFT_PHOTOGRAPHS_THIRD_RINGS, "every third ring");
     add_subset(list, WEFT_PHOTOGRAPHS_41_VIEWS, "41 views");
     add_subset(list, WEFT_PHOTOGRAPHS_21_VIEWS, "21 views");
 }
 
-static void add_raw(model_list *list, bool through, const char *name)
+static void add_alone(model_list *list, weft_priced_family family, const char *name)
 {
     weft_priced_model *model = &list->model[list->count++];
-    *model = (weft_priced_model){.family = WEFT_PRICED_RAW, .options.heights = through, .work = 1};
+    *model = (weft_priced_model){.family = family, .cloth = list->dataset->cloth, .work = 1};
     snprintf(model->name, sizeof model->name, "%s", name);
+}
+
+static void add_bard(model_list *list)
+{
+    if (weft_bard_count_photographs(list->layout, NULL) >= FEWEST_VIEWS_OF_BARD)
+        add_alone(list, WEFT_PRICED_BARD, "BARD from one light");
+}
+
+static void add_raw(model_list *list, bool through, const char *name)
+{
+    add_alone(list, WEFT_PRICED_RAW, name);
+    list->model[list->count - 1].options.heights = through;
 }
 
 static void add_photographs(model_list *list)
@@ -201,7 +219,7 @@ static void add_photographs(model_list *list)
 
 weft_priced_dataset weft_priced_dataset_of(const weft_dataset *dataset)
 {
-    return (weft_priced_dataset){weft_dataset_has_opacity(dataset), weft_dataset_has_surface(dataset)};
+    return (weft_priced_dataset){weft_dataset_has_opacity(dataset), weft_dataset_has_surface(dataset), NULL};
 }
 
 bool weft_priced_heights_are_kept(double without, double through)
@@ -222,14 +240,22 @@ int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced
     add_tables(&list);
     add_layers(&list);
     add_subsets(&list);
+    add_bard(&list);
+    if (dataset->cloth)
+        add_alone(&list, WEFT_PRICED_CLOTH, "analytic cloth");
     add_photographs(&list);
     return list.count;
+}
+
+bool weft_priced_model_is_fit(const weft_priced_model *model)
+{
+    return model->family < WEFT_PRICED_RAW;
 }
 
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other)
 {
     const weft_compress_options *a = &model->options, *b = &other->options;
-    return model->family != WEFT_PRICED_RAW && other->family != WEFT_PRICED_RAW && a->lobe_count == b->lobe_count &&
+    return weft_priced_model_is_fit(model) && weft_priced_model_is_fit(other) && a->lobe_count == b->lobe_count &&
            a->table == b->table && a->light_table == b->light_table && a->frames == b->frames &&
            a->layer_count == b->layer_count && a->table_components == b->table_components &&
            model->photographs == other->photographs;
@@ -237,9 +263,9 @@ bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_pri
 
 /* ---- Fewer photographs ---- */
 
-static bool is_second_ring(weft_vec3 direction)
+static bool is_of_rings(weft_vec3 direction, int every)
 {
-    return weft_ubo81_ring(weft_angles_of_direction(direction).theta_rad) % 2 == 0;
+    return weft_ubo81_ring(weft_angles_of_direction(direction).theta_rad) % every == 0;
 }
 
 static weft_vec3 view_at_centre(const weft_dataset_layout *layout, int view)
@@ -287,11 +313,12 @@ weft_code weft_photographs_leave_out(const weft_dataset_layout *layout, weft_pho
     if (taken == WEFT_PHOTOGRAPHS_41_VIEWS || taken == WEFT_PHOTOGRAPHS_21_VIEWS)
         WEFT_TRY(take_views(layout, taken == WEFT_PHOTOGRAPHS_41_VIEWS ? 41 : 21, left_out, error));
     int x = layout->width / 2, y = layout->height / 2;
+    int every = taken == WEFT_PHOTOGRAPHS_SECOND_RINGS ? 2 : taken == WEFT_PHOTOGRAPHS_THIRD_RINGS ? 3 : 0;
     *taken_count = 0;
     for (int i = 0; i < layout->image_count; i++) {
-        if (taken == WEFT_PHOTOGRAPHS_SECOND_RINGS)
-            left_out[i] = !is_second_ring(weft_dataset_light_direction(layout, i, x, y)) ||
-                          !is_second_ring(view_at_centre(layout, layout->view_of_image[i]));
+        if (every > 0)
+            left_out[i] = !is_of_rings(weft_dataset_light_direction(layout, i, x, y), every) ||
+                          !is_of_rings(view_at_centre(layout, layout->view_of_image[i]), every);
         *taken_count += !left_out[i];
     }
     return WEFT_OK;

@@ -4,7 +4,7 @@
 
 #include "compress/options/options.h"
 
-enum { WEFT_PRICED_MOST = 40, WEFT_PRICED_NAME = 48, WEFT_PRICED_ARGUMENTS = 64 };
+enum { WEFT_PRICED_MOST = 48, WEFT_PRICED_NAME = 48, WEFT_PRICED_ARGUMENTS = 64 };
 
 typedef enum weft_priced_family {
     WEFT_PRICED_LOBES,
@@ -12,6 +12,8 @@ typedef enum weft_priced_family {
     WEFT_PRICED_LAYERS,
     WEFT_PRICED_FEWER, /* photographs or texels */
     WEFT_PRICED_RAW,   /* the photographs, interpolated */
+    WEFT_PRICED_BARD,  /* those under the light along the normal, which say all others (reflectance/bard/bard.h) */
+    WEFT_PRICED_CLOTH, /* analytic (study/tradeoff/cloth.h) */
     WEFT_PRICED_FAMILIES
 } weft_priced_family;
 
@@ -19,6 +21,7 @@ typedef enum weft_priced_family {
 typedef enum weft_photographs_taken {
     WEFT_PHOTOGRAPHS_ALL,
     WEFT_PHOTOGRAPHS_SECOND_RINGS, /* of views and lights: 0, 30 and 60 degrees of ubo81 */
+    WEFT_PHOTOGRAPHS_THIRD_RINGS,  /* 0 and 45 degrees */
     WEFT_PHOTOGRAPHS_41_VIEWS,     /* spread evenly */
     WEFT_PHOTOGRAPHS_21_VIEWS
 } weft_photographs_taken;
@@ -30,17 +33,19 @@ typedef struct weft_priced_model {
     weft_compress_options options; /* of raw only heights: seen through them */
     weft_photographs_taken photographs;
     int table_bits;    /* 4 or 6: T is rounded after the fit; 0: as it was fitted */
+    const char *cloth; /* file of a WEFT_PRICED_CLOTH; not owned */
     bool fewer_texels; /* half of them along each side */
     int work;          /* of a fit, beside that of others */
 } weft_priced_model;
 
 /* What else of a dataset decides which models it can carry. */
 typedef struct weft_priced_dataset {
-    bool has_opacity; /* it lies in T, which layers then have beside them */
-    bool has_surface; /* layers and raw are offered with and without it (options.heights) */
+    bool has_opacity;  /* it lies in T, which layers then have beside them */
+    bool has_surface;  /* layers and raw are offered with and without it (options.heights) */
+    const char *cloth; /* file of a weave to be fitted, or of microcylinder cloth; NULL: none; not owned */
 } weft_priced_dataset;
 
-/* Of a dataset. Pure. */
+/* Of a dataset, without analytic cloth. Pure. */
 weft_priced_dataset weft_priced_dataset_of(const weft_dataset *dataset);
 
 /* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. One that is made
@@ -52,6 +57,9 @@ int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced
 /* Whether weft compress makes models of these errors, the second of layers through heights and the first of the same
  * without: it keeps heights only where they gain enough (study/hold_out/hold_out.h). Pure. */
 bool weft_priced_heights_are_kept(double without, double through);
+
+/* Whether the model is what weft_compress fits; else it is raw, BARD or analytic cloth. Pure. */
+bool weft_priced_model_is_fit(const weft_priced_model *model);
 
 /* Whether the model is made from the same fit as the other. Pure. */
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other);

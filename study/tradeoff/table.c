@@ -8,8 +8,8 @@
 
 static const char *family_name(weft_priced_family family)
 {
-    static const char *const name[] = {"lobes", "lobes and tables", "layers", "fewer photographs or texels",
-                                       "photographs"};
+    static const char *const name[] = {
+        "lobes", "lobes and tables", "layers", "fewer photographs or texels", "photographs", "BARD", "analytic cloth"};
     return name[family];
 }
 
@@ -43,6 +43,10 @@ json_t *weft_tradeoff_row_to_json(const weft_tradeoff_row *row)
                                price->fetches.bytes, "preset", presets, "beaten", row->is_beaten);
     if (price->frame_ms > 0)
         weft_json_put(&object, "frame_ms", json_real(price->frame_ms));
+    if (price->large_frame_ms > 0)
+        weft_json_put(&object, "frame_1080p_ms", json_real(price->large_frame_ms));
+    if (price->has_strobing)
+        weft_json_put(&object, "strobing", json_real(price->strobing));
     weft_json_put(&object, "not_fitted", json_of_errors(m->held));
     weft_json_put(&object, "fitted", json_of_errors(m->fitted));
     weft_json_put(&object, "interval_width", json_real(m->interval_width));
@@ -63,6 +67,13 @@ static void print_word(const char *text, FILE *table)
     fputc(',', table);
 }
 
+static void print_known(double value, bool is_known, FILE *table)
+{
+    if (is_known)
+        fprintf(table, "%.4g", value);
+    fputc(',', table);
+}
+
 static void print_row(const weft_tradeoff_row *row, FILE *table)
 {
     const weft_price *price = &row->price;
@@ -75,19 +86,23 @@ static void print_row(const weft_tradeoff_row *row, FILE *table)
     print_word(presets, table);
     fprintf(table, "%d,%.0f,%.4g,%.4g,%.4g,", price->photograph_count, price->bytes, price->bits_a_texel, price->fit_s,
             price->evaluations_a_second);
-    if (price->frame_ms > 0)
-        fprintf(table, "%.4g", price->frame_ms);
-    fprintf(table, ",%d,%d", price->fetches.reads, price->fetches.bytes);
+    print_known(price->frame_ms, price->frame_ms > 0, table);
+    print_known(price->large_frame_ms, price->large_frame_ms > 0, table);
+    fprintf(table, "%d,%d", price->fetches.reads, price->fetches.bytes);
     for (int i = 0; i < 2 * WEFT_SAMPLE_KINDS; i++) {
         const weft_error_summary *e = i < WEFT_SAMPLE_KINDS ? &m->held[i] : &m->fitted[i - WEFT_SAMPLE_KINDS];
         fprintf(table, ",%.5g,%.5g,%.5g", e->relative_rmse, e->median_relative, e->percentile80_relative);
     }
-    fprintf(table, ",%.5g,%.5g,%.5g,%.5g\n", m->quality.psnr_db, m->quality.ssim, m->quality.flip, m->interval_width);
+    fprintf(table, ",%.5g,%.5g,%.5g,%.5g,", m->quality.psnr_db, m->quality.ssim, m->quality.flip, m->interval_width);
+    if (price->has_strobing)
+        fprintf(table, "%.4g", price->strobing);
+    fputc('\n', table);
 }
 
 static void print_table(const weft_tradeoff *tradeoff, FILE *table)
 {
-    fputs("model,family,options,presets,photographs,bytes,bits_a_texel,fit_s,evaluations_a_second,frame_ms,"
+    fputs("model,family,options,presets,photographs,bytes,bits_a_texel,fit_s,evaluations_a_second,frame_ms,frame_1080p_"
+          "ms,"
           "texture_reads_a_pixel,fetched_bytes_a_pixel",
           table);
     for (int i = 0; i < 2 * WEFT_SAMPLE_KINDS; i++) {
@@ -95,7 +110,7 @@ static void print_table(const weft_tradeoff *tradeoff, FILE *table)
         const char *kind = weft_sample_kind_name((weft_sample_kind)(i % WEFT_SAMPLE_KINDS));
         fprintf(table, ",%s_%s_relative_rmse,%s_%s_median,%s_%s_percentile80", of, kind, of, kind, of, kind);
     }
-    fputs(",psnr_db,ssim,flip,interval_width\n", table);
+    fputs(",psnr_db,ssim,flip,interval_width,strobing\n", table);
     for (int i = 0; i < tradeoff->row_count; i++)
         print_row(&tradeoff->row[i], table);
 }

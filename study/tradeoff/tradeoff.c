@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/clock.h"
+#include "study/tradeoff/cloth.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -13,6 +14,7 @@ enum { MEASURED_SIDE = 32, FITTED_SIDE = 64 };
 /* The study at work. */
 typedef struct studying {
     weft_dataset *dataset;
+    const char *cloth;
     char *scratch_path;
     weft_held_bench *bench;
     weft_price_shop *shop;
@@ -40,7 +42,8 @@ static weft_code study_model(studying *work, const weft_priced_model *model, wef
 static weft_code study_models(studying *work, weft_error *error)
 {
     weft_priced_model model[WEFT_PRICED_MOST];
-    const weft_priced_dataset parts = weft_priced_dataset_of(work->dataset);
+    weft_priced_dataset parts = weft_priced_dataset_of(work->dataset);
+    parts.cloth = work->cloth;
     int count = weft_priced_models_list(weft_dataset_get_layout(work->dataset), &parts, model);
     for (int i = 0; i < count; i++)
         work->work_total += model[i].work;
@@ -109,8 +112,18 @@ static void describe(studying *work)
     snprintf(result->renderer, sizeof result->renderer, "%s", weft_price_shop_renderer(work->shop));
 }
 
+/* What cannot be read is said before the work. */
+static weft_code check_cloth(const char *path, weft_error *error)
+{
+    weft_priced_cloth cloth = {0};
+    weft_code code = path ? weft_priced_cloth_open(path, &cloth, error) : WEFT_OK;
+    weft_priced_cloth_free(&cloth);
+    return code;
+}
+
 static weft_code study(studying *work, const char *dataset_path, const char *folder, weft_error *error)
 {
+    WEFT_TRY(check_cloth(work->cloth, error));
     WEFT_TRY(weft_dataset_open(dataset_path, &work->dataset, error));
     WEFT_TRY(weft_make_folder(folder, error));
     if (asprintf(&work->scratch_path, "%s/tradeoff.btf.h5", folder) < 0) {
@@ -137,10 +150,10 @@ static weft_code write_results(const weft_tradeoff *result, const char *dataset_
     return code == WEFT_OK ? weft_tradeoff_write_page(result, dataset_path, folder, error) : code;
 }
 
-weft_code weft_tradeoff_study(const char *dataset_path, const char *folder, const weft_progress *progress,
-                              weft_tradeoff *result, weft_error *error)
+weft_code weft_tradeoff_study(const char *dataset_path, const char *cloth, const char *folder,
+                              const weft_progress *progress, weft_tradeoff *result, weft_error *error)
 {
-    studying work = {.progress = progress, .result = result};
+    studying work = {.cloth = cloth, .progress = progress, .result = result};
     double began = weft_now_s();
     *result = (weft_tradeoff){0};
     weft_code code = study(&work, dataset_path, folder, error);

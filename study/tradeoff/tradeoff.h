@@ -31,12 +31,13 @@ typedef struct weft_tradeoff {
     char why_not_drawn[WEFT_MESSAGE_SIZE], renderer[128];
 } weft_tradeoff;
 
-/* Fits and measures every model of study/tradeoff/priced_model.h, and writes folder/index.html with its pictures and
+/* Fits and measures every model of study/tradeoff/priced_model.h, with the analytic cloth of the file `cloth` (a weave,
+ * which is fitted, or microcylinder cloth, as it is; NULL: none), and writes folder/index.html with its pictures and
  * folder/tradeoff.csv; the page appears when it is complete. Errors are measured on a block of at most 32 x 32
  * neighbouring texels, prices on one of at most 64 x 64.
  * Errors: WEFT_BAD_USAGE for a dataset of one image; those of weft_compress, of reading, writing and drawing. */
-weft_code weft_tradeoff_study(const char *dataset_path, const char *folder, const weft_progress *progress,
-                              weft_tradeoff *result, weft_error *error);
+weft_code weft_tradeoff_study(const char *dataset_path, const char *cloth, const char *folder,
+                              const weft_progress *progress, weft_tradeoff *result, weft_error *error);
 void weft_tradeoff_free(weft_tradeoff *tradeoff);
 
 /* "8 of 81 views and 8 of 81 lights": what was held out of the fits. */

@@ -1,0 +1,35 @@
+/* Analytic cloth on a price list: a weave that is fitted to photographs, or microcylinder cloth as its file gives it.
+ */
+#ifndef WEFT_STUDY_TRADEOFF_CLOTH_H
+#define WEFT_STUDY_TRADEOFF_CLOTH_H
+
+#include "btf/dataset/dataset.h"
+#include "reflectance/microcylinder/file.h"
+#include "reflectance/weave/weave.h"
+#include "study/error/predictor.h"
+
+typedef struct weft_priced_cloth {
+    bool is_threads;
+    weft_weave weave;                       /* a weave */
+    weft_microcylinder_description threads; /* or microcylinder cloth */
+    double fit_s;                           /* 0 of microcylinder cloth */
+} weft_priced_cloth;
+
+/* Reads a .wv or .mc file. The caller frees *cloth. Errors: those of reading; WEFT_BAD_INPUT for another kind of file.
+ */
+weft_code weft_priced_cloth_open(const char *path, weft_priced_cloth *cloth, weft_error *error);
+void weft_priced_cloth_free(weft_priced_cloth *cloth);
+
+/* Fits a weave to a dataset (study/fit_weave/fit_weave.h); does nothing to microcylinder cloth, which has no fit.
+ * Errors: those of the fit. */
+weft_code weft_priced_cloth_fit(weft_priced_cloth *cloth, weft_dataset *dataset, weft_error *error);
+
+/* Writes a weave to `path`. Errors: WEFT_SYSTEM. */
+weft_code weft_priced_cloth_write(const weft_priced_cloth *cloth, const char *path, weft_error *error);
+
+/* What the cloth says of the images of a layout of the texels that it was fitted to. The cloth and the layout must
+ * outlive *predictor, which the caller frees. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_dataset_layout *layout,
+                                      weft_predictor **predictor, weft_error *error);
+
+#endif
