@@ -259,7 +259,7 @@ static void say_summary(const capture_command *command, const weft_capture_summa
 static weft_code photograph(const capture_command *command, const weft_virtual_rig *virtual, weft_capture *capture,
                             const weft_progress *progress, weft_error *error)
 {
-    const weft_session *session = &capture->held.session;
+    const weft_session *session = &capture->held[0].session;
     if (virtual)
         WEFT_TRY(weft_truth_check_path(&command->truth, session, error));
     WEFT_TRY(weft_capture_take(capture, &stop_asked, progress, error));

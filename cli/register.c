@@ -160,8 +160,8 @@ static weft_code register_all(const register_command *command, cameras *c, const
 {
     WEFT_TRY(choose_settings(command, c, error));
     WEFT_TRY(take_colour(command, c, error));
-    WEFT_TRY(weft_register_cameras(c->session, c->count, command->output, c->settings, progress, c->registration,
-                                   error));
+    WEFT_TRY(
+        weft_register_cameras(c->session, c->count, command->output, c->settings, progress, c->registration, error));
     weft_code code = WEFT_OK;
     for (int i = 0; i < c->count; i++) {
         if (c->count > 1)

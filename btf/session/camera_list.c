@@ -127,10 +127,11 @@ weft_code weft_camera_sessions_agree(const weft_session *sessions, int count, we
         bool both = a->colour.terms > 0 && b->colour.terms > 0, none = a->colour.terms == 0 && b->colour.terms == 0;
         bool one_model = a->camera_model && b->camera_model && strcmp(a->camera_model, b->camera_model) == 0;
         if (!both && !(none && one_model))
-            return weft_fail(error, WEFT_BAD_INPUT,
-                             "'%s' and '%s' do not see the same colours: give each camera its colours (weft colour), or "
-                             "name one model for both",
-                             a->folder, b->folder);
+            return weft_fail(
+                error, WEFT_BAD_INPUT,
+                "'%s' and '%s' do not see the same colours: give each camera its colours (weft colour), or "
+                "name one model for both",
+                a->folder, b->folder);
     }
     return WEFT_OK;
 }
