@@ -151,3 +151,37 @@ weft_code weft_find_foreign(const weft_session *session, weft_session_faults *fa
     free(s.expected.shot);
     return code;
 }
+
+/* ---- Beside the sessions of several cameras ---- */
+
+static bool is_of_cameras(const weft_camera_list *list, const char *name)
+{
+    bool known = strcmp(name, weft_camera_list_file) == 0;
+    for (int i = 0; i < list->count; i++)
+        known = known || strcmp(name, list->name[i]) == 0;
+    return known;
+}
+
+static weft_code look_beside(const char *folder, const char *name, const weft_camera_list *list,
+                             weft_session_faults *faults, weft_error *error)
+{
+    bool left_over = weft_is_left_over(name, weft_camera_list_file);
+    weft_error found;
+    if (!left_over && (name[0] == '.' || is_of_cameras(list, name)))
+        return WEFT_OK;
+    weft_error_set(&found, WEFT_BAD_INPUT, "'%s/%s' %s", folder, name,
+                   left_over ? "was left by a capture that was killed, or still runs" : "is no session of a camera");
+    return weft_session_faults_add(faults, WEFT_FAULT_FOREIGN, -1, found.message, error);
+}
+
+weft_code weft_camera_folder_check(const char *folder, const weft_camera_list *list, weft_session_faults *faults,
+                                   weft_error *error)
+{
+    DIR *listing = opendir(folder);
+    weft_code code = listing ? WEFT_OK : weft_fail_errno(error, "list folder", folder);
+    for (struct dirent *entry; code == WEFT_OK && (entry = readdir(listing));)
+        code = look_beside(folder, entry->d_name, list, faults, error);
+    if (listing)
+        closedir(listing);
+    return code;
+}

@@ -2,7 +2,9 @@
 
 #include "capture/plan.h"
 
+#include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,7 +43,11 @@ static weft_code describe(const char *folder, const weft_rig *rig, weft_session 
 {
     const weft_rig_settings *settings = &rig->settings;
     WEFT_TRY(check_poses(rig, error));
-    session->folder = strdup(folder);
+    char path[PATH_MAX];
+    snprintf(path, sizeof path, "%s%s%s", folder, rig->camera_name ? "/" : "",
+             rig->camera_name ? rig->camera_name : "");
+    session->folder = strdup(path);
+    session->camera_model = rig->camera_model ? strdup(rig->camera_model) : NULL;
     session->rig = strdup(rig->name);
     session->sample = strdup(rig->sample);
     session->rig_settings = strdup(rig->identity);
@@ -54,17 +60,74 @@ static weft_code describe(const char *folder, const weft_rig *rig, weft_session 
     session->dark_frames = rig->dark_frames;
     session->flat_frames = rig->flat_frames;
     session->target = weft_target_for_opening(settings->opening_mm);
-    if (!session->folder || !session->rig || !session->sample || !session->rig_settings)
+    if (rig->colour)
+        session->colour = *rig->colour;
+    if (!session->folder || !session->rig || !session->sample || !session->rig_settings ||
+        (rig->camera_model && !session->camera_model))
         return weft_fail_memory(error, "session", 0);
     return WEFT_OK;
 }
 
-/* Poses that the stage cannot take up are told before the night, not in it. */
-static weft_code reach_all(const weft_plan *plan, const weft_rig_stage *stage, weft_error *error)
+/* ---- Which camera takes which shot ---- */
+
+static weft_code reach(const weft_rig *rig, weft_shot *shot, weft_error *error)
 {
-    for (int i = 0; stage->reach && i < plan->shot_count; i++)
-        WEFT_TRY(stage->reach(stage->device, &plan->shot[i], error));
+    return rig->stage.reach ? rig->stage.reach(rig->stage.device, shot, error) : WEFT_OK;
+}
+
+/* The first camera that can take it. */
+static weft_code find_taker(const weft_rig *rig, const weft_shot *shot, const weft_rig **taker, weft_error *error)
+{
+    weft_code code = WEFT_BAD_INPUT;
+    *taker = NULL;
+    for (const weft_rig *one = rig->first ? rig->first : rig; one && !*taker; one = one->next) {
+        weft_shot tried = *shot;
+        code = reach(one, &tried, error);
+        *taker = code == WEFT_OK ? one : NULL;
+    }
+    return code;
+}
+
+/* Light steps aside for every camera of the rig: all see it at once. */
+static weft_code avoid_cameras(const weft_rig *taker, weft_shot *shot, weft_error *error)
+{
+    /* Aside of one may be into another, a few times over. */
+    enum { MOST_ROUNDS = 4 };
+    bool moved = true;
+    shot->light_driven = shot->light;
+    for (int round = 0; moved && round < MOST_ROUNDS; round++) {
+        moved = false;
+        for (const weft_rig *one = taker->first; one; one = one->next) {
+            weft_angles view = shot->view, before = shot->light_driven;
+            if (one != taker)
+                WEFT_TRY(one->stage.view_of(one->stage.device, taker->stage.device, shot, &view, error));
+            shot->light_driven =
+                weft_light_beside_camera(before, view, weft_rad_of_deg(one->settings.camera_half_angle_deg));
+            moved = moved || shot->light_driven.theta_rad != before.theta_rad ||
+                    shot->light_driven.phi_rad != before.phi_rad;
+        }
+    }
     return WEFT_OK;
+}
+
+/* Keeps the shots that are for this camera. Poses that no camera can take up are told before the night, not in it. */
+static weft_code choose_shots(weft_plan *plan, const weft_rig *rig, weft_error *error)
+{
+    int kept = 0;
+    for (int i = 0; i < plan->shot_count; i++) {
+        weft_shot shot = plan->shot[i];
+        const weft_rig *taker;
+        WEFT_TRY(find_taker(rig, &shot, &taker, error));
+        if (taker != rig)
+            continue;
+        if (rig->first)
+            WEFT_TRY(avoid_cameras(rig, &shot, error));
+        WEFT_TRY(reach(rig, &shot, error));
+        plan->shot[kept++] = shot;
+    }
+    plan->shot_count = kept;
+    return kept > 0 ? WEFT_OK
+                    : weft_fail(error, WEFT_BAD_INPUT, "no shot of the plan is for the camera '%s'", rig->camera_name);
 }
 
 static weft_code place(const weft_rig *rig, size_t shot, weft_session *session, weft_error *error)
@@ -105,9 +168,9 @@ static weft_code adopt_plan(const char *name, const weft_rig *rig, weft_session 
     weft_plan plan;
     WEFT_TRY(weft_plan_read(name, &plan, error));
     weft_plan_avoid_camera(&plan, weft_rad_of_deg(rig->settings.camera_half_angle_deg));
-    session->shot_count = plan.shot_count;
     session->shot = plan.shot;
-    WEFT_TRY(reach_all(&plan, &rig->stage, error));
+    WEFT_TRY(choose_shots(&plan, rig, error));
+    session->shot_count = plan.shot_count;
     WEFT_TRY(place_all(rig, session, error));
     session->record = calloc((size_t)plan.shot_count, sizeof *session->record);
     return session->record ? WEFT_OK : weft_fail_memory(error, "plan", (size_t)plan.shot_count * sizeof(weft_shot));

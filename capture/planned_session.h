@@ -5,7 +5,8 @@
 #include "capture/rig.h"
 
 /* The session that `rig` takes by `plan` ("ubo81" or a CSV file, see capture/plan.h) in `folder`; nothing of it is on
- * disk. The caller frees with weft_session_free. Errors: WEFT_BAD_INPUT naming the file of the plan, or that of the
+ * disk. Of one of several cameras, it has the shots that are for this camera, and lies in a folder of its own in
+ * `folder`. The caller frees with weft_session_free. Errors: WEFT_BAD_INPUT naming the file of the plan, or that of the
  * poses where they are of another lens or put the camera below the plate; WEFT_SYSTEM. */
 weft_code weft_session_of_plan(const char *folder, const char *plan, const weft_rig *rig, weft_session *session,
                                weft_error *error);

@@ -44,8 +44,7 @@ static void sweep(const char *folder)
 
 /* ---- New or known ---- */
 
-/* A folder that holds something no capture has left there is refused: hidden files are locks and temporary files. */
-static weft_code refuse_foreign_files(const char *folder, weft_error *error)
+weft_code weft_refuse_foreign_files(const char *folder, weft_error *error)
 {
     DIR *listing = opendir(folder);
     if (!listing)
@@ -62,7 +61,7 @@ static weft_code create_or_open(const weft_session *wanted, weft_session *sessio
     char path[PATH_MAX];
     snprintf(path, sizeof path, "%s/session.json", wanted->folder);
     if (access(path, F_OK) != 0) {
-        WEFT_TRY(refuse_foreign_files(wanted->folder, error));
+        WEFT_TRY(weft_refuse_foreign_files(wanted->folder, error));
         WEFT_TRY(weft_session_create(wanted, error));
     }
     /* Also a new session is read back, so that it is the same numbers that a later run will work with. */

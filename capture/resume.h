@@ -22,4 +22,8 @@ weft_code weft_session_hold(const weft_session *wanted, const weft_progress *pro
                             weft_error *error);
 void weft_held_session_release(weft_held_session *held);
 
+/* A folder that holds something no capture has left there is refused: hidden files are locks and temporary files.
+ * Errors: WEFT_BAD_INPUT, WEFT_SYSTEM. */
+weft_code weft_refuse_foreign_files(const char *folder, weft_error *error);
+
 #endif

@@ -2,8 +2,12 @@
  * and replaced device by device. Whoever opens a rig hands it to a capture (capture/capture.h), which knows nothing
  * else of it, and closes it afterwards. The virtual rig (capture/virtual/virtual_rig.h) is one back end.
  *
+ * A rig with several cameras is several weft_rig that share stage and light: each is its camera, with the stage as that
+ * camera stands on it. A capture drives them together.
+ *
  * Every call blocks until the device has done it. Errors: WEFT_SYSTEM with a message that names the device. No
- * interface is thread-safe: the capture loop calls them from one thread. */
+ * interface is thread-safe: the capture loop calls them from one thread. But it lets each of several cameras expose in
+ * a thread of its own, at the same time. */
 #ifndef WEFT_CAPTURE_RIG_H
 #define WEFT_CAPTURE_RIG_H
 
@@ -26,6 +30,12 @@ typedef struct weft_stage_estimate {
     double bound_seconds; /* no order of these poses takes less; 0 where none was derived */
     int moves;            /* of any axis */
 } weft_stage_estimate;
+
+/* Where axes and lamps stand for a photograph, in numbers that only their stage understands. */
+enum { WEFT_PLACE_NUMBERS = 10 };
+typedef struct weft_place {
+    double at[WEFT_PLACE_NUMBERS]; /* equal within 1e-6: the same place */
+} weft_place;
 
 /* Functions that may be NULL say what is then understood. */
 typedef struct weft_rig_stage {
@@ -50,6 +60,12 @@ typedef struct weft_rig_stage {
      * in the order of the plan, and nothing is known of the time. Errors: WEFT_SYSTEM. */
     weft_code (*order)(void *device, const weft_shot *shot, int count, int *numbers, weft_stage_estimate *estimate,
                        weft_error *error);
+    /* Of a rig with several cameras: where its axes and lamps stand for a shot of this camera, which is the same place
+     * as for a shot of another one where both can be taken at once. Pure. Errors: those of reach. */
+    weft_code (*place)(void *device, const weft_shot *shot, weft_place *place, weft_error *error);
+    /* Of a rig with several cameras: from where this one sees the sample while `taker`, the stage of another, has taken
+     * up a shot. Pure. Errors: those of reach. */
+    weft_code (*view_of)(void *device, void *taker, const weft_shot *shot, weft_angles *view, weft_error *error);
 } weft_rig_stage;
 
 typedef struct weft_rig_light {
@@ -71,11 +87,17 @@ typedef struct weft_rig_curtain {
 } weft_rig_curtain;
 
 /* The texts are what session.json remembers of the rig. They belong to the back end. */
-typedef struct weft_rig {
-    const char *name;     /* of the back end: "virtual" */
-    const char *sample;   /* what lies in the opening of the target */
-    const char *identity; /* a JSON object with the settings and whatever else the photographs depend on: a session
-                             goes on only where all its values are the same */
+typedef struct weft_rig weft_rig;
+struct weft_rig {
+    const char *camera_name;   /* of one of several cameras: its folder in the session. NULL: there is one camera */
+    const char *camera_model;  /* cameras of one model see the same colours; NULL: not known */
+    const weft_colour *colour; /* of this camera under the lamp; NULL: that of the request, if any */
+    weft_rig *first, *next; /* of several cameras; the earlier one takes a photograph that two could take. NULL: there
+                               is one camera; next of the last: NULL */
+    const char *name;       /* of the back end: "virtual" */
+    const char *sample;     /* what lies in the opening of the target */
+    const char *identity;   /* a JSON object with the settings and whatever else the photographs depend on: a session
+                               goes on only where all its values are the same */
     weft_rig_settings settings;    /* set-up and exposure */
     weft_camera calibration;       /* of the camera */
     const weft_rig_poses *poses;   /* where the axes truly are, with the camera that goes with them; NULL: not known */
@@ -87,6 +109,6 @@ typedef struct weft_rig {
     weft_rig_stage stage;
     weft_rig_light light;
     weft_rig_curtain curtain; /* NULL: for sessions without frames of the sensor alone */
-} weft_rig;
+};
 
 #endif

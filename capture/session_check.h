@@ -3,7 +3,7 @@
 #define WEFT_CAPTURE_SESSION_CHECK_H
 
 #include "base/progress.h"
-#include "btf/session/session.h"
+#include "btf/session/camera_list.h"
 
 typedef enum weft_session_fault_kind {
     WEFT_FAULT_MISSING, /* a photograph that the journal names is gone */
@@ -40,5 +40,10 @@ void weft_session_faults_free(weft_session_faults *faults);
 /* Adds a fault with a copy of `text`. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_session_faults_add(weft_session_faults *faults, weft_session_fault_kind kind, int shot, const char *text,
                                   weft_error *error);
+
+/* Adds what lies in the folder of several cameras and is neither their list nor a session of theirs. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_camera_folder_check(const char *folder, const weft_camera_list *list, weft_session_faults *faults,
+                                   weft_error *error);
 
 #endif

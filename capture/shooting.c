@@ -1,11 +1,13 @@
 #include "capture/shooting.h"
 
+#include "capture/volley.h"
+
 /* At most MAX_METERED exposures of a shot, each retried; frames are numbered FRAMES_PER_SHOT x shot + exposure. */
 enum { MAX_METERED = 8, FRAMES_PER_SHOT = 256 };
 
-/* Whatever has failed, nothing moves on and nothing burns on. */
-static weft_code halt(weft_rig *rig, weft_code code)
+weft_code weft_shooting_halt(weft_shooting *shooting, weft_code code)
 {
+    weft_rig *rig = shooting->rig;
     if (code == WEFT_OK)
         return code;
     if (rig->stage.stop)
@@ -24,7 +26,7 @@ weft_code weft_shooting_begin(weft_rig *rig, const weft_session *session, int ne
                                 .retries = (int)settings->retries,
                                 .stay = -1,
                                 .next_stay = next_stay};
-    return halt(rig, rig->stage.home(rig->stage.device, next_stay, error));
+    return weft_shooting_halt(shooting, rig->stage.home(rig->stage.device, next_stay, error));
 }
 
 void weft_shooting_end(weft_shooting *shooting)
@@ -32,8 +34,9 @@ void weft_shooting_end(weft_shooting *shooting)
     weft_meter_free(&shooting->meter);
 }
 
-static weft_code drive(weft_shooting *shooting, const weft_shot *shot, weft_error *error)
+weft_code weft_shooting_drive(weft_shooting *shooting, int number, weft_error *error)
 {
+    const weft_shot *shot = &shooting->session->shot[number];
     weft_rig_stage *stage = &shooting->rig->stage;
     bool moved = false;
     WEFT_TRY(stage->move(stage->device, shot->view, shot->light_driven, &moved, error));
@@ -56,9 +59,8 @@ static double predict_exposure(weft_shooting *shooting, const weft_shot *shot)
     return weft_exposure_in_thirds(exposure_s * exp2(1 / 6.0), shooting->limits);
 }
 
-/* One exposure, repeated where the camera does not deliver it. */
-static weft_code expose(weft_shooting *shooting, int shot, double exposure_s, uint16_t *samples, double *read_back_s,
-                        weft_error *error)
+weft_code weft_shooting_expose(weft_shooting *shooting, int shot, double exposure_s, uint16_t *samples,
+                               double *read_back_s, weft_error *error)
 {
     weft_rig_camera *camera = &shooting->rig->camera;
     weft_code code = WEFT_SYSTEM;
@@ -74,13 +76,13 @@ static weft_code expose(weft_shooting *shooting, int shot, double exposure_s, ui
     return code;
 }
 
-static weft_code meter_and_expose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
-                                  weft_error *error)
+weft_code weft_shooting_meter_and_expose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
+                                         weft_error *error)
 {
     double exposure_s = predict_exposure(shooting, &shooting->session->shot[shot]), before_s = 0;
     shooting->frames = 0;
     for (int metered = 0; metered < MAX_METERED; metered++) {
-        WEFT_TRY(expose(shooting, shot, exposure_s, samples, read_back_s, error));
+        WEFT_TRY(weft_shooting_expose(shooting, shot, exposure_s, samples, read_back_s, error));
         double taken_s = weft_exposure_taken(exposure_s, *read_back_s);
         double level = weft_meter_read(&shooting->meter, shooting->session, samples);
         exposure_s = weft_exposure_after(taken_s, level, shooting->limits);
@@ -92,71 +94,13 @@ static weft_code meter_and_expose(weft_shooting *shooting, int shot, uint16_t *s
     return WEFT_OK;
 }
 
-static weft_code take_once(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s, weft_error *error)
-{
-    weft_rig_light *light = &shooting->rig->light;
-    WEFT_TRY(drive(shooting, &shooting->session->shot[shot], error));
-    WEFT_TRY(light->power(light->device, true, error));
-    WEFT_TRY(meter_and_expose(shooting, shot, samples, read_back_s, error));
-    return light->power(light->device, false, error);
-}
-
-static weft_code take_in_pose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
-                              weft_error *error)
-{
-    weft_rig_stage *stage = &shooting->rig->stage;
-    for (int attempt = 0; attempt <= shooting->retries; attempt++) {
-        bool held = true;
-        WEFT_TRY(take_once(shooting, shot, samples, read_back_s, error));
-        if (stage->held)
-            WEFT_TRY(stage->held(stage->device, &held, error));
-        if (held)
-            return WEFT_OK;
-        shooting->disturbed++;
-    }
-    return weft_fail(error, WEFT_SYSTEM, "the stage did not keep its pose during shot %d, %d times", shot,
-                     shooting->retries + 1);
-}
-
 weft_code weft_shooting_take(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
                              weft_error *error)
 {
-    double read_back_s = 0;
-    WEFT_TRY(halt(shooting->rig, take_in_pose(shooting, shot, samples, &read_back_s, error)));
-    *record = (weft_shot_record){.stay = shooting->stay, .exposure_s = read_back_s};
-    return WEFT_OK;
-}
-
-/* ---- Brackets ---- */
-
-static weft_code expose_lit(weft_shooting *shooting, int shot, double exposure_s, uint16_t *samples,
-                            double *read_back_s, bool *held, weft_error *error)
-{
-    weft_rig_light *light = &shooting->rig->light;
-    weft_rig_stage *stage = &shooting->rig->stage;
-    WEFT_TRY(light->power(light->device, true, error));
-    WEFT_TRY(expose(shooting, shot, exposure_s, samples, read_back_s, error));
-    WEFT_TRY(light->power(light->device, false, error));
-    return stage->held ? stage->held(stage->device, held, error) : WEFT_OK;
-}
-
-weft_code weft_shooting_bracket(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
-                                bool *taken, weft_error *error)
-{
-    const weft_camera *camera = &shooting->session->camera;
-    size_t size = (size_t)camera->width * (size_t)camera->height * 3;
-    int count = record->bracket_count;
-    double last_s = count > 0 ? record->bracket[count - 1].exposure_s : record->exposure_s, read_back_s = 0;
-    bool held = true;
-    *taken = false;
-    double exposure_s =
-        weft_exposure_of_bracket(&shooting->meter, shooting->session, samples, record, shooting->limits);
-    if (exposure_s == 0)
-        return WEFT_OK;
-    uint16_t *behind = samples + ((size_t)count + 1) * size;
-    WEFT_TRY(halt(shooting->rig, expose_lit(shooting, shot, exposure_s, behind, &read_back_s, &held, error)));
-    *taken = held && read_back_s != last_s;
-    if (*taken)
-        record->bracket[record->bracket_count++].exposure_s = read_back_s;
-    return WEFT_OK;
+    weft_exposing alone = {.shooting = shooting, .shot = shot, .samples = samples};
+    WEFT_TRY(weft_volley_take(&alone, 1, error));
+    if (alone.code != WEFT_OK && error)
+        *error = alone.error;
+    *record = alone.record;
+    return alone.code;
 }

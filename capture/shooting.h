@@ -2,6 +2,7 @@
 #ifndef WEFT_CAPTURE_SHOOTING_H
 #define WEFT_CAPTURE_SHOOTING_H
 
+#include "btf/session/camera_list.h"
 #include "capture/exposure.h"
 #include "capture/rig.h"
 
@@ -32,12 +33,20 @@ void weft_shooting_end(weft_shooting *shooting);
 weft_code weft_shooting_take(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
                              weft_error *error);
 
-/* Takes the next photograph of a bracket, of the shot that was taken last: shorter where the sensor clipped in the
- * opening, else longer, up to 16 times, until the darkest of the opening reaches a thirty-second of full scale.
- * `samples` holds all photographs of the shot, one after the other: this one goes behind the last. *record gets its
- * exposure. *taken says whether there was need of it. One during which the stage moved is left out, and ends the
- * bracket. Errors: as above. */
-weft_code weft_shooting_bracket(weft_shooting *shooting, int shot, uint16_t *samples, weft_shot_record *record,
-                                bool *taken, weft_error *error);
+/* ---- What a volley is made of (capture/volley.h) ---- */
+
+/* Takes up the pose of a shot; the meter is that of its view. Errors: those of the stage; WEFT_BAD_INPUT as above. */
+weft_code weft_shooting_drive(weft_shooting *shooting, int shot, weft_error *error);
+
+/* Exposes under the light that burns, until the exposure is right. Errors: those of the camera. */
+weft_code weft_shooting_meter_and_expose(weft_shooting *shooting, int shot, uint16_t *samples, double *read_back_s,
+                                         weft_error *error);
+
+/* One exposure, repeated where the camera does not deliver it. Errors: those of the camera. */
+weft_code weft_shooting_expose(weft_shooting *shooting, int shot, double exposure_s, uint16_t *samples,
+                               double *read_back_s, weft_error *error);
+
+/* Returns `code`. Whatever has failed, nothing moves on and nothing burns on. */
+weft_code weft_shooting_halt(weft_shooting *shooting, weft_code code);
 
 #endif

@@ -1,10 +1,11 @@
 #include "capture/capture.h"
-#include "base/text/json_text.h"
 #include "btf/session/poses_file.h"
 #include "capture/laboratory/laboratory.h"
+#include "capture/planned_session.h"
 #include "capture/virtual/ground_truth.h"
+#include "capture/volley_order.h"
 #include "cli/arguments.h"
-#include "cli/describe.h"
+#include "cli/capture_words.h"
 #include "cli/person.h"
 #include "study/preflight/preflight.h"
 
@@ -46,7 +47,8 @@ static const weft_option option_table[] = {
          "Where the axes of the virtual rig truly are, as weft calibrate found them; a rig of yours names its poses "
          "in its file",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, poses)},
-    {"truth", .argument = "FILE.h5", .help = "Where the ground truth goes (default: SESSION.truth.h5)",
+    {"truth", .argument = "FILE.h5",
+     .help = "Where the ground truth goes (default: SESSION.truth.h5; of several cameras SESSION.CAMERA.truth.h5)",
      .kind = WEFT_OPTION_OUTPUT, .offset = offsetof(capture_command, truth.path)},
     {"truth-size", .argument = "N", .help = "Texels along a side of the truth (default: 64)", .kind = WEFT_OPTION_WHOLE,
      .offset = offsetof(capture_command, truth.size), .low = 1, .high = 4096},
@@ -98,122 +100,60 @@ static void say_warning(const weft_common_options *common, const char *warning)
         weft_command_say(common, "%s", warning);
 }
 
-static void say_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
-{
-    weft_command_say(common, "%d photographs: %d views, each with all its lights before the camera moves on",
-                     rehearsal->shot_count, rehearsal->view_count);
-    weft_command_say(common, "%d lights step aside for the camera", rehearsal->driven_aside);
-    weft_command_say(common, "disk: %.2f GB; time: about %.0f s, at the %.1f ms that one photograph took",
-                     (double)rehearsal->bytes * 1e-9, rehearsal->seconds_per_photograph * rehearsal->shot_count,
-                     rehearsal->seconds_per_photograph * 1e3);
-}
-
-/* The views in the order in which the stage takes them. */
-static void say_order(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
-{
-    const weft_shot *shot = rehearsal->session.shot;
-    for (int i = 0, next; i < rehearsal->shot_count; i = next) {
-        weft_angles view = shot[rehearsal->order[i]].view;
-        for (next = i + 1; next < rehearsal->shot_count; next++) {
-            weft_angles other = shot[rehearsal->order[next]].view;
-            if (other.theta_rad != view.theta_rad || other.phi_rad != view.phi_rad)
-                break;
-        }
-        weft_command_say(common, "view %5.1f %5.1f degrees: photographs %d to %d", weft_deg_of_rad(view.theta_rad),
-                         weft_deg_of_rad(view.phi_rad), i + 1, next);
-    }
-}
-
-static void say_stage(const weft_common_options *common, const weft_capture_rehearsal *rehearsal)
-{
-    const weft_stage_estimate *stage = &rehearsal->stage;
-    double photographs_s = rehearsal->seconds_per_photograph * rehearsal->shot_count;
-    weft_command_say(common, "%d photographs, %d lights step aside for the camera", rehearsal->shot_count,
-                     rehearsal->driven_aside);
-    weft_command_say(common, "disk: %.2f GB, and what the camera itself writes", (double)rehearsal->bytes * 1e-9);
-    weft_command_say(common, "time: %.2f h for %d moves, %.2f h for photographs of %.2f s", stage->seconds / 3600,
-                     stage->moves, photographs_s / 3600, rehearsal->seconds_per_photograph);
-    if (stage->bound_seconds > 0)
-        weft_command_say(common, "no order of these poses takes less than %.2f h of moves: this one takes %.1f %% more",
-                         stage->bound_seconds / 3600, 100 * (stage->seconds / stage->bound_seconds - 1));
-}
-
 static weft_code rehearse(const capture_command *command, weft_rig *rig, const char *warning, weft_error *error)
 {
     weft_capture_rehearsal rehearsal;
     WEFT_TRY(weft_capture_rehearse(&command->request, rig, &rehearsal, error));
     say_warning(&command->common, warning);
-    if (rig->stage.order)
-        say_order(&command->common, &rehearsal);
-    (rig->stage.order ? say_stage : say_rehearsal)(&command->common, &rehearsal);
-    if (weft_session_frame_count(&rehearsal.session) > 0)
-        weft_command_say(&command->common, "before them %d + %d dark and %d flat frames of the sensor",
-                         rehearsal.session.dark_frames, rehearsal.session.dark_frames, rehearsal.session.flat_frames);
+    weft_say_rehearsal(&command->common, &rehearsal, rig->stage.order != NULL);
     weft_capture_rehearsal_free(&rehearsal);
     return WEFT_OK;
 }
 
-/* ---- Before the night ---- */
+/* ---- Several cameras ---- */
 
-static json_t *pack_check(const weft_preflight *result, int kind)
+static weft_code order_volleys(const capture_command *command, const weft_rig *rig, weft_session *sessions,
+                               weft_volley_order *order, weft_error *error)
 {
-    const weft_preflight_meaning *meaning = &weft_preflight_meaning_of[kind];
-    const weft_preflight_check *check = &result->check[kind];
-    double limit = kind == WEFT_CHECK_DISK ? result->disk_needed : meaning->limit;
-    json_t *packed = json_pack("{s:s, s:b, s:f, s:f, s:s}", "check", meaning->name, "passed", check->passed, "value",
-                               check->value * meaning->scale, "limit", limit * meaning->scale, "unit", meaning->unit);
-    if (meaning->of_view)
-        weft_json_put(&packed, "view",
-                      json_pack("[ff]", weft_deg_of_rad(check->view.theta_rad), weft_deg_of_rad(check->view.phi_rad)));
-    if (!check->passed)
-        weft_json_put(&packed, "advice", json_string(meaning->advice));
-    return packed;
+    const weft_session *all[WEFT_CAMERAS_MAX];
+    int count = 0;
+    for (const weft_rig *one = rig; one; one = one->next, count++) {
+        WEFT_TRY(weft_session_of_plan(command->request.folder, command->request.plan, one, &sessions[count], error));
+        all[count] = &sessions[count];
+    }
+    return weft_volley_order_make(rig, all, count, order, error);
 }
 
-static void say_check(const weft_common_options *common, const weft_preflight *result, int kind)
+static weft_code say_volleys(const capture_command *command, const weft_rig *rig, weft_error *error)
 {
-    const weft_preflight_meaning *meaning = &weft_preflight_meaning_of[kind];
-    const weft_preflight_check *check = &result->check[kind];
-    double limit = kind == WEFT_CHECK_DISK ? result->disk_needed : meaning->limit;
-    char view[64] = "";
-    if (!check->done) {
-        weft_command_say(common, "%-4s %-15s not known", "-", meaning->name);
-        return;
+    weft_session sessions[WEFT_CAMERAS_MAX] = {0};
+    weft_volley_order order = {0};
+    int shots = 0;
+    weft_code code = order_volleys(command, rig, sessions, &order, error);
+    for (int i = 0; i < WEFT_CAMERAS_MAX; i++) {
+        shots += sessions[i].shot_count;
+        weft_session_free(&sessions[i]);
     }
-    if (meaning->of_view)
-        snprintf(view, sizeof view, ", seen from %.0f %.0f degrees", weft_deg_of_rad(check->view.theta_rad),
-                 weft_deg_of_rad(check->view.phi_rad));
-    weft_command_say(common, "%-4s %-15s %.3g %s (%s %.3g)%s", check->passed ? "pass" : "FAIL", meaning->name,
-                     check->value * meaning->scale, meaning->unit, meaning->is_least ? "at least" : "at most",
-                     limit * meaning->scale, view);
-    if (!check->passed)
-        weft_command_say(common, "     %s", meaning->advice);
-}
-
-static weft_code say_checks(const weft_common_options *common, const weft_preflight *result, weft_error *error)
-{
-    weft_code code = WEFT_OK;
-    for (int kind = 0; kind < WEFT_CHECK_KINDS && code == WEFT_OK; kind++) {
-        if (!common->json) {
-            say_check(common, result, kind);
-        } else if (result->check[kind].done) {
-            json_t *packed = pack_check(result, kind);
-            code = weft_command_describe(common, "check", packed, error);
-            json_decref(packed);
-        }
-    }
+    if (code == WEFT_OK)
+        weft_command_say(&command->common, "together: %d photographs in %d volleys, %.2f h of moves", shots,
+                         order.count, order.stage.seconds / 3600);
+    weft_volley_order_free(&order);
     return code;
 }
 
-static weft_code judge(const capture_command *command, const weft_preflight *result, weft_error *error)
+/* ---- Before the night ---- */
+
+static weft_code judge(const capture_command *command, const char *camera, const weft_preflight *result,
+                       weft_error *error)
 {
     char path[PATH_MAX];
     size_t length = strlen(command->request.folder);
     while (length > 1 && command->request.folder[length - 1] == '/')
         length--;
-    snprintf(path, sizeof path, "%.*s.check.png", (int)length, command->request.folder);
+    snprintf(path, sizeof path, "%.*s%s%s.check.png", (int)length, command->request.folder, camera ? "." : "",
+             camera ? camera : "");
     WEFT_TRY(weft_image_write(path, &result->sheet, NULL, error));
-    WEFT_TRY(say_checks(&command->common, result, error));
+    WEFT_TRY(weft_say_checks(&command->common, result, error));
     weft_command_say(&command->common,
                      "%s shows %d views: with the lamp, the change until the next photograph times 8, "
                      "without the lamp times 100",
@@ -230,9 +170,26 @@ static weft_code check_rig(const capture_command *command, weft_rig *rig, const 
     weft_progress progress = weft_command_progress(&command->common);
     weft_preflight result;
     WEFT_TRY(weft_preflight_run(&request, rig, &progress, &result, error));
-    weft_code code = judge(command, &result, error);
+    weft_code code = judge(command, rig->camera_name, &result, error);
     weft_preflight_free(&result);
     return code;
+}
+
+/* Of several cameras, one after another. */
+static weft_code check_all(const capture_command *command, weft_rig *rig, weft_laboratory *laboratory,
+                           weft_error *error)
+{
+    weft_code result = WEFT_OK;
+    for (weft_rig *one = rig; one; one = one->next) {
+        const char *lens = laboratory ? weft_laboratory_lens(laboratory, one) : NULL;
+        if (one->camera_name)
+            weft_command_say(&command->common, "camera '%s':", one->camera_name);
+        weft_code code = check_rig(command, one, lens, error);
+        if (code == WEFT_SYSTEM)
+            return code;
+        result = result == WEFT_OK ? code : result;
+    }
+    return result;
 }
 
 /* ---- The night ---- */
@@ -256,15 +213,46 @@ static void say_summary(const capture_command *command, const weft_capture_summa
                      summary->exposures);
 }
 
+/* The truth of each of several cameras lies in a file of its own: its name goes before the ending. */
+static void choose_truth_path(const capture_command *command, const weft_rig *rig, char path[PATH_MAX])
+{
+    static const char ending[] = ".truth.h5";
+    const char *base = command->truth.path ? command->truth.path : command->request.folder;
+    size_t length = strlen(base);
+    const char *last = command->truth.path && length > 3 && strcmp(base + length - 3, ".h5") == 0 ? ".h5" : ending;
+    while (!command->truth.path && length > 1 && base[length - 1] == '/')
+        length--;
+    if (command->truth.path && last != ending)
+        length -= 3;
+    snprintf(path, PATH_MAX, "%.*s.%s%s", (int)length, base, rig->camera_name, last);
+}
+
+/* Of each camera of the virtual rig, with or without writing it. */
+static weft_code handle_truth(const capture_command *command, const weft_virtual_rig *virtual,
+                              const weft_capture *capture, bool write, const weft_progress *progress, weft_error *error)
+{
+    for (int i = 0; i < capture->camera_count; i++) {
+        const weft_session *session = &capture->held[i].session;
+        weft_truth_request truth = command->truth;
+        char path[PATH_MAX];
+        if (capture->camera_count > 1) {
+            choose_truth_path(command, &virtual[i].rig, path);
+            truth.path = path;
+        }
+        WEFT_TRY(write ? weft_truth_write(&truth, session, &virtual[i], progress, error)
+                       : weft_truth_check_path(&truth, session, error));
+    }
+    return WEFT_OK;
+}
+
 /* The photographs of any rig; then, of the virtual one, the truth that they are to be measured against. */
 static weft_code photograph(const capture_command *command, const weft_virtual_rig *virtual, weft_capture *capture,
                             const weft_progress *progress, weft_error *error)
 {
-    const weft_session *session = &capture->held.session;
     if (virtual)
-        WEFT_TRY(weft_truth_check_path(&command->truth, session, error));
+        WEFT_TRY(handle_truth(command, virtual, capture, false, progress, error));
     WEFT_TRY(weft_capture_take(capture, &stop_asked, progress, error));
-    return virtual ? weft_truth_write(&command->truth, session, virtual, progress, error) : WEFT_OK;
+    return virtual ? handle_truth(command, virtual, capture, true, progress, error) : WEFT_OK;
 }
 
 static weft_code take_session(const capture_command *command, weft_rig *rig, const weft_virtual_rig *virtual,
@@ -283,21 +271,49 @@ static weft_code take_session(const capture_command *command, weft_rig *rig, con
     return code;
 }
 
-static weft_code capture_with_virtual_rig(capture_command *command, weft_error *error)
+/* ---- Rigs of one or several cameras ---- */
+
+static void say_camera(const capture_command *command, const weft_rig *rig)
 {
-    weft_virtual_rig rig;
+    if (rig->camera_name)
+        weft_command_say(&command->common, "camera '%s':", rig->camera_name);
+}
+
+static weft_code rehearse_all(const capture_command *command, weft_rig *rig, const char *warning, weft_error *error)
+{
+    for (weft_rig *one = rig; one; one = one->next) {
+        say_camera(command, one);
+        WEFT_TRY(rehearse(command, one, warning, error));
+    }
+    return rig->next ? say_volleys(command, rig, error) : WEFT_OK;
+}
+
+static weft_code capture_with_virtual_cameras(const capture_command *command, weft_virtual_rig *rigs, int count,
+                                              weft_error *error)
+{
     weft_poses_file poses;
+    if (command->poses && count > 1)
+        return weft_fail(error, WEFT_BAD_USAGE, "--poses is of one camera, the rig has %d", count);
     if (command->poses)
         WEFT_TRY(weft_poses_read(command->poses, &poses, error));
+    rigs[0].rig.poses = command->poses ? &poses.poses : NULL;
+    rigs[0].rig.poses_path = command->poses;
+    if (command->dry_run)
+        return rehearse_all(command, &rigs[0].rig, rigs[0].warning, error);
+    return command->check ? check_all(command, &rigs[0].rig, NULL, error)
+                          : take_session(command, &rigs[0].rig, rigs, error);
+}
+
+static weft_code capture_with_virtual_rig(capture_command *command, weft_error *error)
+{
+    static weft_virtual_rig rigs[WEFT_VIRTUAL_CAMERAS_MAX];
+    int count;
     if (command->rig_file && strcmp(command->rig_file, "virtual") != 0)
         WEFT_TRY(weft_virtual_settings_read(command->rig_file, &command->rig.settings, error));
-    WEFT_TRY(weft_virtual_rig_open(&command->rig, &rig, error));
-    rig.rig.poses = command->poses ? &poses.poses : NULL;
-    rig.rig.poses_path = command->poses;
-    weft_code code = command->dry_run ? rehearse(command, &rig.rig, rig.warning, error)
-                     : command->check ? check_rig(command, &rig.rig, NULL, error)
-                                      : take_session(command, &rig.rig, &rig, error);
-    weft_virtual_rig_close(&rig);
+    WEFT_TRY(weft_virtual_rigs_open(&command->rig, rigs, &count, error));
+    weft_code code = capture_with_virtual_cameras(command, rigs, count, error);
+    for (int i = 0; i < count; i++)
+        weft_virtual_rig_close(&rigs[i]);
     return code;
 }
 
@@ -316,9 +332,15 @@ static weft_code capture_with_laboratory(const capture_command *command, weft_er
                          command->rig_file);
     WEFT_TRY(weft_laboratory_open(&request, &laboratory, error));
     weft_rig *rig = weft_laboratory_rig(laboratory);
-    weft_code code = command->dry_run ? rehearse(command, rig, "", error) : weft_laboratory_connect(laboratory, error);
+    if (rig->next && command->colour) {
+        weft_laboratory_close(laboratory);
+        return weft_fail(error, WEFT_BAD_USAGE, "--colour is of one camera: name that of each in '%s'",
+                         command->rig_file);
+    }
+    weft_code code =
+        command->dry_run ? rehearse_all(command, rig, "", error) : weft_laboratory_connect(laboratory, error);
     if (code == WEFT_OK && command->check)
-        code = check_rig(command, rig, weft_laboratory_lens(laboratory), error);
+        code = check_all(command, rig, laboratory, error);
     else if (code == WEFT_OK && !command->dry_run)
         code = take_session(command, rig, NULL, error);
     weft_laboratory_close(laboratory);

@@ -1,3 +1,5 @@
+#include "base/atomic_file.h"
+#include "btf/session/camera_list.h"
 #include "cli/arguments.h"
 #include "cli/heights.h"
 #include "registration/outcome/lamp_drift.h"
@@ -103,8 +105,72 @@ static weft_code say_outcome(const register_command *command, const weft_session
                          "the mean",
                          session->colour.left_out.mean);
     if (command->report_folder)
-        weft_command_say_page(&command->common, "report", command->report_folder);
+        weft_command_say_page(&command->common, "report", r->settings.report_folder);
     return WEFT_OK;
+}
+
+/* One camera, or several. */
+typedef struct cameras {
+    int count;
+    weft_session *session;                                 /* [count] */
+    weft_registration_settings settings[WEFT_CAMERAS_MAX]; /* [count] */
+    char report_folder[WEFT_CAMERAS_MAX][PATH_MAX];
+    weft_registration registration[WEFT_CAMERAS_MAX]; /* [count] */
+} cameras;
+
+/* Of one camera, the report lies in the folder asked for; of several, in a folder of each. */
+static weft_code choose_settings(const register_command *command, cameras *c, weft_error *error)
+{
+    weft_camera_list list;
+    WEFT_TRY(weft_camera_list_read(command->input, &list, error));
+    if (list.count > 0 && command->report_folder)
+        WEFT_TRY(weft_make_folder(command->report_folder, error));
+    for (int i = 0; i < c->count; i++) {
+        weft_registration_settings *settings = &c->settings[i];
+        *settings = weft_registration_defaults(&c->session[i]);
+        settings->width = command->width;
+        settings->height = command->height;
+        settings->allow_unfinished = command->allow_unfinished;
+        settings->report_folder = command->report_folder;
+        if (list.count == 0 || !command->report_folder)
+            continue;
+        snprintf(c->report_folder[i], sizeof c->report_folder[i], "%s/%s", command->report_folder, list.name[i]);
+        settings->report_folder = c->report_folder[i];
+    }
+    return WEFT_OK;
+}
+
+/* What is the same for all cameras must be told of one model: the colours of another are others. */
+static weft_code take_colour(const register_command *command, cameras *c, weft_error *error)
+{
+    weft_colour colour;
+    if (!command->colour)
+        return WEFT_OK;
+    WEFT_TRY(weft_colour_read(command->colour, &colour, error));
+    for (int i = 0; i < c->count; i++)
+        c->session[i].colour.terms = 0;
+    WEFT_TRY(weft_camera_sessions_agree(c->session, c->count, error));
+    for (int i = 0; i < c->count; i++)
+        c->session[i].colour = colour;
+    return WEFT_OK;
+}
+
+static weft_code register_all(const register_command *command, cameras *c, const weft_progress *progress,
+                              weft_error *error)
+{
+    WEFT_TRY(choose_settings(command, c, error));
+    WEFT_TRY(take_colour(command, c, error));
+    WEFT_TRY(
+        weft_register_cameras(c->session, c->count, command->output, c->settings, progress, c->registration, error));
+    weft_code code = WEFT_OK;
+    for (int i = 0; i < c->count; i++) {
+        if (c->count > 1)
+            weft_command_say(&command->common, "camera %s", c->session[i].folder);
+        if (code == WEFT_OK)
+            code = say_outcome(command, &c->session[i], &c->registration[i], error);
+        weft_registration_free(&c->registration[i]);
+    }
+    return code;
 }
 
 static int run(int argc, char **argv)
@@ -112,28 +178,15 @@ static int run(int argc, char **argv)
     register_command command = {.width = 64, .height = 64, .heights = true};
     weft_arguments_parse(&weft_command_register, argc, argv, &command);
     weft_progress progress = weft_command_progress(&command.common);
-    weft_session session;
-    weft_registration registration;
     weft_error error = {0};
-    weft_code code = weft_session_open(command.input, &session, &error);
+    static cameras c;
+    weft_code code = weft_camera_sessions_open(command.input, &c.session, &c.count, &error);
     if (code != WEFT_OK)
         return weft_command_exit("register", &command.common, code, &error);
-    weft_registration_settings settings = weft_registration_defaults(&session);
-    settings.width = command.width;
-    settings.height = command.height;
-    settings.allow_unfinished = command.allow_unfinished;
-    settings.report_folder = command.report_folder;
-    if (command.colour)
-        code = weft_colour_read(command.colour, &session.colour, &error);
-    if (code == WEFT_OK)
-        code = weft_register_session(&session, command.output, &settings, &progress, &registration, &error);
-    if (code == WEFT_OK) {
-        code = say_outcome(&command, &session, &registration, &error);
-        weft_registration_free(&registration);
-    }
+    code = register_all(&command, &c, &progress, &error);
     if (code == WEFT_OK && command.heights)
         weft_heights_look(&command.common, command.output);
-    weft_session_free(&session);
+    weft_camera_sessions_free(c.session, c.count);
     return weft_command_exit("register", &command.common, code, &error);
 }
 

@@ -91,7 +91,8 @@ static weft_code put(job *j, int shot, bench *b, weft_error *error)
     j->rectifier->registration->saturated[shot] = (float)saturated / (float)texels;
     if (j->shown)
         show(j, shot, b->texel);
-    return weft_dataset_writer_put_image(j->rectifier->writer, shot, b->half, b->mask, error);
+    return weft_dataset_writer_put_image(j->rectifier->writer, j->rectifier->first_image + shot, b->half, b->mask,
+                                         error);
 }
 
 /* ---- Brackets ---- */

@@ -11,6 +11,7 @@ typedef struct weft_rectifier {
     const weft_sensor_faults *faults;
     const weft_sight *sight;
     weft_dataset_writer *writer;
+    int first_image; /* of the dataset: that of shot 0 */
     weft_registration *registration;
 } weft_rectifier;
 

@@ -1,6 +1,7 @@
 #include "registration/registration.h"
 
 #include "base/clock.h"
+#include "btf/session/camera_list.h"
 #include "registration/calibrate.h"
 #include "registration/rectify.h"
 #include "registration/report/report.h"
@@ -86,24 +87,38 @@ static weft_vec3 view_direction(const weft_session *session, weft_angles view)
     return weft_unit(weft_pose_camera_position(&pose));
 }
 
-static weft_code describe_dataset(const weft_session *session, const weft_registration *registration,
-                                  weft_dataset_layout *layout, weft_error *error)
+/* The images of one camera: those from `first_image` and `first_view` on. */
+static void describe_images(const weft_session *session, const weft_survey *survey, int first_image, int first_view,
+                            weft_dataset_layout *layout)
 {
-    const weft_survey *survey = &registration->survey;
-    *layout = (weft_dataset_layout){.width = registration->settings.width,
-                                    .height = registration->settings.height,
-                                    .image_count = session->shot_count,
-                                    .view_count = survey->view_count,
-                                    .values = WEFT_REFLECTANCE_COSINE,
-                                    .distance = WEFT_FAR,
-                                    .texel_pitch_mm = session->target.opening_mm / registration->settings.width};
-    WEFT_TRY(weft_dataset_layout_allocate(layout, error));
     for (int shot = 0; shot < session->shot_count; shot++) {
-        layout->light[shot] = weft_direction_of_angles(session->shot[shot].light_driven);
-        layout->view_of_image[shot] = survey->view_of_shot[shot];
+        layout->light[first_image + shot] = weft_direction_of_angles(session->shot[shot].light_driven);
+        layout->view_of_image[first_image + shot] = first_view + survey->view_of_shot[shot];
     }
     for (int view = 0; view < survey->view_count; view++)
-        layout->view[view] = view_direction(session, survey->view[view]);
+        layout->view[first_view + view] = view_direction(session, survey->view[view]);
+}
+
+/* The cameras one after another. */
+static weft_code describe_dataset(const weft_session *sessions, int count, const weft_registration *registrations,
+                                  weft_dataset_layout *layout, weft_error *error)
+{
+    const weft_registration_settings *settings = &registrations[0].settings;
+    *layout = (weft_dataset_layout){.width = settings->width,
+                                    .height = settings->height,
+                                    .values = WEFT_REFLECTANCE_COSINE,
+                                    .distance = WEFT_FAR,
+                                    .texel_pitch_mm = sessions[0].target.opening_mm / settings->width};
+    for (int i = 0; i < count; i++) {
+        layout->image_count += sessions[i].shot_count;
+        layout->view_count += registrations[i].survey.view_count;
+    }
+    WEFT_TRY(weft_dataset_layout_allocate(layout, error));
+    for (int i = 0, image = 0, view = 0; i < count; i++) {
+        describe_images(&sessions[i], &registrations[i].survey, image, view, layout);
+        image += sessions[i].shot_count;
+        view += registrations[i].survey.view_count;
+    }
     return WEFT_OK;
 }
 
@@ -241,55 +256,109 @@ static double frontal_scale(const weft_session *session)
     return session->camera.fx / session->camera_distance_mm;
 }
 
-/* Writes dataset and report from a surveyed session. */
-static weft_code produce(const weft_session *session, const weft_sensor_faults *faults, const char *output,
-                         const weft_progress *progress, weft_registration *registration, weft_error *error)
+static weft_code look_and_run(work *w, const weft_session *session, weft_error *error)
 {
-    work w = {
-        .faults = faults, .rectifier = {&faults->seen, faults, &w.sight, NULL, registration}, .progress = progress};
-    weft_dataset_layout layout = {0};
-    char *provenance = NULL;
+    WEFT_TRY(weft_sight_create(&session->camera, &session->target, frontal_scale(session), &w->sight, error));
+    weft_code code = prepare_pictures(w, error);
+    if (code == WEFT_OK)
+        code = run(w, error);
+    free(w->fitted);
+    free(w->shown);
+    weft_sight_free(&w->sight);
+    return code;
+}
+
+/* Puts the photographs of one camera into the dataset, and writes its report. */
+static weft_code register_camera(const weft_session *session, const char *output, weft_dataset_writer *writer,
+                                 int first_image, const weft_progress *progress, weft_registration *registration,
+                                 weft_error *error)
+{
+    weft_sensor_faults faults;
     double began_s = weft_now_s();
-    weft_code code = weft_sight_create(&session->camera, &session->target, frontal_scale(session), &w.sight, error);
-    if (code == WEFT_OK)
-        code = describe_dataset(session, registration, &layout, error);
-    if (code == WEFT_OK)
-        code = weft_dataset_writer_create(output, &layout, &w.rectifier.writer, error);
-    if (code == WEFT_OK)
-        code = prepare_pictures(&w, error);
-    if (code == WEFT_OK)
-        code = run(&w, error);
+    weft_code code = weft_sensor_faults_find(session, &faults, error);
+    registration->found.sensor = faults.summary;
     if (code == WEFT_OK) {
-        provenance = weft_registration_provenance(session, registration);
+        work w = {.faults = &faults, .progress = progress};
+        w.rectifier = (weft_rectifier){&faults.seen, &faults, &w.sight, writer, first_image, registration};
+        code = look_and_run(&w, session, error);
+    }
+    registration->seconds = weft_now_s() - began_s;
+    if (code == WEFT_OK && registration->settings.report_folder)
+        code = weft_report_write_page(&faults.seen, registration, output, error);
+    weft_sensor_faults_free(&faults);
+    return code;
+}
+
+static weft_code register_all(const weft_session *sessions, int count, const char *output, weft_dataset_writer *writer,
+                              const weft_progress *progress, weft_registration *registrations, weft_error *error)
+{
+    for (int i = 0, image = 0; i < count; i++) {
+        WEFT_TRY(register_camera(&sessions[i], output, writer, image, progress, &registrations[i], error));
+        image += sessions[i].shot_count;
+    }
+    return WEFT_OK;
+}
+
+/* Writes dataset and reports from surveyed sessions. */
+static weft_code produce(const weft_session *sessions, int count, const char *output, const weft_progress *progress,
+                         weft_registration *registrations, weft_error *error)
+{
+    weft_dataset_layout layout = {0};
+    weft_dataset_writer *writer = NULL;
+    char *provenance = NULL;
+    weft_code code = describe_dataset(sessions, count, registrations, &layout, error);
+    if (code == WEFT_OK)
+        code = weft_dataset_writer_create(output, &layout, &writer, error);
+    if (code == WEFT_OK)
+        code = register_all(sessions, count, output, writer, progress, registrations, error);
+    if (code == WEFT_OK) {
+        provenance = weft_registration_provenance(sessions, count, registrations);
         if (!provenance)
             code = weft_fail_memory(error, "provenance", 0);
     }
     if (code == WEFT_OK) {
-        weft_dataset_writer *writer = w.rectifier.writer;
-        w.rectifier.writer = NULL;
         code = weft_dataset_writer_finish(writer, provenance, error);
+        writer = NULL;
     }
-    registration->seconds = weft_now_s() - began_s;
-    if (code == WEFT_OK && registration->settings.report_folder)
-        code = weft_report_write_page(&faults->seen, registration, output, error);
     free(provenance);
-    free(w.fitted);
-    free(w.shown);
-    weft_dataset_writer_abandon(w.rectifier.writer);
+    weft_dataset_writer_abandon(writer);
     weft_dataset_layout_free(&layout);
-    weft_sight_free(&w.sight);
     return code;
 }
 
-static weft_code correct_and_produce(const weft_session *session, const char *output, const weft_progress *progress,
-                                     weft_registration *registration, weft_error *error)
+static weft_code survey(const weft_session *session, weft_registration *registration, weft_error *error)
 {
-    weft_sensor_faults faults;
-    weft_code code = weft_sensor_faults_find(session, &faults, error);
-    registration->found.sensor = faults.summary;
+    WEFT_TRY(weft_survey_make(session, &registration->survey, error));
+    WEFT_TRY(check_session(session, registration, error));
+    return allocate(session, registration, error);
+}
+
+/* One sample lies before all cameras, and its texels are those of all. */
+static weft_code check_cameras(const weft_session *sessions, int count, weft_error *error)
+{
+    for (int i = 1; i < count; i++) {
+        if (sessions[i].target.opening_mm != sessions[0].target.opening_mm)
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s' has an opening of %g mm, '%s' one of %g mm",
+                             sessions[i].folder, sessions[i].target.opening_mm, sessions[0].folder,
+                             sessions[0].target.opening_mm);
+    }
+    return weft_camera_sessions_agree(sessions, count, error);
+}
+
+weft_code weft_register_cameras(const weft_session *sessions, int count, const char *output,
+                                const weft_registration_settings *settings, const weft_progress *progress,
+                                weft_registration *registrations, weft_error *error)
+{
+    weft_code code = check_cameras(sessions, count, error);
+    for (int i = 0; i < count; i++) {
+        registrations[i] = (weft_registration){.settings = settings[i]};
+        if (code == WEFT_OK)
+            code = survey(&sessions[i], &registrations[i], error);
+    }
     if (code == WEFT_OK)
-        code = produce(session, &faults, output, progress, registration, error);
-    weft_sensor_faults_free(&faults);
+        code = produce(sessions, count, output, progress, registrations, error);
+    for (int i = 0; code != WEFT_OK && i < count; i++)
+        weft_registration_free(&registrations[i]);
     return code;
 }
 
@@ -297,15 +366,5 @@ weft_code weft_register_session(const weft_session *session, const char *output,
                                 const weft_registration_settings *settings, const weft_progress *progress,
                                 weft_registration *registration, weft_error *error)
 {
-    *registration = (weft_registration){.settings = *settings};
-    weft_code code = weft_survey_make(session, &registration->survey, error);
-    if (code == WEFT_OK)
-        code = check_session(session, registration, error);
-    if (code == WEFT_OK)
-        code = allocate(session, registration, error);
-    if (code == WEFT_OK)
-        code = correct_and_produce(session, output, progress, registration, error);
-    if (code != WEFT_OK)
-        weft_registration_free(registration);
-    return code;
+    return weft_register_cameras(session, 1, output, settings, progress, registration, error);
 }

@@ -17,4 +17,12 @@ weft_code weft_register_session(const weft_session *session, const char *output,
                                 const weft_registration_settings *settings, const weft_progress *progress,
                                 weft_registration *registration, weft_error *error);
 
+/* The same for the sessions of `count` cameras that photographed one sample: one dataset of all, the images of each
+ * camera behind those of the one before. Each has its own lens, sensor, vignetting, white levels and report: settings
+ * and registrations are [count]; the size of the dataset is that of settings[0]. Further errors: WEFT_BAD_INPUT for
+ * cameras whose colours are not known to be the same quantities, or with openings of two sizes. */
+weft_code weft_register_cameras(const weft_session *sessions, int count, const char *output,
+                                const weft_registration_settings *settings, const weft_progress *progress,
+                                weft_registration *registrations, weft_error *error);
+
 #endif

@@ -78,6 +78,8 @@ static json_t *pack_session(const weft_session *s)
                              "noise", pack_noise(&s->noise), "target", pack_target(&s->target), "plan", pack_plan(s));
     if (s->colour.terms > 0)
         weft_json_put(&root, "colour", weft_colour_pack(&s->colour));
+    if (s->camera_model)
+        weft_json_put(&root, "camera_model", weft_json_text(s->camera_model, strlen(s->camera_model)));
     if (weft_session_frame_count(s) > 0)
         weft_json_put(&root, "sensor_frames", json_pack("{si si}", "dark", s->dark_frames, "flat", s->flat_frames));
     return root;
@@ -262,6 +264,17 @@ static weft_code unpack_fields(json_t *root, const char *path, weft_session *s, 
     return copy_texts(rig, sample, settings, s, error);
 }
 
+/* Sessions of one camera alone have none. */
+static weft_code unpack_model(json_t *json, const char *path, weft_session *session, weft_error *error)
+{
+    if (!json)
+        return WEFT_OK;
+    if (!json_is_string(json))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s': 'camera_model' is no text", path);
+    session->camera_model = strdup(json_string_value(json));
+    return session->camera_model ? WEFT_OK : weft_fail_memory(error, session_name, 0);
+}
+
 /* Most sessions have none. */
 static weft_code unpack_frames(json_t *json, const char *path, weft_session *session, weft_error *error)
 {
@@ -292,6 +305,7 @@ static weft_code unpack_session(json_t *root, const char *path, weft_session *s,
     WEFT_TRY(check_values(s, path, error));
     if (json_object_get(root, "colour"))
         WEFT_TRY(weft_colour_unpack(json_object_get(root, "colour"), path, &s->colour, error));
+    WEFT_TRY(unpack_model(json_object_get(root, "camera_model"), path, s, error));
     WEFT_TRY(unpack_frames(json_object_get(root, "sensor_frames"), path, s, error));
     return unpack_plan(json_object_get(root, "plan"), path, s, error);
 }
@@ -324,6 +338,7 @@ void weft_session_free(weft_session *session)
     free(session->rig);
     free(session->sample);
     free(session->rig_settings);
+    free(session->camera_model);
     free(session->shot);
     free(session->record);
     free(session->turns);

@@ -76,6 +76,7 @@ typedef struct weft_session {
     weft_sensor_noise noise;
     weft_target target;
     weft_colour colour; /* of the camera under the lamp; terms 0: not known */
+    char *camera_model; /* cameras of one model see the same colours; NULL: not known */
     int shot_count;
     weft_shot *shot;          /* [shot_count], in the order of the plan */
     weft_shot_record *record; /* [shot_count] */

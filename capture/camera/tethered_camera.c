@@ -7,6 +7,7 @@
 #include <gphoto2/gphoto2.h>
 #include <limits.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,10 +94,8 @@ static int choose_model(weft_tethered_camera *c)
     return result;
 }
 
-static int open_camera(weft_tethered_camera *c)
+static int open_alone(weft_tethered_camera *c)
 {
-    if (c->camera)
-        return GP_OK;
     int result = gp_camera_new(&c->camera);
     if (result >= GP_OK)
         result = choose_model(c);
@@ -108,6 +107,18 @@ static int open_camera(weft_tethered_camera *c)
         gp_camera_free(c->camera);
         c->camera = NULL;
     }
+    return result;
+}
+
+/* Cameras of one rig may be lost together, each in its thread; libltdl, which loads their drivers, knows no threads. */
+static int open_camera(weft_tethered_camera *c)
+{
+    static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+    if (c->camera)
+        return GP_OK;
+    pthread_mutex_lock(&one_at_a_time);
+    int result = open_alone(c);
+    pthread_mutex_unlock(&one_at_a_time);
     return result;
 }
 

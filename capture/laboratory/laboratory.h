@@ -20,16 +20,16 @@ typedef struct weft_laboratory weft_laboratory;
  * lens or a table of lamps that cannot be used; WEFT_SYSTEM. */
 weft_code weft_laboratory_open(const weft_laboratory_request *request, weft_laboratory **laboratory, weft_error *error);
 
-/* Opens the camera; the stage and its lamps are found when they are homed. Errors: WEFT_SYSTEM naming the device. */
+/* Opens the cameras; the stage and its lamps are found when they are homed. Errors: WEFT_SYSTEM naming the device. */
 weft_code weft_laboratory_connect(weft_laboratory *laboratory, weft_error *error);
 
 /* Stops what moves and switches off what burns. */
 void weft_laboratory_close(weft_laboratory *laboratory);
 
-/* File of the calibration of its lens; lives as long as the laboratory. */
-const char *weft_laboratory_lens(const weft_laboratory *laboratory);
+/* File of the calibration of the lens of one of its rigs; lives as long as the laboratory. */
+const char *weft_laboratory_lens(const weft_laboratory *laboratory, const weft_rig *rig);
 
-/* What a capture drives; lives as long as the laboratory. */
+/* What a capture drives: the rig of the first camera, which leads to the others. Lives as long as the laboratory. */
 weft_rig *weft_laboratory_rig(weft_laboratory *laboratory);
 
 #endif

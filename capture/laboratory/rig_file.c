@@ -153,10 +153,14 @@ static const weft_rig_section *schema_of(const char *name)
 /* Called where the section ends. */
 static int check_section(cfg_t *cfg, cfg_opt_t *opt)
 {
-    bool is_axis = strcmp(opt->name, "axis") == 0;
-    unsigned most = is_axis ? WEFT_AXES_MAX : 1;
+    bool is_axis = strcmp(opt->name, "axis") == 0, is_camera = strcmp(opt->name, "camera") == 0;
+    unsigned most = is_axis ? WEFT_AXES_MAX : is_camera ? WEFT_CAMERAS_MAX : 1;
     if (cfg_opt_size(opt) > most) {
-        cfg_error(cfg, is_axis ? "there are more than %u axes" : "a rig has %u section '%s'", most, opt->name);
+        cfg_error(cfg,
+                  is_axis     ? "there are more than %u axes"
+                  : is_camera ? "there are more than %u cameras"
+                              : "a rig has %u section '%s'",
+                  most, opt->name);
         return -1;
     }
     cfg_t *section = cfg_opt_getnsec(opt, cfg_opt_size(opt) - 1);
@@ -207,6 +211,13 @@ static void take_axes(cfg_t *cfg, weft_axes *axes)
     }
 }
 
+static void take_cameras(cfg_t *cfg, weft_rig_file *rig)
+{
+    rig->camera_count = (int)cfg_size(cfg, "camera");
+    for (int i = 0; i < rig->camera_count; i++)
+        take_section(cfg_getnsec(cfg, "camera", (unsigned)i), schema_of("camera"), &rig->camera[i]);
+}
+
 static int take_file(cfg_t *cfg, weft_rig_file *rig)
 {
     if (check_complete(cfg, &weft_rig_schema[0], cfg) != 0)
@@ -219,8 +230,10 @@ static int take_file(cfg_t *cfg, weft_rig_file *rig)
             cfg_error(cfg, "there is no section '%s'", schema->name);
             return -1;
         }
-        take_section(cfg_getsec(cfg, schema->name), schema, (char *)rig + schema->offset);
+        if (strcmp(schema->name, "camera") != 0)
+            take_section(cfg_getsec(cfg, schema->name), schema, (char *)rig + schema->offset);
     }
+    take_cameras(cfg, rig);
     return 0;
 }
 
@@ -231,10 +244,57 @@ static void fix_angles(weft_rig_file *rig)
     weft_axes *axes = &rig->axes;
     axes->together = !rig->stage.one_by_one;
     axes->lamps = rig->light.lamps[0] != 0;
-    axes->fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_THETA] = rig->camera.theta_deg;
-    axes->fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_PHI] = rig->camera.phi_deg;
+    axes->fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_THETA] = rig->camera[0].theta_deg;
+    axes->fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_PHI] = rig->camera[0].phi_deg;
     axes->fixed_deg[WEFT_BODY_LIGHT][WEFT_TURN_THETA] = rig->light.theta_deg;
     axes->fixed_deg[WEFT_BODY_LIGHT][WEFT_TURN_PHI] = rig->light.phi_deg;
+}
+
+/* ---- Cameras ---- */
+
+static weft_code check_camera(const weft_rig_file *rig, const weft_camera_description *camera, weft_error *error)
+{
+    bool controller = rig->stage.backend == WEFT_STAGE_USB;
+    if (camera->trigger == WEFT_TRIGGER_STAGE && !controller)
+        return weft_fail(error, WEFT_BAD_INPUT, "%s: a shutter at the stage's controller needs the stage 'usb'",
+                         rig->path);
+    if (camera->shortest_exposure_s > camera->longest_exposure_s)
+        return weft_fail(error, WEFT_BAD_INPUT, "%s: the longest exposure, %g s, is below the shortest, %g s",
+                         rig->path, camera->longest_exposure_s, camera->shortest_exposure_s);
+    if (rig->camera_count > 1 && !weft_camera_name_is_sound(camera->name))
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "%s: each of several cameras needs a name of 1 to %d letters, digits, '-' and '_', not '%s'",
+                         rig->path, WEFT_CAMERA_NAME_SIZE - 1, camera->name);
+    return WEFT_OK;
+}
+
+/* What two cameras cannot share. */
+static weft_code check_camera_pair(const weft_rig_file *rig, const weft_camera_description *a,
+                                   const weft_camera_description *b, weft_error *error)
+{
+    if (strcmp(a->name, b->name) == 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "%s: two cameras are called '%s'", rig->path, a->name);
+    if (a->backend == b->backend && strcmp(a->device, b->device) == 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "%s: cameras '%s' and '%s' are the same device '%s'", rig->path,
+                         a->name, b->name, a->device);
+    if (a->trigger == WEFT_TRIGGER_STAGE && b->trigger == WEFT_TRIGGER_STAGE)
+        return weft_fail(error, WEFT_BAD_INPUT, "%s: cameras '%s' and '%s' hang on one shutter contact", rig->path,
+                         a->name, b->name);
+    return WEFT_OK;
+}
+
+static weft_code check_cameras(const weft_rig_file *rig, weft_error *error)
+{
+    for (int i = 0; i < rig->camera_count; i++) {
+        WEFT_TRY(check_camera(rig, &rig->camera[i], error));
+        for (int other = 0; other < i; other++)
+            WEFT_TRY(check_camera_pair(rig, &rig->camera[other], &rig->camera[i], error));
+    }
+    /* Which photographs axes put where is calibrated for one lens. */
+    if (rig->camera_count > 1 && rig->poses[0])
+        return weft_fail(error, WEFT_BAD_INPUT, "%s: 'poses' are of one camera, the rig has %d", rig->path,
+                         rig->camera_count);
+    return WEFT_OK;
 }
 
 static weft_code check_devices(const weft_rig_file *rig, weft_error *error)
@@ -249,15 +309,9 @@ static weft_code check_devices(const weft_rig_file *rig, weft_error *error)
     if (rig->light.backend == WEFT_LIGHT_STAGE && !controller)
         return weft_fail(error, WEFT_BAD_INPUT, "%s: a light at the stage's controller needs the stage 'usb'",
                          rig->path);
-    if (rig->camera.trigger == WEFT_TRIGGER_STAGE && !controller)
-        return weft_fail(error, WEFT_BAD_INPUT, "%s: a shutter at the stage's controller needs the stage 'usb'",
-                         rig->path);
     if (rig->axes.lamps && rig->light.backend == WEFT_LIGHT_NONE)
         return weft_fail(error, WEFT_BAD_INPUT, "%s: lamps that nobody switches: give the light a back end", rig->path);
-    if (rig->camera.shortest_exposure_s > rig->camera.longest_exposure_s)
-        return weft_fail(error, WEFT_BAD_INPUT, "%s: the longest exposure, %g s, is below the shortest, %g s",
-                         rig->path, rig->camera.longest_exposure_s, rig->camera.shortest_exposure_s);
-    return WEFT_OK;
+    return check_cameras(rig, error);
 }
 
 /* ---- Reading ---- */

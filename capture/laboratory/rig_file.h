@@ -2,6 +2,7 @@
 #ifndef WEFT_CAPTURE_LABORATORY_RIG_FILE_H
 #define WEFT_CAPTURE_LABORATORY_RIG_FILE_H
 
+#include "btf/session/camera_list.h"
 #include "capture/axes/axes.h"
 
 #include <stddef.h>
@@ -41,6 +42,9 @@ typedef struct weft_camera_description {
     char device[WEFT_RIG_TEXT_SIZE];  /* folder, video device or port */
     char pattern[WEFT_RIG_TEXT_SIZE]; /* of file names in the folder */
     char lens[WEFT_RIG_TEXT_SIZE];    /* its calibration, beside the rig file */
+    char name[WEFT_RIG_TEXT_SIZE];    /* of one of several */
+    char model[WEFT_RIG_TEXT_SIZE];   /* cameras of one model see the same colours; empty: not known */
+    char colour[WEFT_RIG_TEXT_SIZE];  /* its colours under the lamp, beside the rig file; empty: not known */
     double theta_deg, phi_deg, distance_mm, half_angle_deg;
     double electrons_per_value, read_noise_electrons, dark_frames, flat_frames;
     double bin, black_level, shortest_exposure_s, longest_exposure_s, retries, timeout_s, seconds_per_photograph,
@@ -55,7 +59,8 @@ typedef struct weft_rig_file {
     weft_axes axes;
     weft_stage_description stage;
     weft_light_description light;
-    weft_camera_description camera;
+    int camera_count;
+    weft_camera_description camera[WEFT_CAMERAS_MAX]; /* [camera_count] */
 } weft_rig_file;
 
 /* Reads and checks. Not thread-safe. Errors: WEFT_BAD_INPUT "PATH:LINE: ..." for what is no rig file, an unknown or

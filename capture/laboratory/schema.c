@@ -114,6 +114,9 @@ static const weft_rig_key camera_keys[] = {
     TEXT(weft_camera_description, device, ""),
     TEXT(weft_camera_description, pattern, "*"),
     {.name = "lens", .kind = WEFT_KEY_TEXT, .offset = offsetof(weft_camera_description, lens), .required = true},
+    TEXT(weft_camera_description, name, ""),
+    TEXT(weft_camera_description, model, ""),
+    TEXT(weft_camera_description, colour, ""),
     NUMBER(weft_camera_description, theta_deg, 0, 0, 90),
     NUMBER(weft_camera_description, phi_deg, 0, -360, 360),
     NEEDED(weft_camera_description, distance_mm, 10, 1e5),
@@ -137,7 +140,7 @@ const weft_rig_section weft_rig_schema[WEFT_RIG_SECTION_COUNT] = {
     {"axis", 0, axis_keys, COUNT(axis_keys)},
     {"stage", offsetof(weft_rig_file, stage), stage_keys, COUNT(stage_keys)},
     {"light", offsetof(weft_rig_file, light), light_keys, COUNT(light_keys)},
-    {"camera", offsetof(weft_rig_file, camera), camera_keys, COUNT(camera_keys)},
+    {"camera", 0, camera_keys, COUNT(camera_keys)},
 };
 
 const weft_rig_key *weft_rig_key_find(const char *section, const char *name)

@@ -27,12 +27,13 @@ typedef struct weft_rig_key {
 
 typedef struct weft_rig_section {
     const char *name; /* "" for the file itself */
-    size_t offset;    /* of its structure in weft_rig_file; of an axis: in weft_axis */
+    size_t offset;    /* of its structure in weft_rig_file; of an axis: in weft_axis; of a camera:
+                         in weft_camera_description */
     const weft_rig_key *key;
     int key_count;
 } weft_rig_section;
 
-enum { WEFT_RIG_SECTION_COUNT = 5, WEFT_RIG_KEYS_MAX = 24 };
+enum { WEFT_RIG_SECTION_COUNT = 5, WEFT_RIG_KEYS_MAX = 32 };
 
 /* The file itself, axis, stage, light, camera. */
 extern const weft_rig_section weft_rig_schema[WEFT_RIG_SECTION_COUNT];

@@ -12,9 +12,13 @@ static const double same_deg = 1e-5;
 
 struct weft_stage {
     weft_stage_parts parts;
+    weft_stage *body; /* which has the axes; of several cameras, that of the first */
+    long seen;        /* body->stays, when this camera was placed last; -1: not since it was homed */
+    /* Of a body. */
     weft_axis_positions at; /* NAN: not known */
     bool homed, placed;     /* placed: since it was homed, in a pose of a photograph */
     int lamp;               /* that lights the pose */
+    long stays;             /* how often camera or sample have come to stand elsewhere */
 };
 
 /* ---- Lamps ---- */
@@ -87,6 +91,39 @@ static weft_code turns(void *device, const weft_shot *shot, weft_turns *at, weft
     at->deg[WEFT_SAMPLE_PHI] = weft_axes_angle(axes, &positions, WEFT_BODY_SAMPLE, WEFT_TURN_PHI);
     return WEFT_OK;
 }
+
+/* ---- Several cameras ---- */
+
+static weft_code place(void *device, const weft_shot *shot, weft_place *place, weft_error *error)
+{
+    const weft_stage_parts *parts = &((weft_stage *)device)->parts;
+    weft_axis_positions positions;
+    WEFT_TRY(weft_axes_solve(parts->axes, shot->view, shot->light_driven, &positions, error));
+    *place = (weft_place){0};
+    for (int k = 0; k < parts->axes->count; k++)
+        place->at[k] = positions.deg[k];
+    if (parts->lamp_count > 0)
+        place->at[WEFT_AXES_MAX] = nearest_lamp(parts, &positions, shot->light_driven);
+    return WEFT_OK;
+}
+
+static weft_code view_of(void *device, void *taker, const weft_shot *shot, weft_angles *view, weft_error *error)
+{
+    const weft_axes *own = ((weft_stage *)device)->parts.axes, *other = ((weft_stage *)taker)->parts.axes;
+    weft_axis_positions positions;
+    WEFT_TRY(weft_axes_solve(other, shot->view, shot->light_driven, &positions, error));
+    double theta_deg = weft_axes_angle(own, &positions, WEFT_BODY_CAMERA, WEFT_TURN_THETA);
+    double phi_deg = weft_axes_angle(own, &positions, WEFT_BODY_CAMERA, WEFT_TURN_PHI) -
+                     weft_axes_angle(own, &positions, WEFT_BODY_SAMPLE, WEFT_TURN_PHI);
+    if (theta_deg < 0) {
+        theta_deg = -theta_deg;
+        phi_deg += 180;
+    }
+    *view = (weft_angles){weft_rad_of_deg(theta_deg), weft_rad_of_deg(phi_deg - 360 * floor(phi_deg / 360))};
+    return WEFT_OK;
+}
+
+/* ---- Order ---- */
 
 static weft_code order_poses(const weft_stage *stage, const weft_shot *shot, int count, int *numbers,
                              weft_axis_positions *pose, weft_stage_estimate *estimate, weft_error *error)
@@ -243,10 +280,13 @@ static double settle_time(const weft_stage *stage, const weft_axis_positions *fr
 
 static weft_code home(void *device, int first_stay, weft_error *error)
 {
-    weft_stage *stage = device;
+    weft_stage *seat = device, *stage = seat->body;
     weft_move_failure failure = WEFT_MOVE_LOST;
     weft_code code = WEFT_SYSTEM;
     (void)first_stay;
+    seat->seen = -1;
+    if (seat != stage && stage->homed)
+        return WEFT_OK;
     for (int attempt = 0; code != WEFT_OK && failure == WEFT_MOVE_LOST && attempt <= stage->parts.retries; attempt++)
         code = drive_home(stage, &failure, error);
     for (int k = 0; k < stage->parts.axes->count; k++)
@@ -256,24 +296,26 @@ static weft_code home(void *device, int first_stay, weft_error *error)
 
 static weft_code move(void *device, weft_angles view, weft_angles light, bool *moved, weft_error *error)
 {
-    weft_stage *stage = device;
+    weft_stage *seat = device, *stage = seat->body;
     weft_axis_positions to, from = stage->at;
     bool was_placed = stage->placed;
-    WEFT_TRY(weft_axes_solve(stage->parts.axes, view, light, &to, error));
+    WEFT_TRY(weft_axes_solve(seat->parts.axes, view, light, &to, error));
     if (stage->parts.lamp_count > 0)
         stage->lamp = nearest_lamp(&stage->parts, &to, light);
     WEFT_TRY(drive(stage, &to, error));
     WEFT_TRY(turn_by_hand(stage, &to, error));
     /* Homed on the way: the references are as good as before, but not the same. */
-    *moved = !was_placed || !stage->placed || !weft_axes_same_stay(stage->parts.axes, &from, &to);
+    stage->stays += !was_placed || !stage->placed || !weft_axes_same_stay(stage->parts.axes, &from, &to);
     stage->placed = true;
+    *moved = seat->seen != stage->stays;
+    seat->seen = stage->stays;
     settle(settle_time(stage, &from, &to));
     return WEFT_OK;
 }
 
 static weft_code held(void *device, bool *still, weft_error *error)
 {
-    weft_stage *stage = device;
+    weft_stage *stage = ((weft_stage *)device)->body;
     const weft_axis_driver *driver = &stage->parts.driver;
     *still = true;
     if (driver->held)
@@ -285,7 +327,7 @@ static weft_code held(void *device, bool *still, weft_error *error)
 
 static void stop(void *device)
 {
-    weft_stage *stage = device;
+    weft_stage *stage = ((weft_stage *)device)->body;
     if (stage->parts.driver.stop)
         stage->parts.driver.stop(stage->parts.driver.device);
     forget_places(stage);
@@ -293,7 +335,7 @@ static void stop(void *device)
 
 static weft_code power(void *device, bool on, weft_error *error)
 {
-    weft_stage *stage = device;
+    weft_stage *stage = ((weft_stage *)device)->body;
     const weft_lamp_switch *lamps = &stage->parts.lamps;
     if (!lamps->set)
         return WEFT_OK;
@@ -308,9 +350,20 @@ weft_code weft_stage_create(const weft_stage_parts *parts, weft_stage **result, 
     if (!stage)
         return weft_fail_memory(error, "stage", sizeof *stage);
     stage->parts = *parts;
+    stage->body = stage;
+    stage->seen = -1;
     for (int k = 0; k < WEFT_AXES_MAX; k++)
         stage->at.deg[k] = NAN;
     *result = stage;
+    return WEFT_OK;
+}
+
+weft_code weft_stage_create_beside(weft_stage *stage, const weft_axes *axes, weft_stage **beside, weft_error *error)
+{
+    weft_stage_parts parts = stage->parts;
+    parts.axes = axes;
+    WEFT_TRY(weft_stage_create(&parts, beside, error));
+    (*beside)->body = stage;
     return WEFT_OK;
 }
 
@@ -328,7 +381,9 @@ weft_rig_stage weft_stage_for_rig(weft_stage *stage)
                             .stop = stop,
                             .reach = reach,
                             .turns = turns,
-                            .order = order};
+                            .order = order,
+                            .place = place,
+                            .view_of = view_of};
 }
 
 weft_rig_light weft_stage_light(weft_stage *stage)

@@ -30,6 +30,10 @@ typedef struct weft_stage weft_stage;
 weft_code weft_stage_create(const weft_stage_parts *parts, weft_stage **stage, weft_error *error);
 void weft_stage_free(weft_stage *stage);
 
+/* The same stage under another of several cameras, which differs in where it stands: `axes` (borrowed) are those of the
+ * stage but for the fixed angles of the camera. The caller frees it before `stage`. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_stage_create_beside(weft_stage *stage, const weft_axes *axes, weft_stage **beside, weft_error *error);
+
 /* The ways in. The stage stays the caller's. Poses whose references were lost are taken up again after homing, which
  * begins a new stay. */
 weft_rig_stage weft_stage_for_rig(weft_stage *stage);

@@ -2,9 +2,11 @@
 
 #include "capture/file_crc.h"
 #include "capture/virtual/random.h"
+#include "capture/virtual/ring.h"
 #include "capture/virtual/sensor.h"
 #include "capture/virtual/view.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,8 +19,9 @@ typedef struct virtual_devices {
     weft_virtual_optics optics;
     weft_virtual_sensor sensor;
     int next_stay, stay;
-    bool homed, camera_placed, light_placed, light_on;
-    weft_angles view; /* where the camera axes stand */
+    bool homed, camera_placed, light_placed;
+    bool own_light, *light_on; /* whether it burns: its own, or that of the first of several cameras */
+    weft_angles view;          /* where the camera axes stand */
     weft_pose pose;
     weft_vec3 light; /* plate frame, mm */
     weft_virtual_view seen;
@@ -63,7 +66,8 @@ static weft_code look(virtual_devices *devices, weft_error *error)
                                         &devices->seen, error));
         devices->seen_valid = true;
     }
-    bool shadowed = weft_virtual_world_shadowed(devices->world, &devices->pose, devices->light);
+    bool shadowed = weft_virtual_world_shadowed(devices->world, &devices->pose, devices->light) ||
+                    weft_virtual_ring_shadows(devices->world, devices->view, devices->light);
     weft_virtual_view_light(&devices->seen, devices->sample, devices->light,
                             devices->world->settings.rig.light_distance_mm, shadowed ? 0 : 1, devices->radiance);
     return WEFT_OK;
@@ -92,13 +96,42 @@ static weft_code turns(void *device, const weft_shot *shot, weft_turns *at, weft
     return WEFT_OK;
 }
 
+/* ---- A ring with several cameras ---- */
+
+static weft_code reach(void *device, weft_shot *shot, weft_error *error)
+{
+    const virtual_devices *devices = device;
+    if (weft_virtual_ring_camera(devices->world, shot->view) == devices->world->index)
+        return WEFT_OK;
+    return weft_fail(error, WEFT_BAD_INPUT, "virtual stage: another camera stands at %.2f/%.2f degrees",
+                     weft_deg_of_rad(shot->view.theta_rad), weft_deg_of_rad(shot->view.phi_rad));
+}
+
+static weft_code place(void *device, const weft_shot *shot, weft_place *place, weft_error *error)
+{
+    const virtual_devices *devices = device;
+    weft_angles first = weft_virtual_ring_view(devices->world, shot->view, 0), light = shot->light_driven;
+    (void)error;
+    *place = (weft_place){{weft_deg_of_rad(first.theta_rad), weft_deg_of_rad(first.phi_rad),
+                           weft_deg_of_rad(light.theta_rad), weft_deg_of_rad(light.phi_rad)}};
+    return WEFT_OK;
+}
+
+static weft_code view_of(void *device, void *taker, const weft_shot *shot, weft_angles *view, weft_error *error)
+{
+    const virtual_devices *devices = device, *other = taker;
+    (void)error;
+    *view = weft_virtual_ring_view(other->world, shot->view, devices->world->index);
+    return WEFT_OK;
+}
+
 /* ---- Light ---- */
 
 static weft_code power_light(void *device, bool on, weft_error *error)
 {
     (void)error;
     virtual_devices *devices = device;
-    devices->light_on = on;
+    *devices->light_on = on;
     return WEFT_OK;
 }
 
@@ -142,7 +175,7 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
 {
     virtual_devices *devices = device;
     const weft_virtual_settings *settings = &devices->world->settings;
-    uint64_t seed = devices->world->seed;
+    uint64_t seed = devices->world->camera_seed;
     if (weft_random_uniform(seed, WEFT_RANDOM_FAULT, frame) < settings->timeout_probability)
         return weft_fail(error, WEFT_SYSTEM, "virtual camera: frame %llu timed out", (unsigned long long)frame);
     bool sees_sample = devices->scene == WEFT_CURTAIN_OPEN;
@@ -150,7 +183,7 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
         return weft_fail(error, WEFT_SYSTEM, "virtual camera: camera and light have not been driven anywhere");
     *read_back_s = shutter_time(exposure_s);
     double drift = 1 + settings->light_power_drift * weft_random_normal(seed, WEFT_RANDOM_POWER, frame);
-    bool is_lit = sees_sample ? devices->light_on : devices->scene == WEFT_CURTAIN_EVEN;
+    bool is_lit = sees_sample ? *devices->light_on : devices->scene == WEFT_CURTAIN_EVEN;
     double gain = is_lit ? settings->sensitivity_electrons * *read_back_s * drift : 0;
     size_t count = (size_t)devices->optics.width * (size_t)devices->optics.height * 3;
     weft_virtual_sensor_read(&devices->sensor, sees_sample || !is_lit ? devices->radiance : devices->field, count, gain,
@@ -190,7 +223,7 @@ static weft_code prepare(const weft_virtual_request *request, virtual_devices *d
 {
     WEFT_TRY(identify(request, &devices->identity, error));
     WEFT_TRY(weft_virtual_optics_make(devices->world, &devices->optics, error));
-    WEFT_TRY(weft_virtual_sensor_make(&devices->world->settings, devices->world->seed, &devices->sensor, error));
+    WEFT_TRY(weft_virtual_sensor_make(&devices->world->settings, devices->world->camera_seed, &devices->sensor, error));
     size_t count = (size_t)devices->optics.width * (size_t)devices->optics.height * 3;
     devices->radiance = calloc(count, sizeof *devices->radiance);
     return devices->radiance ? WEFT_OK : weft_fail_memory(error, "virtual camera", count * sizeof *devices->radiance);
@@ -204,6 +237,7 @@ static weft_code open_devices(const weft_virtual_request *request, weft_virtual_
     *devices = (virtual_devices){.world = &rig->world,
                                  .sample = &rig->sample,
                                  .target = weft_target_for_opening(request->settings.rig.opening_mm)};
+    devices->light_on = &devices->own_light;
     weft_code code = prepare(request, devices, error);
     if (code != WEFT_OK) {
         free_devices(devices);
@@ -225,9 +259,9 @@ static weft_code open_devices(const weft_virtual_request *request, weft_virtual_
     return WEFT_OK;
 }
 
-weft_code weft_virtual_rig_open(const weft_virtual_request *request, weft_virtual_rig *rig, weft_error *error)
+static weft_code open_camera(const weft_virtual_request *request, int index, weft_virtual_rig *rig, weft_error *error)
 {
-    *rig = (weft_virtual_rig){.world = weft_virtual_world_of(&request->settings, request->seed)};
+    *rig = (weft_virtual_rig){.world = weft_virtual_world_of_camera(&request->settings, request->seed, index)};
     WEFT_TRY(weft_virtual_sample_read(request->sample, &request->settings, request->seed, &rig->sample, rig->warning,
                                       error));
     weft_code code = open_devices(request, rig, error);
@@ -236,8 +270,47 @@ weft_code weft_virtual_rig_open(const weft_virtual_request *request, weft_virtua
     return code;
 }
 
+weft_code weft_virtual_rig_open(const weft_virtual_request *request, weft_virtual_rig *rig, weft_error *error)
+{
+    return open_camera(request, 0, rig, error);
+}
+
 void weft_virtual_rig_close(weft_virtual_rig *rig)
 {
     free_devices(rig->rig.stage.device);
     weft_virtual_sample_free(&rig->sample);
+}
+
+/* One alone stays as it is. */
+static void join(weft_virtual_rig *rigs, int count)
+{
+    virtual_devices *first = rigs[0].rig.camera.device;
+    for (int i = 0; count > 1 && i < count; i++) {
+        weft_virtual_rig *one = &rigs[i];
+        virtual_devices *devices = one->rig.camera.device;
+        devices->light_on = first->light_on;
+        snprintf(one->camera_name, sizeof one->camera_name, "camera%d", i + 1);
+        one->rig.camera_name = one->camera_name;
+        one->rig.camera_model = "virtual";
+        one->rig.first = &rigs[0].rig;
+        one->rig.next = i + 1 < count ? &rigs[i + 1].rig : NULL;
+        one->rig.stage.reach = reach;
+        one->rig.stage.place = place;
+        one->rig.stage.view_of = view_of;
+    }
+}
+
+weft_code weft_virtual_rigs_open(const weft_virtual_request *request, weft_virtual_rig *rigs, int *count,
+                                 weft_error *error)
+{
+    weft_code code = WEFT_OK;
+    for (*count = 0; code == WEFT_OK && *count < (int)request->settings.cameras;) {
+        code = open_camera(request, *count, &rigs[*count], error);
+        *count += code == WEFT_OK;
+    }
+    while (code != WEFT_OK && *count > 0)
+        weft_virtual_rig_close(&rigs[--*count]);
+    if (code == WEFT_OK)
+        join(rigs, *count);
+    return code;
 }

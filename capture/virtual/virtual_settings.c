@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { GROUP_COUNT = 4 };
+enum { GROUP_COUNT = 5 };
 
 #define REAL(name, value, low, high) WEFT_SETTING(weft_virtual_settings, name, value, low, high, false)
 #define WHOLE(name, value, low, high) WEFT_SETTING(weft_virtual_settings, name, value, low, high, true)
@@ -55,12 +55,18 @@ static const weft_rig_setting sensor_table[] = {
     WHOLE(flat_frames, 0, 0, WEFT_SESSION_MAX_FRAMES),
 };
 
+/* Nor do those of one camera. */
+static const weft_rig_setting cameras_table[] = {
+    WHOLE(cameras, 1, 1, WEFT_VIRTUAL_CAMERAS_MAX),
+};
+
 static void list_groups(weft_virtual_settings *settings, weft_setting_group groups[GROUP_COUNT])
 {
     groups[0] = weft_rig_settings_group(&settings->rig);
     groups[1] = (weft_setting_group){table, sizeof table / sizeof *table, settings};
     groups[2] = (weft_setting_group){axes_table, sizeof axes_table / sizeof *axes_table, settings};
     groups[3] = (weft_setting_group){sensor_table, sizeof sensor_table / sizeof *sensor_table, settings};
+    groups[4] = (weft_setting_group){cameras_table, sizeof cameras_table / sizeof *cameras_table, settings};
 }
 
 weft_virtual_settings weft_virtual_settings_default(void)
@@ -91,7 +97,7 @@ char *weft_virtual_settings_text(const weft_virtual_settings *settings, uint64_t
         json_pack("{sI so sI}", "seed", (json_int_t)seed, "sample_file",
                   weft_json_text(sample_file, strlen(sample_file)), "sample_crc32", (json_int_t)sample_crc32);
     bool sensor = copy.sensor_faults != 0 || copy.dark_frames > 0 || copy.flat_frames > 0;
-    const bool told[GROUP_COUNT] = {true, true, copy.axes != 0, sensor};
+    const bool told[GROUP_COUNT] = {true, true, copy.axes != 0, sensor, copy.cameras > 1};
     for (int i = 0; root && i < GROUP_COUNT; i++) {
         if (told[i])
             weft_setting_group_write(&groups[i], &root);

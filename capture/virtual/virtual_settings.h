@@ -4,6 +4,8 @@
 
 #include "capture/settings.h"
 
+enum { WEFT_VIRTUAL_CAMERAS_MAX = 8 };
+
 typedef struct weft_virtual_settings {
     weft_rig_settings rig;
     /* The sensor: pixels binned two by two, as cameras do for a reduced raw file. */
@@ -37,6 +39,8 @@ typedef struct weft_virtual_settings {
     double light_rotation_deg;            /* standard deviation per axis, drawn anew for every move */
     double light_power_drift;             /* relative standard deviation, per exposure */
     double timeout_probability;           /* of an exposure that fails */
+    double cameras; /* evenly spaced on a ring that carries all: 1 to WEFT_VIRTUAL_CAMERAS_MAX, each with errors of its
+                       own; with more than 1, the lamps stand still */
     /* The sample. */
     double tiles_x, tiles_y; /* of the weave, across the opening; 0 = chosen by the weave */
     double cloth_noise;      /* 1 = with the noise of the weave, 0 = without */

@@ -45,12 +45,18 @@ static weft_pose compose(const weft_pose *outer, const weft_pose *inner)
     return result;
 }
 
-weft_virtual_world weft_virtual_world_of(const weft_virtual_settings *settings, uint64_t seed)
+weft_virtual_world weft_virtual_world_of_camera(const weft_virtual_settings *settings, uint64_t seed, int index)
 {
-    weft_virtual_world world = {
-        .settings = *settings, .seed = seed, .camera = weft_rig_settings_camera(&settings->rig)};
-    weft_vec3 error = weft_random_direction(seed, WEFT_RANDOM_CALIBRATION, 0);
-    double angle = 2 * WEFT_PI * weft_random_uniform(seed, WEFT_RANDOM_CALIBRATION, 1);
+    /* Far apart, and below 2^63. */
+    const uint64_t step = 0x1f83d9abfb41bd6b, largest = ((uint64_t)1 << 63) - 1;
+    uint64_t camera_seed = (seed + (uint64_t)index * step) & largest;
+    weft_virtual_world world = {.settings = *settings,
+                                .seed = seed,
+                                .index = index,
+                                .camera_seed = camera_seed,
+                                .camera = weft_rig_settings_camera(&settings->rig)};
+    weft_vec3 error = weft_random_direction(camera_seed, WEFT_RANDOM_CALIBRATION, 0);
+    double angle = 2 * WEFT_PI * weft_random_uniform(camera_seed, WEFT_RANDOM_CALIBRATION, 1);
     world.camera.fx *= 1 + settings->focal_length_error * copysign(1, error.x);
     world.camera.fy *= 1 + settings->focal_length_error * copysign(1, error.x);
     world.camera.k1 *= 1 + settings->k1_error * copysign(1, error.y);
@@ -63,15 +69,20 @@ weft_virtual_world weft_virtual_world_of(const weft_virtual_settings *settings, 
     return world;
 }
 
+weft_virtual_world weft_virtual_world_of(const weft_virtual_settings *settings, uint64_t seed)
+{
+    return weft_virtual_world_of_camera(settings, seed, 0);
+}
+
 weft_pose weft_virtual_world_pose(const weft_virtual_world *world, weft_angles view, int stay)
 {
     const weft_virtual_settings *s = &world->settings;
     uint64_t index = 2 * (uint64_t)stay;
-    weft_vec3 turn = weft_random_normal3(world->seed, WEFT_RANDOM_STAY, index);
-    weft_vec3 shift = weft_random_normal3(world->seed, WEFT_RANDOM_STAY, index + 1);
+    weft_vec3 turn = weft_random_normal3(world->camera_seed, WEFT_RANDOM_STAY, index);
+    weft_vec3 shift = weft_random_normal3(world->camera_seed, WEFT_RANDOM_STAY, index + 1);
     weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->stay_rotation_deg)),
                                       weft_scale(shift, s->stay_translation_mm));
-    weft_pose nominal = s->axes != 0 ? weft_virtual_goniometer_pose(s, world->seed, view)
+    weft_pose nominal = s->axes != 0 ? weft_virtual_goniometer_pose(s, world->camera_seed, view)
                                      : weft_pose_of_view(view, s->rig.camera_distance_mm);
     weft_pose in_rig = compose(&nominal, &error);
     return compose(&in_rig, &world->mounting);
@@ -88,7 +99,8 @@ static uint64_t index_of_move(weft_angles driven, int stay)
 weft_vec3 weft_virtual_world_light(const weft_virtual_world *world, weft_angles driven, int stay)
 {
     const weft_virtual_settings *s = &world->settings;
-    weft_vec3 turn = weft_random_normal3(world->seed, WEFT_RANDOM_LIGHT, index_of_move(driven, stay));
+    uint64_t index = index_of_move(driven, s->cameras > 1 ? 0 : stay);
+    weft_vec3 turn = weft_random_normal3(world->seed, WEFT_RANDOM_LIGHT, index);
     weft_pose error = pose_of_vectors(weft_scale(turn, weft_rad_of_deg(s->light_rotation_deg)), (weft_vec3){0, 0, 0});
     weft_vec3 nominal = weft_scale(weft_direction_of_angles(driven), s->rig.light_distance_mm);
     weft_vec3 in_rig = apply(&error, nominal);

@@ -56,8 +56,8 @@ void weft_registration_free(weft_registration *registration);
 double weft_registration_uncertainty_texels(const weft_session *session, const weft_registration *registration,
                                             int stay);
 
-/* JSON text for the dataset: session, calibration, settings and the outcome of every stay. Owned by the caller (free).
- * NULL where memory is short. */
-char *weft_registration_provenance(const weft_session *session, const weft_registration *registration);
+/* JSON text for the dataset: session, calibration, settings and the outcome of every stay; of several cameras, an array
+ * "cameras" of that. Owned by the caller (free). NULL where memory is short. */
+char *weft_registration_provenance(const weft_session *sessions, int count, const weft_registration *registrations);
 
 #endif

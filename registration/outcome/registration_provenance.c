@@ -61,7 +61,7 @@ static json_t *pack_faults(const weft_session *session, const weft_registration 
     return faults;
 }
 
-char *weft_registration_provenance(const weft_session *session, const weft_registration *r)
+static json_t *pack_registration(const weft_session *session, const weft_registration *r)
 {
     json_t *stays = json_array();
     for (int stay = 0; stay < r->survey.stay_count; stay++)
@@ -76,7 +76,18 @@ char *weft_registration_provenance(const weft_session *session, const weft_regis
         weft_json_put(&root, "sensor", pack_sensor(&r->found.sensor));
     if (session->colour.terms > 0)
         weft_json_put(&root, "colour", weft_colour_pack(&session->colour));
+    return root;
+}
+
+char *weft_registration_provenance(const weft_session *sessions, int count, const weft_registration *registrations)
+{
+    json_t *cameras = json_array();
+    for (int i = 0; count > 1 && i < count; i++)
+        weft_json_append(&cameras, pack_registration(&sessions[i], &registrations[i]));
+    json_t *root = count == 1 ? pack_registration(&sessions[0], &registrations[0])
+                              : json_pack("{ss sO}", "made_by", "weft register " WEFT_VERSION, "cameras", cameras);
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    json_decref(cameras);
     json_decref(root);
     return text;
 }

@@ -7,7 +7,7 @@
 #include "btf/direction/direction.h"
 #include "btf/file_kind.h"
 #include "btf/material/models.h"
-#include "btf/session/session.h"
+#include "btf/session/camera_list.h"
 #include "geometry/yarn/tile_mesh.h"
 #include "reflectance/microcylinder/file.h"
 #include "reflectance/weave/weave.h"
@@ -249,10 +249,41 @@ static json_t *describe_session(const weft_session *session)
                      "opening_mm", session->target.opening_mm);
 }
 
+/* A description of each camera, and the numbers of all. */
+static json_t *describe_cameras(const char *folder, const weft_session *sessions, int count)
+{
+    json_t *cameras = json_array();
+    json_int_t planned = 0, taken = 0;
+    for (int i = 0; i < count; i++) {
+        json_t *one = describe_session(&sessions[i]);
+        planned += json_integer_value(json_object_get(one, "planned"));
+        taken += json_integer_value(json_object_get(one, "taken"));
+        weft_json_append(&cameras, one);
+    }
+    return json_pack("{s:s, s:s, s:s, s:I, s:I, s:o}", "folder", folder, "kind", "session of several cameras", "sample",
+                     sessions[0].sample, "planned", planned, "taken", taken, "cameras", cameras);
+}
+
+static weft_code inspect_cameras(const char *path, const weft_camera_list *list, const weft_progress *progress,
+                                 bool all, json_t **result, weft_error *error)
+{
+    weft_session *sessions;
+    int count;
+    WEFT_TRY(weft_camera_sessions_open(path, &sessions, &count, error));
+    *result = describe_cameras(path, sessions, count);
+    weft_code code = all && *result ? weft_verify_cameras(path, sessions, list, progress, *result, error) : WEFT_OK;
+    weft_camera_sessions_free(sessions, count);
+    return code;
+}
+
 static weft_code inspect_session(const char *path, const weft_progress *progress, bool all, json_t **result,
                                  weft_error *error)
 {
     weft_session session;
+    weft_camera_list list;
+    WEFT_TRY(weft_camera_list_read(path, &list, error));
+    if (list.count > 0)
+        return inspect_cameras(path, &list, progress, all, result, error);
     WEFT_TRY(weft_session_open(path, &session, error));
     *result = describe_session(&session);
     weft_code code = all ? weft_verify_session(&session, progress, *result, error) : WEFT_OK;

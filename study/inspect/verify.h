@@ -5,7 +5,7 @@
 #include "base/progress.h"
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
-#include "btf/session/session.h"
+#include "btf/session/camera_list.h"
 
 #include <jansson.h>
 
@@ -21,5 +21,10 @@ weft_code weft_verify_dataset(weft_dataset *dataset, const weft_progress *progre
  * the fault, or how many there are of each kind; WEFT_SYSTEM. */
 weft_code weft_verify_session(const weft_session *session, const weft_progress *progress, json_t *description,
                               weft_error *error);
+
+/* The same of the sessions of several cameras, [list->count], and of what lies beside them in `folder`.
+ * description["cameras"] holds the description of each; description["faults"] receives those of all. */
+weft_code weft_verify_cameras(const char *folder, const weft_session *sessions, const weft_camera_list *list,
+                              const weft_progress *progress, json_t *description, weft_error *error);
 
 #endif

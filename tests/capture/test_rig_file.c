@@ -73,8 +73,8 @@ static void what_is_written_is_what_is_read(void **state)
     assert_float_equal(arm->backlash_deg, 0.25, 0);
     assert_true(rig.axes.together);
     assert_float_equal(rig.axes.fixed_deg[WEFT_BODY_LIGHT][WEFT_TURN_PHI], 90, 0);
-    assert_string_equal(rig.camera.lens, "lens.json");
-    assert_int_equal(rig.camera.values, WEFT_VALUES_LINEAR);
+    assert_string_equal(rig.camera[0].lens, "lens.json");
+    assert_int_equal(rig.camera[0].values, WEFT_VALUES_LINEAR);
 }
 
 static void mistakes_are_named_with_file_and_line(void **state)

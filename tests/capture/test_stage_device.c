@@ -431,7 +431,7 @@ static void a_session_with_faults_holds_no_wrong_pose(void **state)
     assert_int_equal(weft_capture_begin(&request, &rig, NULL, &capture, &error), WEFT_OK);
     if (weft_capture_take(&capture, NULL, NULL, &error) != WEFT_OK)
         fail_msg("%s", error.message);
-    const weft_session *session = &capture.held.session;
+    const weft_session *session = &capture.held[0].session;
     assert_int_equal(session->shot_count, SHOTS);
     int homings = 0;
     for (int i = 0; i < SHOTS; i++) {

@@ -65,7 +65,7 @@ static void take(const char *folder, const char *plan, const weft_truth_request 
     sound(weft_capture_begin(&request, &c.rig.rig, NULL, &capture, &error), &error);
     sound(weft_capture_take(&capture, NULL, NULL, &error), &error);
     if (truth_request)
-        sound(weft_truth_write(truth_request, &capture.held.session, &c.rig, NULL, &error), &error);
+        sound(weft_truth_write(truth_request, &capture.held[0].session, &c.rig, NULL, &error), &error);
     weft_capture_end(&capture);
 }
 

@@ -5,7 +5,7 @@ static weft_code take(const virtual_session *request, weft_virtual_rig *rig, con
 {
     weft_capture capture;
     WEFT_TRY(weft_capture_begin(&request->capture, &rig->rig, progress, &capture, error));
-    const weft_session *session = &capture.held.session;
+    const weft_session *session = &capture.held[0].session;
     weft_code code = weft_truth_check_path(&request->truth, session, error);
     if (code == WEFT_OK)
         code = weft_capture_take(&capture, stop, progress, error);

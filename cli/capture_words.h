@@ -1,0 +1,15 @@
+/* What `weft capture` says of a rehearsal and of a check. */
+#ifndef WEFT_CLI_CAPTURE_WORDS_H
+#define WEFT_CLI_CAPTURE_WORDS_H
+
+#include "capture/capture.h"
+#include "cli/arguments.h"
+#include "study/preflight/preflight.h"
+
+/* `in_order`: the stage chose an order, and knows how long it takes. */
+void weft_say_rehearsal(const weft_common_options *common, const weft_capture_rehearsal *rehearsal, bool in_order);
+
+/* A line for each check, or an event. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_say_checks(const weft_common_options *common, const weft_preflight *result, weft_error *error);
+
+#endif
