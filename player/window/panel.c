@@ -349,7 +349,12 @@ static void title(const weft_application *a)
 static void facts_section(const weft_application *a)
 {
     char text[96];
-    snprintf(text, sizeof text, "%d x %d   mean of %d", a->canvas.width, a->canvas.height, a->canvas.frame_count);
+    const weft_canvas *canvas = &a->canvas;
+    if (canvas->drawn_width < canvas->width)
+        snprintf(text, sizeof text, "%d x %d   moves, drawn as %d x %d", canvas->width, canvas->height,
+                 canvas->drawn_width, canvas->drawn_height);
+    else
+        snprintf(text, sizeof text, "%d x %d   mean of %d", canvas->width, canvas->height, canvas->frame_count);
     weft_ui_value("Picture", text);
     size_rows(a);
     weft_ui_gap();
