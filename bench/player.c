@@ -1,9 +1,10 @@
 /* Frame times of the player, each mode at 730 x 400, from the scene to what a window would show: median of FRAMES
- * frames by the wall and by the GPU's own timestamps, and the mean processor time. Usage: bench_player [NAME.weft]
- * [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
-#include "player/draw/player.h"
+ * frames by the wall and by the GPU's own timestamps, and the mean processor time. "moving": the frames that the window
+ * draws while things move, with as many pixels as it has time for, and with all of them. Usage: bench_player
+ * [NAME.weft] [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
 #include "base/numeric/statistics.h"
 #include "bench/measure.h"
+#include "player/draw/moving.h"
 #include "player/gl/context.h"
 #include "player/scene/environment.h"
 #include "player/scene/surroundings.h"
@@ -15,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 730, HEIGHT = 400, FRAMES = 41, WARM_UP = 5 };
+enum { WIDTH = 730, HEIGHT = 400, FRAMES = 41, WARM_UP = 15 };
 
 static void stop_on(weft_code code, const weft_error *error)
 {
@@ -33,20 +34,21 @@ static void create_screen(GLuint *buffer, GLuint *texture)
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, *texture, 0);
 }
 
-static void draw(weft_player *player, const weft_scene *scene, weft_canvas *canvas, GLuint screen)
+static void draw(weft_player *player, const weft_scene *scene, const weft_pace *pace, weft_canvas *canvas,
+                 GLuint screen)
 {
     weft_error error = {0};
-    const weft_sampling moving = {.frame = -1, .hurry = scene->filter == WEFT_FILTER_STOCHASTIC};
-    weft_canvas_clear(canvas);
-    weft_canvas_begin_frame(canvas);
-    stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, moving, &error), &error);
-    weft_canvas_end_frame(canvas);
+    stop_on(weft_player_draw_moving(player, scene, pace, canvas, &error), &error);
     glBindFramebuffer(GL_FRAMEBUFFER, screen);
     weft_canvas_present(canvas, scene, 0);
 }
 
+/* Everything is evaluated, or what is while things move. */
+static const weft_pace calm = {0}, hurried = {.exact_ms = 1000};
+
 /* The camera turns a little between frames, so that no driver can reuse one. */
-static void time_scene(weft_player *player, weft_scene scene, const char *what, weft_canvas *canvas)
+static void time_frames(weft_player *player, weft_scene scene, const char *what, weft_pace pace, bool adapts,
+                        weft_canvas *canvas)
 {
     double wall[FRAMES], gpu[FRAMES], cpu_ms = 0;
     GLuint query[2], screen, screen_texture;
@@ -57,7 +59,7 @@ static void time_scene(weft_player *player, weft_scene scene, const char *what, 
         scene.orbit.azimuth_rad += 0.01;
         double start = bench_now_ms(CLOCK_MONOTONIC), cpu_start = bench_now_ms(CLOCK_PROCESS_CPUTIME_ID);
         glQueryCounter(query[0], GL_TIMESTAMP);
-        draw(player, &scene, canvas, screen);
+        draw(player, &scene, &pace, canvas, screen);
         glQueryCounter(query[1], GL_TIMESTAMP);
         glFinish();
         glGetQueryObjectui64v(query[0], GL_QUERY_RESULT, &begin);
@@ -67,13 +69,31 @@ static void time_scene(weft_player *player, weft_scene scene, const char *what, 
             cpu_ms += (bench_now_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu_start) / FRAMES;
             gpu[frame] = 1e-6 * (double)(end - begin);
         }
+        if (adapts)
+            weft_pace_note(&pace, weft_pace_hurries(&pace), bench_now_ms(CLOCK_MONOTONIC) - start, 0);
     }
     glDeleteQueries(2, query);
     glDeleteFramebuffers(1, &screen);
     glDeleteTextures(1, &screen_texture);
     double wall_ms = weft_quantile(wall, FRAMES, 0.5);
-    printf("%-28s %8.2f ms wall %8.2f ms timestamps %8.2f ms processor %7.1f frames/s\n", what, wall_ms,
+    printf("%-36s %8.2f ms wall %8.2f ms timestamps %8.2f ms processor %7.1f frames/s", what, wall_ms,
            weft_quantile(gpu, FRAMES, 0.5), cpu_ms, 1000 / wall_ms);
+    printf(adapts ? ", %d x %d\n" : "\n", canvas->drawn_width, canvas->drawn_height);
+}
+
+static void time_scene(weft_player *player, weft_scene scene, const char *what, weft_canvas *canvas)
+{
+    time_frames(player, scene, what, scene.filter == WEFT_FILTER_STOCHASTIC ? hurried : calm, false, canvas);
+}
+
+static void time_moving(weft_player *player, weft_scene scene, const char *what, weft_canvas *canvas)
+{
+    char text[80];
+    scene.filter = WEFT_FILTER_AUTO;
+    snprintf(text, sizeof text, "%s, moving, all pixels", what);
+    time_frames(player, scene, text, hurried, false, canvas);
+    snprintf(text, sizeof text, "%s, moving", what);
+    time_frames(player, scene, text, hurried, true, canvas);
 }
 
 /* What a frame costs that shows nothing. */
@@ -170,6 +190,7 @@ static void time_mode(weft_player *player, weft_mode mode, weft_canvas *canvas)
         time_scene(player, scene, what, canvas);
         scene.relief = true;
     }
+    time_moving(player, scene, weft_mode_name(mode), canvas);
     scene.shadows = true;
     snprintf(what, sizeof what, "%s, shadows", weft_mode_name(mode));
     time_scene(player, scene, what, canvas);
@@ -203,6 +224,7 @@ static void time_studio(weft_player *player, weft_mode mode, weft_canvas *canvas
     scene.shadows = scene.ground = true;
     snprintf(what, sizeof what, "%s, studio", weft_mode_name(mode));
     time_scene(player, scene, what, canvas);
+    time_moving(player, scene, what, canvas);
     judge_rest(player, scene, canvas);
     scene.ground = false;
     snprintf(what, sizeof what, "%s, studio without ground", weft_mode_name(mode));

@@ -2,6 +2,7 @@
 
 #include "player/gl/shaders.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 static const weft_texture_format float_format = {GL_RGBA32F, GL_RGBA, GL_FLOAT};
@@ -29,6 +30,7 @@ weft_code weft_canvas_create(int width, int height, weft_canvas *c, weft_error *
 {
     const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
     const char *const add[] = {weft_glsl_add_frag, NULL}, *const present[] = {weft_glsl_present_frag, NULL};
+    const char *const enlarge[] = {weft_glsl_enlarge_frag, NULL};
     *c = (weft_canvas){.width = width, .height = height};
     glGenVertexArrays(1, &c->vertex_array);
     glGenRenderbuffers(1, &c->depth);
@@ -37,6 +39,7 @@ weft_code weft_canvas_create(int width, int height, weft_canvas *c, weft_error *
     WEFT_TRY(create_buffer(c, &c->frame_buffer, &c->frame, error));
     WEFT_TRY(create_buffer(c, &c->sum_buffer, &c->sum, error));
     WEFT_TRY(weft_gl_program("add", vertex, add, &c->add_program, error));
+    WEFT_TRY(weft_gl_program("enlarge", vertex, enlarge, &c->enlarge_program, error));
     WEFT_TRY(weft_gl_program("present", vertex, present, &c->present_program, error));
     weft_canvas_clear(c);
     return WEFT_OK;
@@ -52,6 +55,7 @@ void weft_canvas_free(weft_canvas *c)
     glDeleteTextures(1, &c->sum);
     glDeleteVertexArrays(1, &c->vertex_array);
     glDeleteProgram(c->add_program);
+    glDeleteProgram(c->enlarge_program);
     glDeleteProgram(c->present_program);
     *c = (weft_canvas){0};
 }
@@ -65,6 +69,23 @@ void weft_canvas_begin_frame(weft_canvas *c)
 {
     glBindFramebuffer(GL_FRAMEBUFFER, c->frame_count > 0 ? c->frame_buffer : c->sum_buffer);
     glViewport(0, 0, c->width, c->height);
+    c->drawn_width = c->width;
+    c->drawn_height = c->height;
+}
+
+static int side_of(int whole, double share)
+{
+    int side = (int)lround(share * whole);
+    return side < 1 ? 1 : side < whole ? side : whole;
+}
+
+void weft_canvas_begin_small_frame(weft_canvas *c, double side)
+{
+    weft_canvas_clear(c);
+    c->drawn_width = side_of(c->width, side);
+    c->drawn_height = side_of(c->height, side);
+    glBindFramebuffer(GL_FRAMEBUFFER, c->frame_buffer);
+    glViewport(0, 0, c->drawn_width, c->drawn_height);
 }
 
 /* With the program in use. */
@@ -78,8 +99,25 @@ static void draw_over_everything(const weft_canvas *c, int left, GLuint program,
     glBindTexture(GL_TEXTURE_2D, 0);
 }
 
+static void enlarge_frame(const weft_canvas *c)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, c->sum_buffer);
+    glDisable(GL_BLEND);
+    glUseProgram(c->enlarge_program);
+    weft_gl_set_vec2(c->enlarge_program, "drawn", c->drawn_width, c->drawn_height);
+    weft_gl_set_vec2(c->enlarge_program, "enlarged", c->width, c->height);
+    draw_over_everything(c, 0, c->enlarge_program, "frame", c->frame);
+}
+
+static bool is_small(const weft_canvas *c)
+{
+    return c->drawn_width < c->width || c->drawn_height < c->height;
+}
+
 void weft_canvas_end_frame(weft_canvas *c)
 {
+    if (is_small(c))
+        enlarge_frame(c);
     if (c->frame_count++ == 0)
         return;
     glBindFramebuffer(GL_FRAMEBUFFER, c->sum_buffer);

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-enum { HURRIED_LAYERS = 16 };
+enum { HURRIED_LAYERS = 16, HURRIED_LIGHTS = 2 };
 
 static const double golden_ratio = 0.6180339887498949;
 
@@ -138,6 +138,10 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         .shadows = weft_scene_has_shadows(scene),
         .one_light = weft_lighting_count(scene, p->environment) == 1,
     };
+    bool has_many = scene->environment && p->environment && p->environment->region_count > HURRIED_LIGHTS;
+    /* Where a light is tinted it has to be the same in neighbouring pixels. */
+    if (pane->sampling.hurry && has_many && !scene->show_extrapolation)
+        kind.chosen_lights = HURRIED_LIGHTS;
     kind.threads = pane->mode == WEFT_MODE_ANALYTIC && weft_player_has_threads(p);
     kind.noise = pane->mode == WEFT_MODE_ANALYTIC && scene->noise_seed != 0 && p->weave.has_noise;
     if (pane->mode == WEFT_MODE_RAW) {
@@ -368,7 +372,7 @@ static weft_code draw_pane_labels(weft_player *p, const weft_scene *scene, int w
     return WEFT_OK;
 }
 
-static weft_code draw_labels(weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)
+weft_code weft_player_draw_labels(weft_player *p, const weft_scene *scene, int width, int height, weft_error *error)
 {
     int margin = weft_label_size(height) / 2;
     if (!scene->labels)
@@ -414,6 +418,6 @@ weft_code weft_player_draw(weft_player *p, const weft_scene *asked, int width, i
     const weft_pane whole = {.width = width, .height = height, .sampling = sampling};
     WEFT_TRY(draw[scene->layout](p, scene, &whole, (GLuint)target, error));
     p->frames_drawn++;
-    WEFT_TRY(draw_labels(p, scene, width, height, error));
+    WEFT_TRY(weft_player_draw_labels(p, scene, width, height, error));
     return weft_gl_check("drawing", error);
 }

@@ -79,7 +79,9 @@ typedef struct weft_sampling {
     double shift_x, shift_y; /* of the picture, pixels */
     double level_bias;       /* added to the level of detail */
     long frame;              /* number of the frame in a mean; -1: a picture that moves, to be good by itself */
-    bool hurry;              /* WEFT_FILTER_AUTO is then stochastic, and of linear layers the first 16 are drawn */
+    /* WEFT_FILTER_AUTO is then stochastic, of linear layers the first 16 are drawn, and of an environment two lights a
+     * pixel, by chance. */
+    bool hurry;
 } weft_sampling;
 
 /* Draws into the current framebuffer, width x height pixels of floats: linear radiance, or the signed difference of two
@@ -87,6 +89,11 @@ typedef struct weft_sampling {
  * Errors: WEFT_BAD_USAGE where not; WEFT_SYSTEM. */
 weft_code weft_player_draw(weft_player *player, const weft_scene *scene, int width, int height, weft_sampling sampling,
                            weft_error *error);
+
+/* Draws the words of the scene alone, which weft_player_draw draws last, over a picture in the current framebuffer.
+ * Errors: WEFT_SYSTEM. */
+weft_code weft_player_draw_labels(weft_player *player, const weft_scene *scene, int width, int height,
+                                  weft_error *error);
 
 /* The picture as the mean of samples x samples frames on a grid within each pixel; linear (weft_scene_show makes it
  * what the screen shows). With environment_reference at least 128 frames, lit by all lights of the map. The caller

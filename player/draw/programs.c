@@ -10,11 +10,11 @@
 static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
 {
     return a->mode == b->mode && a->stochastic == b->stochastic && a->shadows == b->shadows &&
-           a->one_light == b->one_light && a->plot == b->plot && a->opacity == b->opacity && a->relief == b->relief &&
-           a->threads == b->threads && a->noise == b->noise && a->layer_groups == b->layer_groups &&
-           a->drawn_groups == b->drawn_groups && a->half_vector == b->half_vector && a->lobe_count == b->lobe_count &&
-           a->view_table == b->view_table && a->light_table == b->light_table && a->fewer_bits == b->fewer_bits &&
-           a->pruned == b->pruned;
+           a->one_light == b->one_light && a->chosen_lights == b->chosen_lights && a->plot == b->plot &&
+           a->opacity == b->opacity && a->relief == b->relief && a->threads == b->threads && a->noise == b->noise &&
+           a->layer_groups == b->layer_groups && a->drawn_groups == b->drawn_groups &&
+           a->half_vector == b->half_vector && a->lobe_count == b->lobe_count && a->view_table == b->view_table &&
+           a->light_table == b->light_table && a->fewer_bits == b->fewer_bits && a->pruned == b->pruned;
 }
 
 static const char *name_of(bool value)
@@ -22,18 +22,23 @@ static const char *name_of(bool value)
     return value ? "true" : "false";
 }
 
+static const char *light_count_of(const weft_program_kind *kind)
+{
+    return kind->one_light ? "1" : kind->chosen_lights > 0 ? "(scene_count + CHOSEN_LIGHTS)" : "light_count";
+}
+
 static void define(const weft_program_kind *kind, char *text, size_t size)
 {
     snprintf(
         text, size,
         "#define MAX_LIGHTS %d\n#define SHADOW_LAYERS %d\n#define LEVEL_COLOURS %d\n#define LIGHT_COUNT %s\n#define "
-        "ONE_LIGHT %s\n"
+        "ONE_LIGHT %s\n#define CHOSEN_LIGHTS %d\n"
         "#define STOCHASTIC %s\n#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
         "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n"
         "#define LAYER_GROUPS %d\n#define DRAWN_GROUPS %d\n#define HALF_VECTOR %s\n#define RELIEF %s\n#define PRUNED "
         "%d\n",
-        WEFT_MAX_LIGHTS, WEFT_SHADOW_LAYERS, WEFT_LEVEL_COLOURS, kind->one_light ? "1" : "light_count",
-        name_of(kind->one_light), name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity),
+        WEFT_MAX_LIGHTS, WEFT_SHADOW_LAYERS, WEFT_LEVEL_COLOURS, light_count_of(kind), name_of(kind->one_light),
+        kind->chosen_lights, name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity),
         kind->lobe_count, name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits),
         name_of(kind->noise), kind->layer_groups, kind->drawn_groups, name_of(kind->half_vector), name_of(kind->relief),
         kind->pruned);
@@ -41,7 +46,7 @@ static void define(const weft_program_kind *kind, char *text, size_t size)
 
 static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)
 {
-    char constants[640];
+    char constants[768];
     define(kind, constants, sizeof constants);
     const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
     const char *const raw[] = {constants,        weft_glsl_rotation, weft_glsl_surface,    weft_glsl_directions,
@@ -139,7 +144,7 @@ static weft_code find_with_surface(const char *name, const char *fragment, bool 
 {
     if (!*wanted) {
         const weft_program_kind kind = {.shadows = shadows};
-        char constants[640];
+        char constants[768];
         define(&kind, constants, sizeof constants);
         const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
         const char *const parts[] = {constants, weft_glsl_rotation, weft_glsl_surface, fragment, NULL};

@@ -11,11 +11,12 @@ enum { WEFT_MAX_LIGHTS = 52 }; /* of one frame: those of the scene and 48 of the
 typedef struct weft_program_kind {
     weft_mode mode;
     bool stochastic, shadows, one_light;
-    int plot;     /* 0: of the picture; 1, 2: of lights, of views (player/draw/probe.h) */
-    bool opacity; /* raw and layers: some is below 1 */
-    bool relief;  /* raw and layers: through the heights */
-    bool threads; /* analytic: microcylinders, else a weave */
-    bool noise;   /* analytic: that of the weave */
+    int chosen_lights; /* of the environment, by chance; 0: all of it */
+    int plot;          /* 0: of the picture; 1, 2: of lights, of views (player/draw/probe.h) */
+    bool opacity;      /* raw and layers: some is below 1 */
+    bool relief;       /* raw and layers: through the heights */
+    bool threads;      /* analytic: microcylinders, else a weave */
+    bool noise;        /* analytic: that of the weave */
     /* Of the compressed material: */
     int layer_groups; /* four layers each, in the place of lobes; 0: lobes */
     int drawn_groups; /* the first of them, which are evaluated */

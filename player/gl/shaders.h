@@ -5,6 +5,7 @@
 extern const char weft_glsl_fullscreen_vert[];
 extern const char weft_glsl_background_frag[], weft_glsl_ground_frag[];
 extern const char weft_glsl_add_frag[];
+extern const char weft_glsl_enlarge_frag[];
 extern const char weft_glsl_present_frag[];
 extern const char weft_glsl_text_vert[];
 extern const char weft_glsl_text_frag[];

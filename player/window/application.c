@@ -1,6 +1,7 @@
 #include "player/window/panel.h"
 
 #include "base/clock.h"
+#include "player/draw/moving.h"
 #include "player/settings/exposure.h"
 #include "player/window/keys.h"
 #include "player/window/ui_bridge.h"
@@ -14,7 +15,6 @@
 enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64, PLOT_SIZE = 142 };
 
 static const double settle_s = 0.12; /* after the last change the mean of a picture at rest begins */
-static const double hurry_ms = 15;   /* exact frames longer than this are drawn stochastically while things move */
 static const double poll_s = 0.1;
 static const double turn_rad_per_s = 0.5;
 static const double short_note_s = 1.5;
@@ -185,11 +185,9 @@ static double radical_inverse(int index, int base)
     return result;
 }
 
-static weft_sampling sampling_of(const weft_application *a)
+static weft_sampling resting_sampling(const weft_application *a)
 {
     int index = a->canvas.frame_count;
-    if (!a->rests)
-        return (weft_sampling){.frame = -1, .hurry = a->exact_ms > hurry_ms};
     return (weft_sampling){
         .shift_x = index > 0 ? radical_inverse(index, 2) - 0.5 : 0,
         .shift_y = index > 0 ? radical_inverse(index, 3) - 0.5 : 0,
@@ -197,28 +195,38 @@ static weft_sampling sampling_of(const weft_application *a)
     };
 }
 
-static void note_time(weft_application *a, double elapsed_ms, bool is_exact)
+static weft_code draw_resting(weft_application *a, weft_error *error)
 {
-    double *smooth[2] = {&a->frame_ms, is_exact ? &a->exact_ms : NULL};
-    for (int i = 0; i < 2 && smooth[i]; i++)
-        *smooth[i] = *smooth[i] > 0 ? 0.8 * *smooth[i] + 0.2 * elapsed_ms : elapsed_ms;
+    weft_canvas *canvas = &a->canvas;
+    weft_sampling sampling = resting_sampling(a);
+    weft_canvas_begin_frame(canvas);
+    WEFT_TRY(weft_player_draw(a->player, &a->interaction.scene, canvas->width, canvas->height, sampling, error));
+    weft_canvas_end_frame(canvas);
+    return WEFT_OK;
 }
 
 static weft_code draw_frame(weft_application *a, weft_error *error)
 {
-    const weft_scene *scene = &a->interaction.scene;
-    weft_sampling sampling = sampling_of(a);
     double start = weft_now_s();
-    weft_canvas_begin_frame(&a->canvas);
-    WEFT_TRY(weft_player_draw(a->player, scene, a->canvas.width, a->canvas.height, sampling, error));
-    weft_canvas_end_frame(&a->canvas);
+    a->drew_hurried = !a->rests && weft_pace_hurries(&a->pace);
+    WEFT_TRY(a->rests ? draw_resting(a, error)
+                      : weft_player_draw_moving(a->player, &a->interaction.scene, &a->pace, &a->canvas, error));
     glFinish();
-    double elapsed_ms = 1000 * (weft_now_s() - start);
-    a->total_ms += elapsed_ms;
-    /* The first frame builds programs and is no measure of the others. */
-    if (a->frame_count++ > 0)
-        note_time(a, elapsed_ms, scene->filter == WEFT_FILTER_AUTO && !sampling.hurry);
+    a->drawn_ms = 1000 * (weft_now_s() - start);
+    a->total_ms += a->drawn_ms;
+    a->frame_count++;
     return WEFT_OK;
+}
+
+/* After it was brought to the screen. The first frame builds programs and is no measure of the others. */
+static void note_time(weft_application *a, double shown_ms)
+{
+    double whole_ms = a->drawn_ms + shown_ms;
+    if (a->drawn_ms > 0 && a->frame_count > 1) {
+        weft_pace_note(&a->pace, a->drew_hurried, a->drawn_ms, shown_ms);
+        a->frame_ms = a->frame_ms > 0 ? 0.8 * a->frame_ms + 0.2 * whole_ms : whole_ms;
+    }
+    a->drawn_ms = 0;
 }
 
 static int still_frames(const weft_application *a)
@@ -384,6 +392,7 @@ static weft_code probe(weft_application *a, weft_error *error)
 
 static void show(weft_application *a, int width, int height)
 {
+    double start = weft_now_s();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, width, height);
     glClearColor(0.02f, 0.02f, 0.02f, 1);
@@ -393,6 +402,9 @@ static void show(weft_application *a, int width, int height)
     weft_ui_begin();
     weft_panel_show(a, width, height);
     weft_ui_end();
+    /* Before the screen is waited for. */
+    glFinish();
+    note_time(a, 1000 * (weft_now_s() - start));
     weft_window_show(a->window);
 }
 

@@ -3,6 +3,7 @@
 #define WEFT_PLAYER_WINDOW_APPLICATION_STATE_H
 
 #include "player/draw/lobe_probe.h"
+#include "player/draw/pace.h"
 #include "player/draw/probe.h"
 #include "player/gl/context.h"
 #include "player/window/application.h"
@@ -33,7 +34,10 @@ struct weft_application {
     weft_canvas canvas;
     weft_interaction interaction;
     double scale;              /* of text and widgets */
-    double frame_ms, exact_ms; /* smoothed: of all frames, and of those that evaluate every neighbour */
+    weft_pace pace;            /* of moving frames */
+    double frame_ms;           /* smoothed: from the scene to the screen, of all frames */
+    bool drew_hurried;         /* the last frame */
+    double drawn_ms;           /* that the last frame took to draw; 0: none was drawn since the last one shown */
     double moved_s, stepped_s; /* when the picture changed last, and when the last frame began */
     double total_ms;
     long frame_count;

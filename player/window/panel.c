@@ -339,9 +339,14 @@ static void size_rows(const weft_application *a)
 static void title(const weft_application *a)
 {
     char text[96];
+    const weft_canvas *canvas = &a->canvas;
     weft_ui_heading(a->title);
-    snprintf(text, sizeof text, "%.1f ms a frame, %.0f frames/s   H: all keys", a->frame_ms,
-             a->frame_ms > 0 ? 1000 / a->frame_ms : 0);
+    int used = snprintf(text, sizeof text, "%.1f ms a frame, %.0f frames/s   ", a->frame_ms,
+                        a->frame_ms > 0 ? 1000 / a->frame_ms : 0);
+    if (canvas->drawn_width < canvas->width)
+        snprintf(text + used, sizeof text - (size_t)used, "at %d x %d", canvas->drawn_width, canvas->drawn_height);
+    else
+        snprintf(text + used, sizeof text - (size_t)used, "H: all keys");
     weft_ui_dim_text(text);
     weft_ui_gap();
 }

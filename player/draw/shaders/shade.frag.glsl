@@ -74,7 +74,7 @@ vec3 extrapolation_tinted(vec3 value, SurfacePoint point)
 bool is_lit(SurfacePoint point)
 {
     float largest = 0.0;
-    for (int i = 0; i < LIGHT_COUNT; i++)
+    for (int i = 0; i < (ONE_LIGHT ? 1 : light_count); i++)
         largest = max(largest, dot(light_direction[i], point.axes[2]));
     return largest > 0.0;
 }

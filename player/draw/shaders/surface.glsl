@@ -1,5 +1,6 @@
 // What every mode needs to know of the surface behind a pixel (written by surface.frag.glsl), and of the light on it.
-// Constants defined by player/draw/programs.c: MAX_LIGHTS, LEVEL_COLOURS, LIGHT_COUNT (light_count, or 1), ONE_LIGHT,
+// Constants defined by player/draw/programs.c: MAX_LIGHTS, LEVEL_COLOURS, LIGHT_COUNT (of lights that are evaluated),
+// ONE_LIGHT, CHOSEN_LIGHTS: 0, or how many of the environment are evaluated, by chance, in the place of all of it;
 // STOCHASTIC, SHADOWS, and PLOT: 0 for the picture; else a disc of directions at one place of the material, 1 of
 // lights, 2 of views (player/draw/probe.h).
 uniform sampler2D surface_rotation;
@@ -35,6 +36,8 @@ struct SurfacePoint {
     float key_share; // of the first light that is not in shadow
     float env_share; // of the environment's light, about
     float chance;    // in [0, 1)
+    ivec2 chosen;       // where CHOSEN_LIGHTS: lights of the environment,
+    vec2 chosen_weight; // and what each of them counts
 };
 
 // Interpolated normals may turn away from the eye at a silhouette; the view is kept just above the horizon.
@@ -44,10 +47,15 @@ vec3 above_horizon(vec3 view)
 }
 
 // Interleaved gradient noise (Jimenez 2014), moved by the frame: neighbours in the picture and in time differ.
+float chance_at(vec2 place)
+{
+    float noise = fract(52.9829189 * fract(dot(place, vec2(0.06711056, 0.00583715))));
+    return fract(noise + sequence);
+}
+
 float pixel_chance()
 {
-    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-    return fract(noise + sequence);
+    return chance_at(gl_FragCoord.xy);
 }
 
 // Equal areas: z = 1 - r^2. Beside the disc z is negative.
@@ -134,6 +142,40 @@ void find_shadows(vec3 position, inout SurfacePoint point)
     point.env_share = fill_share(position, point.axes[2]);
 }
 
+// About what a light of the environment brings to a surface. Grazing light counts for more than its cosine: it is what
+// cloth may throw back many times as much of, and a pixel that chose it by a rare chance would glare.
+float brightness_of(int light, vec3 normal)
+{
+    float cosine = dot(light_direction[light], normal);
+    return cosine > 0.0 ? dot(light_irradiance[light], vec3(1.0)) * (cosine + 0.25) : 0.0;
+}
+
+// As many as CHOSEN_LIGHTS, as likely as they are bright there, and at even steps of their sum: each pixel has its share
+// of the bright and of the dark ones.
+void choose_lights(inout SurfacePoint point)
+{
+    float all_of_them = 0.0;
+    for (int i = scene_count; i < light_count; i++)
+        all_of_them += brightness_of(i, point.axes[2]);
+    vec2 wanted = (chance_at(gl_FragCoord.xy + vec2(47.0, 17.0)) + vec2(0.0, 1.0)) * all_of_them / float(CHOSEN_LIGHTS);
+    point.chosen = ivec2(scene_count);
+    point.chosen_weight = vec2(0.0);
+    float passed = 0.0;
+    for (int i = scene_count; i < light_count; i++) {
+        float here = brightness_of(i, point.axes[2]);
+        bvec2 is_it = lessThanEqual(vec2(passed), wanted);
+        if (is_it.x && here > 0.0) {
+            point.chosen.x = i;
+            point.chosen_weight.x = all_of_them / (float(CHOSEN_LIGHTS) * here);
+        }
+        if (is_it.y && here > 0.0) {
+            point.chosen.y = i;
+            point.chosen_weight.y = all_of_them / (float(CHOSEN_LIGHTS) * here);
+        }
+        passed += here;
+    }
+}
+
 SurfacePoint surface_point()
 {
     if (PLOT != 0)
@@ -151,7 +193,20 @@ SurfacePoint surface_point()
     point.sides = textureLod(surface_sides, pixel, 0.0);
     find_shadows(eye + abs(place.w) * ray, point);
     point.chance = STOCHASTIC ? pixel_chance() : 0.0;
+    if (CHOSEN_LIGHTS > 0)
+        choose_lights(point);
     return point;
+}
+
+// The number of the one that is evaluated as the `i`-th.
+int light_at(SurfacePoint point, int i)
+{
+    return CHOSEN_LIGHTS == 0 || i < scene_count ? i : i == scene_count ? point.chosen.x : point.chosen.y;
+}
+
+float weight_at(SurfacePoint point, int i)
+{
+    return CHOSEN_LIGHTS == 0 || i < scene_count ? 1.0 : i == scene_count ? point.chosen_weight.x : point.chosen_weight.y;
 }
 
 // Of the world, unit, toward the light.
@@ -160,9 +215,9 @@ vec3 world_light(int light)
     return PLOT == 0 ? light_direction[light] : PLOT == 1 ? plotted_direction() : probe_light;
 }
 
-vec3 surface_light(SurfacePoint point, int light)
+vec3 surface_light(SurfacePoint point, int i)
 {
-    return world_light(light) * point.axes;
+    return world_light(light_at(point, i)) * point.axes;
 }
 
 float unshaded_share(SurfacePoint point, int light)
@@ -171,10 +226,11 @@ float unshaded_share(SurfacePoint point, int light)
 }
 
 // Over pi, with the cosine; 0 below the horizon of the surface.
-vec3 surface_irradiance(SurfacePoint point, int light)
+vec3 surface_irradiance(SurfacePoint point, int i)
 {
     if (PLOT != 0)
         return vec3(1.0); // without the cosine: BRDF x pi
+    int light = light_at(point, i);
     float cosine = max(dot(light_direction[light], point.axes[2]), 0.0);
-    return light_irradiance[light] * cosine * unshaded_share(point, light);
+    return light_irradiance[light] * cosine * unshaded_share(point, light) * weight_at(point, i);
 }

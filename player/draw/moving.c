@@ -1,0 +1,21 @@
+#include "player/draw/moving.h"
+
+weft_code weft_player_draw_moving(weft_player *p, const weft_scene *scene, const weft_pace *pace, weft_canvas *canvas,
+                                  weft_error *error)
+{
+    const weft_sampling sampling = {.frame = -1, .hurry = weft_pace_hurries(pace)};
+    double side = weft_pace_side(pace);
+    weft_canvas_clear(canvas);
+    if (side == 1) {
+        weft_canvas_begin_frame(canvas);
+        WEFT_TRY(weft_player_draw(p, scene, canvas->width, canvas->height, sampling, error));
+        weft_canvas_end_frame(canvas);
+        return WEFT_OK;
+    }
+    weft_scene wordless = *scene;
+    wordless.labels = false;
+    weft_canvas_begin_small_frame(canvas, side);
+    WEFT_TRY(weft_player_draw(p, &wordless, canvas->drawn_width, canvas->drawn_height, sampling, error));
+    weft_canvas_end_frame(canvas);
+    return weft_player_draw_labels(p, scene, canvas->width, canvas->height, error);
+}
