@@ -2,7 +2,7 @@
 # docs/gallery.md and its pictures: the cloths that come with Weft, in the same light.
 # Usage: gallery.sh WEFT [DATASETS [SECTION...]]
 # A SECTION is one of stitches, photographed, weaves, microcylinders, cards; without one all are drawn. The others stay as the page
-# has them. Photographs of a weave take about 3.5 minutes of a processor and 1 GB of disk while they are taken. The real card
+# has them. Photographs, registration and material of a weave take 3.4 to 3.8 minutes of processor time. The real card
 # photographs are looked for beside the checkout. Datasets and materials are kept in DATASETS, and taken from there the next
 # time. Frames are timed: let nothing else run.
 set -eu
@@ -97,7 +97,7 @@ photographed() {
     cat <<'TEXT'
 ## Weaves: photographed, compressed, analytic
 
-The virtual rig photographs six weaves under 81 views x 81 lights, magnified; `weft register` makes 64 x 64 texels of that. The
+The virtual rig photographs weaves under 81 views x 81 lights, magnified; `weft register` makes 64 x 64 texels of that. The
 analytic cloth is the very one that was photographed, so that its error is that of photographs and model together: the rig
 adds irregular yarns, noise and a lens, and texels blur what lies within them. Its error is over all samples. A cloth of 300 mm.
 
