@@ -26,23 +26,25 @@ weft_code weft_compress_metadata_bytes(const weft_dataset_layout *layout, uint64
     return WEFT_OK;
 }
 
-/* Base 2 logarithms, as in compress/kriging/covariance.h. */
+/* As in compress/kriging/covariance.h: base 2 logarithms, and the powers by which highlights grow. */
 static json_t *describe_kriging(const weft_layers_report *report)
 {
-    static const char *const name[WEFT_COVARIANCE_NUMBERS] = {[WEFT_NOISE] = "noise",
-                                                              [WEFT_DIFFUSE_VARIANCE] = "diffuse_variance",
-                                                              [WEFT_SMOOTH_LIGHT_LENGTH] = "light_length",
-                                                              [WEFT_SMOOTH_VIEW_LENGTH] = "view_length",
-                                                              [WEFT_HIGHLIGHT_VARIANCE] = "highlight_variance",
-                                                              [WEFT_HIGHLIGHT_LENGTH] = "highlight_length",
-                                                              [WEFT_HIGHLIGHT_VIEW_LENGTH] = "highlight_view_length",
-                                                              [WEFT_FIXED_HIGHLIGHT_VARIANCE] = "fixed_variance",
-                                                              [WEFT_FIXED_HIGHLIGHT_LENGTH] = "fixed_length"};
+    static const char *const name[WEFT_INCIDENCE_POWER] = {[WEFT_NOISE] = "noise",
+                                                           [WEFT_DIFFUSE_VARIANCE] = "diffuse_variance",
+                                                           [WEFT_SMOOTH_LIGHT_LENGTH] = "light_length",
+                                                           [WEFT_SMOOTH_VIEW_LENGTH] = "view_length",
+                                                           [WEFT_HIGHLIGHT_VARIANCE] = "highlight_variance",
+                                                           [WEFT_HIGHLIGHT_LENGTH] = "highlight_length",
+                                                           [WEFT_HIGHLIGHT_VIEW_LENGTH] = "highlight_view_length",
+                                                           [WEFT_FIXED_HIGHLIGHT_VARIANCE] = "fixed_variance",
+                                                           [WEFT_FIXED_HIGHLIGHT_LENGTH] = "fixed_length"};
+    weft_covariance_terms terms = weft_covariance_terms_of(&report->covariance);
     json_t *numbers = json_object();
-    for (int k = 0; k < WEFT_COVARIANCE_NUMBERS; k++)
-        weft_json_put(&numbers, name[k], json_real(report->covariance.log2_of[k]));
-    return json_pack("{s:f, s:i, s:o}", "left_out_relative_rmse", report->left_out_error, "left_out_images",
-                     report->left_out_count, "log2_covariance", numbers);
+    for (int k = 0; k < WEFT_INCIDENCE_POWER; k++)
+        weft_json_put(&numbers, name[k], json_real(report->covariance.number[k]));
+    return json_pack("{s:f, s:i, s:o, s:{s:f, s:f, s:f}}", "left_out_relative_rmse", report->left_out_error,
+                     "left_out_images", report->left_out_count, "log2_covariance", numbers, "highlight_powers",
+                     "incidence", terms.incidence_power, "light", terms.light_power, "view", terms.view_power);
 }
 
 static json_t *describe_layers(const weft_compress_options *options, const weft_layers_report *report)

@@ -111,14 +111,14 @@ static weft_code leave_out(const reduced *part, const weft_covariance *covarianc
 enum { MOST_TRIED = 2, MOST_ROUNDS = 2 };
 
 /* Beyond these a number means the same as at them. */
-static const double most_log2 = 12;
+static const double most_number = 12;
 
 /* A step must lower the squared error by so much. */
 static const double least_gain = 1e-3;
 
 typedef struct search {
     reduced *part;
-    int count;
+    int count, number_count; /* numbers that are searched: the first ones of a covariance */
     double energy;
     double *square; /* [MOST_TRIED][count] */
 } search;
@@ -179,7 +179,7 @@ static double judged(const search *s, const weft_covariance *covariance, double 
     weft_covariance usual = weft_covariance_usual();
     double distance = 0;
     for (int k = 0; k < WEFT_COVARIANCE_NUMBERS; k++)
-        distance += (covariance->log2_of[k] - usual.log2_of[k]) * (covariance->log2_of[k] - usual.log2_of[k]);
+        distance += (covariance->number[k] - usual.number[k]) * (covariance->number[k] - usual.number[k]);
     return share * (1 + caution * distance / s->part[0].set.places.count);
 }
 
@@ -191,7 +191,7 @@ static weft_code move(const search *s, int number, double step, weft_covariance 
     for (int tried = MOST_TRIED;; tried = 1) {
         weft_covariance covariance[MOST_TRIED] = {*best, *best};
         for (int t = 0; t < tried; t++)
-            covariance[t].log2_of[number] = fmin(fmax(best->log2_of[number] + way[t], -most_log2), most_log2);
+            covariance[t].number[number] = fmin(fmax(best->number[number] + way[t], -most_number), most_number);
         WEFT_TRY(try_each(s, covariance, tried, share, error));
         for (int t = 0; t < tried; t++)
             share[t] = judged(s, &covariance[t], share[t]);
@@ -215,7 +215,7 @@ static weft_code search_run(const search *s, const weft_progress *progress, weft
         bool moved = true;
         for (int round = 0; round < MOST_ROUNDS && moved; round++) {
             moved = false;
-            for (int number = 0; number < WEFT_COVARIANCE_NUMBERS; number++)
+            for (int number = 0; number < s->number_count; number++)
                 WEFT_TRY(move(s, number, step[i], best, least, &moved, error));
         }
         weft_progress_report(progress, "leaving images out", i + 1, STEPS);
@@ -228,11 +228,13 @@ weft_code weft_kriging_choose(const weft_kriging_samples *set, int set_count, co
 {
     search s;
     double least = 0;
-    bool enough = false;
+    int images = 0;
     for (int i = 0; i < set_count; i++)
-        enough = enough || set[i].places.count >= WEFT_KRIGING_LEAST_IMAGES;
+        images = set[i].places.count > images ? set[i].places.count : images;
+    bool enough = images >= WEFT_KRIGING_LEAST_IMAGES;
     *covariance = enough ? weft_covariance_usual() : weft_covariance_diffuse();
     weft_code code = search_create(set, set_count, &s, error);
+    s.number_count = images < WEFT_KRIGING_LEAST_FOR_POWERS ? WEFT_INCIDENCE_POWER : WEFT_COVARIANCE_NUMBERS;
     if (code == WEFT_OK)
         code =
             enough ? search_run(&s, progress, covariance, &least, error) : try_each(&s, covariance, 1, &least, error);

@@ -15,6 +15,10 @@ typedef struct weft_kriging_samples {
 /* Fewer images than this decide nothing: the covariance is that of a diffuse term. */
 enum { WEFT_KRIGING_LEAST_IMAGES = 4 };
 
+/* Fewer do not decide by which powers highlights grow: what a wrong power says near the horizon is worse than what the
+ * usual one does. */
+enum { WEFT_KRIGING_LEAST_FOR_POWERS = 20 };
+
 /* Chooses the numbers of the covariance one after another, the steps of their logarithms growing smaller, so that the
  * squared error of all samples, each predicted by the others of its texel, is least:
  *

@@ -5,13 +5,14 @@
  *
  *     cov(r_a, r_b) = s_0 l_z l'_z
  *                   + s_1 M(|l - l'|^2 / p_1^2 + |v - v'|^2 / q_1^2)
- *                   + s_2 M(|h - h'|^2 / p_2^2 + |v - v'|^2 / q_2^2) / (l.h l'.h')
- *                   + s_3 M(|h - h'|^2 / p_3^2) / (l.h l'.h')
+ *                   + g g' (s_2 M(|h - h'|^2 / p_2^2 + |v - v'|^2 / q_2^2) + s_3 M(|h - h'|^2 / p_3^2))
+ *     g = (l.h)^a l_z^b v_z^c
  *
  * with h the unit half vector and M(x) = (1 + sqrt(3 x)) exp(-sqrt(3 x)), the Matern covariance of smoothness 3/2. The
  * terms are: a diffuse term; what changes smoothly with light and view, such as shadows; highlights, which stay at
- * their half vector and change slowly with the view; and highlights that do not change with the view. Noise comes on
- * top. Only ratios of the variances matter: s_1 is 1. All functions are pure. */
+ * their half vector and change slowly with the view; and highlights that do not change with the view. How a highlight
+ * grows towards the horizon depends on the cloth, by Fresnel's law, by what yarns hide and by foreshortening: g. Noise
+ * comes on top. Only ratios of the variances matter: s_1 is 1. All functions are pure. */
 #ifndef WEFT_COMPRESS_KRIGING_COVARIANCE_H
 #define WEFT_COMPRESS_KRIGING_COVARIANCE_H
 
@@ -20,7 +21,7 @@
 /* A light and a view above the horizon, and what covariances need of them. */
 typedef struct weft_direction_pair {
     double light[3], view[3], half_vector[3];
-    double incidence; /* l.h */
+    double log_incidence, log_light, log_view; /* logarithms of l.h, l_z, v_z */
 } weft_direction_pair;
 
 weft_direction_pair weft_direction_pair_of(weft_vec3 light, weft_vec3 view);
@@ -35,12 +36,16 @@ typedef enum weft_covariance_number {
     WEFT_HIGHLIGHT_VIEW_LENGTH,
     WEFT_FIXED_HIGHLIGHT_VARIANCE,
     WEFT_FIXED_HIGHLIGHT_LENGTH,
+    WEFT_INCIDENCE_POWER, /* a; b and c follow */
+    WEFT_LIGHT_POWER,
+    WEFT_VIEW_POWER,
     WEFT_COVARIANCE_NUMBERS
 } weft_covariance_number;
 
-/* Base 2 logarithms of variances and lengths (of chords of the unit sphere). */
+/* Base 2 logarithms of variances and of lengths (of chords of the unit sphere); twice the powers. A step of 1 changes
+ * each of them about as much. */
 typedef struct weft_covariance {
-    double log2_of[WEFT_COVARIANCE_NUMBERS];
+    double number[WEFT_COVARIANCE_NUMBERS];
 } weft_covariance;
 
 /* What is assumed before any sample is seen. */
@@ -53,6 +58,7 @@ weft_covariance weft_covariance_diffuse(void);
 typedef struct weft_covariance_terms {
     double diffuse, highlight, fixed;                                             /* variances */
     double smooth_light, smooth_view, highlight_half, highlight_view, fixed_half; /* 3 / length^2 */
+    double incidence_power, light_power, view_power;
 } weft_covariance_terms;
 
 weft_covariance_terms weft_covariance_terms_of(const weft_covariance *covariance);

@@ -24,7 +24,7 @@ static void fill(const weft_covariance *covariance, const weft_kriging_places *p
     for (size_t i = 0; i < count; i++)
         mean += matrix[i * count + i] / (double)count;
     for (size_t i = 0; i < count; i++)
-        matrix[i * count + i] += mean * (least_noise + exp2(covariance->log2_of[WEFT_NOISE]) / places->weight[i]);
+        matrix[i * count + i] += mean * (least_noise + exp2(covariance->number[WEFT_NOISE]) / places->weight[i]);
 }
 
 weft_code weft_kriging_create(const weft_covariance *covariance, const weft_kriging_places *places,

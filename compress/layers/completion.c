@@ -445,7 +445,7 @@ weft_code weft_completion_make(const weft_dataset_layout *layout, const weft_lay
     if (code == WEFT_OK)
         code = is_near ? complete_near(&n, progress, completion, error)
                        : complete_far(images, training, progress, completion, error);
-    completion->noise *= exp2(completion->covariance.log2_of[WEFT_NOISE]);
+    completion->noise *= exp2(completion->covariance.number[WEFT_NOISE]);
     if (code != WEFT_OK)
         weft_completion_free(completion);
     return code;

@@ -30,7 +30,7 @@ static void the_covariance_is_the_sum_that_is_documented(void **state)
 {
     (void)state;
     uint64_t seed = 11;
-    const weft_covariance covariance = {{-3, 0.7, -0.4, 0.9, 1.3, -1.6, 0.2, -0.8, -2.1}};
+    const weft_covariance covariance = {{-3, 0.7, -0.4, 0.9, 1.3, -1.6, 0.2, -0.8, -2.1, -1.4, 2.2, -0.6}};
     weft_covariance_terms terms = weft_covariance_terms_of(&covariance);
     for (int i = 0; i < 200; i++) {
         weft_vec3 l = any_direction(&seed), v = any_direction(&seed), m = any_direction(&seed),
@@ -38,10 +38,11 @@ static void the_covariance_is_the_sum_that_is_documented(void **state)
         weft_vec3 h = weft_unit(weft_add(l, v)), k = weft_unit(weft_add(m, w));
         /* l.h is the cosine of half the angle between light and view. */
         double incidence = cos(acos(weft_dot(l, v)) / 2) * cos(acos(weft_dot(m, w)) / 2);
-        double expected =
-            pow(2, 0.7) * l.z * m.z + matern(hypot(chord(l, m) / pow(2, -0.4), chord(v, w) / pow(2, 0.9))) +
-            pow(2, 1.3) * matern(hypot(chord(h, k) / pow(2, -1.6), chord(v, w) / pow(2, 0.2))) / incidence +
-            pow(2, -0.8) * matern(chord(h, k) / pow(2, -2.1)) / incidence;
+        double growth = pow(incidence, -0.7) * pow(l.z * m.z, 1.1) * pow(v.z * w.z, -0.3);
+        double expected = pow(2, 0.7) * l.z * m.z +
+                          matern(hypot(chord(l, m) / pow(2, -0.4), chord(v, w) / pow(2, 0.9))) +
+                          pow(2, 1.3) * matern(hypot(chord(h, k) / pow(2, -1.6), chord(v, w) / pow(2, 0.2))) * growth +
+                          pow(2, -0.8) * matern(chord(h, k) / pow(2, -2.1)) * growth;
         weft_direction_pair a = weft_direction_pair_of(l, v), b = weft_direction_pair_of(m, w);
         assert_float_equal(weft_covariance_between(&terms, &a, &b), expected, 1e-6 * expected);
         assert_float_equal(weft_covariance_between(&terms, &b, &a), expected, 1e-6 * expected);
@@ -79,7 +80,7 @@ static void without_noise_every_sample_is_met(void **state)
     (void)state;
     samples s = make(5, 0);
     weft_covariance covariance = weft_covariance_usual();
-    covariance.log2_of[WEFT_NOISE] = -40;
+    covariance.number[WEFT_NOISE] = -40;
     weft_covariance_terms terms = weft_covariance_terms_of(&covariance);
     weft_kriging_places places = places_of(&s, COUNT);
     weft_kriging kriging;
@@ -164,7 +165,7 @@ static void many_texels_decide_as_their_products_do(void **state)
     assert_int_equal(weft_kriging_choose(&set, 1, NULL, &many, &many_error, NULL), WEFT_OK);
     assert_float_equal(few_error, many_error, 1e-4 * few_error);
     for (int k = 0; k < WEFT_COVARIANCE_NUMBERS; k++)
-        assert_float_equal(few.log2_of[k], many.log2_of[k], 1e-9);
+        assert_float_equal(few.number[k], many.number[k], 1e-9);
     free(sample);
 }
 
@@ -176,11 +177,33 @@ static void three_images_are_diffuse(void **state)
     weft_covariance covariance;
     weft_kriging_samples set = {places_of(&s, 3), 1, three};
     assert_int_equal(weft_kriging_choose(&set, 1, NULL, &covariance, &error_of, NULL), WEFT_OK);
-    assert_true(covariance.log2_of[WEFT_DIFFUSE_VARIANCE] > covariance.log2_of[WEFT_HIGHLIGHT_VARIANCE] + 10);
+    assert_true(covariance.number[WEFT_DIFFUSE_VARIANCE] > covariance.number[WEFT_HIGHLIGHT_VARIANCE] + 10);
     const double dark[3] = {0};
     set.sample = dark;
     assert_int_equal(weft_kriging_choose(&set, 1, NULL, &covariance, &error_of, NULL), WEFT_OK);
     assert_true(error_of == 0);
+}
+
+/* A highlight that is alike at all half vectors, and brighter near the horizon. */
+static void nineteen_images_decide_no_powers_and_forty_do(void **state)
+{
+    (void)state;
+    samples s = make(9, 0);
+    double error_of, sample[COUNT];
+    weft_covariance covariance, usual = weft_covariance_usual();
+    for (int i = 0; i < COUNT; i++)
+        sample[i] = 1 / (s.pair[i].light[2] * pow(s.pair[i].view[2], 2));
+    weft_kriging_samples set = {places_of(&s, COUNT), 1, sample};
+    assert_int_equal(weft_kriging_choose(&set, 1, NULL, &covariance, &error_of, NULL), WEFT_OK);
+    weft_covariance_terms terms = weft_covariance_terms_of(&covariance);
+    assert_float_equal(terms.incidence_power, 0, 0.3);
+    assert_float_equal(terms.light_power, -1, 0.3);
+    assert_float_equal(terms.view_power, -2, 0.3);
+    assert_true(error_of < 0.01);
+    set.places.count = 19;
+    assert_int_equal(weft_kriging_choose(&set, 1, NULL, &covariance, &error_of, NULL), WEFT_OK);
+    for (int k = WEFT_INCIDENCE_POWER; k < WEFT_COVARIANCE_NUMBERS; k++)
+        assert_true(covariance.number[k] == usual.number[k]);
 }
 
 int main(void)
@@ -191,6 +214,7 @@ int main(void)
         cmocka_unit_test(the_error_is_that_of_images_really_left_out),
         cmocka_unit_test(many_texels_decide_as_their_products_do),
         cmocka_unit_test(three_images_are_diffuse),
+        cmocka_unit_test(nineteen_images_decide_no_powers_and_forty_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
