@@ -12,18 +12,11 @@ work=$(realpath "$work")
 width=480 height=340 frames=36 per_second=9
 cd "$work"
 
-cat >path.csv <<'CSV'
-time_s,light_theta_deg,light_phi_deg
-0,50,-130
-1,40,-40
-2,50,50
-3,60,140
-4,50,230
-CSV
+path=$source_dir/assets/paths/light-round.csv
 draw() { # MODE, then what it shows
     mode=$1
     shift
-    "$weft" render "$@" --mode "$mode" --repeat 40 --path path.csv --fps $per_second --camera=-70,26,3.4 --exposure 1 --no-labels \
+    "$weft" render "$@" --mode "$mode" --repeat 40 --path "$path" --fps $per_second --camera=-70,26,3.4 --exposure 1 --no-labels \
         --samples 3 --size ${width}x$height -q -o "$mode-%02d.png"
 }
 draw raw "$demo/gabardine.weft" --raw "$demo/gabardine.btf.h5"

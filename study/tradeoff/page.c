@@ -181,7 +181,7 @@ static void put_row(weft_page *page, const weft_tradeoff_row *row, int number)
     put_number(page, "%.0f", price->fetches.reads, price->fetches.reads > 0);
     put_number(page, "%.0f", price->fetches.bytes, price->fetches.bytes > 0);
     put_errors(page, &row->measured);
-    put_number(page, "%.2f", price->strobing, price->has_strobing);
+    put_number(page, "%.3f", price->strobing, price->has_strobing);
     fputs("</tr>\n", page->html);
 }
 
