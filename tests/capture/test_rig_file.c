@@ -138,10 +138,37 @@ static void two_axes_of_one_angle_or_channel_are_refused(void **state)
     assert_refused("}\nlight {", "}\nstage {\n backend = usb\n}\nlight {", "a rig has 1 section 'stage'");
 }
 
+static void several_cameras_are_told_apart(void **state)
+{
+    (void)state;
+    const char *first = "camera {\n", *second = "camera {\n  name = \"%s\"\n  backend = folder\n  device = \"%s\"\n"
+                                                "  lens = \"other.json\"\n  theta_deg = 60\n  distance_mm = 400\n"
+                                                "  trigger = %s\n}\ncamera {\n  name = \"left\"\n  trigger = stage\n";
+    char text[512];
+    weft_rig_file rig;
+    snprintf(text, sizeof text, second, "right", "there", "hand");
+    assert_int_equal(read_changed(first, text, &rig, NULL), WEFT_OK);
+    assert_int_equal(rig.camera_count, 2);
+    assert_string_equal(rig.camera[0].name, "right");
+    assert_true(rig.camera[0].theta_deg == 60 && rig.camera[0].distance_mm == 400);
+    assert_string_equal(rig.camera[1].name, "left");
+    assert_true(rig.camera[1].theta_deg == 0 && rig.camera[1].distance_mm == 500);
+    snprintf(text, sizeof text, second, "left", "there", "hand");
+    assert_refused(first, text, "two cameras are called 'left'");
+    snprintf(text, sizeof text, second, "../up", "there", "hand");
+    assert_refused(first, text, "needs a name");
+    snprintf(text, sizeof text, second, "", "there", "hand");
+    assert_refused(first, text, "needs a name");
+    snprintf(text, sizeof text, second, "right", "", "hand");
+    assert_refused(first, text, "are the same device");
+    snprintf(text, sizeof text, second, "right", "there", "stage");
+    assert_refused(first, text, "hang on one shutter contact");
+}
+
 static void every_shipped_rig_is_sound(void **state)
 {
     (void)state;
-    static const char *const shipped[] = {"goniometer", "arc", "dome", "turntable", "photographs"};
+    static const char *const shipped[] = {"goniometer", "arc", "dome", "cameras", "turntable", "photographs"};
     for (size_t i = 0; i < sizeof shipped / sizeof *shipped; i++) {
         char path[512];
         weft_rig_file rig;
@@ -163,6 +190,7 @@ int main(void)
         cmocka_unit_test(parts_that_do_not_go_together_are_refused),
         cmocka_unit_test(a_rig_that_is_missing_or_no_text_is_refused),
         cmocka_unit_test(two_axes_of_one_angle_or_channel_are_refused),
+        cmocka_unit_test(several_cameras_are_told_apart),
         cmocka_unit_test(every_shipped_rig_is_sound),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

@@ -247,21 +247,20 @@ static void a_camera_that_fails_loses_nothing_of_the_other(void **state)
     weft_error error = {0};
     open_bench(CAMERAS);
     request.capture.folder = "failing";
-    b.fail_from = 2;
+    b.fail_from = 1;
     b.fail_to = 1000;
     assert_int_equal(take(&summary, &error), WEFT_SYSTEM);
     assert_non_null(strstr(error.message, "camera 'camera2': its cable is out"));
     assert_int_equal(taken_by("failing/camera1"), SHOTS_OF_FIRST);
-    int second = taken_by("failing/camera2");
-    assert_in_range(second, 0, SHOTS_OF_SECOND - 1);
+    assert_int_equal(taken_by("failing/camera2"), 0);
     assert_int_equal(faults_of("failing/camera1") + faults_of("failing/camera2"), 0);
     /* Three failures in a row, and it is not waited for any more. */
-    assert_true(b.exposures[1] <= 2 + 3);
+    assert_int_equal(b.exposures[1], 3);
     uint32_t crc = small_session_crc("failing/camera1");
     b.fail_from = 0;
     int exposures = b.exposures[0];
     assert_int_equal(take(&summary, NULL), WEFT_OK);
-    assert_int_equal(summary.taken, SHOTS_OF_SECOND - second);
+    assert_int_equal(summary.taken, SHOTS_OF_SECOND);
     assert_int_equal(b.exposures[0], exposures);
     assert_int_equal(small_session_crc("failing/camera1"), crc);
     assert_whole("failing/camera1", "failing/camera2");
