@@ -1,4 +1,4 @@
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "study/bard/predict.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
 #include "capture/plan.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "registration/axes/expectation.h"
 #include "registration/axes/sightings.h"
 #include "registration/registration.h"

@@ -4,9 +4,9 @@
 #include "capture/planned_session.h"
 #include "capture/virtual/ground_truth.h"
 #include "capture/volley_order.h"
-#include "cli/arguments.h"
 #include "cli/capture_words.h"
-#include "cli/person.h"
+#include "cli/command/arguments.h"
+#include "cli/command/person.h"
 #include "study/preflight/preflight.h"
 
 #include <limits.h>

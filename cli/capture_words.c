@@ -1,7 +1,7 @@
 #include "cli/capture_words.h"
 
 #include "base/text/json_text.h"
-#include "cli/describe.h"
+#include "cli/command/describe.h"
 
 #include <stdio.h>
 

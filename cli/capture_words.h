@@ -3,7 +3,7 @@
 #define WEFT_CLI_CAPTURE_WORDS_H
 
 #include "capture/capture.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "study/preflight/preflight.h"
 
 /* `in_order`: the stage chose an order, and knows how long it takes. */

@@ -1,6 +1,6 @@
 #include "study/compare/compare.h"
-#include "cli/arguments.h"
-#include "cli/describe.h"
+#include "cli/command/arguments.h"
+#include "cli/command/describe.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #include "base/atomic_file.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "study/model/model.h"
 
 #include <math.h>

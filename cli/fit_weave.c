@@ -1,5 +1,5 @@
 #include "study/fit_weave/fit_weave.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 
 #include <math.h>
 #include <stdio.h>

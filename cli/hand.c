@@ -1,5 +1,5 @@
 #include "capture/hand/hand.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 #include "import/import.h"
-#include "cli/arguments.h"
-#include "cli/heights.h"
+#include "cli/command/arguments.h"
+#include "cli/command/heights.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "registration/lens/calibration.h"
 
 #include <dirent.h>

@@ -1,6 +1,6 @@
 #include "base/atomic_file.h"
 #include "btf/session/lens.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "registration/hand/hand.h"
 #include "registration/hand/report.h"
 

@@ -1,4 +1,4 @@
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "player/gl/context.h"
 #include "player/window/application.h"
 #include "study/error/scene_error.h"

@@ -1,4 +1,4 @@
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "player/gl/context.h"
 #include "player/settings/exposure.h"
 #include "player/settings/sequence.h"

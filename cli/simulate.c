@@ -2,8 +2,8 @@
 #include "base/integers.h"
 #include "base/text/csv.h"
 #include "btf/direction/direction.h"
-#include "cli/arguments.h"
-#include "cli/heights.h"
+#include "cli/command/arguments.h"
+#include "cli/command/heights.h"
 #include "geometry/acquisition/acquisition.h"
 
 #include <limits.h>

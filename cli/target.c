@@ -1,7 +1,7 @@
 #include "capture/print/lens_board.h"
 #include "capture/print/page.h"
 #include "capture/print/target_sheet.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 
 typedef struct target_command {
     weft_common_options common;

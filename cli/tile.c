@@ -1,6 +1,6 @@
 #include "study/tile/tile.h"
 #include "btf/file_kind.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "study/blend/blend.h"
 
 #include <stdio.h>

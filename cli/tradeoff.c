@@ -1,6 +1,6 @@
 #include "study/tradeoff/tradeoff.h"
-#include "cli/arguments.h"
-#include "cli/describe.h"
+#include "cli/command/arguments.h"
+#include "cli/command/describe.h"
 
 typedef struct tradeoff_command {
     weft_common_options common;

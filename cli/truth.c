@@ -1,6 +1,6 @@
 #include "btf/file_kind.h"
-#include "cli/arguments.h"
-#include "cli/describe.h"
+#include "cli/command/arguments.h"
+#include "cli/command/describe.h"
 #include "compress/options/options.h"
 #include "study/sources/sources.h"
 

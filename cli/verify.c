@@ -1,5 +1,5 @@
-#include "cli/arguments.h"
-#include "cli/describe.h"
+#include "cli/command/arguments.h"
+#include "cli/command/describe.h"
 #include "study/inspect/inspect.h"
 
 typedef struct verify_command {

@@ -2,7 +2,7 @@
 #ifndef WEFT_CLI_DESCRIBE_H
 #define WEFT_CLI_DESCRIBE_H
 
-#include "cli/command.h"
+#include "cli/command/command.h"
 
 #include <jansson.h>
 

@@ -1,4 +1,4 @@
-#include "cli/describe.h"
+#include "cli/command/describe.h"
 
 #include <stdlib.h>
 #include <string.h>

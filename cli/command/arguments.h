@@ -2,7 +2,7 @@
 #ifndef WEFT_CLI_ARGUMENTS_H
 #define WEFT_CLI_ARGUMENTS_H
 
-#include "cli/command.h"
+#include "cli/command/command.h"
 #include "player/settings/scene_options.h"
 
 /* What the values of a command begin with that shows a scene. */

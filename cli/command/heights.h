@@ -2,7 +2,7 @@
 #ifndef WEFT_CLI_HEIGHTS_H
 #define WEFT_CLI_HEIGHTS_H
 
-#include "cli/command.h"
+#include "cli/command/command.h"
 #include "relief/relief.h"
 
 /* The option of such a command; its values begin with weft_common_options and hold the switch in `member`. */

@@ -1,6 +1,6 @@
 #include "base/text/option.h"
 #include "btf/file_kind.h"
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 
 #include <limits.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "cli/person.h"
+#include "cli/command/person.h"
 
 #include "base/text/json_text.h"
 

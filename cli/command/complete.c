@@ -1,5 +1,5 @@
-#include "cli/complete.h"
-#include "cli/arguments.h"
+#include "cli/command/complete.h"
+#include "cli/command/arguments.h"
 
 #include <ctype.h>
 #include <stdio.h>

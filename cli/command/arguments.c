@@ -1,4 +1,4 @@
-#include "cli/arguments.h"
+#include "cli/command/arguments.h"
 #include "base/atomic_file.h"
 
 #include <argp.h>

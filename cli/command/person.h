@@ -3,7 +3,7 @@
 #define WEFT_CLI_PERSON_H
 
 #include "capture/motion/stage.h"
-#include "cli/command.h"
+#include "cli/command/command.h"
 
 #include <signal.h>
 

@@ -1,4 +1,4 @@
-#include "cli/command.h"
+#include "cli/command/command.h"
 #include "base/clock.h"
 #include "base/text/json_text.h"
 

@@ -1,4 +1,4 @@
-#include "cli/heights.h"
+#include "cli/command/heights.h"
 
 #include "relief/keep.h"
 #include "relief/page.h"
