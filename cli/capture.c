@@ -5,7 +5,7 @@
 #include "capture/virtual/ground_truth.h"
 #include "capture/volley_order.h"
 #include "cli/arguments.h"
-#include "cli/capture_words.h"
+#include "cli/describe.h"
 #include "cli/person.h"
 #include "study/preflight/preflight.h"
 
