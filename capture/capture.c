@@ -1,6 +1,5 @@
 #include "capture/capture.h"
 
-#include "capture/camera_folder.h"
 #include "capture/night.h"
 #include "capture/planned_session.h"
 #include "capture/sensor_frames.h"

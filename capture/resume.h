@@ -3,7 +3,8 @@
 #define WEFT_CAPTURE_RESUME_H
 
 #include "base/progress.h"
-#include "btf/session/session.h"
+#include "btf/session/camera_list.h"
+#include "capture/rig.h"
 
 /* A session that this process alone may write to. */
 typedef struct weft_held_session {
@@ -25,5 +26,18 @@ void weft_held_session_release(weft_held_session *held);
 /* A folder that holds something no capture has left there is refused: hidden files are locks and temporary files.
  * Errors: WEFT_BAD_INPUT, WEFT_SYSTEM. */
 weft_code weft_refuse_foreign_files(const char *folder, weft_error *error);
+
+/* ---- The folder that the sessions of several cameras lie in (btf/session/camera_list.h) ---- */
+
+/* The cameras of a rig; none where it has one without a name. Pure. */
+weft_camera_list weft_camera_list_of(const weft_rig *rig);
+
+/* Makes the folder and writes the list, or checks that the list there is the same. Errors: WEFT_BAD_INPUT where the
+ * folder holds something else or was begun with other cameras; WEFT_SYSTEM. */
+weft_code weft_camera_folder_prepare(const char *folder, const weft_camera_list *list, weft_error *error);
+
+/* Removes what a process left that died while it wrote the list. Whoever holds the session of the first camera is
+ * alone. */
+void weft_camera_folder_sweep(const char *folder);
 
 #endif

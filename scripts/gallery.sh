@@ -31,6 +31,7 @@ draw() {
     out=$1
     shift
     "$weft" render "$@" --size 400x300 -q -o drawn.png >&2
+    mkdir -p "$(dirname "$pictures/$out.jpg")"
     convert drawn.png -quality 88 "$pictures/$out.jpg"
     rm drawn.png
 }
@@ -107,11 +108,11 @@ TEXT
     for file in "$source_dir"/assets/weaves/*.wv; do
         name=$(basename "$file" .wv)
         photograph "$name"
-        draw "$name-photographed-raw" --raw "$name.btf.h5" --mesh drape
-        draw "$name-photographed" "$name.weft" --mesh drape
-        draw "$name-photographed-analytic" "$name.weft" --weave "$file" --mode analytic --mesh drape
-        echo "| $(title "$file") | $(picture "$name-photographed-raw" raw) | $(picture "$name-photographed" compressed)" \
-            "| $(picture "$name-photographed-analytic" analytic)" \
+        draw "photographed/$name-raw" --raw "$name.btf.h5" --mesh drape
+        draw "photographed/$name" "$name.weft" --mesh drape
+        draw "photographed/$name-analytic" "$name.weft" --weave "$file" --mode analytic --mesh drape
+        echo "| $(title "$file") | $(picture "photographed/$name-raw" raw) | $(picture "photographed/$name" compressed)" \
+            "| $(picture "photographed/$name-analytic" analytic)" \
             "| $(kilobytes "$name.btf.h5") / $(kilobytes "$name.weft") / $(kilobytes "$file")" \
             "| $(of_scene "$name" compressed 3) / $(of_scene "$name" compressed 2) / $(of_scene "$name" analytic 2)" \
             "| $(held_out "$name.weft" photographs_interpolated) / $(held_out "$name.weft" not_fitted) / $(samples "$name" analytic)" \

@@ -243,9 +243,27 @@ static void files_of_others_are_foreign_and_those_of_the_camera_are_not(void **s
     remove_session();
 }
 
+static void a_list_that_names_no_folder_is_refused(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {
+        "{\"weft_cameras\":1,\"cameras\":[\"..\"]}",      "{\"weft_cameras\":1,\"cameras\":[\"a/b\"]}",
+        "{\"weft_cameras\":1,\"cameras\":[\"a\",\"a\"]}", "{\"weft_cameras\":1,\"cameras\":[]}",
+        "{\"weft_cameras\":2,\"cameras\":[\"a\"]}",       "{\"weft_cameras\":1,\"cameras\":[7]}"};
+    weft_camera_list list;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        scratch_store("cameras.json", bad[i], strlen(bad[i]));
+        assert_int_equal(weft_camera_list_read(".", &list, NULL), WEFT_BAD_INPUT);
+    }
+    unlink("cameras.json");
+    assert_int_equal(weft_camera_list_read(".", &list, NULL), WEFT_OK);
+    assert_int_equal(list.count, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_list_that_names_no_folder_is_refused),
         cmocka_unit_test(a_session_as_it_was_taken_is_sound),
         cmocka_unit_test(every_fault_is_found_and_the_next_capture_takes_those_shots_alone),
         cmocka_unit_test(a_photograph_that_the_journal_knows_but_nobody_can_read_is_damaged),

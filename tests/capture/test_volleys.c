@@ -197,7 +197,6 @@ static void a_killed_capture_goes_on(void **state)
     close_bench(CAMERAS);
 }
 
-/* Six pairs of view and light, of which four are seen by both. */
 static void a_volley_is_lit_once_for_all_cameras(void **state)
 {
     (void)state;
@@ -267,7 +266,6 @@ static void a_camera_that_fails_loses_nothing_of_the_other(void **state)
     close_bench(CAMERAS);
 }
 
-/* Once is not yet out. */
 static void a_camera_that_failed_once_goes_on(void **state)
 {
     (void)state;
@@ -309,23 +307,6 @@ static void other_cameras_do_not_go_on(void **state)
     assert_int_equal(take(&summary, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "neither empty nor a session"));
     close_bench(1);
-}
-
-static void a_list_that_names_no_folder_is_refused(void **state)
-{
-    (void)state;
-    static const char *const bad[] = {
-        "{\"weft_cameras\":1,\"cameras\":[\"..\"]}",      "{\"weft_cameras\":1,\"cameras\":[\"a/b\"]}",
-        "{\"weft_cameras\":1,\"cameras\":[\"a\",\"a\"]}", "{\"weft_cameras\":1,\"cameras\":[]}",
-        "{\"weft_cameras\":2,\"cameras\":[\"a\"]}",       "{\"weft_cameras\":1,\"cameras\":[7]}"};
-    weft_camera_list list;
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        scratch_store("cameras.json", bad[i], strlen(bad[i]));
-        assert_int_equal(weft_camera_list_read(".", &list, NULL), WEFT_BAD_INPUT);
-    }
-    unlink("cameras.json");
-    assert_int_equal(weft_camera_list_read(".", &list, NULL), WEFT_OK);
-    assert_int_equal(list.count, 0);
 }
 
 /* ---- A stage with two cameras ---- */
@@ -396,7 +377,6 @@ static void cameras_share_the_pose_of_a_turntable(void **state)
     assert_false(moved);
     assert_int_equal(c.move(c.device, apart.view, seen.light, &moved, NULL), WEFT_OK);
     assert_true(moved && asked == 2);
-    /* The first camera has not moved, but the sample has. */
     assert_int_equal(a.move(a.device, shot_of(30, 11).view, seen.light, &moved, NULL), WEFT_OK);
     assert_true(moved && asked == 2);
     weft_stage_free(beside);
@@ -413,7 +393,6 @@ int main(void)
         cmocka_unit_test(cameras_expose_at_the_same_time),
         cmocka_unit_test(a_camera_that_fails_loses_nothing_of_the_other),
         cmocka_unit_test(a_camera_that_failed_once_goes_on),
-        cmocka_unit_test(a_list_that_names_no_folder_is_refused),
         cmocka_unit_test(cameras_share_the_pose_of_a_turntable),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
