@@ -1,5 +1,6 @@
 #include "base/picture/colour.h"
 #include "registration/hand/lamp.h"
+#include "registration/hand/owned_problem.h"
 
 #include <ceres/ceres.h>
 
@@ -255,13 +256,11 @@ struct distance_residual {
 };
 
 /* The mean is where the block stands now. */
-template <int N> void add_prior(ceres::Problem &problem, double *block, double deviation)
+template <int N> void add_prior(owned_problem &terms, double *block, double deviation)
 {
     std::array<double, N> mean;
     std::copy_n(block, N, mean.begin());
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<prior_residual<N>, N, N>(new prior_residual<N>{mean, deviation}), nullptr,
-        block);
+    terms.add<N, N>(prior_residual<N>{mean, deviation}, nullptr, block);
 }
 
 class lamp_search
@@ -295,7 +294,7 @@ class lamp_search
         options.function_tolerance = 1e-9;
         options.logging_type = ceres::SILENT;
         ceres::Solver::Summary summary;
-        ceres::Solve(options, &problem, &summary);
+        ceres::Solve(options, &terms.problem, &summary);
         if (!summary.IsSolutionUsable())
             return weft_fail(error, WEFT_SYSTEM, "the lamps cannot be found: %s", summary.message.c_str());
         for (int i = 0; i < input->count; i++)
@@ -311,7 +310,7 @@ class lamp_search
     weft_lamp_solution *output;
     std::vector<photograph_unknowns> own;
     shared_unknowns shared;
-    ceres::Problem problem;
+    owned_problem terms;
 
     struct highlight_seen {
         const highlight_residual *residual; /* of the problem */
@@ -361,26 +360,24 @@ class lamp_search
         for (int k = 0; k < paper.count; k++) {
             const weft_paper_sample &s = paper.sample[k];
             const bool is_ink = input->places->is_ink[s.place];
-            auto residual = std::make_unique<paper_residual>();
-            residual->mount = mount_of(i);
-            residual->x = input->places->place[s.place][0] / unit_mm;
-            residual->y = input->places->place[s.place][1] / unit_mm;
-            residual->radius_squared = (double)s.radius_squared / input->corner_radius_squared;
-            residual->is_ink = is_ink;
-            residual->weight = share / (is_ink ? ink_deviation : paper_deviation);
+            paper_residual residual = {};
+            residual.mount = mount_of(i);
+            residual.x = input->places->place[s.place][0] / unit_mm;
+            residual.y = input->places->place[s.place][1] / unit_mm;
+            residual.radius_squared = (double)s.radius_squared / input->corner_radius_squared;
+            residual.is_ink = is_ink;
+            residual.weight = share / (is_ink ? ink_deviation : paper_deviation);
             if (!(std::min({s.light[0], s.light[1], s.light[2]}) > 1e-4f))
                 continue;
             for (int c = 0; c < 3; c++) {
-                residual->log_light[c] = std::log((double)s.light[c]);
+                residual.log_light[c] = std::log((double)s.light[c]);
                 double power = 1, encoded = 2 * (double)weft_srgb_of_linear(s.light[c]) - 1;
                 for (int term = 0; term < WEFT_TONE_TERMS; term++)
-                    residual->power[c][term] = power *= encoded;
+                    residual.power[c][term] = power *= encoded;
             }
-            problem.AddResidualBlock(
-                new ceres::AutoDiffCostFunction<paper_residual, 3, 3, 3, WEFT_TONE_TERMS, 2, 1, WEFT_BEAM_TERMS>(
-                    residual.release()),
-                new ceres::ScaledLoss(new ceres::CauchyLoss(3 * share), 1, ceres::TAKE_OWNERSHIP), lamp_of(i),
-                own[(size_t)i].level, shared.tone, shared.vignetting, &shared.ink, shared.beam);
+            terms.add<3, 3, 3, WEFT_TONE_TERMS, 2, 1, WEFT_BEAM_TERMS>(residual, terms.cauchy(3 * share), lamp_of(i),
+                                                                       own[(size_t)i].level, shared.tone,
+                                                                       shared.vignetting, &shared.ink, shared.beam);
         }
     }
 
@@ -394,20 +391,17 @@ class lamp_search
                 continue;
             double place[2];
             weft_target_ball(input->target, ball, place);
-            auto residual = new highlight_residual{mount_of(i),
-                                                   {eye.x / unit_mm, eye.y / unit_mm, eye.z / unit_mm},
-                                                   {seen.ray.x, seen.ray.y, seen.ray.z},
-                                                   {place[0] / unit_mm, place[1] / unit_mm, 0},
-                                                   input->ball_diameter_mm / 2 / unit_mm,
-                                                   seen.deviation_rad};
+            const highlight_residual residual = {mount_of(i),
+                                                 {eye.x / unit_mm, eye.y / unit_mm, eye.z / unit_mm},
+                                                 {seen.ray.x, seen.ray.y, seen.ray.z},
+                                                 {place[0] / unit_mm, place[1] / unit_mm, 0},
+                                                 input->ball_diameter_mm / 2 / unit_mm,
+                                                 seen.deviation_rad};
             double vanishing[3];
-            if (!(*residual)(lamp_of(i), shared.shift[ball], vanishing)) {
-                delete residual;
+            if (!residual(lamp_of(i), shared.shift[ball], vanishing))
                 continue;
-            }
-            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<highlight_residual, 3, 3, 2>(residual),
-                                     new ceres::CauchyLoss(3), lamp_of(i), shared.shift[ball]);
-            highlights.push_back({residual, i, ball});
+            highlights.push_back(
+                {terms.add<3, 3, 2>(residual, terms.cauchy(3), lamp_of(i), shared.shift[ball]), i, ball});
         }
     }
 
@@ -419,16 +413,14 @@ class lamp_search
         double foot[2];
         weft_target_pin(input->target, foot);
         const double ux = seen.place[0] - foot[0], uy = seen.place[1] - foot[1], length = std::hypot(ux, uy);
-        auto residual = new pin_residual{
+        const pin_residual residual = {
             mount_of(i),
             {foot[0] / unit_mm, foot[1] / unit_mm, (input->pin_height_mm - weft_pin_head_radius_mm) / unit_mm},
             {seen.place[0] / unit_mm, seen.place[1] / unit_mm},
             {ux / length, uy / length},
             seen.along_mm / unit_mm,
             seen.across_mm / unit_mm};
-        problem.AddResidualBlock(new ceres::AutoDiffCostFunction<pin_residual, 2, 3, 3>(residual),
-                                 new ceres::CauchyLoss(3), lamp_of(i), shared.pin_shift);
-        pins.emplace_back(residual, i);
+        pins.emplace_back(terms.add<2, 3, 3>(residual, terms.cauchy(3), lamp_of(i), shared.pin_shift), i);
     }
 
     void add_listed(int i)
@@ -436,12 +428,11 @@ class lamp_search
         const weft_listed_lamp &listed = input->evidence[i].listed;
         const double scale = listed.is_position ? 1 / unit_mm : 1;
         if (listed.found)
-            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<listed_residual, 4, 3>(new listed_residual{
-                                         mount_of(i),
-                                         {listed.light.x * scale, listed.light.y * scale, listed.light.z * scale},
-                                         listed.is_position,
-                                         listed.deviation_rad}),
-                                     new ceres::CauchyLoss(3), lamp_of(i));
+            terms.add<4, 3>(listed_residual{mount_of(i),
+                                            {listed.light.x * scale, listed.light.y * scale, listed.light.z * scale},
+                                            listed.is_position,
+                                            listed.deviation_rad},
+                            terms.cauchy(3), lamp_of(i));
     }
 
     double log_power(int i) const
@@ -465,45 +456,39 @@ class lamp_search
         for (int i = 0; i < input->count; i++) {
             if (!(input->evidence[i].exposure > 0))
                 continue;
-            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<power_residual, 1, 3, 3, 1>(
-                                         new power_residual{mount_of(i), std::log(input->evidence[i].exposure)}),
-                                     new ceres::CauchyLoss(2), lamp_of(i), own[(size_t)i].level, &shared.power);
+            terms.add<1, 3, 3, 1>(power_residual{mount_of(i), std::log(input->evidence[i].exposure)}, terms.cauchy(2),
+                                  lamp_of(i), own[(size_t)i].level, &shared.power);
         }
     }
 
     void hold(double *block)
     {
-        if (problem.HasParameterBlock(block))
-            problem.SetParameterBlockConstant(block);
+        if (terms.problem.HasParameterBlock(block))
+            terms.problem.SetParameterBlockConstant(block);
     }
 
     void add_priors()
     {
-        problem.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<tone_residual, WEFT_TONE_TERMS, WEFT_TONE_TERMS>(new tone_residual),
-            nullptr, shared.tone);
+        terms.add<WEFT_TONE_TERMS, WEFT_TONE_TERMS>(tone_residual{}, nullptr, shared.tone);
         /* Natural vignetting is cos^4 = 1 - 2 r^2 + ...; the rims of a lens take more, its design less. */
         shared.vignetting[0] = -2 * input->corner_radius_squared;
-        add_prior<2>(problem, shared.vignetting, vignetting_deviation);
-        add_prior<1>(problem, &shared.ink, ink_prior_deviation);
+        add_prior<2>(terms, shared.vignetting, vignetting_deviation);
+        add_prior<1>(terms, &shared.ink, ink_prior_deviation);
         for (auto &shift : shared.shift)
-            add_prior<2>(problem, shift, shift_deviation_mm / unit_mm);
-        add_prior<3>(problem, shared.pin_shift, pin_deviation_mm / unit_mm);
+            add_prior<2>(terms, shift, shift_deviation_mm / unit_mm);
+        add_prior<3>(terms, shared.pin_shift, pin_deviation_mm / unit_mm);
         add_flash_priors();
         for (int i = 0; !input->flash && i < input->count; i++)
-            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<distance_residual, 1, 3>(new distance_residual),
-                                     nullptr, lamp_of(i));
+            terms.add<1, 3>(distance_residual{}, nullptr, lamp_of(i));
         if (!input->tone_unknown)
             hold(shared.tone);
     }
 
     void add_flash_priors()
     {
-        problem.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<beam_residual, WEFT_BEAM_TERMS, WEFT_BEAM_TERMS>(new beam_residual),
-            nullptr, shared.beam);
+        terms.add<WEFT_BEAM_TERMS, WEFT_BEAM_TERMS>(beam_residual{}, nullptr, shared.beam);
         if (input->flash)
-            add_prior<3>(problem, shared.flash, flash_deviation_mm / unit_mm);
+            add_prior<3>(terms, shared.flash, flash_deviation_mm / unit_mm);
         else
             hold(shared.beam);
     }
@@ -520,7 +505,7 @@ class lamp_search
             wanted.emplace_back(lamp_of(i), lamp_of(i));
         if (input->tone_unknown)
             wanted.emplace_back(shared.tone, shared.tone);
-        const bool known = covariance.Compute(wanted, &problem);
+        const bool known = covariance.Compute(wanted, &terms.problem);
         for (int i = 0; i < input->count; i++)
             output->place[i].uncertainty_deg = known ? uncertainty_deg(covariance, i) : 90;
         if (input->tone_unknown)

@@ -1,3 +1,4 @@
+#include "registration/hand/owned_problem.h"
 #include "registration/hand/pin.h"
 
 #include <ceres/ceres.h>
@@ -91,14 +92,14 @@ class shadow_fit
         shadow->found = false;
         if (texels < fewest_texels)
             return;
-        problem.SetParameterLowerBound(shape, 0, 0.02);
-        problem.SetParameterUpperBound(shape, 0, 4);
+        terms.problem.SetParameterLowerBound(shape, 0, 0.02);
+        terms.problem.SetParameterUpperBound(shape, 0, 4);
         ceres::Solver::Options options;
         options.linear_solver_type = ceres::DENSE_QR;
         options.max_num_iterations = 40;
         options.logging_type = ceres::SILENT;
         ceres::Solver::Summary summary;
-        ceres::Solve(options, &problem, &summary);
+        ceres::Solve(options, &terms.problem, &summary);
         const double moved = std::hypot(end[0] - shadow->place[0], end[1] - shadow->place[1]);
         if (!summary.IsSolutionUsable() || !(moved < farthest_mm) || !(shape[1] > least_darkness) || !(shape[0] < 3))
             return;
@@ -115,13 +116,12 @@ class shadow_fit
     double end[2], foot[2], shape[3] = {0.3, 0.7, 0};
     bool is_open;
     int texels = 0;
-    ceres::Problem problem;
+    owned_problem terms;
 
     void hold_near(double *place, double deviation_mm)
     {
-        problem.AddResidualBlock(new ceres::AutoDiffCostFunction<place_residual, 2, 2>(new place_residual{
-                                     {place[0], place[1]}, noise * std::sqrt(texels_alike) / deviation_mm}),
-                                 nullptr, place);
+        terms.add<2, 2>(place_residual{{place[0], place[1]}, noise * std::sqrt(texels_alike) / deviation_mm}, nullptr,
+                        place);
     }
 
     void add(int i)
@@ -135,9 +135,8 @@ class shadow_fit
             !std::isfinite(darkness[i]))
             return;
         texels++;
-        problem.AddResidualBlock(new ceres::AutoDiffCostFunction<texel_residual, 1, 2, 2, 3>(
-                                     new texel_residual{x, y, (double)darkness[i], area->height_mm, is_open}),
-                                 new ceres::CauchyLoss(strange_darkness), end, foot, shape);
+        terms.add<1, 2, 2, 3>(texel_residual{x, y, (double)darkness[i], area->height_mm, is_open},
+                              terms.cauchy(strange_darkness), end, foot, shape);
     }
 
     /* From the covariance for residuals of 1, along the shadow and across it. */
@@ -146,7 +145,7 @@ class shadow_fit
         ceres::Covariance covariance((ceres::Covariance::Options()));
         double c[4];
         const std::vector<std::pair<const double *, const double *>> wanted = {{end, end}};
-        if (!covariance.Compute(wanted, &problem) || !covariance.GetCovarianceBlock(end, end, c))
+        if (!covariance.Compute(wanted, &terms.problem) || !covariance.GetCovarianceBlock(end, end, c))
             return false;
         const double ux = end[0] - foot[0], uy = end[1] - foot[1], squared = ux * ux + uy * uy;
         const double along = (ux * ux * c[0] + 2 * ux * uy * c[1] + uy * uy * c[3]) / squared;
