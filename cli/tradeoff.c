@@ -14,7 +14,7 @@ static const weft_option option_table[] = {
      .offset = offsetof(tradeoff_command, input)},
     {"output", 'o', "REPORT/", "The folder for the page and its pictures", .is_required = true,
      .kind = WEFT_OPTION_FOLDER, .offset = offsetof(tradeoff_command, folder)},
-    {"weave", 0, "NAME.wv", "Price a weave, fitted to the dataset, or microcylinder cloth (.mc) as it is",
+    {"weave", 0, "CLOTH.wv|CLOTH.mc", "Price a weave, fitted to the dataset, or microcylinder cloth (.mc) as it is",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(tradeoff_command, weave)},
     {0},
 };

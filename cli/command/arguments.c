@@ -112,9 +112,6 @@ static void set(arguments *a, int row, const char *text, struct argp_state *stat
     weft_error error = {0};
     const weft_option *option = a->row[row].option;
     const weft_setting *setting = a->row[row].setting;
-    /* Of two values one would be lost without a word. */
-    if (a->row[row].is_given && option->name && option->argument)
-        argp_error(state, "--%s is given twice", option->name);
     a->row[row].is_given = true;
     weft_code code = setting ? weft_scene_request_add(scene_of(a), setting, text, &error)
                              : weft_option_set(option, text, a->values, &error);

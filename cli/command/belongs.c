@@ -1,5 +1,6 @@
 #include "base/text/option.h"
 #include "btf/file_kind.h"
+#include "btf/session/camera_list.h"
 #include "cli/command/arguments.h"
 
 #include <limits.h>
@@ -55,11 +56,17 @@ static bool names_files(const char *argument, bool *all_known)
     return true;
 }
 
-static bool holds_session(const char *folder)
+static bool holds(const char *folder, const char *name)
 {
     char path[PATH_MAX];
     struct stat status;
-    return snprintf(path, sizeof path, "%s/session.json", folder) < (int)sizeof path && stat(path, &status) == 0;
+    return snprintf(path, sizeof path, "%s/%s", folder, name) < (int)sizeof path && stat(path, &status) == 0;
+}
+
+/* Of one camera, or of several. */
+static bool holds_session(const char *folder)
+{
+    return holds(folder, "session.json") || holds(folder, weft_camera_list_file);
 }
 
 static weft_code refuse(const char *path, const char *what, const char *argument, weft_error *error)

@@ -63,7 +63,7 @@ static weft_code measure_weave(const compared_files *files, const weft_progress 
         WEFT_TRY(weft_predictor_of_threads(weft_dataset_get_layout(files->dataset), &weave->threads.cloth, &predictor,
                                            error));
     else
-        WEFT_TRY(weft_predictor_of_weave(weft_dataset_get_layout(files->dataset), &weave->weave,
+        WEFT_TRY(weft_predictor_of_weave(weft_dataset_get_layout(files->dataset), NULL, &weave->weave,
                                          &comparison->weave_layout, &predictor, error));
     weft_code code = measure_texture(files->dataset, predictor, NULL, "analytic", progress, comparison, error);
     weft_predictor_free(predictor);

@@ -284,10 +284,11 @@ enum { SIDE = 4, POINTS = SIDE * SIDE };
 static void locate_points(const weft_predictor *predictor, int x, int y, weft_weave_point point[POINTS])
 {
     const weft_weave_layout *tiles = &predictor->tiles;
-    double texel_u = tiles->tiles_u / predictor->layout->width;
-    double texel_v = tiles->tiles_v / predictor->layout->height;
+    const weft_predicted_window *window = &predictor->window;
+    double texel_u = tiles->tiles_u / window->whole_width;
+    double texel_v = tiles->tiles_v / window->whole_height;
     for (int i = 0; i < POINTS; i++) {
-        double across = x + (i % SIDE + 0.5) / SIDE, down = y + (i / SIDE + 0.5) / SIDE;
+        double across = window->x + x + (i % SIDE + 0.5) / SIDE, down = window->y + y + (i / SIDE + 0.5) / SIDE;
         point[i] = weft_weave_locate(predictor->weave, across * texel_u - tiles->corner_u,
                                      tiles->tiles_v - down * texel_v - tiles->corner_v, 0);
     }
@@ -326,10 +327,12 @@ static void predict_by_weave(const weft_predictor *predictor, int x, int y, cons
     }
 }
 
-weft_code weft_predictor_of_weave(const weft_dataset_layout *layout, const weft_weave *weave,
-                                  const weft_weave_layout *tiles, weft_predictor **result, weft_error *error)
+weft_code weft_predictor_of_weave(const weft_dataset_layout *layout, const weft_predicted_window *window,
+                                  const weft_weave *weave, const weft_weave_layout *tiles, weft_predictor **result,
+                                  weft_error *error)
 {
     WEFT_TRY(create(layout, predict_by_weave, result, error));
+    (*result)->window = window ? *window : (weft_predicted_window){0, 0, layout->width, layout->height};
     (*result)->weave = weave;
     (*result)->tiles = *tiles;
     weft_code code = weft_woven_table_create(weave, &(*result)->table, error);

@@ -30,10 +30,11 @@ weft_code weft_predictor_of_window(const weft_dataset_layout *layout, const weft
 weft_code weft_predictor_of_coarser_material(const weft_dataset_layout *layout, const weft_predicted_window *window,
                                              const weft_material *material, weft_predictor **result, weft_error *error);
 
-/* A weave without its noise, laid on the material; a texel is the mean of 4 x 4 points. The weave stays the caller's.
- */
-weft_code weft_predictor_of_weave(const weft_dataset_layout *layout, const weft_weave *weave,
-                                  const weft_weave_layout *tiles, weft_predictor **result, weft_error *error);
+/* A weave without its noise; a texel is the mean of 4 x 4 points. `tiles` lays it on the dataset or, where that is a
+ * window of another (NULL: it is none), on the whole of that. The weave stays the caller's. Errors: WEFT_SYSTEM. */
+weft_code weft_predictor_of_weave(const weft_dataset_layout *layout, const weft_predicted_window *window,
+                                  const weft_weave *weave, const weft_weave_layout *tiles, weft_predictor **result,
+                                  weft_error *error);
 
 /* Microcylinder cloth, which is alike at all texels; threads count by area. */
 weft_code weft_predictor_of_threads(const weft_dataset_layout *layout, const weft_microcylinder_cloth *cloth,

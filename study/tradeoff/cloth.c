@@ -39,11 +39,12 @@ weft_code weft_priced_cloth_write(const weft_priced_cloth *cloth, const char *pa
     return weft_weave_write(path, &cloth->weave, NULL, error);
 }
 
-weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_dataset_layout *layout,
+weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_excerpt *excerpt,
                                       weft_predictor **predictor, weft_error *error)
 {
     const weft_weave_layout tiles =
         cloth->is_threads ? (weft_weave_layout){0} : weft_weave_lay_out(&cloth->weave, 0, 0);
-    return cloth->is_threads ? weft_predictor_of_threads(layout, &cloth->threads.cloth, predictor, error)
-                             : weft_predictor_of_weave(layout, &cloth->weave, &tiles, predictor, error);
+    return cloth->is_threads
+               ? weft_predictor_of_threads(&excerpt->layout, &cloth->threads.cloth, predictor, error)
+               : weft_predictor_of_weave(&excerpt->layout, &excerpt->window, &cloth->weave, &tiles, predictor, error);
 }

@@ -7,6 +7,7 @@
 #include "reflectance/microcylinder/file.h"
 #include "reflectance/weave/weave.h"
 #include "study/error/predictor.h"
+#include "study/hold_out/excerpt.h"
 
 typedef struct weft_priced_cloth {
     bool is_threads;
@@ -27,9 +28,9 @@ weft_code weft_priced_cloth_fit(weft_priced_cloth *cloth, weft_dataset *dataset,
 /* Writes a weave to `path`. Errors: WEFT_SYSTEM. */
 weft_code weft_priced_cloth_write(const weft_priced_cloth *cloth, const char *path, weft_error *error);
 
-/* What the cloth says of the images of a layout of the texels that it was fitted to. The cloth and the layout must
- * outlive *predictor, which the caller frees. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_dataset_layout *layout,
+/* What the cloth says of a block of texels (WEFT_EXCERPT_BLOCK) of the dataset on which it lies. The cloth and the
+ * excerpt must outlive *predictor, which the caller frees. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_excerpt *excerpt,
                                       weft_predictor **predictor, weft_error *error);
 
 #endif

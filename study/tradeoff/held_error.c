@@ -342,7 +342,7 @@ static weft_code ask_fitted_cloth(weft_held_bench *bench, const weft_trial *tria
     weft_code code = weft_priced_cloth_fit(cloth, others, error);
     weft_dataset_close(others);
     WEFT_TRY(code);
-    WEFT_TRY(weft_priced_cloth_predictor(cloth, &bench->excerpt.layout, &predictor, error));
+    WEFT_TRY(weft_priced_cloth_predictor(cloth, &bench->excerpt, &predictor, error));
     code = weft_trial_ask(trial, predictor, &answer->held, &answer->fitted, error);
     weft_predictor_free(predictor);
     return code;

@@ -35,6 +35,7 @@ expect_no_file report
 
 # A file of the wrong kind is named as what it is, by the command that was given it. CODE WORD | ARGUMENTS
 mkdir folder empty_files
+mkdir left && echo '{' >left/cameras.json
 : >empty
 : >zero.png
 : >empty_files/a.jpg
@@ -54,8 +55,6 @@ done <<'TABLE'
 1|'plan.csv' is neither|compress plan.csv -o out
 1|'folder' is a folder|compress folder -o out
 1|'good' is a folder|compress good -o out
-2|--output is given twice|compress good.btf.h5 -o out -o other
-2|--layers is given twice|compress good.btf.h5 --layers 4 --layers 8 -o out
 2|not 'many'|compress good.btf.h5 --layers many -o out
 2|not a regular file|compress good.btf.h5 -o /dev/full
 2|one too many|compress good.weft good.btf.h5 -o out
@@ -74,6 +73,7 @@ done <<'TABLE'
 1|'good.btf.h5' is a dataset: SESSION belongs|register good.btf.h5 -o out
 1|'folder' is no session|register folder -o out
 1|'folder' is no session|calibrate folder -o out
+1|left/cameras.json|register left -o out
 2|WxH|register good --size 5 -o out
 2|one too many|register good folder -o out
 1|'good.btf.h5' is a dataset: FOLDER belongs|photographs good.btf.h5 -o out
@@ -95,7 +95,6 @@ done <<'TABLE'
 1|'zero.png' is cut|render zero.png -o out.png
 1|twice as wide as high|render good.weft --environment picture.png -o out.png
 1|carries no settings|render good.weft --settings picture.png -o out.png
-2|--light is given twice|render good.weft --light 10,0 --light 20,0 -o out.png
 2|not 'nan,0'|render good.weft --light nan,0 -o out.png
 2|not '0x0'|render good.weft --size 0x0 -o out.png
 2|one place for a number|render good.weft --path plan.csv -o out.png

@@ -4,6 +4,7 @@
 
 #include "btf/direction/direction.h"
 #include "study/tradeoff/choice.h"
+#include "study/tradeoff/cloth.h"
 #include "study/tradeoff/held_error.h"
 #include "study/tradeoff/strobing.h"
 
@@ -148,6 +149,50 @@ static void bard_and_cloth_do_not_see_what_is_held_out(void **state)
     assert_int_not_equal(access(scratch, F_OK), 0);
 }
 
+/* ---- A block of the dataset ---- */
+
+static weft_rgb even(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    (void)x, (void)y, (void)light, (void)view;
+    return (weft_rgb){0.5, 0.5, 0.5};
+}
+
+/* A cloth lies on the whole dataset, also where only a block of it is asked. */
+static void a_block_sees_the_cloth_of_the_whole(void **state)
+{
+    (void)state;
+    enum { SIDE = 3, ASKED = 5 };
+    const int image[ASKED] = {0, 7, 14, 21, 28};
+    weft_rgb of_whole[ASKED], of_block[ASKED];
+    weft_dataset *dataset;
+    weft_excerpt excerpt;
+    weft_priced_cloth cloth;
+    weft_predictor *whole, *block;
+    weft_error error = {0};
+    fixture_far_dataset(path, 9, 7, 3, even, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    expect_ok(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, SIDE, &excerpt, &error), &error);
+    expect_ok(weft_priced_cloth_open(weave, &cloth, &error), &error);
+    const weft_weave_layout tiles = weft_weave_lay_out(&cloth.weave, 0, 0);
+    expect_ok(weft_predictor_of_weave(weft_dataset_get_layout(dataset), NULL, &cloth.weave, &tiles, &whole, &error),
+              &error);
+    expect_ok(weft_priced_cloth_predictor(&cloth, &excerpt, &block, &error), &error);
+    assert_int_equal(excerpt.layout.width, SIDE);
+    assert_true(excerpt.window.x > 0 && excerpt.window.y > 0);
+    for (int texel = 0; texel < SIDE * SIDE; texel++) {
+        int x = texel % SIDE, y = texel / SIDE;
+        weft_predictor_predict(block, x, y, image, ASKED, of_block);
+        weft_predictor_predict(whole, excerpt.window.x + x, excerpt.window.y + y, image, ASKED, of_whole);
+        assert_memory_equal(of_block, of_whole, sizeof of_whole);
+    }
+    weft_predictor_free(block);
+    weft_predictor_free(whole);
+    weft_priced_cloth_free(&cloth);
+    weft_excerpt_free(&excerpt);
+    weft_dataset_close(dataset);
+    unlink(path);
+}
+
 /* ---- Strobing ---- */
 
 static double excess_of(const double *value, int count)
@@ -260,6 +305,7 @@ int main(void)
         cmocka_unit_test(the_list_ends_with_what_is_no_fit),
         cmocka_unit_test(third_rings_are_those_of_0_and_45_degrees),
         cmocka_unit_test(bard_and_cloth_do_not_see_what_is_held_out),
+        cmocka_unit_test(a_block_sees_the_cloth_of_the_whole),
         cmocka_unit_test(strobing_counts_what_moves_more_than_once),
         cmocka_unit_test(photographs_strobe_and_matte_cloth_does_not),
         cmocka_unit_test(nothing_beats_a_preset_in_bytes_time_and_error),
