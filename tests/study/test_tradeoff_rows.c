@@ -206,12 +206,13 @@ static void strobing_counts_what_moves_more_than_once(void **state)
 {
     (void)state;
     const double once[] = {0, 1, 3, 2, 0}, falls[] = {5, 4, 1}, still[] = {2, 2, 2}, twice[] = {0, 3, 0, 3, 0},
-                 dent[] = {0, 4, 3, 4, 0};
+                 dent[] = {0, 4, 3, 4, 0}, falls_first[] = {1, 0, 5};
     assert_float_equal(excess_of(once, 5), 0, 1e-12);
     assert_float_equal(excess_of(falls, 3), 0, 1e-12);
     assert_float_equal(excess_of(still, 3), 0, 1e-12);
     assert_float_equal(excess_of(twice, 5), 1, 1e-12);
     assert_float_equal(excess_of(dent, 5), 0.25, 1e-12);
+    assert_float_equal(excess_of(falls_first, 3), 0.5, 1e-12);
     assert_float_equal(excess_of(NULL, 0), 0, 1e-12);
 }
 
@@ -271,8 +272,8 @@ static weft_code tell_time(void *context, size_t which, double *frame_ms, weft_e
     return WEFT_OK;
 }
 
-/* Of lists drawn at random, coarsely so that many are equal in something: nothing that may be chosen has fewer bytes,
- * less error and faster frames than what a preset chooses, however fast frames are to be. */
+/* Of lists drawn at random, coarsely so that many are equal in something: nothing that may be chosen is worth more than
+ * what a preset chooses, in bytes or error, and worse in nothing, however fast frames are to be. */
 static void nothing_beats_a_preset_in_bytes_time_and_error(void **state)
 {
     (void)state;
@@ -293,8 +294,9 @@ static void nothing_beats_a_preset_in_bytes_time_and_error(void **state)
                 weft_preset_choose_fast(offer, OFFERS, preset, most_ms, tell_time, frame_ms, &chosen, &fastest, NULL),
                 WEFT_OK);
             for (size_t i = 0; i < OFFERS && chosen < OFFERS; i++)
-                assert_false(all[i].may_be_chosen && all[i].bytes < all[chosen].bytes &&
-                             all[i].error < all[chosen].error && frame_ms[i] < frame_ms[chosen]);
+                assert_false(all[i].may_be_chosen && all[i].bytes <= all[chosen].bytes &&
+                             all[i].error <= all[chosen].error && frame_ms[i] <= frame_ms[chosen] &&
+                             (all[i].bytes < all[chosen].bytes || all[i].error < all[chosen].error));
         }
     }
 }
