@@ -95,7 +95,8 @@ weft_code weft_describe_unmeasured(const weft_scene_request *request, weft_playe
     }
     free(surface);
     if (covered > 0 && 100 * (seen > lit ? seen : lit) >= covered)
-        snprintf(text, WEFT_MESSAGE_SIZE, "not measured: the view of %.0f %% and the light of %.0f %% of what is lit",
+        snprintf(text, WEFT_MESSAGE_SIZE,
+                 "beyond the photographs: %.0f %% of the lit cloth is seen, %.0f %% is lit from where none was taken",
                  100.0 * (double)seen / (double)covered, 100.0 * (double)lit / (double)covered);
     return WEFT_OK;
 }

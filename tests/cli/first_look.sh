@@ -51,7 +51,7 @@ for source in dark.weft dark.btf.h5; do
     value=$(bright dark.png)
     [ "$value" -gt 180 ] && [ "$value" -lt 255 ] || fail "$source is $value bright"
     # The camera stands inside of the cone, but sees the corners of the sheet from 18 degrees more to all sides.
-    grep -q "the view of [0-5]. % and the light of 0 %" out.log || fail "$source begins outside of its range: $(cat out.log)"
+    grep -q "beyond the photographs: [0-5]. % of the lit cloth is seen, 0 % is lit" out.log || fail "$source begins outside of its range: $(cat out.log)"
 done
 
 # What the user says is done.
@@ -60,8 +60,8 @@ grep -q "^exposure" out.log && fail "an exposure that was given was changed"
 [ "$(bright plain.png)" -lt 120 ] || fail "an exposure of 1 shows $(bright plain.png)"
 expect_ok render dark.weft --size 120x80 --samples 1 -o linear.exr
 grep -q "^exposure" out.log && fail "linear numbers were exposed"
-expect_says "not measured: the view of 100 %" render dark.weft --camera=-90,20,3 --size 120x80 --samples 1 -o slant.png
-expect_says "the light of 100 %" render dark.weft --light 70,0 --size 120x80 --samples 1 -o lit.png
+expect_says "beyond the photographs: 100 % of the lit cloth is seen" render dark.weft --camera=-90,20,3 --size 120x80 --samples 1 -o slant.png
+expect_says "100 % is lit from where none was taken" render dark.weft --light 70,0 --size 120x80 --samples 1 -o lit.png
 expect_ok render dark.weft --mesh drape --size 120x80 --samples 1 -o drape.png
 expect_setting drape.png mesh drape
 
