@@ -2,11 +2,9 @@
 #include "base/atomic_file.h"
 #include "btf/material/metadata.h"
 #include "cli/command/arguments.h"
-#include "cli/command/describe.h"
+#include "cli/compress_words.h"
 #include "study/hold_out/record.h"
 #include "study/inspect/model_report.h"
-#include "study/tradeoff/frame_timer.h"
-#include "study/tradeoff/preset.h"
 
 #include <limits.h>
 #include <math.h>
@@ -193,177 +191,6 @@ static weft_code check(void *values, weft_error *error)
     return WEFT_OK;
 }
 
-/* What a model for few images, or layers, make nothing of. */
-static void say_idle(const weft_common_options *common, const weft_compress_options *given, const char *why)
-{
-    const weft_compress_options usual = weft_compress_default_options();
-    if (given->weights != usual.weights && given->layer_count == 0)
-        weft_command_say(common, "with %s --weights changes nothing", why);
-    if (given->frames != usual.frames)
-        weft_command_say(common, "with %s --frames changes nothing", why);
-    if (given->max_exponent < usual.max_exponent || given->max_exponent > usual.max_exponent)
-        weft_command_say(common, "with %s --max-exponent changes nothing", why);
-}
-
-static bool has_layers_alone(const weft_compress_options *options)
-{
-    return options->layer_count > 0 && options->lobe_count == 0;
-}
-
-static void say_model(const compress_command *command, const weft_compress_options *options,
-                      const weft_dataset *dataset, const weft_compress_report *report)
-{
-    const weft_common_options *common = &command->common;
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    const char *table = report->model == WEFT_COMPRESS_TABLE ? " with a view table" : "";
-    if (has_layers_alone(options))
-        weft_command_say(common, "%d x %d texels, %d images, %d layers", layout->width, layout->height,
-                         layout->image_count, options->layer_count);
-    else
-        weft_command_say(common, "%d x %d texels, %d images, %d lobes%s%s", layout->width, layout->height,
-                         layout->image_count, report->lobe_count, table,
-                         report->light_count > 0 ? " and a light table" : "");
-    if (options->table_components > 0 && report->table_components == 0)
-        weft_command_say(common, "these images carry no tables: --tables changes nothing");
-    if (options->light_table && report->light_count == 0)
-        weft_command_say(common, "these images carry no light table: --light-table changes nothing");
-    if (has_layers_alone(options))
-        say_idle(common, options, "layers instead of lobes");
-    else if (report->model == WEFT_COMPRESS_SPARSE)
-        say_idle(common, options, "so few images");
-    else if (options->frames == WEFT_FRAMES_GIVEN && !weft_dataset_has_frames(dataset))
-        weft_command_say(common, "the dataset gives no frames: --frames given is that of the surface");
-    if (report->model == WEFT_COMPRESS_SPARSE && options->layer_count == 0)
-        weft_command_say(common,
-                         "%d images cannot carry lobes in every texel: exponents and normals are shared with the "
-                         "neighbours, only amplitudes are the texel's own",
-                         layout->image_count);
-    else if (report->lobe_count < options->lobe_count || (options->table && report->model != WEFT_COMPRESS_TABLE))
-        weft_command_say(common, "%s: fitted %d lobes without a table",
-                         layout->distance == WEFT_NEAR ? "near cameras or too few images" : "too few images",
-                         report->lobe_count);
-    weft_command_say(common, "masked: %.2f %% of the samples; %ld of %ld texels without any",
-                     100.0 * (double)report->masked_count / (double)report->sample_count, report->empty_texel_count,
-                     report->texel_count);
-    if (!has_layers_alone(options))
-        weft_command_say(common, "frames turned: %.1f %% of the texels; retro-reflective starts: %.1f %%",
-                         100.0 * (double)report->turned_frame_count / (double)report->texel_count,
-                         100.0 * (double)report->second_start_count / (double)report->texel_count);
-    if (report->held_texel_count > 0)
-        weft_command_say(common, "held to %d times their brightest sample: %ld of %ld texels", WEFT_BRIGHTEST_MULTIPLE,
-                         report->held_texel_count, report->texel_count);
-    if (report->stepped_down_count > 0)
-        weft_command_say(common, "served better by fewer lobes: %ld of %ld texels", report->stepped_down_count,
-                         report->texel_count);
-}
-
-static void say_target(const compress_command *command, const weft_compress_report *report)
-{
-    if (command->options.target_error > 0)
-        weft_command_say(&command->common, "relative RMSE above %g %% with the whole model: %ld of %ld texels",
-                         100 * command->options.target_error, report->missed_texel_count, report->texel_count);
-}
-
-static void say_certificate(const weft_common_options *common, const weft_certificate *certificate)
-{
-    char line[WEFT_HOLD_OUT_LINE];
-    weft_certificate_describe(certificate, line);
-    weft_command_say(common, "  certificate: %s;", line);
-    weft_certificate_row(certificate, 2, line);
-    weft_command_say(common, "    where %.3g is said, view and light at 30 degrees: %s", certificate->mean, line);
-}
-
-/* An event of what is in the metadata, too. */
-static weft_code say_hold_out(const weft_common_options *common, const weft_hold_out *result, weft_error *error)
-{
-    char line[WEFT_HOLD_OUT_LINE];
-    weft_hold_out_headline(result, line);
-    weft_command_say(common, "%s", line);
-    weft_hold_out_explain(result, line);
-    weft_command_say(common, "  %s", line);
-    if (result->has_certificate)
-        say_certificate(common, &result->certificate);
-    if (!common->json)
-        return WEFT_OK;
-    json_t *object = weft_hold_out_to_json(result);
-    weft_code code =
-        object ? weft_command_describe(common, "held_out", object, error) : weft_fail_memory(error, "event", 0);
-    json_decref(object);
-    return code;
-}
-
-static void say_errors(const weft_common_options *common, const weft_material *material)
-{
-    char errors_of[64] = "";
-    if (material->layers)
-        snprintf(errors_of, sizeof errors_of, ",\"errors_of\":\"%s\"", weft_material_errors_of(material));
-    weft_command_say(common, "on the samples that were fitted:");
-    weft_command_say(common, "level       texels   median rel.  80 %% rel.  RMSE       rel. RMSE  PSNR dB");
-    for (int k = 0; k < material->level_count; k++) {
-        const weft_material_level *level = &material->level[k];
-        const weft_error_summary *error = &level->error;
-        weft_command_say(common, "%5d  %5d x %-5d  %10.4f  %9.4f  %9.3e  %9.4f  %7.2f", k, level->width, level->height,
-                         error->median_relative, error->percentile80_relative, error->rmse, error->relative_rmse,
-                         error->psnr_db);
-        char event[320];
-        snprintf(event, sizeof event,
-                 "{\"event\":\"level\",\"level\":%d,\"width\":%d,\"height\":%d,\"median_relative\":%.6g,"
-                 "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%.6g%s}",
-                 k, level->width, level->height, error->median_relative, error->percentile80_relative, error->rmse,
-                 error->relative_rmse, isfinite(error->psnr_db) ? error->psnr_db : 0, errors_of);
-        weft_command_event(common, event);
-    }
-}
-
-static void say_layers(const weft_common_options *common, const weft_compress_options *options,
-                       const weft_compress_report *report)
-{
-    static const char *const kind[] = {"the light", "the half vector"};
-    const weft_layers_report *layers = &report->layers;
-    if (options->layer_count == 0)
-        return;
-    if (layers->scattered && layers->left_out_count < 2)
-        weft_command_say(common,
-                         "a photograph alone tells nothing of other directions: what is said of them is a guess");
-    else if (layers->scattered)
-        weft_command_say(common,
-                         "photographs that are no grid: completed by kriging; relative RMSE %.4f where each of %d is "
-                         "predicted by the others of these",
-                         layers->left_out_error, layers->left_out_count);
-    weft_command_say(common,
-                     "%d layers over %s, learned from %d texels; on images %s to choose: %.4f over the light, "
-                     "%.4f over the half vector (relative RMSE)",
-                     options->layer_count, kind[layers->kind], layers->training_texels,
-                     layers->scattered ? "fitted" : "held out", layers->trial_error[0], layers->trial_error[1]);
-    weft_command_say(common,
-                     "layers at those texels, fitted samples: median rel. %.4f, 80 %% rel. %.4f, rel. RMSE %.4f, "
-                     "PSNR %.2f dB",
-                     layers->fitted.median_relative, layers->fitted.percentile80_relative, layers->fitted.relative_rmse,
-                     layers->fitted.psnr_db);
-    weft_command_say(common, "the %s beside them, for players without layers:",
-                     has_layers_alone(options) ? "diffuse term" : "lobes");
-}
-
-static void say_sizes(const compress_command *command, const weft_dataset_layout *layout,
-                      const weft_compress_report *report)
-{
-    double samples = 6.0 * layout->width * layout->height * layout->image_count;
-    double material = (double)weft_file_bytes(command->output);
-    char share[64];
-    if (material <= samples)
-        snprintf(share, sizeof share, "1:%.0f", samples / fmax(material, 1));
-    else /* the tables weigh more than a few small photographs */
-        snprintf(share, sizeof share, "%.1f times the size", material / samples);
-    weft_command_say(&command->common, "%s: %.2f MB, %s of the samples as half floats (%.1f MB; the file has %.1f MB)",
-                     command->output, material * 1e-6, share, samples * 1e-6,
-                     (double)weft_file_bytes(command->input) * 1e-6);
-    if (report->read_seconds > 0)
-        weft_command_say(&command->common, "read %.1f MB in %ld blocks at %.0f MB/s; the fit waited for it %.1f s",
-                         report->read_bytes * 1e-6, report->block_count - report->resumed_block_count,
-                         report->read_bytes * 1e-6 / report->read_seconds, report->starved_seconds);
-    weft_command_say(&command->common, "fitted in %.1f s", report->seconds);
-}
-
 /* Tells before hours of work that the output cannot be written. */
 static weft_code check_output(const char *path, weft_error *error)
 {
@@ -412,69 +239,18 @@ static weft_code measure_hold_out(const compress_command *command, weft_dataset 
     return code;
 }
 
-/* "12.3 ms a frame (81 frames/s)", or "" where nothing was drawn. */
-static void print_speed(double frame_ms, char text[64])
-{
-    text[0] = 0;
-    if (frame_ms > 0)
-        snprintf(text, 64, "%.1f ms a frame (%.0f frames/s)", frame_ms, 1000 / frame_ms);
-}
-
-/* Before the work: what the preset chose, and what is predicted of it. */
+/* What the preset chooses is told before the work. */
 static weft_code choose_preset(const compress_command *command, weft_dataset *dataset, weft_compress_options *options,
                                const weft_progress *progress, weft_preset_prediction *prediction, weft_error *error)
 {
-    char scratch_path[PATH_MAX], speed[64];
+    char scratch_path[PATH_MAX];
     const weft_preset_wish wish = wish_of(command);
     *prediction = (weft_preset_prediction){0};
     if (wish.preset == WEFT_PRESET_NONE)
         return WEFT_OK;
     snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
     WEFT_TRY(weft_preset_predict(dataset, &wish, scratch_path, progress, options, prediction, error));
-    print_speed(prediction->frame_ms, speed);
-    weft_command_say(&command->common, "preset %s: %s (%s)", weft_preset_name(wish.preset), prediction->model,
-                     prediction->arguments);
-    weft_command_say(&command->common, "  predicted: %.3f MB, relative RMSE %.3f on directions that are not fitted%s%s",
-                     prediction->bytes * 1e-6, prediction->error, speed[0] ? ", " : "", speed);
-    json_t *object = command->common.json ? weft_preset_to_event(prediction) : NULL;
-    weft_code code = object ? weft_command_describe(&command->common, "predicted", object, error) : WEFT_OK;
-    json_decref(object);
-    return code;
-}
-
-/* The file is written: where it cannot be drawn, there is only nothing to say of that. */
-static void say_speed(const compress_command *command, const weft_preset_prediction *prediction,
-                      const weft_material *material)
-{
-    weft_frame_timer *timer;
-    weft_error ignored;
-    double frame_ms = 0;
-    char predicted[64], measured[64];
-    if (!(prediction->frame_ms > 0) || command->common.quiet || weft_frame_timer_open(&timer, &ignored) != WEFT_OK)
-        return;
-    if (weft_frame_timer_of_material(timer, material, &frame_ms, &ignored) != WEFT_OK)
-        frame_ms = 0;
-    weft_frame_timer_close(timer);
-    print_speed(prediction->frame_ms, predicted);
-    print_speed(frame_ms, measured);
-    if (measured[0])
-        weft_command_say(&command->common, "predicted %s, is %s (%+.1f %%)", predicted, measured,
-                         100 * (frame_ms / prediction->frame_ms - 1));
-}
-
-static void say_prediction(const compress_command *command, const weft_preset_prediction *prediction,
-                           const weft_hold_out *held_out, const weft_material *material)
-{
-    double bytes = (double)weft_file_bytes(command->output);
-    if (prediction->wish.preset == WEFT_PRESET_NONE)
-        return;
-    weft_command_say(&command->common, "predicted %.3f MB, is %.3f MB (%+.1f %%)", prediction->bytes * 1e-6,
-                     bytes * 1e-6, 100 * (bytes / prediction->bytes - 1));
-    if (held_out->split_count > 0)
-        weft_command_say(&command->common, "predicted relative RMSE %.3f %s, is %.3f (%+.1f %%)", prediction->error,
-                         weft_hold_out_about(held_out), held_out->material.all.relative_rmse,
-                         100 * (held_out->material.all.relative_rmse / prediction->error - 1));
-    say_speed(command, prediction, material);
+    return weft_say_preset(&command->common, prediction, error);
 }
 
 static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
@@ -507,17 +283,18 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     if (code == WEFT_OK && command->report)
         code = weft_model_report_write(command->report, &material, error);
     if (code == WEFT_OK) {
-        const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
         unlink(partial_path);
         weft_sweep_left_over(command->output);
-        say_model(command, &options, dataset, &report);
-        say_target(command, &report);
-        if (held_out.split_count > 0)
-            code = say_hold_out(&command->common, &held_out, error);
-        say_layers(&command->common, &options, &report);
-        say_errors(&command->common, &material);
-        say_sizes(command, layout, &report);
-        say_prediction(command, &prediction, &held_out, &material);
+        code = weft_say_compressed(&(weft_compressed){.common = &command->common,
+                                                      .input = command->input,
+                                                      .output = command->output,
+                                                      .options = &options,
+                                                      .dataset = dataset,
+                                                      .material = &material,
+                                                      .report = &report,
+                                                      .held_out = &held_out,
+                                                      .prediction = &prediction},
+                                   error);
     }
     weft_material_free(&material);
     weft_dataset_close(dataset);
