@@ -88,6 +88,23 @@ static void homography_inverse_undoes_it(void **state)
     assert_true(weft_homography_inverse(&singular).m[2][2] == 0);
 }
 
+/* The equations of the header, worked out by hand for one place. */
+static void a_lens_distorts_by_all_its_coefficients(void **state)
+{
+    (void)state;
+    weft_camera all = camera;
+    weft_pixel straight = {camera.cx + camera.fx * 0.3, camera.cy - camera.fy * 0.2};
+    weft_pixel bent = weft_camera_distort(&camera, straight);
+    assert_near((bent.x - camera.cx) / camera.fx, 0.292434, 1e-12);
+    assert_near((bent.y - camera.cy) / camera.fy, -0.194956, 1e-12);
+    all.k3 = 0.5;
+    all.p1 = 0.01;
+    all.p2 = -0.02;
+    bent = weft_camera_distort(&all, straight);
+    assert_near((bent.x - all.cx) / all.fx, 0.28536355, 1e-12);
+    assert_near((bent.y - all.cy) / all.fy, -0.1906757, 1e-12);
+}
+
 static void undistort_inverts_distort_over_the_whole_photograph(void **state)
 {
     (void)state;
@@ -116,6 +133,7 @@ int main(void)
         cmocka_unit_test(frontal_view_from_phi_270_shows_u_right_and_v_up),
         cmocka_unit_test(grazing_view_foreshortens_along_the_meridian),
         cmocka_unit_test(homography_inverse_undoes_it),
+        cmocka_unit_test(a_lens_distorts_by_all_its_coefficients),
         cmocka_unit_test(undistort_inverts_distort_over_the_whole_photograph),
         cmocka_unit_test(vignetting_is_one_on_the_axis_and_falls_outward),
     };
