@@ -15,8 +15,8 @@ began=$(date +%s)
 list_faults() {
     [ $# -gt 0 ] || set -- tests/mutants
     for name in "$@"; do
-        [ -e "$name" ] || name=tests/mutants/$name
-        [ -e "$name" ] || { echo "there is neither a fault nor a room '$name'" >&2; return 2; }
+        [ ! -e "tests/mutants/$name" ] || name=tests/mutants/$name # rooms are folders of the checkout, too
+        [ -n "$(find "$name" -name '*.patch' 2>/dev/null)" ] || { echo "there is neither a fault nor a room '$name'" >&2; return 2; }
         find "$name" -name '*.patch' | sort
     done
 }
