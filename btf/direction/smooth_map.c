@@ -11,13 +11,14 @@ enum { LEAST_SIDE = 4, MOST_SIDE = 64, STENCIL = 4 };
 /* Keeps the matrix positive definite where the samples leave a plane undecided: it then lies as low as it can. */
 static const double ridge = 1e-9;
 
-/* N = sum of B_i' B_i over places and zeros, plus the curvature, as its lower band: element (row, column) of the lower
- * triangle stands at column * (width + 1) + row - column. Rows of the square are `side` nodes apart and the curvature
- * reaches over two. */
+/* N = sum of w_i B_i' B_i over places and zeros, plus the curvature, as its lower band: element (row, column) of the
+ * lower triangle stands at column * (width + 1) + row - column. Rows of the square are `side` nodes apart and the
+ * curvature reaches over two. */
 struct weft_smooth_map {
     int side, node_count, width, count;
     double *band;           /* [node_count][width + 1] Cholesky's factor */
     weft_square_cell *cell; /* [count] */
+    double *weight;         /* [count] */
 };
 
 void weft_smooth_map_free(weft_smooth_map *map)
@@ -26,6 +27,7 @@ void weft_smooth_map_free(weft_smooth_map *map)
         return;
     free(map->band);
     free(map->cell);
+    free(map->weight);
     free(map);
 }
 
@@ -39,12 +41,12 @@ static void add_square(weft_smooth_map *map, const int *index, const double *w, 
         }
 }
 
-static void add_place(weft_smooth_map *map, const weft_square_cell *cell)
+static void add_place(weft_smooth_map *map, const weft_square_cell *cell, double weight)
 {
-    double weight[STENCIL];
+    double corner[STENCIL];
     for (int i = 0; i < STENCIL; i++)
-        weight[i] = (double)cell->weight[i];
-    add_square(map, cell->index, weight, STENCIL, 1);
+        corner[i] = (double)cell->weight[i];
+    add_square(map, cell->index, corner, STENCIL, weight);
 }
 
 static void add_curvature(weft_smooth_map *map, double smoothness)
@@ -67,11 +69,12 @@ static void assemble(weft_smooth_map *map, const weft_smooth_map_places *places)
 {
     for (int i = 0; i < places->count; i++) {
         map->cell[i] = weft_square_cell_at(places->place[i], map->side);
-        add_place(map, &map->cell[i]);
+        map->weight[i] = places->weight ? (double)places->weight[i] : 1;
+        add_place(map, &map->cell[i], map->weight[i]);
     }
     for (int i = 0; i < places->zero_count; i++) {
         weft_square_cell cell = weft_square_cell_at(places->zero[i], map->side);
-        add_place(map, &cell);
+        add_place(map, &cell, 1);
     }
     add_curvature(map, places->smoothness);
     for (int i = 0; i < map->node_count; i++)
@@ -87,7 +90,9 @@ static weft_code allocate(const weft_smooth_map_places *places, weft_smooth_map 
     size_t band = (size_t)map->node_count * (size_t)(map->width + 1);
     map->band = calloc(band, sizeof *map->band);
     map->cell = calloc((size_t)places->count + 1, sizeof *map->cell);
-    return map->band && map->cell ? WEFT_OK : weft_fail_memory(error, "smooth map", band * sizeof *map->band);
+    map->weight = calloc((size_t)places->count + 1, sizeof *map->weight);
+    return map->band && map->cell && map->weight ? WEFT_OK
+                                                 : weft_fail_memory(error, "smooth map", band * sizeof *map->band);
 }
 
 weft_code weft_smooth_map_create(const weft_smooth_map_places *places, weft_smooth_map **result, weft_error *error)
@@ -122,7 +127,7 @@ typedef double together __attribute__((vector_size(TOGETHER * sizeof(double)), a
 /* The number of columns is a constant where these are called: their loops are unrolled. */
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
-/* right = B' y for the sets from `first` on. */
+/* right = B' w y for the sets from `first` on. */
 static void spread(const weft_smooth_map *map, const float *value, int first, int series_count, together *right)
 {
     int sets = series_count - first < TOGETHER ? series_count - first : TOGETHER;
@@ -130,8 +135,9 @@ static void spread(const weft_smooth_map *map, const float *value, int first, in
     for (int i = 0; i < map->count; i++)
         for (int corner = 0; corner < STENCIL; corner++) {
             const float *of = value + (size_t)i * (size_t)series_count + first;
+            double weight = map->weight[i] * (double)map->cell[i].weight[corner];
             for (int set = 0; set < sets; set++)
-                right[map->cell[i].index[corner]][set] += (double)map->cell[i].weight[corner] * (double)of[set];
+                right[map->cell[i].index[corner]][set] += weight * (double)of[set];
         }
 }
 
@@ -221,5 +227,36 @@ weft_code weft_smooth_map_solve(const weft_smooth_map *map, const float *value, 
         keep(map, right, first, series_count, node);
     }
     free(right);
+    return WEFT_OK;
+}
+
+/* Element (row, column) of the inverse Z from what follows it in the band: of L' Z = L^-1, whose upper triangle is 0
+ * but for the diagonal (Takahashi, Fagan and Chin 1973). */
+static double inverse_element(const weft_smooth_map *map, const double *inverse, int row, int column)
+{
+    int stride = map->width + 1,
+        last = column + map->width < map->node_count ? column + map->width : map->node_count - 1;
+    const double *factor = map->band + (size_t)column * (size_t)stride;
+    double sum = row == column ? 1 / factor[0] : 0;
+    for (int k = column + 1; k <= last; k++) {
+        int low = k < row ? k : row, high = k < row ? row : k;
+        sum -= factor[k - column] * inverse[(size_t)low * (size_t)stride + (size_t)(high - low)];
+    }
+    return sum / factor[0];
+}
+
+weft_code weft_smooth_map_variances(const weft_smooth_map *map, float *variance, weft_error *error)
+{
+    size_t stride = (size_t)map->width + 1, count = (size_t)map->node_count * stride;
+    double *inverse = malloc(count * sizeof *inverse); /* its lower band, as that of N */
+    if (!inverse)
+        return weft_fail_memory(error, "smooth map", count * sizeof *inverse);
+    for (int column = map->node_count - 1; column >= 0; column--) {
+        for (int row = column + map->width < map->node_count ? column + map->width : map->node_count - 1; row >= column;
+             row--)
+            inverse[(size_t)column * stride + (size_t)(row - column)] = inverse_element(map, inverse, row, column);
+        variance[column] = (float)inverse[(size_t)column * stride];
+    }
+    free(inverse);
     return WEFT_OK;
 }

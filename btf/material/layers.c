@@ -60,6 +60,8 @@ static const char *fault_of_shape(const weft_layers *shape)
     if (!(shape->light_smoothness > 0 && shape->light_smoothness < 1e6f && shape->view_smoothness > 0 &&
           shape->view_smoothness < 1e6f && shape->least_cosine > 0 && shape->least_cosine <= 1))
         return "holds a smoothness or a cosine out of range";
+    if (!(shape->doubt >= 0 && shape->doubt < 1e6f))
+        return "holds a doubt out of range";
     return NULL;
 }
 
@@ -80,6 +82,7 @@ weft_code weft_layers_create(const weft_layers *shape, int width, int height, in
                             .view_side = shape->view_side,
                             .light_smoothness = shape->light_smoothness,
                             .view_smoothness = shape->view_smoothness,
+                            .doubt = shape->doubt,
                             .least_cosine = shape->least_cosine,
                             .level_count = level_count};
     weft_code code = allocate_shared(layers, error);
@@ -197,7 +200,7 @@ void weft_layers_header_write(const weft_layers *layers, uint8_t *bytes)
     const uint32_t whole[] = {(uint32_t)layers->kind,       (uint32_t)layers->layer_count,
                               (uint32_t)layers->view_count, (uint32_t)layers->image_count,
                               (uint32_t)layers->light_side, (uint32_t)layers->view_side};
-    const float real[] = {layers->light_smoothness, layers->view_smoothness, layers->least_cosine};
+    const float real[] = {layers->light_smoothness, layers->view_smoothness, layers->least_cosine, layers->doubt};
     memset(bytes, 0, 4 * HEADER_WORDS);
     memcpy(bytes, whole, sizeof whole);
     memcpy(bytes + sizeof whole, real, sizeof real);
@@ -217,7 +220,7 @@ static int limited_int(uint32_t value)
 static weft_layers shape_of(const uint8_t *bytes)
 {
     uint32_t whole[6];
-    float real[3];
+    float real[4];
     memcpy(whole, bytes, sizeof whole);
     memcpy(real, bytes + sizeof whole, sizeof real);
     return (weft_layers){.kind = whole[0] < 2 ? (weft_layers_kind)whole[0] : (weft_layers_kind)2,
@@ -228,7 +231,8 @@ static weft_layers shape_of(const uint8_t *bytes)
                          .view_side = limited_int(whole[5]),
                          .light_smoothness = real[0],
                          .view_smoothness = real[1],
-                         .least_cosine = real[2]};
+                         .least_cosine = real[2],
+                         .doubt = real[3]};
 }
 
 static const char *fault_of_directions(const float *xyz, int count)
@@ -275,8 +279,8 @@ weft_code weft_layers_header_read(const uint8_t *bytes, size_t size, int width, 
 {
     *fault = size < 4 * HEADER_WORDS ? "is too short" : NULL;
     weft_layers shape = {0};
-    static const uint8_t unused[4 * (HEADER_WORDS - 9)] = {0};
-    if (!*fault && memcmp(bytes + 36, unused, sizeof unused) != 0)
+    static const uint8_t unused[4 * (HEADER_WORDS - 10)] = {0};
+    if (!*fault && memcmp(bytes + 40, unused, sizeof unused) != 0)
         *fault = "has reserved fields that are not zero";
     if (!*fault) {
         shape = shape_of(bytes);

@@ -7,10 +7,10 @@
 /* Nodes and smoothness of the maps, chosen once on four cloths and left alone (docs/notes/layers.md). */
 static const struct {
     int light_side, view_side;
-    float light_smoothness, view_smoothness;
+    float light_smoothness, view_smoothness, doubt;
 } usual[] = {
-    [WEFT_LAYERS_OF_LIGHT] = {16, 16, 1e-2f, 1e-2f},
-    [WEFT_LAYERS_OF_HALF_VECTOR] = {16, 10, 1e-3f, 1e-2f},
+    [WEFT_LAYERS_OF_LIGHT] = {16, 16, 1e-2f, 3e-3f, 3},
+    [WEFT_LAYERS_OF_HALF_VECTOR] = {16, 10, 1e-3f, 3e-3f, 3},
 };
 
 static void put_direction(weft_vec3 direction, float *xyz)
@@ -72,6 +72,7 @@ weft_code weft_layer_model_create(const weft_layer_images *images, const weft_co
                          .view_side = usual[kind].view_side,
                          .light_smoothness = usual[kind].light_smoothness,
                          .view_smoothness = usual[kind].view_smoothness,
+                         .doubt = usual[kind].doubt,
                          .least_cosine = least_cosine(images)};
     WEFT_TRY(weft_layers_create(&shape, width, height, level_count, result, error));
     fill_directions(images, *result);

@@ -45,8 +45,8 @@ static void gather_view(const weft_layers *layers, int view, weft_place *place, 
     }
 }
 
-/* node [light node][layer][3] of one view. */
-static weft_code map_view(const weft_layers *layers, int view, float *node, weft_error *error)
+/* node [light node][layer][3] of one view; variance [light node], or NULL. */
+static weft_code map_view(const weft_layers *layers, int view, float *node, float *variance, weft_error *error)
 {
     size_t images = layers->first[view + 1] - layers->first[view], series = 3 * (size_t)layers->layer_count;
     weft_place *place = malloc((images + HORIZON) * sizeof *place);
@@ -67,43 +67,134 @@ static weft_code map_view(const weft_layers *layers, int view, float *node, weft
     }
     if (code == WEFT_OK)
         code = weft_smooth_map_solve(map, value, (int)series, node, error);
+    if (code == WEFT_OK && variance)
+        code = weft_smooth_map_variances(map, variance, error);
     weft_smooth_map_free(map);
     free(place);
     free(value);
     return code;
 }
 
-/* ---- Over the views ---- */
-
-/* Nodes [light node][layer][3] of each view become those of each node of the map of views. */
-static weft_code map_over_views(const weft_layers *layers, const float *of_view, float *node, weft_error *error)
+static size_t light_nodes(const weft_layers *layers)
 {
-    size_t views = (size_t)layers->view_count;
-    weft_place *place = malloc(views * sizeof *place);
-    if (!place)
-        return weft_fail_memory(error, "maps of layers", views * sizeof *place);
-    for (size_t i = 0; i < views; i++)
-        place[i] = weft_place_of_direction(direction_at(layers->view, i));
-    weft_smooth_map *map = NULL;
-    weft_code code = weft_smooth_map_create(
-        &(weft_smooth_map_places){
-            .side = layers->view_side, .smoothness = layers->view_smoothness, .place = place, .count = (int)views},
-        &map, error);
-    int series = layers->light_side * layers->light_side * 3 * layers->layer_count;
-    if (code == WEFT_OK)
-        code = weft_smooth_map_solve(map, of_view, series, node, error);
-    weft_smooth_map_free(map);
-    free(place);
-    return code;
+    return (size_t)layers->light_side * (size_t)layers->light_side;
 }
 
-static weft_code map_views(const weft_layers *layers, size_t row, float *of_view, weft_error *error)
+static weft_code map_views(const weft_layers *layers, float *of_view, float *variance, weft_error *error)
 {
+    size_t nodes = light_nodes(layers), row = nodes * 3 * (size_t)layers->layer_count;
     weft_code result = WEFT_OK;
 #pragma omp parallel for schedule(dynamic)
     for (int view = 0; view < layers->view_count; view++) {
         weft_error own = {0};
-        weft_code code = map_view(layers, view, of_view + (size_t)view * row, &own);
+        weft_code code = map_view(layers, view, of_view + (size_t)view * row,
+                                  variance ? variance + (size_t)view * nodes : NULL, &own);
+#pragma omp critical(weft_layer_maps)
+        if (code != WEFT_OK && result == WEFT_OK) {
+            result = code;
+            if (error)
+                *error = own;
+        }
+    }
+    return result;
+}
+
+/* ---- Over the views ---- */
+
+/* What the images say, view by view: nodes [view][light node][layer][3], and their variances [view][light node]. */
+typedef struct view_maps {
+    const weft_layers *layers;
+    weft_place *place; /* [view] */
+    float *node, *variance;
+} view_maps;
+
+static void free_view_maps(view_maps *of)
+{
+    free(of->place);
+    free(of->node);
+    free(of->variance);
+}
+
+static weft_code make_view_maps(const weft_layers *layers, view_maps *of, weft_error *error)
+{
+    size_t views = (size_t)layers->view_count, nodes = views * light_nodes(layers);
+    size_t values = nodes * 3 * (size_t)layers->layer_count;
+    *of = (view_maps){.layers = layers,
+                      .place = malloc(views * sizeof *of->place),
+                      .node = malloc(values * sizeof *of->node),
+                      .variance = malloc(nodes * sizeof *of->variance)};
+    if (!of->place || !of->node || !of->variance)
+        return weft_fail_memory(error, "maps of layers", values * sizeof *of->node);
+    for (size_t i = 0; i < views; i++)
+        of->place[i] = weft_place_of_direction(direction_at(layers->view, i));
+    return map_views(layers, of->node, layers->doubt > 0 ? of->variance : NULL, error);
+}
+
+/* What a view says of a node of its map counts for less the less its images tell of it: beyond them the map is but
+ * continued, and other views may know better. */
+static float trust(float variance, float doubt)
+{
+    float ratio = 1 + variance / doubt;
+    return 1 / (ratio * ratio);
+}
+
+/* Room for one light node. */
+typedef struct node_bench {
+    float *weight, *value, *solved; /* [view], [view][layer][3], [view node][layer][3] */
+} node_bench;
+
+/* One light node: what the views say of it becomes a map over the views. */
+static weft_code solve_light_node(const view_maps *of, size_t light, const node_bench *bench, float *node,
+                                  weft_error *error)
+{
+    const weft_layers *layers = of->layers;
+    size_t series = 3 * (size_t)layers->layer_count, lights = light_nodes(layers);
+    size_t views = (size_t)layers->view_count, nodes = (size_t)layers->view_side * (size_t)layers->view_side;
+    for (size_t view = 0; view < views; view++) {
+        bench->weight[view] = layers->doubt > 0 ? trust(of->variance[view * lights + light], layers->doubt) : 1;
+        memcpy(bench->value + view * series, of->node + (view * lights + light) * series,
+               series * sizeof *bench->value);
+    }
+    weft_smooth_map *map = NULL;
+    WEFT_TRY(weft_smooth_map_create(&(weft_smooth_map_places){.side = layers->view_side,
+                                                              .smoothness = layers->view_smoothness,
+                                                              .place = of->place,
+                                                              .weight = bench->weight,
+                                                              .count = layers->view_count},
+                                    &map, error));
+    weft_code code = weft_smooth_map_solve(map, bench->value, (int)series, bench->solved, error);
+    for (size_t i = 0; code == WEFT_OK && i < nodes; i++)
+        memcpy(node + (i * lights + light) * series, bench->solved + i * series, series * sizeof *node);
+    weft_smooth_map_free(map);
+    return code;
+}
+
+static weft_code map_light_node(const view_maps *of, int light, float *node, weft_error *error)
+{
+    const weft_layers *layers = of->layers;
+    size_t series = 3 * (size_t)layers->layer_count, views = (size_t)layers->view_count;
+    size_t nodes = (size_t)layers->view_side * (size_t)layers->view_side;
+    node_bench bench = {.weight = malloc(views * sizeof *bench.weight),
+                        .value = malloc(views * series * sizeof *bench.value),
+                        .solved = malloc(nodes * series * sizeof *bench.solved)};
+    weft_code code = bench.weight && bench.value && bench.solved
+                         ? solve_light_node(of, (size_t)light, &bench, node, error)
+                         : weft_fail_memory(error, "maps of layers", nodes * series * sizeof *bench.solved);
+    free(bench.weight);
+    free(bench.value);
+    free(bench.solved);
+    return code;
+}
+
+/* node [view node][light node][layer][3]. */
+static weft_code map_over_views(const view_maps *of, float *node, weft_error *error)
+{
+    weft_code result = WEFT_OK;
+    int lights = (int)light_nodes(of->layers);
+#pragma omp parallel for schedule(dynamic)
+    for (int light = 0; light < lights; light++) {
+        weft_error own = {0};
+        weft_code code = map_light_node(of, light, node, &own);
 #pragma omp critical(weft_layer_maps)
         if (code != WEFT_OK && result == WEFT_OK) {
             result = code;
@@ -116,15 +207,16 @@ static weft_code map_views(const weft_layers *layers, size_t row, float *of_view
 
 weft_code weft_layer_maps_create(const weft_layers *layers, weft_layer_maps *maps, weft_error *error)
 {
-    size_t row = (size_t)layers->light_side * (size_t)layers->light_side * 3 * (size_t)layers->layer_count;
     size_t nodes = (size_t)layers->view_side * (size_t)layers->view_side;
-    float *of_view = malloc((size_t)layers->view_count * row * sizeof *of_view);
-    *maps = (weft_layer_maps){.layers = layers, .node = malloc(nodes * row * sizeof *maps->node)};
-    weft_code code = of_view && maps->node ? map_views(layers, row, of_view, error)
-                                           : weft_fail_memory(error, "maps of layers", nodes * row * sizeof *of_view);
+    size_t bytes = nodes * light_nodes(layers) * 3 * (size_t)layers->layer_count * sizeof *maps->node;
+    view_maps of;
+    *maps = (weft_layer_maps){.layers = layers, .node = malloc(bytes)};
+    weft_code code = make_view_maps(layers, &of, error);
+    if (code == WEFT_OK && !maps->node)
+        code = weft_fail_memory(error, "maps of layers", bytes);
     if (code == WEFT_OK)
-        code = map_over_views(layers, of_view, maps->node, error);
-    free(of_view);
+        code = map_over_views(&of, maps->node, error);
+    free_view_maps(&of);
     if (code != WEFT_OK)
         weft_layer_maps_free(maps);
     return code;
@@ -133,10 +225,10 @@ weft_code weft_layer_maps_create(const weft_layers *layers, weft_layer_maps *map
 weft_code weft_layer_maps_keep_views(weft_layer_maps *maps, weft_error *error)
 {
     const weft_layers *layers = maps->layers;
-    size_t row = (size_t)layers->light_side * (size_t)layers->light_side * 3 * (size_t)layers->layer_count;
+    size_t row = light_nodes(layers) * 3 * (size_t)layers->layer_count;
     size_t bytes = (size_t)layers->view_count * row * sizeof *maps->node_of_view;
     maps->node_of_view = malloc(bytes);
-    return maps->node_of_view ? map_views(layers, row, maps->node_of_view, error)
+    return maps->node_of_view ? map_views(layers, maps->node_of_view, NULL, error)
                               : weft_fail_memory(error, "maps of layers", bytes);
 }
 

@@ -97,7 +97,7 @@ static void cells_interpolate_planes_exactly(void **state)
 
 typedef struct scene {
     weft_place place[SCATTERED], zero[4];
-    float value[SCATTERED];
+    float value[SCATTERED], weight[SCATTERED];
 } scene;
 
 static scene make_scene(void)
@@ -106,6 +106,7 @@ static scene make_scene(void)
     for (int i = 0; i < SCATTERED; i++) {
         s.place[i] = weft_place_of_direction(weft_direction_of_angles(weft_ubo81_angles(i)));
         s.value[i] = (float)(sin(5 * s.place[i].x) + random_unit());
+        s.weight[i] = 0.1f + (float)(i % 5);
     }
     return s;
 }
@@ -129,7 +130,7 @@ static double objective(const scene *s, double smoothness, const double *f)
 {
     double sum = 0, bend = 0;
     for (int i = 0; i < SCATTERED; i++)
-        sum += squared(interpolated(f, s->place[i]) - (double)s->value[i]);
+        sum += (double)s->weight[i] * squared(interpolated(f, s->place[i]) - (double)s->value[i]);
     for (int i = 0; i < 4; i++)
         sum += squared(interpolated(f, s->zero[i]));
     for (int y = 0; y < SIDE; y++)
@@ -142,18 +143,26 @@ static double objective(const scene *s, double smoothness, const double *f)
     return sum + smoothness * bend;
 }
 
-static void solve(const scene *s, double smoothness, const float *value, int series, float *node)
+static weft_smooth_map *create(const scene *s, double smoothness)
 {
     weft_error error = {0};
     weft_smooth_map *map = NULL;
     expect_ok(weft_smooth_map_create(&(weft_smooth_map_places){.side = SIDE,
                                                                .smoothness = smoothness,
                                                                .place = s->place,
+                                                               .weight = s->weight,
                                                                .count = SCATTERED,
                                                                .zero = s->zero,
                                                                .zero_count = 4},
                                      &map, &error),
               &error);
+    return map;
+}
+
+static void solve(const scene *s, double smoothness, const float *value, int series, float *node)
+{
+    weft_error error = {0};
+    weft_smooth_map *map = create(s, smoothness);
     expect_ok(weft_smooth_map_solve(map, value, series, node, &error), &error);
     weft_smooth_map_free(map);
 }
@@ -176,6 +185,52 @@ static void a_smooth_map_minimises_what_its_header_says(void **state)
             assert_true(objective(&s, smoothness, moved) > least);
         }
     }
+}
+
+/* The left half becomes the unit matrix, and the right one, which was that, the inverse: Gauss and Jordan. */
+static void invert(double form[NODES][2 * NODES])
+{
+    for (int pivot = 0; pivot < NODES; pivot++) {
+        double factor = 1 / form[pivot][pivot];
+        for (int j = 0; j < 2 * NODES; j++)
+            form[pivot][j] *= factor;
+        for (int i = 0; i < NODES; i++) {
+            double share = form[i][pivot];
+            for (int j = 0; i != pivot && j < 2 * NODES; j++)
+                form[i][j] -= share * form[pivot][j];
+        }
+    }
+}
+
+static void variances_are_the_diagonal_of_the_inverse(void **state)
+{
+    (void)state;
+    static double form[NODES][2 * NODES], alone[NODES];
+    const double smoothness = 0.02;
+    weft_error error = {0};
+    scene s = make_scene();
+    float variance[NODES];
+    for (int i = 0; i < SCATTERED; i++)
+        s.value[i] = 0; /* then the objective is the quadratic form */
+    for (int i = 0; i < NODES; i++) {
+        double node[NODES] = {0};
+        node[i] = 1;
+        alone[i] = objective(&s, smoothness, node);
+        form[i][NODES + i] = 1;
+    }
+    for (int i = 0; i < NODES; i++)
+        for (int j = 0; j < NODES; j++) {
+            double node[NODES] = {0};
+            node[i]++;
+            node[j]++;
+            form[i][j] = i == j ? alone[i] : (objective(&s, smoothness, node) - alone[i] - alone[j]) / 2;
+        }
+    invert(form);
+    weft_smooth_map *map = create(&s, smoothness);
+    expect_ok(weft_smooth_map_variances(map, variance, &error), &error);
+    weft_smooth_map_free(map);
+    for (int i = 0; i < NODES; i++)
+        assert_float_equal(variance[i], form[i][NODES + i], 1e-4 * form[i][NODES + i]);
 }
 
 static void a_plane_costs_nothing_and_goes_on_beyond_the_samples(void **state)
@@ -240,6 +295,7 @@ int main(void)
         cmocka_unit_test(the_concentric_map_is_continuous),
         cmocka_unit_test(cells_interpolate_planes_exactly),
         cmocka_unit_test(a_smooth_map_minimises_what_its_header_says),
+        cmocka_unit_test(variances_are_the_diagonal_of_the_inverse),
         cmocka_unit_test(a_plane_costs_nothing_and_goes_on_beyond_the_samples),
         cmocka_unit_test(sets_of_values_do_not_influence_each_other),
         cmocka_unit_test(a_map_without_places_is_zero_and_bad_sides_are_refused),

@@ -175,10 +175,12 @@ static void every_field_is_checked(void **state)
     expect_fault(with_word(4, 65), "4 to 64 nodes");
     expect_fault(with_word(5, 3), "4 to 64 nodes");
     expect_fault(with_word(3, 8), "size does not fit");
-    expect_fault(with_word(9, 1), "not zero");
+    expect_fault(with_word(10, 1), "not zero");
     expect_fault(with_real(24, 0), "out of range");
     expect_fault(with_real(28, NAN), "out of range");
     expect_fault(with_real(32, 1.5f), "out of range");
+    expect_fault(with_real(36, -1), "out of range");
+    expect_fault(with_real(36, NAN), "out of range");
     expect_fault(with_real(views, 0.5f), "no unit vector");
     expect_fault(with_real(lights + 8, -1), "no unit vector");
     expect_fault(with_real(lights, NAN), "no unit vector");
