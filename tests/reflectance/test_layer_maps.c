@@ -96,7 +96,7 @@ static double error_of_what_was_not_seen(float doubt)
 static void a_highlight_is_taken_from_the_views_that_saw_it(void **state)
 {
     (void)state;
-    double alike = error_of_what_was_not_seen(0), doubted = error_of_what_was_not_seen(3);
+    double alike = error_of_what_was_not_seen(0), doubted = error_of_what_was_not_seen(10);
     print_message("all views alike %.3f, by what they know %.3f\n", alike, doubted);
     assert_true(doubted < 0.2);
     assert_true(alike > 2 * doubted);
