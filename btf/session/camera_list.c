@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 enum { LIST_VERSION = 1, MAX_LIST_BYTES = 1 << 16 };
@@ -29,7 +30,7 @@ static weft_code unpack_name(json_t *json, const char *path, weft_camera_list *l
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': camera %d has no name that a folder could have", path,
                          list->count);
     for (int i = 0; i < list->count; i++) {
-        if (strcmp(list->name[i], name) == 0)
+        if (strcasecmp(list->name[i], name) == 0)
             return weft_fail(error, WEFT_BAD_INPUT, "'%s' names the camera '%s' twice", path, name);
     }
     snprintf(list->name[list->count++], WEFT_CAMERA_NAME_SIZE, "%s", name);
@@ -43,6 +44,8 @@ static weft_code unpack(json_t *root, const char *path, weft_camera_list *list, 
     size_t count = json_array_size(names);
     if (json_unpack(root, "{sI}", "weft_cameras", &version) != 0 || version != LIST_VERSION)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no list of cameras of version %d", path, LIST_VERSION);
+    if (!json_is_array(names))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has no array 'cameras'", path);
     if (count < 1 || count > WEFT_CAMERAS_MAX)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' names %zu cameras, not 1 to %d", path, count, WEFT_CAMERAS_MAX);
     for (size_t i = 0; i < count; i++)

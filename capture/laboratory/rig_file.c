@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- What libconfuse has to say ---- */
 
@@ -272,7 +273,7 @@ static weft_code check_camera(const weft_rig_file *rig, const weft_camera_descri
 static weft_code check_camera_pair(const weft_rig_file *rig, const weft_camera_description *a,
                                    const weft_camera_description *b, weft_error *error)
 {
-    if (strcmp(a->name, b->name) == 0)
+    if (strcasecmp(a->name, b->name) == 0)
         return weft_fail(error, WEFT_BAD_INPUT, "%s: two cameras are called '%s'", rig->path, a->name);
     if (a->backend == b->backend && strcmp(a->device, b->device) == 0)
         return weft_fail(error, WEFT_BAD_INPUT, "%s: cameras '%s' and '%s' are the same device '%s'", rig->path,
