@@ -86,6 +86,16 @@ weft_code weft_camera_list_write(const char *folder, const weft_camera_list *lis
 
 /* ---- The sessions ---- */
 
+weft_code weft_camera_session_open(const char *folder, weft_session *session, weft_error *error)
+{
+    weft_camera_list list;
+    WEFT_TRY(weft_camera_list_read(folder, &list, error));
+    if (list.count > 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is of several cameras: one of them belongs here, as '%s/%s'",
+                         folder, folder, list.name[0]);
+    return weft_session_open(folder, session, error);
+}
+
 static weft_code open_all(const char *folder, const weft_camera_list *list, weft_session *sessions, int *count,
                           weft_error *error)
 {
