@@ -9,6 +9,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -34,6 +35,8 @@ typedef struct bench {
     int kill_at;   /* exposure of the second camera in which the process dies; 0: none */
     int fail_from; /* exposure of the second camera from which on it fails; 0: never */
     int fail_to;
+    int stop_at; /* exposure of the second camera in which somebody presses Ctrl-C; 0: none */
+    volatile sig_atomic_t stop;
     pthread_mutex_t mutex;
     pthread_cond_t changed;
     int exposing; /* cameras that do so now */
@@ -63,6 +66,8 @@ static weft_code expose(int camera, uint64_t frame, double exposure_s, uint16_t 
     int number = ++b.exposures[camera];
     if (camera == 1 && number == b.kill_at)
         raise(SIGKILL);
+    if (camera == 1 && number == b.stop_at)
+        b.stop = 1;
     if (camera == 1 && b.fail_from > 0 && number >= b.fail_from && number < b.fail_to)
         return weft_fail(error, WEFT_SYSTEM, "its cable is out");
     return b.camera[camera].expose(b.camera[camera].device, frame, exposure_s, samples, read_back_s, error);
@@ -119,7 +124,7 @@ static weft_code take(weft_capture_summary *summary, weft_error *error)
 {
     weft_capture capture;
     WEFT_TRY(weft_capture_begin(&request.capture, &b.rig[0].rig, NULL, &capture, error));
-    weft_code code = weft_capture_take(&capture, NULL, NULL, error);
+    weft_code code = weft_capture_take(&capture, &b.stop, NULL, error);
     *summary = capture.summary;
     weft_capture_end(&capture);
     return code;
@@ -266,6 +271,86 @@ static void a_camera_that_fails_loses_nothing_of_the_other(void **state)
     close_bench(CAMERAS);
 }
 
+static bool page_says(const char *path, const char *text)
+{
+    size_t size;
+    char *page = (char *)scratch_load(path, &size);
+    page[size] = 0;
+    bool says = strstr(page, text) != NULL;
+    free(page);
+    return says;
+}
+
+/* Each camera on a page of its own, and both on one. */
+static void pages_tell_the_share_of_each_camera(void **state)
+{
+    (void)state;
+    weft_capture_summary summary;
+    open_bench(CAMERAS);
+    request.capture.folder = "told";
+    request.capture.status = "status";
+    b.fail_from = 1;
+    b.fail_to = 1000;
+    assert_int_equal(take(&summary, NULL), WEFT_SYSTEM);
+    assert_true(page_says("status/index.html", ">camera1</a></td><td>6 of 6</td>"));
+    assert_true(page_says("status/index.html", "has all</td>"));
+    assert_true(page_says("status/index.html", ">camera2</a></td><td>0 of 4</td>"));
+    assert_true(page_says("status/index.html", "left out: its cable is out"));
+    assert_true(page_says("status/index.html", "<b>6 of 10</b>"));
+    assert_true(page_says("status/camera1/index.html", "camera camera1"));
+    assert_false(page_says("status/camera1/index.html", "ended early"));
+    assert_true(page_says("status/camera2/index.html", "ended early: its cable is out"));
+    b.fail_from = 0;
+    assert_int_equal(take(&summary, NULL), WEFT_OK);
+    assert_true(page_says("status/index.html", ">camera2</a></td><td>4 of 4</td>"));
+    assert_false(page_says("status/index.html", "left out") || page_says("status/index.html", "ended early"));
+    close_bench(CAMERAS);
+}
+
+/* In the midst of a volley: it is completed, and nothing after it is begun. */
+static void a_night_that_is_stopped_completes_its_volley_and_says_so(void **state)
+{
+    (void)state;
+    weft_capture_summary summary;
+    weft_error error = {0};
+    open_bench(CAMERAS);
+    request.capture.folder = "stopped";
+    request.capture.status = "status";
+    b.stop_at = 1;
+    assert_int_equal(take(&summary, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "stopped, 4 of 10 photographs"));
+    assert_int_equal(taken_by("stopped/camera1"), 3);
+    assert_int_equal(taken_by("stopped/camera2"), 1);
+    assert_true(page_says("status/index.html", "ended early: it was stopped"));
+    assert_true(page_says("status/camera1/index.html", "ended early: it was stopped"));
+    b.stop = 0;
+    assert_int_equal(take(&summary, NULL), WEFT_OK);
+    assert_whole("stopped/camera1", "stopped/camera2");
+    close_bench(CAMERAS);
+}
+
+/* The sensor of the second camera is not seen; the first has its night. */
+static void a_camera_whose_sensor_is_not_seen_is_left_out_alone(void **state)
+{
+    (void)state;
+    weft_capture_summary summary;
+    weft_error error = {0};
+    open_bench(CAMERAS);
+    request.capture.folder = "unseen";
+    for (int i = 0; i < CAMERAS; i++)
+        b.rig[i].rig.dark_frames = b.rig[i].rig.flat_frames = 1;
+    b.fail_from = 2;
+    b.fail_to = 3;
+    assert_int_equal(take(&summary, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "camera 'camera2': its cable is out"));
+    assert_int_equal(taken_by("unseen/camera1"), SHOTS_OF_FIRST);
+    assert_int_equal(taken_by("unseen/camera2"), 0);
+    b.fail_from = 0;
+    assert_int_equal(take(&summary, NULL), WEFT_OK);
+    assert_whole("unseen/camera1", "unseen/camera2");
+    close_bench(CAMERAS);
+}
+
 static void a_camera_that_failed_once_goes_on(void **state)
 {
     (void)state;
@@ -392,6 +477,9 @@ int main(void)
         cmocka_unit_test(other_cameras_do_not_go_on),
         cmocka_unit_test(cameras_expose_at_the_same_time),
         cmocka_unit_test(a_camera_that_fails_loses_nothing_of_the_other),
+        cmocka_unit_test(pages_tell_the_share_of_each_camera),
+        cmocka_unit_test(a_night_that_is_stopped_completes_its_volley_and_says_so),
+        cmocka_unit_test(a_camera_whose_sensor_is_not_seen_is_left_out_alone),
         cmocka_unit_test(a_camera_that_failed_once_goes_on),
         cmocka_unit_test(cameras_share_the_pose_of_a_turntable),
     };
