@@ -94,18 +94,33 @@ static weft_code keep_originals(weft_camera_at_work *const *aimed, const weft_ex
     return WEFT_OK;
 }
 
-static weft_code expose_volley(const run *r, weft_camera_at_work *const *aimed, weft_exposing *exposing, int count,
-                               weft_error *error)
+static weft_code expose_brackets(const run *r, weft_camera_at_work *const *aimed, weft_exposing *exposing, int count,
+                                 bool *held, weft_error *error)
 {
     int taken = 1;
-    WEFT_TRY(weft_volley_take(exposing, count, error));
-    WEFT_TRY(keep_originals(aimed, exposing, count, true, error));
-    while (taken > 0) {
-        WEFT_TRY(weft_volley_bracket(exposing, count, r->night->brackets, &taken, error));
+    for (*held = true; taken > 0 && *held;) {
+        WEFT_TRY(weft_volley_bracket(exposing, count, r->night->brackets, &taken, held, error));
         if (taken > 0)
             WEFT_TRY(keep_originals(aimed, exposing, count, false, error));
     }
     return WEFT_OK;
+}
+
+static weft_code expose_volley(const run *r, weft_camera_at_work *const *aimed, weft_exposing *exposing, int count,
+                               weft_error *error)
+{
+    int retries = exposing[0].shooting->retries;
+    for (int attempt = 0; attempt <= retries; attempt++) {
+        bool held;
+        WEFT_TRY(weft_volley_take(exposing, count, error));
+        WEFT_TRY(keep_originals(aimed, exposing, count, true, error));
+        WEFT_TRY(expose_brackets(r, aimed, exposing, count, &held, error));
+        if (held)
+            return WEFT_OK;
+        for (int i = 0; i < count; i++)
+            exposing[i].shooting->disturbed++;
+    }
+    return weft_volley_fail_disturbed(&exposing[0], retries + 1, error);
 }
 
 /* One camera of several may fail a few times; where there is one, the night is over. */

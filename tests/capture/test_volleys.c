@@ -35,7 +35,8 @@ typedef struct bench {
     int kill_at;   /* exposure of the second camera in which the process dies; 0: none */
     int fail_from; /* exposure of the second camera from which on it fails; 0: never */
     int fail_to;
-    int stop_at; /* exposure of the second camera in which somebody presses Ctrl-C; 0: none */
+    int looks, push_at; /* how often the stage was asked whether it stood still; when it did not, 0: always */
+    int stop_at;        /* exposure of the second camera in which somebody presses Ctrl-C; 0: none */
     volatile sig_atomic_t stop;
     pthread_mutex_t mutex;
     pthread_cond_t changed;
@@ -94,9 +95,17 @@ static weft_code power(void *device, bool on, weft_error *error)
     return b.light.power(b.light.device, on, error);
 }
 
+static weft_code held(void *device, bool *still, weft_error *error)
+{
+    (void)device;
+    (void)error;
+    *still = ++b.looks != b.push_at;
+    return WEFT_OK;
+}
+
 static virtual_session request;
 
-static void open_bench(int cameras)
+static void open_patient_bench(int cameras, int retries)
 {
     int count;
     b = (bench){.mutex = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
@@ -110,8 +119,15 @@ static void open_bench(int cameras)
         b.camera[i] = b.rig[i].rig.camera;
         b.rig[i].rig.camera.expose = i == 0 ? expose_first : expose_second;
         b.rig[i].rig.light.power = power;
-        b.rig[i].rig.settings.retries = 0;
+        b.rig[i].rig.stage.held = held;
+        b.rig[i].rig.settings.retries = retries;
     }
+}
+
+/* Whose cameras are asked once. */
+static void open_bench(int cameras)
+{
+    open_patient_bench(cameras, 0);
 }
 
 static void close_bench(int cameras)
@@ -365,6 +381,41 @@ static void a_camera_that_failed_once_goes_on(void **state)
     close_bench(CAMERAS);
 }
 
+static int brackets_of(const char *folder, int shots[SHOTS_OF_FIRST])
+{
+    weft_session session;
+    int count = 0;
+    assert_int_equal(weft_session_open(folder, &session, NULL), WEFT_OK);
+    for (int i = 0; i < session.shot_count; i++) {
+        shots[i] = session.record[i].bracket_count;
+        count += shots[i];
+    }
+    weft_session_free(&session);
+    return count;
+}
+
+/* In whichever photograph of it the stage was pushed, it has all its photographs in the end. */
+static void a_bracket_that_the_stage_disturbed_is_taken_again(void **state)
+{
+    (void)state;
+    int shots[3][SHOTS_OF_FIRST];
+    for (int push_at = 0; push_at < 3; push_at++) {
+        static const char *const folder[] = {"still/camera1", "pushed1/camera1", "pushed2/camera1"};
+        static const char *const session[] = {"still", "pushed1", "pushed2"};
+        weft_capture_summary summary;
+        open_patient_bench(CAMERAS, 1);
+        request.capture.folder = session[push_at];
+        request.capture.brackets = 2;
+        b.push_at = push_at;
+        assert_int_equal(take(&summary, NULL), WEFT_OK);
+        assert_int_equal(summary.disturbed, push_at > 0);
+        assert_true(brackets_of(folder[push_at], shots[push_at]) > 0);
+        assert_true(shots[push_at][0] > 0);
+        assert_memory_equal(shots[push_at], shots[0], sizeof shots[0]);
+        close_bench(CAMERAS);
+    }
+}
+
 /* ---- The folder ---- */
 
 static void what_is_no_session_of_a_camera_is_foreign(void **state)
@@ -481,6 +532,7 @@ int main(void)
         cmocka_unit_test(a_night_that_is_stopped_completes_its_volley_and_says_so),
         cmocka_unit_test(a_camera_whose_sensor_is_not_seen_is_left_out_alone),
         cmocka_unit_test(a_camera_that_failed_once_goes_on),
+        cmocka_unit_test(a_bracket_that_the_stage_disturbed_is_taken_again),
         cmocka_unit_test(cameras_share_the_pose_of_a_turntable),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
