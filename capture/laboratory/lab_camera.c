@@ -65,6 +65,29 @@ static weft_rig_settings settings_of(const weft_lab_camera *c)
     return settings;
 }
 
+/* ---- What it is to see ---- */
+
+/* A person does it; but a lamp that has a switch is dark without. */
+static weft_code show(void *device, weft_curtain scene, weft_error *error)
+{
+    static const char *const asked[] = {[WEFT_CURTAIN_OPEN] = "Let the camera see the sample again.",
+                                        [WEFT_CURTAIN_DARK] = "Cover the lens: no light may reach the camera.",
+                                        [WEFT_CURTAIN_EVEN] =
+                                            "Put an evenly lit white field, out of focus, before the whole lens."};
+    weft_lab_camera *c = device;
+    bool covered = c->file->light.backend == WEFT_LIGHT_NONE, was_asked = c->asked_to_show;
+    const weft_person *person = &c->releases->person;
+    const char *name = c->rig.camera_name;
+    char text[192];
+    c->asked_to_show = scene == WEFT_CURTAIN_EVEN || (scene == WEFT_CURTAIN_DARK && covered);
+    if (!c->asked_to_show && !was_asked)
+        return WEFT_OK;
+    snprintf(text, sizeof text, "%s%s%s%s", name ? "Camera '" : "", name ? name : "", name ? "': " : "", asked[scene]);
+    return person->ask(person->context, text, error);
+}
+
+/* ---- The whole ---- */
+
 weft_code weft_lab_camera_describe(const weft_rig_file *file, int index, weft_lab_camera *c, weft_error *error)
 {
     const weft_camera_description *camera = &file->camera[index];
@@ -75,6 +98,7 @@ weft_code weft_lab_camera_describe(const weft_rig_file *file, int index, weft_la
     c->axes = file->axes;
     c->axes.fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_THETA] = camera->theta_deg;
     c->axes.fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_PHI] = camera->phi_deg;
+    c->rig.curtain = (weft_rig_curtain){c, show};
     c->rig.name = "laboratory";
     c->rig.identity = c->identity;
     c->rig.camera_name = file->camera_count > 1 ? camera->name : NULL;

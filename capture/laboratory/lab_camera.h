@@ -32,6 +32,7 @@ typedef struct weft_lab_camera {
     weft_folder_camera *folder;
     weft_video_camera *video;
     weft_tethered_camera *tethered;
+    bool asked_to_show; /* something else than the sample */
     weft_rig rig;
 } weft_lab_camera;
 

@@ -21,7 +21,6 @@ struct weft_laboratory {
     weft_relay *relay;
     weft_releases releases;
     weft_poses_file poses;
-    bool asked_to_show; /* something else than the sample */
     int camera_count;
     weft_lab_camera camera[WEFT_CAMERAS_MAX]; /* [camera_count] */
 };
@@ -132,23 +131,6 @@ static weft_code create_stage(weft_laboratory *lab, weft_error *error)
     return WEFT_OK;
 }
 
-/* ---- What the camera sees ---- */
-
-/* A person does it; but a lamp that has a switch is dark without. */
-static weft_code show(void *device, weft_curtain scene, weft_error *error)
-{
-    static const char *const asked[] = {[WEFT_CURTAIN_OPEN] = "Let the camera see the sample again.",
-                                        [WEFT_CURTAIN_DARK] = "Cover the lens: no light may reach the camera.",
-                                        [WEFT_CURTAIN_EVEN] =
-                                            "Put an evenly lit white field, out of focus, before the whole lens."};
-    weft_laboratory *lab = device;
-    bool covered = lab->file.light.backend == WEFT_LIGHT_NONE, was_asked = lab->asked_to_show;
-    lab->asked_to_show = scene == WEFT_CURTAIN_EVEN || (scene == WEFT_CURTAIN_DARK && covered);
-    if (!lab->asked_to_show && !was_asked)
-        return WEFT_OK;
-    return lab->request.person.ask(lab->request.person.context, asked[scene], error);
-}
-
 /* ---- Opening ---- */
 
 static weft_code describe_cameras(weft_laboratory *lab, weft_error *error)
@@ -172,7 +154,6 @@ static void join_cameras(weft_laboratory *lab)
         c->rig.sample = lab->sample;
         c->rig.poses = lab->file.poses[0] ? &lab->poses.poses : NULL;
         c->rig.poses_path = lab->file.poses[0] ? lab->poses_path : NULL;
-        c->rig.curtain = (weft_rig_curtain){lab, show};
         c->rig.stage = weft_stage_for_rig(c->stage);
         c->rig.light = weft_stage_light(c->stage);
         c->rig.first = several ? &lab->camera[0].rig : NULL;
