@@ -9,7 +9,6 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 typedef struct register_command {
     weft_common_options common;
@@ -153,15 +152,11 @@ static weft_code take_one_colour(const register_command *command, cameras *c, we
     return WEFT_OK;
 }
 
-/* FOLDER/CAMERA.json */
 static weft_code take_colour_of_each(const register_command *command, cameras *c, weft_error *error)
 {
-    if (c->list.count == 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder, and '%s' is of one camera: name its COLOUR.json",
-                         command->colour, command->input);
     for (int i = 0; i < c->count; i++) {
         char path[PATH_MAX];
-        snprintf(path, sizeof path, "%s/%s.json", command->colour, c->list.name[i]);
+        WEFT_TRY(weft_camera_file(command->colour, c->list.name[i], path, sizeof path, error));
         WEFT_TRY(weft_colour_read(path, &c->session[i].colour, error));
     }
     return WEFT_OK;
@@ -169,11 +164,13 @@ static weft_code take_colour_of_each(const register_command *command, cameras *c
 
 static weft_code take_colour(const register_command *command, cameras *c, weft_error *error)
 {
-    struct stat status;
+    char path[PATH_MAX];
     if (!command->colour)
         return WEFT_OK;
-    bool of_each = stat(command->colour, &status) == 0 && S_ISDIR(status.st_mode);
-    return of_each ? take_colour_of_each(command, c, error) : take_one_colour(command, c, error);
+    bool is_file = weft_camera_file(command->colour, NULL, path, sizeof path, error) == WEFT_OK;
+    if (is_file)
+        return take_one_colour(command, c, error);
+    return c->list.count > 0 ? take_colour_of_each(command, c, error) : WEFT_BAD_INPUT;
 }
 
 static weft_code register_all(const register_command *command, cameras *c, const weft_progress *progress,

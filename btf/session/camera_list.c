@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { LIST_VERSION = 1, MAX_LIST_BYTES = 1 << 16 };
@@ -82,6 +83,19 @@ weft_code weft_camera_list_write(const char *folder, const weft_camera_list *lis
     weft_code code = weft_write_file(path, text, strlen(text), error);
     free(text);
     return code;
+}
+
+weft_code weft_camera_file(const char *path, const char *camera, char *file, size_t size, weft_error *error)
+{
+    struct stat status;
+    bool is_folder = stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+    if (camera && !is_folder)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no folder with '%s.json' and so on, a file for each camera",
+                         path, camera);
+    if (!camera && is_folder)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder, and there is one camera: name its file", path);
+    snprintf(file, size, "%s%s%s%s", path, camera ? "/" : "", camera ? camera : "", camera ? ".json" : "");
+    return WEFT_OK;
 }
 
 /* ---- The sessions ---- */

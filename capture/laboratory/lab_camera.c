@@ -29,6 +29,17 @@ static weft_code read_colour(weft_lab_camera *c, weft_error *error)
     return WEFT_OK;
 }
 
+static weft_code read_poses(weft_lab_camera *c, weft_error *error)
+{
+    if (!c->description->poses[0])
+        return WEFT_OK;
+    WEFT_TRY(weft_rig_file_beside(c->file, c->description->poses, c->poses_path, sizeof c->poses_path, error));
+    WEFT_TRY(weft_poses_read(c->poses_path, &c->poses, error));
+    c->rig.poses = &c->poses.poses;
+    c->rig.poses_path = c->poses_path;
+    return WEFT_OK;
+}
+
 /* Speeds, limits and retries may change in the night; where things stand and what takes the photographs may not. */
 static weft_code identify(weft_lab_camera *c, weft_error *error)
 {
@@ -94,6 +105,7 @@ weft_code weft_lab_camera_describe(const weft_rig_file *file, int index, weft_la
     *c = (weft_lab_camera){.file = file, .description = camera};
     WEFT_TRY(read_lens(c, error));
     WEFT_TRY(read_colour(c, error));
+    WEFT_TRY(read_poses(c, error));
     WEFT_TRY(identify(c, error));
     c->axes = file->axes;
     c->axes.fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_THETA] = camera->theta_deg;

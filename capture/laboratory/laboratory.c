@@ -1,7 +1,6 @@
 #include "capture/laboratory/laboratory.h"
 
 #include "base/text/csv.h"
-#include "btf/session/poses_file.h"
 #include "capture/laboratory/lab_camera.h"
 #include "capture/motion/relay.h"
 
@@ -16,24 +15,14 @@ struct weft_laboratory {
     weft_angles *lamp; /* [lamp_count] */
     int lamp_count;
     char *sample;
-    char poses_path[PATH_MAX];
     weft_controller *controller;
     weft_relay *relay;
     weft_releases releases;
-    weft_poses_file poses;
     int camera_count;
     weft_lab_camera camera[WEFT_CAMERAS_MAX]; /* [camera_count] */
 };
 
 /* ---- What the rig file names ---- */
-
-static weft_code read_poses(weft_laboratory *lab, weft_error *error)
-{
-    if (!lab->file.poses[0])
-        return WEFT_OK;
-    WEFT_TRY(weft_rig_file_beside(&lab->file, lab->file.poses, lab->poses_path, sizeof lab->poses_path, error));
-    return weft_poses_read(lab->poses_path, &lab->poses, error);
-}
 
 static weft_code read_lamp(const weft_csv *csv, int row, const int column[2], weft_angles *lamp, weft_error *error)
 {
@@ -152,8 +141,6 @@ static void join_cameras(weft_laboratory *lab)
     for (int i = 0; i < lab->camera_count; i++) {
         weft_lab_camera *c = &lab->camera[i];
         c->rig.sample = lab->sample;
-        c->rig.poses = lab->file.poses[0] ? &lab->poses.poses : NULL;
-        c->rig.poses_path = lab->file.poses[0] ? lab->poses_path : NULL;
         c->rig.stage = weft_stage_for_rig(c->stage);
         c->rig.light = weft_stage_light(c->stage);
         c->rig.first = several ? &lab->camera[0].rig : NULL;
@@ -165,7 +152,6 @@ static weft_code prepare(weft_laboratory *lab, weft_error *error)
 {
     WEFT_TRY(weft_rig_file_read(lab->request.rig_file, &lab->file, error));
     WEFT_TRY(describe_cameras(lab, error));
-    WEFT_TRY(read_poses(lab, error));
     WEFT_TRY(read_lamps(lab, error));
     WEFT_TRY(create_stage(lab, error));
     lab->releases.controller = lab->controller;
