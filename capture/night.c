@@ -111,7 +111,7 @@ static weft_code expose_volley(const run *r, weft_camera_at_work *const *aimed, 
 {
     int retries = exposing[0].shooting->retries;
     for (int attempt = 0; attempt <= retries; attempt++) {
-        bool held;
+        bool held = true;
         WEFT_TRY(weft_volley_take(exposing, count, error));
         WEFT_TRY(keep_originals(aimed, exposing, count, true, error));
         WEFT_TRY(expose_brackets(r, aimed, exposing, count, &held, error));

@@ -99,7 +99,7 @@ static weft_code take_in_pose(weft_exposing *exposing, int count, weft_error *er
 {
     int retries = exposing[0].shooting->retries;
     for (int attempt = 0; attempt <= retries; attempt++) {
-        bool held;
+        bool held = true;
         WEFT_TRY(weft_shooting_halt(exposing[0].shooting, take_once(exposing, count, &held, error)));
         if (held || all_failed(exposing, count))
             return WEFT_OK;

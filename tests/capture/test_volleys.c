@@ -221,7 +221,7 @@ static void a_killed_capture_goes_on(void **state)
 static void a_volley_is_lit_once_for_all_cameras(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     weft_error error = {0};
     open_bench(CAMERAS);
     if (take(&summary, &error) != WEFT_OK)
@@ -247,7 +247,7 @@ static void cameras_expose_at_the_same_time(void **state)
 {
     (void)state;
     const char pair[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n20,45,30,90\n20,45,30,270\n";
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     open_bench(CAMERAS);
     scratch_store("plan.csv", pair, sizeof pair - 1);
     request.capture.folder = "pair";
@@ -263,7 +263,7 @@ static void cameras_expose_at_the_same_time(void **state)
 static void a_camera_that_fails_loses_nothing_of_the_other(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     weft_error error = {0};
     open_bench(CAMERAS);
     request.capture.folder = "failing";
@@ -301,7 +301,7 @@ static bool page_says(const char *path, const char *text)
 static void pages_tell_the_share_of_each_camera(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     open_bench(CAMERAS);
     request.capture.folder = "told";
     request.capture.status = "status";
@@ -327,7 +327,7 @@ static void pages_tell_the_share_of_each_camera(void **state)
 static void a_night_that_is_stopped_completes_its_volley_and_says_so(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     weft_error error = {0};
     open_bench(CAMERAS);
     request.capture.folder = "stopped";
@@ -349,7 +349,7 @@ static void a_night_that_is_stopped_completes_its_volley_and_says_so(void **stat
 static void a_camera_whose_sensor_is_not_seen_is_left_out_alone(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     weft_error error = {0};
     open_bench(CAMERAS);
     request.capture.folder = "unseen";
@@ -370,7 +370,7 @@ static void a_camera_whose_sensor_is_not_seen_is_left_out_alone(void **state)
 static void a_camera_that_failed_once_goes_on(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     open_bench(CAMERAS);
     request.capture.folder = "once";
     b.fail_from = 1;
@@ -398,11 +398,11 @@ static int brackets_of(const char *folder, int shots[SHOTS_OF_FIRST])
 static void a_bracket_that_the_stage_disturbed_is_taken_again(void **state)
 {
     (void)state;
-    int shots[3][SHOTS_OF_FIRST];
+    int shots[3][SHOTS_OF_FIRST] = {{0}};
     for (int push_at = 0; push_at < 3; push_at++) {
         static const char *const folder[] = {"still/camera1", "pushed1/camera1", "pushed2/camera1"};
         static const char *const session[] = {"still", "pushed1", "pushed2"};
-        weft_capture_summary summary;
+        weft_capture_summary summary = {0};
         open_patient_bench(CAMERAS, 1);
         request.capture.folder = session[push_at];
         request.capture.brackets = 2;
@@ -432,7 +432,7 @@ static void what_is_no_session_of_a_camera_is_foreign(void **state)
 static void other_cameras_do_not_go_on(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     weft_error error = {0};
     open_bench(CAMERAS);
     snprintf(b.rig[1].camera_name, sizeof b.rig[1].camera_name, "other");

@@ -196,7 +196,8 @@ static double error_of_camera(int camera, int first_image, int shots, weft_datas
     weft_error error = {0};
     expect_ok(truth_read(camera == 0 ? "0.truth.h5" : "1.truth.h5", &real, &error), &error);
     double(*light_mm)[3] = calloc(SHOTS, sizeof *light_mm), *all = calloc(SHOTS * TEXELS * TEXELS * 3, sizeof *all);
-    assert_true(light_mm && all);
+    assert_non_null(light_mm);
+    assert_non_null(all);
     memcpy(light_mm[first_image], real.light_mm, (size_t)shots * sizeof *light_mm);
     free(real.light_mm);
     real.light_mm = light_mm;
@@ -247,7 +248,7 @@ static void register_night(bool swapped, double median[CAMERAS])
 static void both_meet_in_the_colours_of_the_truth(void **state)
 {
     (void)state;
-    double own[CAMERAS], swapped[CAMERAS];
+    double own[CAMERAS] = {0}, swapped[CAMERAS] = {0};
     register_night(false, own);
     register_night(true, swapped);
     for (int i = 0; i < CAMERAS; i++) {

@@ -271,7 +271,8 @@ static void cameras_of_one_session_meet_in_one_colour_space(void **state)
     photograph_sample(1, "night/right", NULL, NULL);
     expect_weft("register night -o no.btf.h5 --size 8x8", 1, "do not see the same colours");
     expect_weft("register night -o no.btf.h5 --size 8x8 --colour colours/left.json", 1, "do not see the same colours");
-    expect_weft("register night/left -o no.btf.h5 --size 8x8 --colour colours", 1, "there is one camera: name its file");
+    expect_weft("register night/left -o no.btf.h5 --size 8x8 --colour colours", 1,
+                "there is one camera: name its file");
     expect_weft("register night -o no.btf.h5 --size 8x8 --colour charts", 1, "charts/left.json");
     assert_true(access("no.json", F_OK) != 0 && access("no.btf.h5", F_OK) != 0);
     expect_weft("register night -o after.btf.h5 --size 8x8 --colour colours", 0, "colours: linear sRGB");
