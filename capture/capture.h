@@ -13,7 +13,7 @@ typedef struct weft_capture_request {
     const char *plan;   /* "ubo81" or a CSV file, see capture/plan.h */
     int brackets;       /* photographs of a shot beyond the first, where it shows highlights or shadows badly: 0 to
                            WEFT_SESSION_MAX_BRACKETS */
-    const char *status; /* folder of a page that tells how it goes (capture/status_page.h); NULL: none */
+    const char *status; /* folder of a page that tells how it goes (capture/status/status_page.h); NULL: none */
     weft_colour colour; /* of the camera under the lamp, for registration; terms 0: not known */
 } weft_capture_request;
 

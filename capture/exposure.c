@@ -95,6 +95,14 @@ double weft_meter_read(const weft_meter *meter, const weft_session *session, con
     return fmax(opening, percentile_of(meter->white, meter->white_count, session, samples) / weft_white_aim);
 }
 
+double weft_meter_white(const weft_meter *meter, const weft_session *session, const uint16_t *samples)
+{
+    double sum = 0;
+    for (int i = 0; i < meter->white_count; i++)
+        sum += samples[3 * (size_t)meter->white[i] + 1] - session->black_level;
+    return meter->white_count ? sum / meter->white_count : 0;
+}
+
 /* ---- Choosing the exposure ---- */
 
 double weft_exposure_in_thirds(double exposure_s, weft_exposure_limits limits)

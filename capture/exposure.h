@@ -21,6 +21,9 @@ void weft_meter_free(weft_meter *meter);
  * full scale. Above 1: too long. Clipped photographs give at least the value of full scale. Pure. */
 double weft_meter_read(const weft_meter *meter, const weft_session *session, const uint16_t *samples);
 
+/* What the white patches show above the black level in the green channel, in raw values; 0 where none is seen. Pure. */
+double weft_meter_white(const weft_meter *meter, const weft_session *session, const uint16_t *samples);
+
 extern const double weft_opening_aim, weft_white_aim;
 
 /* What the shutter can do. */

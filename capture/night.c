@@ -1,11 +1,9 @@
 #include "capture/night.h"
 
-#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "capture/kept_file.h"
-#include "capture/photograph_writer.h"
+#include "capture/night_pages.h"
 #include "capture/sensor_frames.h"
-#include "capture/status_page.h"
 #include "capture/volley.h"
 
 #include <limits.h>
@@ -16,32 +14,27 @@
 /* Failures in a row after which one of several cameras is left out: each has been retried, and may have waited long. */
 enum { MOST_FAILURES = 3 };
 
-/* A camera at work. */
-typedef struct camera_at_work {
-    weft_rig *rig;
-    weft_session *session;
-    int found, taken, damaged;
-    weft_shooting shooting;
-    weft_photograph_writer *writer;
-    weft_status_page *status;
-    int failures;       /* in a row */
-    bool left_out;      /* for the rest of the night */
-    weft_code code;     /* of its last failure */
-    weft_error failure; /* why */
-} camera_at_work;
-
 typedef struct run {
     const weft_night *night;
     int camera_count;
-    camera_at_work *camera; /* [camera_count] */
+    weft_camera_at_work *camera; /* [camera_count] */
     double start_s;
+    int stays_told; /* of all cameras, when their common page was written last */
 } run;
+
+/* The first of two failures counts. */
+static weft_code first_of(weft_code code, weft_code later, const weft_error *last, weft_error *error)
+{
+    if (code == WEFT_OK && later != WEFT_OK && error)
+        *error = *last;
+    return code != WEFT_OK ? code : later;
+}
 
 /* ---- One photograph ---- */
 
 /* The file that the camera made lies beside the photograph that was made of it, under the same name and its own ending.
  * `bracket` is -1 for the first photograph of a shot. */
-static weft_code keep_original(const camera_at_work *c, int shot, int bracket, weft_error *error)
+static weft_code keep_original(const weft_camera_at_work *c, int shot, int bracket, weft_error *error)
 {
     const weft_rig_camera *camera = &c->rig->camera;
     char path[PATH_MAX], kept[PATH_MAX + 16];
@@ -57,37 +50,30 @@ static weft_code keep_original(const camera_at_work *c, int shot, int bracket, w
     return weft_keep_file(original, kept, error);
 }
 
-static weft_status_counts counts_of(const run *r, const camera_at_work *c)
+/* A page that cannot be written costs no photograph. */
+static weft_code hand_over(run *r, weft_camera_at_work *c, const weft_exposing *e, weft_error *error)
 {
-    return (weft_status_counts){.taken = c->found + c->taken,
-                                .total = c->session->shot_count,
-                                .taken_now = c->taken,
-                                .seconds = weft_now_s() - r->start_s,
-                                .damaged = c->damaged,
-                                .timeouts = c->shooting.timeouts,
-                                .disturbed = c->shooting.disturbed};
-}
-
-static weft_code hand_over(run *r, camera_at_work *c, const weft_exposing *e, weft_error *error)
-{
-    weft_status_counts counts = counts_of(r, c);
+    weft_status_counts counts = weft_night_counts(c, r->start_s);
+    double white = weft_meter_white(&c->shooting.meter, c->session, e->samples);
     counts.taken++;
     counts.taken_now++;
-    WEFT_TRY(weft_status_page_note(c->status, e->shot, &e->record, &c->shooting.meter, e->samples, &counts, error));
+    weft_error told = {0};
+    weft_code noted = weft_status_page_note(c->status, e->shot, &e->record, white, e->samples, &counts, &told);
     WEFT_TRY(weft_photograph_writer_submit(c->writer, e->shot, &e->record, error));
+    r->night->summary->bracketed += e->record.bracket_count;
     c->taken++;
     c->failures = 0;
-    return WEFT_OK;
+    return first_of(WEFT_OK, noted, &told, error);
 }
 
 /* ---- One volley ---- */
 
 /* Its cameras that are not left out. */
-static int aim(run *r, const weft_volley_shots *volley, camera_at_work **aimed, weft_exposing *exposing)
+static int aim(run *r, const weft_volley_shots *volley, weft_camera_at_work **aimed, weft_exposing *exposing)
 {
     int count = 0;
     for (int i = 0; i < r->camera_count; i++) {
-        camera_at_work *c = &r->camera[i];
+        weft_camera_at_work *c = &r->camera[i];
         if (volley->shot[i] < 0 || c->left_out)
             continue;
         exposing[count] = (weft_exposing){
@@ -97,7 +83,7 @@ static int aim(run *r, const weft_volley_shots *volley, camera_at_work **aimed, 
     return count;
 }
 
-static weft_code keep_originals(camera_at_work *const *aimed, const weft_exposing *exposing, int count, bool first,
+static weft_code keep_originals(weft_camera_at_work *const *aimed, const weft_exposing *exposing, int count, bool first,
                                 weft_error *error)
 {
     for (int i = 0; i < count; i++) {
@@ -108,22 +94,37 @@ static weft_code keep_originals(camera_at_work *const *aimed, const weft_exposin
     return WEFT_OK;
 }
 
-static weft_code expose_volley(const run *r, camera_at_work *const *aimed, weft_exposing *exposing, int count,
-                               weft_error *error)
+static weft_code expose_brackets(const run *r, weft_camera_at_work *const *aimed, weft_exposing *exposing, int count,
+                                 bool *held, weft_error *error)
 {
     int taken = 1;
-    WEFT_TRY(weft_volley_take(exposing, count, error));
-    WEFT_TRY(keep_originals(aimed, exposing, count, true, error));
-    while (taken > 0) {
-        WEFT_TRY(weft_volley_bracket(exposing, count, r->night->brackets, &taken, error));
+    for (*held = true; taken > 0 && *held;) {
+        WEFT_TRY(weft_volley_bracket(exposing, count, r->night->brackets, &taken, held, error));
         if (taken > 0)
             WEFT_TRY(keep_originals(aimed, exposing, count, false, error));
     }
     return WEFT_OK;
 }
 
+static weft_code expose_volley(const run *r, weft_camera_at_work *const *aimed, weft_exposing *exposing, int count,
+                               weft_error *error)
+{
+    int retries = exposing[0].shooting->retries;
+    for (int attempt = 0; attempt <= retries; attempt++) {
+        bool held = true;
+        WEFT_TRY(weft_volley_take(exposing, count, error));
+        WEFT_TRY(keep_originals(aimed, exposing, count, true, error));
+        WEFT_TRY(expose_brackets(r, aimed, exposing, count, &held, error));
+        if (held)
+            return WEFT_OK;
+        for (int i = 0; i < count; i++)
+            exposing[i].shooting->disturbed++;
+    }
+    return weft_volley_fail_disturbed(&exposing[0], retries + 1, error);
+}
+
 /* One camera of several may fail a few times; where there is one, the night is over. */
-static void note_failure(const run *r, camera_at_work *c, const weft_exposing *e)
+static void note_failure(const run *r, weft_camera_at_work *c, const weft_exposing *e)
 {
     c->failures++;
     c->code = e->code;
@@ -131,9 +132,27 @@ static void note_failure(const run *r, camera_at_work *c, const weft_exposing *e
     c->left_out = r->camera_count == 1 || c->failures >= MOST_FAILURES;
 }
 
+static int count_stays(const run *r)
+{
+    int stays = 0;
+    for (int i = 0; i < r->camera_count; i++)
+        stays += r->camera[i].shooting.stay + 1;
+    return stays;
+}
+
+/* On the page of all cameras, when one of them has moved on. */
+static weft_code tell(run *r, weft_error *error)
+{
+    int stays = count_stays(r);
+    if (stays == r->stays_told)
+        return WEFT_OK;
+    r->stays_told = stays;
+    return weft_night_overview_write(r->night, r->camera, r->camera_count, r->start_s, NULL, error);
+}
+
 static weft_code take_volley(run *r, const weft_volley_shots *volley, weft_error *error)
 {
-    camera_at_work *aimed[WEFT_CAMERAS_MAX];
+    weft_camera_at_work *aimed[WEFT_CAMERAS_MAX];
     weft_exposing exposing[WEFT_CAMERAS_MAX];
     int count = aim(r, volley, aimed, exposing);
     if (count > 0)
@@ -143,9 +162,8 @@ static weft_code take_volley(run *r, const weft_volley_shots *volley, weft_error
             note_failure(r, aimed[i], &exposing[i]);
         else
             WEFT_TRY(hand_over(r, aimed[i], &exposing[i], error));
-        r->night->summary->bracketed += exposing[i].record.bracket_count;
     }
-    return WEFT_OK;
+    return tell(r, error);
 }
 
 /* ---- All volleys ---- */
@@ -169,9 +187,9 @@ static bool is_over(const run *r)
 /* That of the first camera which failed, the more so if it was left out. */
 static weft_code failure_of_cameras(const run *r, weft_error *error)
 {
-    const camera_at_work *worst = NULL;
+    const weft_camera_at_work *worst = NULL;
     for (int i = 0; i < r->camera_count; i++) {
-        const camera_at_work *c = &r->camera[i];
+        const weft_camera_at_work *c = &r->camera[i];
         if (c->code != WEFT_OK && (!worst || (c->left_out && !worst->left_out)))
             worst = c;
     }
@@ -201,33 +219,20 @@ static weft_code take_volleys(run *r, weft_error *error)
 
 /* ---- Before and after ---- */
 
-/* The first of two failures counts. */
-static weft_code first_of(weft_code code, weft_code later, const weft_error *last, weft_error *error)
-{
-    if (code == WEFT_OK && later != WEFT_OK && error)
-        *error = *last;
-    return code != WEFT_OK ? code : later;
-}
-
-static weft_code begin_status(const weft_night *night, camera_at_work *c, weft_error *error)
-{
-    char folder[PATH_MAX];
-    if (!night->status || !c->rig->camera_name)
-        return weft_status_page_begin(night->status, c->session, &c->status, error);
-    WEFT_TRY(weft_make_folder(night->status, error));
-    snprintf(folder, sizeof folder, "%s/%s", night->status, c->rig->camera_name);
-    return weft_status_page_begin(folder, c->session, &c->status, error);
-}
-
-static weft_code begin_camera(const weft_night *night, weft_rig *rig, weft_held_session *held, camera_at_work *c,
+static weft_code begin_camera(const weft_night *night, weft_rig *rig, weft_held_session *held, weft_camera_at_work *c,
                               weft_error *error)
 {
-    *c = (camera_at_work){.rig = rig, .session = &held->session, .damaged = held->damaged};
+    *c = (weft_camera_at_work){.rig = rig, .session = &held->session, .damaged = held->damaged};
     for (int shot = 0; shot < c->session->shot_count; shot++)
         c->found += c->session->record[shot].taken;
     WEFT_TRY(weft_shooting_begin(rig, c->session, held->next_stay, &c->shooting, error));
-    WEFT_TRY(begin_status(night, c, error));
-    WEFT_TRY(weft_sensor_frames_take(rig, c->session, night->stop, night->progress, error));
+    WEFT_TRY(weft_night_page_begin(night, c, error));
+    weft_code seen = weft_sensor_frames_take(rig, c->session, night->stop, night->progress, &c->failure);
+    if (seen != WEFT_OK) {
+        c->code = seen;
+        c->left_out = true;
+        return WEFT_OK;
+    }
     return weft_photograph_writer_start(c->session, night->brackets, &c->writer, error);
 }
 
@@ -245,31 +250,47 @@ static weft_code begin_all(run *r, weft_error *error)
 /* What waits to be written is written, whatever has happened. */
 static weft_code finish_writing(run *r, weft_code code, weft_error *error)
 {
-    weft_error last = {0};
     for (int i = 0; i < r->camera_count; i++) {
-        camera_at_work *c = &r->camera[i];
-        if (c->writer)
-            code = first_of(code, weft_photograph_writer_finish(c->writer, &last), &last, error);
+        weft_camera_at_work *c = &r->camera[i];
+        weft_error last = {0};
+        weft_code written = c->writer ? weft_photograph_writer_finish(c->writer, &last) : WEFT_OK;
+        if (written != WEFT_OK) {
+            c->code = written;
+            c->failure = last;
+        }
+        code = first_of(code, written, &last, error);
     }
     return code;
 }
 
-static weft_code end_all(run *r, weft_code code, weft_error *error)
+static weft_code end_camera(run *r, weft_camera_at_work *c, const char *why, weft_error *error)
 {
     weft_capture_summary *summary = r->night->summary;
-    weft_error last = {0};
+    const weft_status_counts counts = weft_night_counts(c, r->start_s);
+    summary->taken += c->taken;
+    summary->exposures += c->shooting.exposures;
+    summary->timeouts += c->shooting.timeouts;
+    summary->disturbed += c->shooting.disturbed;
+    return weft_status_page_end(c->status, &counts, why, error);
+}
+
+static weft_code end_all(run *r, weft_code code, weft_error *error)
+{
+    const char *failure = code != WEFT_OK ? error->message : NULL;
+    weft_error last = {0}, one = {0};
     weft_code told = WEFT_OK;
+    bool is_complete = true;
     for (int i = 0; i < r->camera_count; i++) {
-        camera_at_work *c = &r->camera[i];
-        const weft_status_counts counts = counts_of(r, c);
-        summary->taken += c->taken;
-        summary->exposures += c->shooting.exposures;
-        summary->timeouts += c->shooting.timeouts;
-        summary->disturbed += c->shooting.disturbed;
-        const char *why = code == WEFT_OK ? NULL : error->message;
-        told = first_of(told, weft_status_page_end(c->status, &counts, why, &last), &last, &last);
-        weft_shooting_end(&c->shooting);
+        weft_camera_at_work *c = &r->camera[i];
+        const char *why = weft_night_why_early(c, failure);
+        is_complete = is_complete && !why;
+        told = first_of(told, end_camera(r, c, why, &one), &one, &last);
     }
+    const char *why = failure || is_complete ? failure : weft_night_stopped;
+    told = first_of(told, weft_night_overview_write(r->night, r->camera, r->camera_count, r->start_s, why, &one), &one,
+                    &last);
+    for (int i = 0; i < r->camera_count; i++)
+        weft_shooting_end(&r->camera[i].shooting);
     return first_of(code, told, &last, error);
 }
 

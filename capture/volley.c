@@ -88,24 +88,30 @@ static weft_code take_once(weft_exposing *exposing, int count, bool *held, weft_
     return run_lit(exposing, count, meter_and_expose, held, error);
 }
 
+weft_code weft_volley_fail_disturbed(const weft_exposing *exposing, int times, weft_error *error)
+{
+    return weft_shooting_halt(exposing->shooting,
+                              weft_fail(error, WEFT_SYSTEM, "the stage did not keep its pose during shot %d, %d times",
+                                        exposing->shot, times));
+}
+
 static weft_code take_in_pose(weft_exposing *exposing, int count, weft_error *error)
 {
     int retries = exposing[0].shooting->retries;
     for (int attempt = 0; attempt <= retries; attempt++) {
-        bool held;
-        WEFT_TRY(take_once(exposing, count, &held, error));
+        bool held = true;
+        WEFT_TRY(weft_shooting_halt(exposing[0].shooting, take_once(exposing, count, &held, error)));
         if (held || all_failed(exposing, count))
             return WEFT_OK;
         for (int i = 0; i < count; i++)
             exposing[i].shooting->disturbed++;
     }
-    return weft_fail(error, WEFT_SYSTEM, "the stage did not keep its pose during shot %d, %d times", exposing[0].shot,
-                     retries + 1);
+    return weft_volley_fail_disturbed(&exposing[0], retries + 1, error);
 }
 
 weft_code weft_volley_take(weft_exposing *exposing, int count, weft_error *error)
 {
-    WEFT_TRY(weft_shooting_halt(exposing[0].shooting, take_in_pose(exposing, count, error)));
+    WEFT_TRY(take_in_pose(exposing, count, error));
     if (is_lost(exposing, count))
         return WEFT_OK;
     for (int i = 0; i < count; i++) {
@@ -146,18 +152,18 @@ static int choose_exposures(weft_exposing *exposing, int count, int most)
     return needed;
 }
 
-weft_code weft_volley_bracket(weft_exposing *exposing, int count, int most, int *taken, weft_error *error)
+weft_code weft_volley_bracket(weft_exposing *exposing, int count, int most, int *taken, bool *held, weft_error *error)
 {
-    bool held;
     *taken = 0;
+    *held = true;
     if (choose_exposures(exposing, count, most) == 0)
         return WEFT_OK;
-    WEFT_TRY(weft_shooting_halt(exposing[0].shooting, run_lit(exposing, count, expose_behind, &held, error)));
+    WEFT_TRY(weft_shooting_halt(exposing[0].shooting, run_lit(exposing, count, expose_behind, held, error)));
     if (is_lost(exposing, count))
         return WEFT_OK;
     for (int i = 0; i < count; i++) {
         weft_exposing *e = &exposing[i];
-        e->wanted = e->wanted && e->code == WEFT_OK && held && e->read_back_s != last_exposure(e);
+        e->wanted = e->wanted && e->code == WEFT_OK && *held && e->read_back_s != last_exposure(e);
         if (e->wanted)
             e->record.bracket[e->record.bracket_count++].exposure_s = e->read_back_s;
         *taken += e->wanted;

@@ -22,10 +22,14 @@ typedef struct weft_exposing {
  * and light. Then, and where all cameras fail, axes stand still and the light is off. */
 weft_code weft_volley_take(weft_exposing *exposing, int count, weft_error *error);
 
+/* Fails: the stage moved during a photograph, `times` times. Its axes stand still then. */
+weft_code weft_volley_fail_disturbed(const weft_exposing *exposing, int times, weft_error *error);
+
 /* Takes the next photograph of the bracket of each that needs one and did not fail: shorter where the sensor clipped in
  * the opening, else longer, up to 16 times, until the darkest of the opening reaches a thirty-second of full scale. It
  * goes behind the last one in `samples`; record gets its exposure. *taken says how many there were, and `wanted` whose.
- * One during which the stage moved is left out. Errors: as above. */
-weft_code weft_volley_bracket(weft_exposing *exposing, int count, int most, int *taken, weft_error *error);
+ * *held says whether the stage kept its pose: where it did not, the volley is to be taken again from its beginning, for
+ * its photographs share one pose. Errors: as above. */
+weft_code weft_volley_bracket(weft_exposing *exposing, int count, int most, int *taken, bool *held, weft_error *error);
 
 #endif

@@ -1,5 +1,6 @@
 #include "base/atomic_file.h"
 #include "base/text/json_text.h"
+#include "btf/session/camera_list.h"
 #include "capture/plan.h"
 #include "cli/command/arguments.h"
 #include "registration/axes/expectation.h"
@@ -280,7 +281,7 @@ static int run(int argc, char **argv)
     weft_arguments_parse(&weft_command_calibrate, argc, argv, &command);
     weft_code code = weft_plan_read(command.plan, &plan, &error);
     if (code == WEFT_OK) {
-        code = weft_session_open(command.session, &session, &error);
+        code = weft_camera_session_open(command.session, &session, &error);
         if (code == WEFT_OK) {
             code = calibrate(&command, &session, &plan, &error);
             weft_session_free(&session);

@@ -1,9 +1,7 @@
 #include "capture/capture.h"
 #include "btf/session/poses_file.h"
 #include "capture/laboratory/laboratory.h"
-#include "capture/planned_session.h"
 #include "capture/virtual/ground_truth.h"
-#include "capture/volley_order.h"
 #include "cli/capture_words.h"
 #include "cli/command/arguments.h"
 #include "cli/command/person.h"
@@ -42,10 +40,10 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, request.plan)},
     {"seed", .argument = "N", .help = "Start of the random numbers of the virtual rig (default: 1)",
      .kind = WEFT_OPTION_SEED, .offset = offsetof(capture_command, rig.seed)},
-    {"poses", .argument = "POSES.json",
+    {"poses", .argument = "POSES.json|FOLDER",
      .help =
-         "Where the axes of the virtual rig truly are, as weft calibrate found them; a rig of yours names its poses "
-         "in its file",
+         "Where the axes of the virtual rig truly are, as weft calibrate found them; of several cameras, a folder with "
+         "a file for each, CAMERA.json. A rig of yours names its poses in its file",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(capture_command, poses)},
     {"truth", .argument = "FILE.h5",
      .help = "Where the ground truth goes (default: SESSION.truth.h5; of several cameras SESSION.CAMERA.truth.h5)",
@@ -108,37 +106,6 @@ static weft_code rehearse(const capture_command *command, weft_rig *rig, const c
     weft_say_rehearsal(&command->common, &rehearsal, rig->stage.order != NULL);
     weft_capture_rehearsal_free(&rehearsal);
     return WEFT_OK;
-}
-
-/* ---- Several cameras ---- */
-
-static weft_code order_volleys(const capture_command *command, const weft_rig *rig, weft_session *sessions,
-                               weft_volley_order *order, weft_error *error)
-{
-    const weft_session *all[WEFT_CAMERAS_MAX];
-    int count = 0;
-    for (const weft_rig *one = rig; one; one = one->next, count++) {
-        WEFT_TRY(weft_session_of_plan(command->request.folder, command->request.plan, one, &sessions[count], error));
-        all[count] = &sessions[count];
-    }
-    return weft_volley_order_make(rig, all, count, order, error);
-}
-
-static weft_code say_volleys(const capture_command *command, const weft_rig *rig, weft_error *error)
-{
-    weft_session sessions[WEFT_CAMERAS_MAX] = {0};
-    weft_volley_order order = {0};
-    int shots = 0;
-    weft_code code = order_volleys(command, rig, sessions, &order, error);
-    for (int i = 0; i < WEFT_CAMERAS_MAX; i++) {
-        shots += sessions[i].shot_count;
-        weft_session_free(&sessions[i]);
-    }
-    if (code == WEFT_OK)
-        weft_command_say(&command->common, "together: %d photographs in %d volleys, %.2f h of moves", shots,
-                         order.count, order.stage.seconds / 3600);
-    weft_volley_order_free(&order);
-    return code;
 }
 
 /* ---- Before the night ---- */
@@ -285,19 +252,26 @@ static weft_code rehearse_all(const capture_command *command, weft_rig *rig, con
         say_camera(command, one);
         WEFT_TRY(rehearse(command, one, warning, error));
     }
-    return rig->next ? say_volleys(command, rig, error) : WEFT_OK;
+    return rig->next ? weft_say_volleys(&command->common, &command->request, rig, error) : WEFT_OK;
 }
 
-static weft_code capture_with_virtual_cameras(const capture_command *command, weft_virtual_rig *rigs, int count,
-                                              weft_error *error)
+/* Of one camera a file, of several a folder. */
+static weft_code read_poses(const capture_command *command, weft_rig *rig, weft_error *error)
 {
-    weft_poses_file poses;
-    if (command->poses && count > 1)
-        return weft_fail(error, WEFT_BAD_USAGE, "--poses is of one camera, the rig has %d", count);
-    if (command->poses)
-        WEFT_TRY(weft_poses_read(command->poses, &poses, error));
-    rigs[0].rig.poses = command->poses ? &poses.poses : NULL;
-    rigs[0].rig.poses_path = command->poses;
+    static weft_poses_file poses[WEFT_VIRTUAL_CAMERAS_MAX];
+    static char path[WEFT_VIRTUAL_CAMERAS_MAX][PATH_MAX];
+    for (int i = 0; command->poses && rig; i++, rig = rig->next) {
+        WEFT_TRY(weft_camera_file(command->poses, rig->camera_name, path[i], PATH_MAX, error));
+        WEFT_TRY(weft_poses_read(path[i], &poses[i], error));
+        rig->poses = &poses[i].poses;
+        rig->poses_path = path[i];
+    }
+    return WEFT_OK;
+}
+
+static weft_code capture_with_virtual_cameras(const capture_command *command, weft_virtual_rig *rigs, weft_error *error)
+{
+    WEFT_TRY(read_poses(command, &rigs[0].rig, error));
     if (command->dry_run)
         return rehearse_all(command, &rigs[0].rig, rigs[0].warning, error);
     return command->check ? check_all(command, &rigs[0].rig, NULL, error)
@@ -311,7 +285,7 @@ static weft_code capture_with_virtual_rig(capture_command *command, weft_error *
     if (command->rig_file && strcmp(command->rig_file, "virtual") != 0)
         WEFT_TRY(weft_virtual_settings_read(command->rig_file, &command->rig.settings, error));
     WEFT_TRY(weft_virtual_rigs_open(&command->rig, rigs, &count, error));
-    weft_code code = capture_with_virtual_cameras(command, rigs, count, error);
+    weft_code code = capture_with_virtual_cameras(command, rigs, error);
     for (int i = 0; i < count; i++)
         weft_virtual_rig_close(&rigs[i]);
     return code;

@@ -1,6 +1,8 @@
 #include "cli/capture_words.h"
 
 #include "base/text/json_text.h"
+#include "capture/planned_session.h"
+#include "capture/volley_order.h"
 #include "cli/command/describe.h"
 
 #include <stdio.h>
@@ -107,5 +109,37 @@ weft_code weft_say_checks(const weft_common_options *common, const weft_prefligh
             json_decref(packed);
         }
     }
+    return code;
+}
+
+/* ---- Several cameras ---- */
+
+static weft_code order_volleys(const weft_capture_request *request, const weft_rig *rig, weft_session *sessions,
+                               weft_volley_order *order, weft_error *error)
+{
+    const weft_session *all[WEFT_CAMERAS_MAX];
+    int count = 0;
+    for (const weft_rig *one = rig; one; one = one->next, count++) {
+        WEFT_TRY(weft_session_of_plan(request->folder, request->plan, one, &sessions[count], error));
+        all[count] = &sessions[count];
+    }
+    return weft_volley_order_make(rig, all, count, order, error);
+}
+
+weft_code weft_say_volleys(const weft_common_options *common, const weft_capture_request *request, const weft_rig *rig,
+                           weft_error *error)
+{
+    weft_session sessions[WEFT_CAMERAS_MAX] = {0};
+    weft_volley_order order = {0};
+    int shots = 0;
+    weft_code code = order_volleys(request, rig, sessions, &order, error);
+    for (int i = 0; i < WEFT_CAMERAS_MAX; i++) {
+        shots += sessions[i].shot_count;
+        weft_session_free(&sessions[i]);
+    }
+    if (code == WEFT_OK)
+        weft_command_say(common, "together: %d photographs in %d volleys, %.2f h of moves", shots, order.count,
+                         order.stage.seconds / 3600);
+    weft_volley_order_free(&order);
     return code;
 }

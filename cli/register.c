@@ -28,9 +28,9 @@ static const weft_option option_table[] = {
      .offset = offsetof(register_command, output)},
     {"size", 's', "WxH", "Texels of the opening (default: 64x64)", .kind = WEFT_OPTION_SIZE,
      .offset = offsetof(register_command, width), .high = LARGEST_SIZE},
-    {"colour", .argument = "COLOUR.json",
-     .help =
-         "The colours of the camera under the lamp, from weft colour (default: those that the session holds, if any)",
+    {"colour", .argument = "COLOUR.json|FOLDER",
+     .help = "The colours of the camera under the lamp, from weft colour; of several cameras, a folder with a file for "
+             "each, CAMERA.json (default: those that the session holds, if any)",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(register_command, colour)},
     WEFT_HEIGHTS_OPTION(register_command, heights),
     {"report", .argument = "DIR", .help = "Write a report with pictures into this folder", .kind = WEFT_OPTION_FOLDER,
@@ -112,6 +112,7 @@ static weft_code say_outcome(const register_command *command, const weft_session
 /* One camera, or several. */
 typedef struct cameras {
     int count;
+    weft_camera_list list;
     weft_session *session;                                 /* [count] */
     weft_registration_settings settings[WEFT_CAMERAS_MAX]; /* [count] */
     char report_folder[WEFT_CAMERAS_MAX][PATH_MAX];
@@ -121,9 +122,7 @@ typedef struct cameras {
 /* Of one camera, the report lies in the folder asked for; of several, in a folder of each. */
 static weft_code choose_settings(const register_command *command, cameras *c, weft_error *error)
 {
-    weft_camera_list list;
-    WEFT_TRY(weft_camera_list_read(command->input, &list, error));
-    if (list.count > 0 && command->report_folder)
+    if (c->list.count > 0 && command->report_folder)
         WEFT_TRY(weft_make_folder(command->report_folder, error));
     for (int i = 0; i < c->count; i++) {
         weft_registration_settings *settings = &c->settings[i];
@@ -132,20 +131,18 @@ static weft_code choose_settings(const register_command *command, cameras *c, we
         settings->height = command->height;
         settings->allow_unfinished = command->allow_unfinished;
         settings->report_folder = command->report_folder;
-        if (list.count == 0 || !command->report_folder)
+        if (c->list.count == 0 || !command->report_folder)
             continue;
-        snprintf(c->report_folder[i], sizeof c->report_folder[i], "%s/%s", command->report_folder, list.name[i]);
+        snprintf(c->report_folder[i], sizeof c->report_folder[i], "%s/%s", command->report_folder, c->list.name[i]);
         settings->report_folder = c->report_folder[i];
     }
     return WEFT_OK;
 }
 
 /* What is the same for all cameras must be told of one model: the colours of another are others. */
-static weft_code take_colour(const register_command *command, cameras *c, weft_error *error)
+static weft_code take_one_colour(const register_command *command, cameras *c, weft_error *error)
 {
     weft_colour colour;
-    if (!command->colour)
-        return WEFT_OK;
     WEFT_TRY(weft_colour_read(command->colour, &colour, error));
     for (int i = 0; i < c->count; i++)
         c->session[i].colour.terms = 0;
@@ -155,9 +152,31 @@ static weft_code take_colour(const register_command *command, cameras *c, weft_e
     return WEFT_OK;
 }
 
+static weft_code take_colour_of_each(const register_command *command, cameras *c, weft_error *error)
+{
+    for (int i = 0; i < c->count; i++) {
+        char path[PATH_MAX];
+        WEFT_TRY(weft_camera_file(command->colour, c->list.name[i], path, sizeof path, error));
+        WEFT_TRY(weft_colour_read(path, &c->session[i].colour, error));
+    }
+    return WEFT_OK;
+}
+
+static weft_code take_colour(const register_command *command, cameras *c, weft_error *error)
+{
+    char path[PATH_MAX];
+    if (!command->colour)
+        return WEFT_OK;
+    bool is_file = weft_camera_file(command->colour, NULL, path, sizeof path, error) == WEFT_OK;
+    if (is_file)
+        return take_one_colour(command, c, error);
+    return c->list.count > 0 ? take_colour_of_each(command, c, error) : WEFT_BAD_INPUT;
+}
+
 static weft_code register_all(const register_command *command, cameras *c, const weft_progress *progress,
                               weft_error *error)
 {
+    WEFT_TRY(weft_camera_list_read(command->input, &c->list, error));
     WEFT_TRY(choose_settings(command, c, error));
     WEFT_TRY(take_colour(command, c, error));
     WEFT_TRY(

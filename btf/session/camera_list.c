@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { LIST_VERSION = 1, MAX_LIST_BYTES = 1 << 16 };
@@ -29,7 +31,7 @@ static weft_code unpack_name(json_t *json, const char *path, weft_camera_list *l
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': camera %d has no name that a folder could have", path,
                          list->count);
     for (int i = 0; i < list->count; i++) {
-        if (strcmp(list->name[i], name) == 0)
+        if (strcasecmp(list->name[i], name) == 0)
             return weft_fail(error, WEFT_BAD_INPUT, "'%s' names the camera '%s' twice", path, name);
     }
     snprintf(list->name[list->count++], WEFT_CAMERA_NAME_SIZE, "%s", name);
@@ -43,6 +45,8 @@ static weft_code unpack(json_t *root, const char *path, weft_camera_list *list, 
     size_t count = json_array_size(names);
     if (json_unpack(root, "{sI}", "weft_cameras", &version) != 0 || version != LIST_VERSION)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no list of cameras of version %d", path, LIST_VERSION);
+    if (!json_is_array(names))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' has no array 'cameras'", path);
     if (count < 1 || count > WEFT_CAMERAS_MAX)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' names %zu cameras, not 1 to %d", path, count, WEFT_CAMERAS_MAX);
     for (size_t i = 0; i < count; i++)
@@ -81,7 +85,30 @@ weft_code weft_camera_list_write(const char *folder, const weft_camera_list *lis
     return code;
 }
 
+weft_code weft_camera_file(const char *path, const char *camera, char *file, size_t size, weft_error *error)
+{
+    struct stat status;
+    bool is_folder = stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+    if (camera && !is_folder)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no folder with '%s.json' and so on, a file for each camera",
+                         path, camera);
+    if (!camera && is_folder)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a folder, and there is one camera: name its file", path);
+    snprintf(file, size, "%s%s%s%s", path, camera ? "/" : "", camera ? camera : "", camera ? ".json" : "");
+    return WEFT_OK;
+}
+
 /* ---- The sessions ---- */
+
+weft_code weft_camera_session_open(const char *folder, weft_session *session, weft_error *error)
+{
+    weft_camera_list list;
+    WEFT_TRY(weft_camera_list_read(folder, &list, error));
+    if (list.count > 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is of several cameras: one of them belongs here, as '%s/%s'",
+                         folder, folder, list.name[0]);
+    return weft_session_open(folder, session, error);
+}
 
 static weft_code open_all(const char *folder, const weft_camera_list *list, weft_session *sessions, int *count,
                           weft_error *error)

@@ -26,6 +26,14 @@ weft_code weft_camera_list_read(const char *folder, weft_camera_list *list, weft
 /* Writes it atomically into a folder that exists. Errors: WEFT_SYSTEM. */
 weft_code weft_camera_list_write(const char *folder, const weft_camera_list *list, weft_error *error);
 
+/* The file of a camera, of which `file` takes `size` bytes: `path` itself where `camera` is NULL; of one of several,
+ * CAMERA.json in the folder `path`. Errors: WEFT_BAD_INPUT where `path` is no folder for several, or is one for one. */
+weft_code weft_camera_file(const char *path, const char *camera, char *file, size_t size, weft_error *error);
+
+/* Opens a session of one camera. The caller frees with weft_session_free. Errors: those of weft_session_open;
+ * WEFT_BAD_INPUT for a folder of several, naming what belongs in its place. */
+weft_code weft_camera_session_open(const char *folder, weft_session *session, weft_error *error);
+
 /* Opens the session of each camera, or that of the folder itself where it has no list. *sessions [*count] is owned by
  * the caller: weft_camera_sessions_free. Errors: those of weft_camera_list_read and weft_session_open. */
 weft_code weft_camera_sessions_open(const char *folder, weft_session **sessions, int *count, weft_error *error);

@@ -110,6 +110,8 @@ static weft_code expose(void *device, uint64_t frame, double exposure_s, uint16_
     taking t = {.camera = camera, .samples = samples};
     (void)frame;
     read_events(camera->watch, NULL, NULL);
+    if (stop_asked(camera))
+        return weft_fail(error, WEFT_SYSTEM, "%s: stopped", name);
     if (shutter->release)
         WEFT_TRY(shutter->release(shutter->context, exposure_s, error));
     WEFT_TRY(wait_for_file(&t, error));

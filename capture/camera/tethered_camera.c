@@ -288,6 +288,8 @@ static weft_code take(weft_tethered_camera *c, double exposure_s, double *said_s
     enum { BUSY = 3 }; /* failures that may be a camera that is busy, whatever its card: it may write elsewhere */
     const struct timespec pause = {0, 300000000};
     double end_s = weft_now_s() + exposure_s + c->settings.timeout_s;
+    if (stop_asked(c))
+        return weft_fail(error, WEFT_SYSTEM, "%s: stopped", name);
     int result = take_once(c, exposure_s, said_s, bulb_s);
     for (int failed = 1; result < GP_OK && !is_final(result) && weft_now_s() < end_s; failed++) {
         if (stop_asked(c))

@@ -29,6 +29,17 @@ static weft_code read_colour(weft_lab_camera *c, weft_error *error)
     return WEFT_OK;
 }
 
+static weft_code read_poses(weft_lab_camera *c, weft_error *error)
+{
+    if (!c->description->poses[0])
+        return WEFT_OK;
+    WEFT_TRY(weft_rig_file_beside(c->file, c->description->poses, c->poses_path, sizeof c->poses_path, error));
+    WEFT_TRY(weft_poses_read(c->poses_path, &c->poses, error));
+    c->rig.poses = &c->poses.poses;
+    c->rig.poses_path = c->poses_path;
+    return WEFT_OK;
+}
+
 /* Speeds, limits and retries may change in the night; where things stand and what takes the photographs may not. */
 static weft_code identify(weft_lab_camera *c, weft_error *error)
 {
@@ -65,16 +76,41 @@ static weft_rig_settings settings_of(const weft_lab_camera *c)
     return settings;
 }
 
+/* ---- What it is to see ---- */
+
+/* A person does it; but a lamp that has a switch is dark without. */
+static weft_code show(void *device, weft_curtain scene, weft_error *error)
+{
+    static const char *const asked[] = {[WEFT_CURTAIN_OPEN] = "Let the camera see the sample again.",
+                                        [WEFT_CURTAIN_DARK] = "Cover the lens: no light may reach the camera.",
+                                        [WEFT_CURTAIN_EVEN] =
+                                            "Put an evenly lit white field, out of focus, before the whole lens."};
+    weft_lab_camera *c = device;
+    bool covered = c->file->light.backend == WEFT_LIGHT_NONE, was_asked = c->asked_to_show;
+    const weft_person *person = &c->releases->person;
+    const char *name = c->rig.camera_name;
+    char text[192];
+    c->asked_to_show = scene == WEFT_CURTAIN_EVEN || (scene == WEFT_CURTAIN_DARK && covered);
+    if (!c->asked_to_show && !was_asked)
+        return WEFT_OK;
+    snprintf(text, sizeof text, "%s%s%s%s", name ? "Camera '" : "", name ? name : "", name ? "': " : "", asked[scene]);
+    return person->ask(person->context, text, error);
+}
+
+/* ---- The whole ---- */
+
 weft_code weft_lab_camera_describe(const weft_rig_file *file, int index, weft_lab_camera *c, weft_error *error)
 {
     const weft_camera_description *camera = &file->camera[index];
     *c = (weft_lab_camera){.file = file, .description = camera};
     WEFT_TRY(read_lens(c, error));
     WEFT_TRY(read_colour(c, error));
+    WEFT_TRY(read_poses(c, error));
     WEFT_TRY(identify(c, error));
     c->axes = file->axes;
     c->axes.fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_THETA] = camera->theta_deg;
     c->axes.fixed_deg[WEFT_BODY_CAMERA][WEFT_TURN_PHI] = camera->phi_deg;
+    c->rig.curtain = (weft_rig_curtain){c, show};
     c->rig.name = "laboratory";
     c->rig.identity = c->identity;
     c->rig.camera_name = file->camera_count > 1 ? camera->name : NULL;

@@ -1,7 +1,6 @@
 #include "capture/laboratory/laboratory.h"
 
 #include "base/text/csv.h"
-#include "btf/session/poses_file.h"
 #include "capture/laboratory/lab_camera.h"
 #include "capture/motion/relay.h"
 
@@ -16,25 +15,14 @@ struct weft_laboratory {
     weft_angles *lamp; /* [lamp_count] */
     int lamp_count;
     char *sample;
-    char poses_path[PATH_MAX];
     weft_controller *controller;
     weft_relay *relay;
     weft_releases releases;
-    weft_poses_file poses;
-    bool asked_to_show; /* something else than the sample */
     int camera_count;
     weft_lab_camera camera[WEFT_CAMERAS_MAX]; /* [camera_count] */
 };
 
 /* ---- What the rig file names ---- */
-
-static weft_code read_poses(weft_laboratory *lab, weft_error *error)
-{
-    if (!lab->file.poses[0])
-        return WEFT_OK;
-    WEFT_TRY(weft_rig_file_beside(&lab->file, lab->file.poses, lab->poses_path, sizeof lab->poses_path, error));
-    return weft_poses_read(lab->poses_path, &lab->poses, error);
-}
 
 static weft_code read_lamp(const weft_csv *csv, int row, const int column[2], weft_angles *lamp, weft_error *error)
 {
@@ -132,23 +120,6 @@ static weft_code create_stage(weft_laboratory *lab, weft_error *error)
     return WEFT_OK;
 }
 
-/* ---- What the camera sees ---- */
-
-/* A person does it; but a lamp that has a switch is dark without. */
-static weft_code show(void *device, weft_curtain scene, weft_error *error)
-{
-    static const char *const asked[] = {[WEFT_CURTAIN_OPEN] = "Let the camera see the sample again.",
-                                        [WEFT_CURTAIN_DARK] = "Cover the lens: no light may reach the camera.",
-                                        [WEFT_CURTAIN_EVEN] =
-                                            "Put an evenly lit white field, out of focus, before the whole lens."};
-    weft_laboratory *lab = device;
-    bool covered = lab->file.light.backend == WEFT_LIGHT_NONE, was_asked = lab->asked_to_show;
-    lab->asked_to_show = scene == WEFT_CURTAIN_EVEN || (scene == WEFT_CURTAIN_DARK && covered);
-    if (!lab->asked_to_show && !was_asked)
-        return WEFT_OK;
-    return lab->request.person.ask(lab->request.person.context, asked[scene], error);
-}
-
 /* ---- Opening ---- */
 
 static weft_code describe_cameras(weft_laboratory *lab, weft_error *error)
@@ -170,9 +141,6 @@ static void join_cameras(weft_laboratory *lab)
     for (int i = 0; i < lab->camera_count; i++) {
         weft_lab_camera *c = &lab->camera[i];
         c->rig.sample = lab->sample;
-        c->rig.poses = lab->file.poses[0] ? &lab->poses.poses : NULL;
-        c->rig.poses_path = lab->file.poses[0] ? lab->poses_path : NULL;
-        c->rig.curtain = (weft_rig_curtain){lab, show};
         c->rig.stage = weft_stage_for_rig(c->stage);
         c->rig.light = weft_stage_light(c->stage);
         c->rig.first = several ? &lab->camera[0].rig : NULL;
@@ -184,7 +152,6 @@ static weft_code prepare(weft_laboratory *lab, weft_error *error)
 {
     WEFT_TRY(weft_rig_file_read(lab->request.rig_file, &lab->file, error));
     WEFT_TRY(describe_cameras(lab, error));
-    WEFT_TRY(read_poses(lab, error));
     WEFT_TRY(read_lamps(lab, error));
     WEFT_TRY(create_stage(lab, error));
     lab->releases.controller = lab->controller;

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- What libconfuse has to say ---- */
 
@@ -272,7 +273,7 @@ static weft_code check_camera(const weft_rig_file *rig, const weft_camera_descri
 static weft_code check_camera_pair(const weft_rig_file *rig, const weft_camera_description *a,
                                    const weft_camera_description *b, weft_error *error)
 {
-    if (strcmp(a->name, b->name) == 0)
+    if (strcasecmp(a->name, b->name) == 0)
         return weft_fail(error, WEFT_BAD_INPUT, "%s: two cameras are called '%s'", rig->path, a->name);
     if (a->backend == b->backend && strcmp(a->device, b->device) == 0)
         return weft_fail(error, WEFT_BAD_INPUT, "%s: cameras '%s' and '%s' are the same device '%s'", rig->path,
@@ -290,10 +291,6 @@ static weft_code check_cameras(const weft_rig_file *rig, weft_error *error)
         for (int other = 0; other < i; other++)
             WEFT_TRY(check_camera_pair(rig, &rig->camera[other], &rig->camera[i], error));
     }
-    /* Which photographs axes put where is calibrated for one lens. */
-    if (rig->camera_count > 1 && rig->poses[0])
-        return weft_fail(error, WEFT_BAD_INPUT, "%s: 'poses' are of one camera, the rig has %d", rig->path,
-                         rig->camera_count);
     return WEFT_OK;
 }
 
@@ -315,6 +312,22 @@ static weft_code check_devices(const weft_rig_file *rig, weft_error *error)
 }
 
 /* ---- Reading ---- */
+
+/* A rig with one camera may name them beside its section. */
+static weft_code take_poses(weft_rig_file *rig, weft_error *error)
+{
+    weft_camera_description *camera = &rig->camera[0];
+    if (!rig->poses[0])
+        return WEFT_OK;
+    if (rig->camera_count > 1)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "%s: 'poses' are of one camera, the rig has %d: each names its own in its section", rig->path,
+                         rig->camera_count);
+    if (camera->poses[0])
+        return weft_fail(error, WEFT_BAD_INPUT, "%s: 'poses' are named twice", rig->path);
+    snprintf(camera->poses, sizeof camera->poses, "%s", rig->poses);
+    return WEFT_OK;
+}
 
 static weft_code parse(const char *text, weft_rig_file *rig, weft_error *error)
 {
@@ -345,6 +358,7 @@ weft_code weft_rig_file_read(const char *path, weft_rig_file *rig, weft_error *e
     free(text);
     WEFT_TRY(code);
     fix_angles(rig);
+    WEFT_TRY(take_poses(rig, error));
     WEFT_TRY(weft_axes_check(&rig->axes, path, error));
     return check_devices(rig, error);
 }

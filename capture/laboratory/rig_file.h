@@ -45,6 +45,7 @@ typedef struct weft_camera_description {
     char name[WEFT_RIG_TEXT_SIZE];    /* of one of several */
     char model[WEFT_RIG_TEXT_SIZE];   /* cameras of one model see the same colours; empty: not known */
     char colour[WEFT_RIG_TEXT_SIZE];  /* its colours under the lamp, beside the rig file; empty: not known */
+    char poses[WEFT_RIG_TEXT_SIZE];   /* where the axes truly put it, beside the rig file; empty: not known */
     double theta_deg, phi_deg, distance_mm, half_angle_deg;
     double electrons_per_value, read_noise_electrons, dark_frames, flat_frames;
     double bin, black_level, shortest_exposure_s, longest_exposure_s, retries, timeout_s, seconds_per_photograph,
@@ -54,7 +55,7 @@ typedef struct weft_camera_description {
 typedef struct weft_rig_file {
     char path[WEFT_RIG_TEXT_SIZE];
     char name[WEFT_RIG_TEXT_SIZE];
-    char poses[WEFT_RIG_TEXT_SIZE]; /* where its axes truly are, beside the rig file; empty: not known */
+    char poses[WEFT_RIG_TEXT_SIZE]; /* of the camera, where there is one, and its section names none */
     double opening_mm;
     weft_axes axes;
     weft_stage_description stage;

@@ -117,6 +117,7 @@ static const weft_rig_key camera_keys[] = {
     TEXT(weft_camera_description, name, ""),
     TEXT(weft_camera_description, model, ""),
     TEXT(weft_camera_description, colour, ""),
+    TEXT(weft_camera_description, poses, ""),
     NUMBER(weft_camera_description, theta_deg, 0, 0, 90),
     NUMBER(weft_camera_description, phi_deg, 0, -360, 360),
     NEEDED(weft_camera_description, distance_mm, 10, 1e5),

@@ -1,7 +1,7 @@
 #include "registration/colour/shot.h"
 
 #include "base/picture/colour.h"
-#include "btf/session/session.h"
+#include "btf/session/camera_list.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -86,7 +86,7 @@ static weft_code read_samples(const weft_session *session, int shot, weft_image 
 static weft_code read_session(const char *folder, weft_chart_shot *shot, weft_error *error)
 {
     weft_session session;
-    WEFT_TRY(weft_session_open(folder, &session, error));
+    WEFT_TRY(weft_camera_session_open(folder, &session, error));
     int first = first_taken(&session);
     weft_code code = first < session.shot_count
                          ? read_samples(&session, first, &shot->light, error)

@@ -216,6 +216,30 @@ static void a_folder_that_is_not_there_is_named(void **state)
     assert_non_null(strstr(error.message, "'nowhere'"));
 }
 
+/* Whoever presses Ctrl-C wants no shutter to be heard any more, however often a photograph is tried. */
+static void nothing_is_released_after_a_stop(void **state)
+{
+    (void)state;
+    const volatile sig_atomic_t stop = 1;
+    other_program program = {.work = drop_whole};
+    const weft_folder_camera_settings settings = {.folder = "incoming",
+                                                  .pattern = "*.tif",
+                                                  .timeout_s = 10,
+                                                  .format = {.bin = BIN, .width = WIDTH, .height = HEIGHT},
+                                                  .shutter = {&program, release},
+                                                  .stop = &stop};
+    uint16_t samples[VALUES];
+    double read_back_s;
+    weft_folder_camera *camera;
+    weft_error error = {0};
+    assert_int_equal(weft_folder_camera_create(&settings, &camera, NULL), WEFT_OK);
+    weft_rig_camera rig = weft_folder_camera_for_rig(camera);
+    assert_int_equal(rig.expose(rig.device, 0, 0.25, samples, &read_back_s, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "stopped"));
+    assert_int_equal(program.releases, 0);
+    weft_folder_camera_free(camera);
+}
+
 /* ---- A video ---- */
 
 static void frames_of_a_series_come_in_order_until_it_ends(void **state)
@@ -287,6 +311,7 @@ int main(void)
         cmocka_unit_test(a_file_is_waited_for_until_it_is_whole),
         cmocka_unit_test(what_cannot_be_a_frame_is_named_when_the_time_is_up),
         cmocka_unit_test(a_folder_that_is_not_there_is_named),
+        cmocka_unit_test(nothing_is_released_after_a_stop),
         cmocka_unit_test(frames_of_a_series_come_in_order_until_it_ends),
         cmocka_unit_test(a_camera_that_is_not_there_is_named),
     };

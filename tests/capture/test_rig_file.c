@@ -165,6 +165,30 @@ static void several_cameras_are_told_apart(void **state)
     assert_refused(first, text, "hang on one shutter contact");
 }
 
+/* One camera may name its poses beside its section; of several each names its own in it. */
+static void poses_are_of_a_camera(void **state)
+{
+    (void)state;
+    const char *top = "poses = \"top.json\"\ncamera {\n", *own = "camera {\n  poses = \"own.json\"\n";
+    char text[512];
+    weft_rig_file rig;
+    assert_int_equal(read_changed("camera {\n", top, &rig, NULL), WEFT_OK);
+    assert_string_equal(rig.camera[0].poses, "top.json");
+    assert_int_equal(read_changed("camera {\n", own, &rig, NULL), WEFT_OK);
+    assert_string_equal(rig.camera[0].poses, "own.json");
+    snprintf(text, sizeof text, "poses = \"top.json\"\n%s", own);
+    assert_refused("camera {\n", text, "'poses' are named twice");
+    static const char right[] = "camera {\n  name = \"right\"\n  backend = folder\n  device = \"there\"\n"
+                                "  lens = \"other.json\"\n  distance_mm = 400\n  poses = \"right.json\"\n}\n"
+                                "camera {\n  name = \"left\"\n";
+    snprintf(text, sizeof text, "%s  poses = \"left.json\"\n", right);
+    assert_int_equal(read_changed("camera {\n", text, &rig, NULL), WEFT_OK);
+    assert_string_equal(rig.camera[0].poses, "right.json");
+    assert_string_equal(rig.camera[1].poses, "left.json");
+    snprintf(text, sizeof text, "poses = \"top.json\"\n%s", right);
+    assert_refused("camera {\n", text, "'poses' are of one camera, the rig has 2");
+}
+
 static void every_shipped_rig_is_sound(void **state)
 {
     (void)state;
@@ -191,6 +215,7 @@ int main(void)
         cmocka_unit_test(a_rig_that_is_missing_or_no_text_is_refused),
         cmocka_unit_test(two_axes_of_one_angle_or_channel_are_refused),
         cmocka_unit_test(several_cameras_are_told_apart),
+        cmocka_unit_test(poses_are_of_a_camera),
         cmocka_unit_test(every_shipped_rig_is_sound),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

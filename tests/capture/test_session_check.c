@@ -246,10 +246,13 @@ static void files_of_others_are_foreign_and_those_of_the_camera_are_not(void **s
 static void a_list_that_names_no_folder_is_refused(void **state)
 {
     (void)state;
-    static const char *const bad[] = {
-        "{\"weft_cameras\":1,\"cameras\":[\"..\"]}",      "{\"weft_cameras\":1,\"cameras\":[\"a/b\"]}",
-        "{\"weft_cameras\":1,\"cameras\":[\"a\",\"a\"]}", "{\"weft_cameras\":1,\"cameras\":[]}",
-        "{\"weft_cameras\":2,\"cameras\":[\"a\"]}",       "{\"weft_cameras\":1,\"cameras\":[7]}"};
+    static const char *const bad[] = {"{\"weft_cameras\":1,\"cameras\":[\"..\"]}",
+                                      "{\"weft_cameras\":1,\"cameras\":[\"a/b\"]}",
+                                      "{\"weft_cameras\":1,\"cameras\":[\"a\",\"a\"]}",
+                                      "{\"weft_cameras\":1,\"cameras\":[\"a\",\"A\"]}",
+                                      "{\"weft_cameras\":1,\"cameras\":[]}",
+                                      "{\"weft_cameras\":2,\"cameras\":[\"a\"]}",
+                                      "{\"weft_cameras\":1,\"cameras\":[7]}"};
     weft_camera_list list;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         scratch_store("cameras.json", bad[i], strlen(bad[i]));

@@ -9,6 +9,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -34,6 +35,9 @@ typedef struct bench {
     int kill_at;   /* exposure of the second camera in which the process dies; 0: none */
     int fail_from; /* exposure of the second camera from which on it fails; 0: never */
     int fail_to;
+    int looks, push_at; /* how often the stage was asked whether it stood still; when it did not, 0: always */
+    int stop_at;        /* exposure of the second camera in which somebody presses Ctrl-C; 0: none */
+    volatile sig_atomic_t stop;
     pthread_mutex_t mutex;
     pthread_cond_t changed;
     int exposing; /* cameras that do so now */
@@ -63,6 +67,8 @@ static weft_code expose(int camera, uint64_t frame, double exposure_s, uint16_t 
     int number = ++b.exposures[camera];
     if (camera == 1 && number == b.kill_at)
         raise(SIGKILL);
+    if (camera == 1 && number == b.stop_at)
+        b.stop = 1;
     if (camera == 1 && b.fail_from > 0 && number >= b.fail_from && number < b.fail_to)
         return weft_fail(error, WEFT_SYSTEM, "its cable is out");
     return b.camera[camera].expose(b.camera[camera].device, frame, exposure_s, samples, read_back_s, error);
@@ -89,9 +95,17 @@ static weft_code power(void *device, bool on, weft_error *error)
     return b.light.power(b.light.device, on, error);
 }
 
+static weft_code held(void *device, bool *still, weft_error *error)
+{
+    (void)device;
+    (void)error;
+    *still = ++b.looks != b.push_at;
+    return WEFT_OK;
+}
+
 static virtual_session request;
 
-static void open_bench(int cameras)
+static void open_patient_bench(int cameras, int retries)
 {
     int count;
     b = (bench){.mutex = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
@@ -105,8 +119,15 @@ static void open_bench(int cameras)
         b.camera[i] = b.rig[i].rig.camera;
         b.rig[i].rig.camera.expose = i == 0 ? expose_first : expose_second;
         b.rig[i].rig.light.power = power;
-        b.rig[i].rig.settings.retries = 0;
+        b.rig[i].rig.stage.held = held;
+        b.rig[i].rig.settings.retries = retries;
     }
+}
+
+/* Whose cameras are asked once. */
+static void open_bench(int cameras)
+{
+    open_patient_bench(cameras, 0);
 }
 
 static void close_bench(int cameras)
@@ -119,7 +140,7 @@ static weft_code take(weft_capture_summary *summary, weft_error *error)
 {
     weft_capture capture;
     WEFT_TRY(weft_capture_begin(&request.capture, &b.rig[0].rig, NULL, &capture, error));
-    weft_code code = weft_capture_take(&capture, NULL, NULL, error);
+    weft_code code = weft_capture_take(&capture, &b.stop, NULL, error);
     *summary = capture.summary;
     weft_capture_end(&capture);
     return code;
@@ -200,7 +221,7 @@ static void a_killed_capture_goes_on(void **state)
 static void a_volley_is_lit_once_for_all_cameras(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     weft_error error = {0};
     open_bench(CAMERAS);
     if (take(&summary, &error) != WEFT_OK)
@@ -226,7 +247,7 @@ static void cameras_expose_at_the_same_time(void **state)
 {
     (void)state;
     const char pair[] = "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n20,45,30,90\n20,45,30,270\n";
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     open_bench(CAMERAS);
     scratch_store("plan.csv", pair, sizeof pair - 1);
     request.capture.folder = "pair";
@@ -242,7 +263,7 @@ static void cameras_expose_at_the_same_time(void **state)
 static void a_camera_that_fails_loses_nothing_of_the_other(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     weft_error error = {0};
     open_bench(CAMERAS);
     request.capture.folder = "failing";
@@ -266,10 +287,90 @@ static void a_camera_that_fails_loses_nothing_of_the_other(void **state)
     close_bench(CAMERAS);
 }
 
+static bool page_says(const char *path, const char *text)
+{
+    size_t size;
+    char *page = (char *)scratch_load(path, &size);
+    page[size] = 0;
+    bool says = strstr(page, text) != NULL;
+    free(page);
+    return says;
+}
+
+/* Each camera on a page of its own, and both on one. */
+static void pages_tell_the_share_of_each_camera(void **state)
+{
+    (void)state;
+    weft_capture_summary summary = {0};
+    open_bench(CAMERAS);
+    request.capture.folder = "told";
+    request.capture.status = "status";
+    b.fail_from = 1;
+    b.fail_to = 1000;
+    assert_int_equal(take(&summary, NULL), WEFT_SYSTEM);
+    assert_true(page_says("status/index.html", ">camera1</a></td><td>6 of 6</td>"));
+    assert_true(page_says("status/index.html", "has all</td>"));
+    assert_true(page_says("status/index.html", ">camera2</a></td><td>0 of 4</td>"));
+    assert_true(page_says("status/index.html", "left out: its cable is out"));
+    assert_true(page_says("status/index.html", "<b>6 of 10</b>"));
+    assert_true(page_says("status/camera1/index.html", "camera camera1"));
+    assert_false(page_says("status/camera1/index.html", "ended early"));
+    assert_true(page_says("status/camera2/index.html", "ended early: its cable is out"));
+    b.fail_from = 0;
+    assert_int_equal(take(&summary, NULL), WEFT_OK);
+    assert_true(page_says("status/index.html", ">camera2</a></td><td>4 of 4</td>"));
+    assert_false(page_says("status/index.html", "left out") || page_says("status/index.html", "ended early"));
+    close_bench(CAMERAS);
+}
+
+/* In the midst of a volley: it is completed, and nothing after it is begun. */
+static void a_night_that_is_stopped_completes_its_volley_and_says_so(void **state)
+{
+    (void)state;
+    weft_capture_summary summary = {0};
+    weft_error error = {0};
+    open_bench(CAMERAS);
+    request.capture.folder = "stopped";
+    request.capture.status = "status";
+    b.stop_at = 1;
+    assert_int_equal(take(&summary, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "stopped, 4 of 10 photographs"));
+    assert_int_equal(taken_by("stopped/camera1"), 3);
+    assert_int_equal(taken_by("stopped/camera2"), 1);
+    assert_true(page_says("status/index.html", "ended early: it was stopped"));
+    assert_true(page_says("status/camera1/index.html", "ended early: it was stopped"));
+    b.stop = 0;
+    assert_int_equal(take(&summary, NULL), WEFT_OK);
+    assert_whole("stopped/camera1", "stopped/camera2");
+    close_bench(CAMERAS);
+}
+
+/* The sensor of the second camera is not seen; the first has its night. */
+static void a_camera_whose_sensor_is_not_seen_is_left_out_alone(void **state)
+{
+    (void)state;
+    weft_capture_summary summary = {0};
+    weft_error error = {0};
+    open_bench(CAMERAS);
+    request.capture.folder = "unseen";
+    for (int i = 0; i < CAMERAS; i++)
+        b.rig[i].rig.dark_frames = b.rig[i].rig.flat_frames = 1;
+    b.fail_from = 2;
+    b.fail_to = 3;
+    assert_int_equal(take(&summary, &error), WEFT_SYSTEM);
+    assert_non_null(strstr(error.message, "camera 'camera2': its cable is out"));
+    assert_int_equal(taken_by("unseen/camera1"), SHOTS_OF_FIRST);
+    assert_int_equal(taken_by("unseen/camera2"), 0);
+    b.fail_from = 0;
+    assert_int_equal(take(&summary, NULL), WEFT_OK);
+    assert_whole("unseen/camera1", "unseen/camera2");
+    close_bench(CAMERAS);
+}
+
 static void a_camera_that_failed_once_goes_on(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     open_bench(CAMERAS);
     request.capture.folder = "once";
     b.fail_from = 1;
@@ -278,6 +379,41 @@ static void a_camera_that_failed_once_goes_on(void **state)
     assert_int_equal(summary.taken, SHOTS_OF_FIRST + SHOTS_OF_SECOND - 1);
     assert_int_equal(taken_by("once/camera2"), SHOTS_OF_SECOND - 1);
     close_bench(CAMERAS);
+}
+
+static int brackets_of(const char *folder, int shots[SHOTS_OF_FIRST])
+{
+    weft_session session;
+    int count = 0;
+    assert_int_equal(weft_session_open(folder, &session, NULL), WEFT_OK);
+    for (int i = 0; i < session.shot_count; i++) {
+        shots[i] = session.record[i].bracket_count;
+        count += shots[i];
+    }
+    weft_session_free(&session);
+    return count;
+}
+
+/* In whichever photograph of it the stage was pushed, it has all its photographs in the end. */
+static void a_bracket_that_the_stage_disturbed_is_taken_again(void **state)
+{
+    (void)state;
+    int shots[3][SHOTS_OF_FIRST] = {{0}};
+    for (int push_at = 0; push_at < 3; push_at++) {
+        static const char *const folder[] = {"still/camera1", "pushed1/camera1", "pushed2/camera1"};
+        static const char *const session[] = {"still", "pushed1", "pushed2"};
+        weft_capture_summary summary = {0};
+        open_patient_bench(CAMERAS, 1);
+        request.capture.folder = session[push_at];
+        request.capture.brackets = 2;
+        b.push_at = push_at;
+        assert_int_equal(take(&summary, NULL), WEFT_OK);
+        assert_int_equal(summary.disturbed, push_at > 0);
+        assert_true(brackets_of(folder[push_at], shots[push_at]) > 0);
+        assert_true(shots[push_at][0] > 0);
+        assert_memory_equal(shots[push_at], shots[0], sizeof shots[0]);
+        close_bench(CAMERAS);
+    }
 }
 
 /* ---- The folder ---- */
@@ -296,7 +432,7 @@ static void what_is_no_session_of_a_camera_is_foreign(void **state)
 static void other_cameras_do_not_go_on(void **state)
 {
     (void)state;
-    weft_capture_summary summary;
+    weft_capture_summary summary = {0};
     weft_error error = {0};
     open_bench(CAMERAS);
     snprintf(b.rig[1].camera_name, sizeof b.rig[1].camera_name, "other");
@@ -392,7 +528,11 @@ int main(void)
         cmocka_unit_test(other_cameras_do_not_go_on),
         cmocka_unit_test(cameras_expose_at_the_same_time),
         cmocka_unit_test(a_camera_that_fails_loses_nothing_of_the_other),
+        cmocka_unit_test(pages_tell_the_share_of_each_camera),
+        cmocka_unit_test(a_night_that_is_stopped_completes_its_volley_and_says_so),
+        cmocka_unit_test(a_camera_whose_sensor_is_not_seen_is_left_out_alone),
         cmocka_unit_test(a_camera_that_failed_once_goes_on),
+        cmocka_unit_test(a_bracket_that_the_stage_disturbed_is_taken_again),
         cmocka_unit_test(cameras_share_the_pose_of_a_turntable),
     };
     return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);

@@ -46,6 +46,35 @@ expect_ok capture --rig off.json --sample "$weave" --plan one.csv --poses rig.po
 grep -q '"pose"' night/session.json || fail "the session does not know the poses"
 expect_error 1 "begun with other poses" capture --rig off.json --sample "$weave" --plan one.csv -o night
 
+# Several cameras: each is calibrated by itself, and has poses of its own.
+sed 's/"axes": 1,/"axes": 1, "cameras": 2,/' off.json >two.json
+printf '%s\n' theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg 30,0,30,90 30,0,30,270 >pair.csv
+mkdir poses
+cp rig.poses.json poses/camera1.json
+two="capture --rig two.json --sample $weave --plan pair.csv --truth-images 1 --truth-size 4"
+# shellcheck disable=SC2086
+{
+    expect_error 1 "'poses/camera2.json'" $two --poses poses -o no
+    cp rig.poses.json poses/camera2.json
+    expect_ok $two --poses poses -o alike
+    "$python" - <<'PYTHON'
+import json
+poses = json.load(open("rig.poses.json"))
+poses["home"]["translation_mm"][0] += 1
+json.dump(poses, open("poses/camera2.json", "w"))
+PYTHON
+    expect_error 1 "'rig.poses.json' is no folder with 'camera1.json'" $two --poses rig.poses.json -o no
+    expect_ok $two --poses poses -o pair
+}
+"$python" - <<'PYTHON' || fail "the cameras do not have poses of their own"
+import json
+pose = {(night, camera): json.load(open(f"{night}/camera{camera}/session.json"))["plan"][0]["pose"]
+        for night in ("alike", "pair") for camera in (1, 2)}
+assert pose["pair", 1] == pose["alike", 1] and pose["pair", 2] != pose["alike", 2], pose
+PYTHON
+expect_error 1 "one of them belongs here, as 'pair/camera1'" calibrate pair -o no.poses.json
+expect_error 1 "'poses' is a folder, and there is one camera" capture --rig off.json --sample "$weave" --plan one.csv --poses poses -o no
+
 # Poses that are not of this rig, whatever is asked of it.
 sed 's/176/96/g' off.json >small.json
 for what in "" --dry-run --check; do

@@ -1,11 +1,24 @@
 #include "base/picture/image.h"
 #include "btf/direction/direction.h"
-#include "btf/session/session.h"
+#include "btf/session/camera_list.h"
 #include "tests/golden/print.h"
 
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* What a session knows of its camera, or does not. */
+static void print_colours(FILE *out, const weft_session *s)
+{
+    if (s->noise.electrons_per_value > 0)
+        fprintf(out, "noise: electrons_per_value %.9g read_noise_electrons %.9g\n", s->noise.electrons_per_value,
+                s->noise.read_noise_electrons);
+    if (s->camera_model)
+        fprintf(out, "camera_model: %s\n", s->camera_model);
+    for (int i = 0; i < 3 * s->colour.terms; i++)
+        fprintf(out, "%s%.9g%s", i == 0 ? "colour: " : " ", s->colour.matrix[i / s->colour.terms][i % s->colour.terms],
+                i == 3 * s->colour.terms - 1 ? "\n" : "");
+}
 
 static void print_setup(FILE *out, const weft_session *s)
 {
@@ -19,6 +32,7 @@ static void print_setup(FILE *out, const weft_session *s)
     fprintf(out, "bits: %d black_level: %d\n", s->bits, s->black_level);
     fprintf(out, "target: opening_mm %.9g white %.9g paper %.9g ink %.9g\n", t->opening_mm, t->white_reflectance,
             t->paper_reflectance, t->ink_reflectance);
+    print_colours(out, s);
 }
 
 static void print_angles(FILE *out, const char *name, weft_angles angles)
@@ -48,7 +62,23 @@ static weft_code print_photograph(FILE *out, const weft_session *session, int sh
             record->exposure_s, (unsigned long long)record->bytes, record->crc32);
     WEFT_TRY(weft_photograph_read(path, session->camera.width, session->camera.height, session->bits, pixels, error));
     print_pixels(out, &session->camera, pixels);
+    for (int i = 0; i < record->bracket_count; i++) {
+        const weft_bracket_record *bracket = &record->bracket[i];
+        fprintf(out, "  bracket %d: exposure_s %.9g bytes %llu crc32 %u\n", i, bracket->exposure_s,
+                (unsigned long long)bracket->bytes, bracket->crc32);
+    }
     return WEFT_OK;
+}
+
+static void print_frames(FILE *out, const weft_session *session)
+{
+    for (int i = 0; i < weft_session_frame_count(session); i++) {
+        const weft_frame_record *record = &session->frame[i];
+        char path[PATH_MAX];
+        weft_session_frame_path(session, i, path, sizeof path);
+        fprintf(out, "frame %d: %s exposure_s %.9g bytes %llu crc32 %u\n", i, path + strlen(session->folder) + 1,
+                record->exposure_s, (unsigned long long)record->bytes, record->crc32);
+    }
 }
 
 static weft_code print_shots(FILE *out, const weft_session *session, weft_error *error)
@@ -68,12 +98,27 @@ static weft_code print_shots(FILE *out, const weft_session *session, weft_error 
     return code;
 }
 
+static weft_code print_cameras(FILE *out, const weft_camera_list *list, const weft_session *sessions, int count,
+                               weft_error *error)
+{
+    for (int i = 0; i < count; i++) {
+        if (list->count > 0)
+            fprintf(out, "camera '%s'\n", list->name[i]);
+        print_setup(out, &sessions[i]);
+        print_frames(out, &sessions[i]);
+        WEFT_TRY(print_shots(out, &sessions[i], error));
+    }
+    return WEFT_OK;
+}
+
 weft_code print_session(const char *path, FILE *out, weft_error *error)
 {
-    weft_session session;
-    WEFT_TRY(weft_session_open(path, &session, error));
-    print_setup(out, &session);
-    weft_code code = print_shots(out, &session, error);
-    weft_session_free(&session);
+    weft_camera_list list;
+    weft_session *sessions;
+    int count;
+    WEFT_TRY(weft_camera_list_read(path, &list, error));
+    WEFT_TRY(weft_camera_sessions_open(path, &sessions, &count, error));
+    weft_code code = print_cameras(out, &list, sessions, count, error);
+    weft_camera_sessions_free(sessions, count);
     return code;
 }

@@ -2,7 +2,7 @@
  */
 #include "base/atomic_file.h"
 #include "btf/dataset/dataset.h"
-#include "btf/session/session.h"
+#include "btf/session/camera_list.h"
 #include "plate.h"
 #include "registration/colour/difference.h"
 #include "tests/support/chart_picture.h"
@@ -16,17 +16,17 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SIZE = 208, SQUARE = 420, TEXELS = 8, FIELDS = 4, BLACK = 64, FULL = 4095 };
+enum { SIZE = 208, SQUARE = 420, TEXELS = 8, FIELDS = 4, MOST_IMAGES = 2, BLACK = 64, FULL = 4095 };
 
 static const double camera_mm = 600, light_mm = 650;
-static const weft_angles view = {0, 0}, light = {0.5, 1};
+static const weft_angles light = {0.5, 1}, view[2] = {{0, 0}, {0.4, 2.5}}; /* of each camera */
 
 /* CIE Lab under D50 of the four fields of the sample: a yellow green, a wine red, a blue, a grey. */
 static const double field_lab[FIELDS][3] = {{65, -28, 45}, {38, 48, 8}, {45, 0, -40}, {60, 0, 0}};
 
 /* ---- A session with one photograph ---- */
 
-static weft_session describe(const char *folder, const weft_camera *camera)
+static weft_session describe(const char *folder, const weft_camera *camera, int number)
 {
     weft_session s = {.folder = strdup(folder), .rig = strdup("test"), .sample = strdup("four fields")};
     s.rig_settings = strdup("{}");
@@ -39,7 +39,7 @@ static weft_session describe(const char *folder, const weft_camera *camera)
     s.shot_count = 1;
     s.shot = calloc(1, sizeof *s.shot);
     s.record = calloc(1, sizeof *s.record);
-    s.shot[0] = (weft_shot){light, view, light};
+    s.shot[0] = (weft_shot){light, view[number], light};
     return s;
 }
 
@@ -75,7 +75,7 @@ static void photograph_chart(int camera, const char *folder)
     weft_camera lens = {.width = SQUARE, .height = SQUARE, .fx = 2 * SQUARE, .fy = 2 * SQUARE};
     lens.cx = lens.cy = SQUARE / 2.0;
     lens.vignetting[0] = -0.5 * 2 * 4;
-    weft_session s = describe(folder, &lens);
+    weft_session s = describe(folder, &lens, camera);
     weft_image image = chart_picture_render(&picture);
     uint16_t *raw = malloc(sizeof *raw * SQUARE * SQUARE * 3);
     assert_non_null(raw);
@@ -123,12 +123,12 @@ static double lamp_at(const weft_session *s, const weft_homography *inverse, int
     return beam.z / r * light_mm * light_mm / (r * r);
 }
 
-/* Into two sessions: one that knows nothing of colours, and one that holds `colour`. */
+/* Into a session that knows nothing of colours, and one that holds `colour`, where that is wanted. */
 static void photograph_sample(int camera, const char *plain, const char *coloured, const weft_colour *colour)
 {
     const weft_camera lens = plate_camera(SIZE, camera_mm);
-    weft_session s = describe(plain, &lens), other = describe(coloured, &lens);
-    weft_pose pose = plate_jittered_pose(view, camera_mm, 21);
+    weft_session s = describe(plain, &lens, camera);
+    weft_pose pose = plate_jittered_pose(view[camera], camera_mm, 21);
     weft_homography homography = weft_homography_of_pose(&s.camera, &pose);
     weft_homography inverse = weft_homography_inverse(&homography);
     double field[FIELDS][3], white[3];
@@ -147,31 +147,35 @@ static void photograph_sample(int camera, const char *plain, const char *coloure
         }
         free(even);
     }
-    other.colour = *colour;
     store(&s, raw);
-    store(&other, raw);
+    if (coloured) {
+        weft_session other = describe(coloured, &lens, camera);
+        other.colour = *colour;
+        store(&other, raw);
+    }
     free(raw);
 }
 
 /* ---- What comes of it ---- */
 
-/* Means of the middles of the fields, reflectance. */
-static void read_fields(const char *path, double field[FIELDS][3])
+/* Means of the middles of the fields, reflectance, of an image of a dataset of `images`. */
+static void read_fields(const char *path, int images, int image, double field[FIELDS][3])
 {
-    weft_half samples[TEXELS][TEXELS][1][3];
-    uint8_t mask[TEXELS][TEXELS][1];
+    weft_half samples[TEXELS * TEXELS * MOST_IMAGES][3];
+    uint8_t mask[TEXELS * TEXELS * MOST_IMAGES];
     weft_dataset *dataset;
     weft_error error = {0};
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(weft_dataset_read_block(dataset, 0, 0, TEXELS, TEXELS, &samples[0][0][0][0], &mask[0][0][0], &error),
-              &error);
+    assert_int_equal(weft_dataset_get_layout(dataset)->image_count, images);
+    expect_ok(weft_dataset_read_block(dataset, 0, 0, TEXELS, TEXELS, &samples[0][0], mask, &error), &error);
     weft_dataset_close(dataset);
     memset(field, 0, FIELDS * sizeof *field);
     for (int i = 0; i < FIELDS * 4; i++) {
         int x = 1 + i % 2 + 4 * (i / 4 % 2), y = 1 + i / 2 % 2 + 4 * (i / 8);
-        assert_int_equal(mask[y][x][0], 0);
+        int at = (y * TEXELS + x) * images + image;
+        assert_int_equal(mask[at], 0);
         for (int c = 0; c < 3; c++)
-            field[i / 4][c] += (double)weft_float_of_half(samples[y][x][0][c]) / cos(light.theta_rad) / 4;
+            field[i / 4][c] += (double)weft_float_of_half(samples[at][c]) / cos(light.theta_rad) / 4;
     }
 }
 
@@ -184,12 +188,10 @@ static double difference(const double srgb[3], const double other[3])
 }
 
 /* Mean distances: of the two cameras from one another, and of the worse of them from what is true. */
-static void compare(const char *const path[2], double *apart, double *wrong)
+static void compare(double found[2][FIELDS][3], double *apart, double *wrong)
 {
-    double found[2][FIELDS][3], off[2] = {0, 0};
+    double off[2] = {0, 0};
     *apart = 0;
-    for (int camera = 0; camera < 2; camera++)
-        read_fields(path[camera], found[camera]);
     for (int i = 0; i < FIELDS; i++) {
         double truth[3];
         weft_linear_srgb_of_lab_d50(field_lab[i], truth);
@@ -207,6 +209,14 @@ static void compare(const char *const path[2], double *apart, double *wrong)
         for (int c = 0; c < 3; c++)
             assert_true(fabs(found[camera][3][c] / grey[c] - 1) < 0.03);
     }
+}
+
+static void compare_days(const char *const path[2], double *apart, double *wrong)
+{
+    double found[2][FIELDS][3];
+    for (int camera = 0; camera < 2; camera++)
+        read_fields(path[camera], 1, 0, found[camera]);
+    compare(found, apart, wrong);
 }
 
 /* One is given its colour at registration, in the place of that of its session; the other has it in the session. */
@@ -228,11 +238,49 @@ static void two_cameras_meet_in_one_colour_space(void **state)
     expect_weft("register day0.coloured -o srgb0.btf.h5 --size 8x8 --colour colour0.json --report report", 0,
                 "colours: linear sRGB");
     expect_weft("register day1.coloured -o srgb1.btf.h5 --size 8x8", 0, "colours: linear sRGB");
-    compare((const char *const[]){"raw0.btf.h5", "raw1.btf.h5"}, &before[0], &before[1]);
-    compare((const char *const[]){"srgb0.btf.h5", "srgb1.btf.h5"}, &after[0], &after[1]);
+    compare_days((const char *const[]){"raw0.btf.h5", "raw1.btf.h5"}, &before[0], &before[1]);
+    compare_days((const char *const[]){"srgb0.btf.h5", "srgb1.btf.h5"}, &after[0], &after[1]);
     print_message("apart %.2f, were %.2f; off %.2f, were %.2f\n", after[0], before[0], after[1], before[1]);
     assert_true(after[0] < 0.4 * before[0] && after[0] < 3);
     assert_true(after[1] < 0.4 * before[1] && after[1] < 3);
+}
+
+static void list_cameras(const char *folder)
+{
+    const weft_camera_list list = {2, {"left", "right"}};
+    weft_error error = {0};
+    expect_ok(weft_make_folder(folder, &error), &error);
+    expect_ok(weft_camera_list_write(folder, &list, &error), &error);
+}
+
+/* Two cameras of one session, of two models, each with a colour of its own: that of the test before. */
+static void cameras_of_one_session_meet_in_one_colour_space(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    double found[2][FIELDS][3], apart, wrong;
+    list_cameras("charts");
+    rename("chart0", "charts/left");
+    rename("chart1", "charts/right");
+    expect_ok(weft_make_folder("colours", &error), &error);
+    expect_weft("colour charts -o no.json", 1, "one of them belongs here, as 'charts/left'");
+    link("colour0.json", "colours/left.json");
+    link("colour1.json", "colours/right.json");
+    list_cameras("night");
+    photograph_sample(0, "night/left", NULL, NULL);
+    photograph_sample(1, "night/right", NULL, NULL);
+    expect_weft("register night -o no.btf.h5 --size 8x8", 1, "do not see the same colours");
+    expect_weft("register night -o no.btf.h5 --size 8x8 --colour colours/left.json", 1, "do not see the same colours");
+    expect_weft("register night/left -o no.btf.h5 --size 8x8 --colour colours", 1,
+                "there is one camera: name its file");
+    expect_weft("register night -o no.btf.h5 --size 8x8 --colour charts", 1, "charts/left.json");
+    assert_true(access("no.json", F_OK) != 0 && access("no.btf.h5", F_OK) != 0);
+    expect_weft("register night -o after.btf.h5 --size 8x8 --colour colours", 0, "colours: linear sRGB");
+    for (int camera = 0; camera < 2; camera++)
+        read_fields("after.btf.h5", 2, camera, found[camera]);
+    compare(found, &apart, &wrong);
+    print_message("in one session: apart %.2f, off %.2f\n", apart, wrong);
+    assert_true(apart < 3 && wrong < 3);
 }
 
 static void a_bad_colour_leaves_nothing_behind(void **state)
@@ -270,6 +318,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_cameras_meet_in_one_colour_space),
+        cmocka_unit_test(cameras_of_one_session_meet_in_one_colour_space),
         cmocka_unit_test(a_bad_colour_leaves_nothing_behind),
         cmocka_unit_test(capture_keeps_a_colour),
     };

@@ -227,8 +227,13 @@ static weft_code compare_strips(const truth *t, weft_dataset *dataset, strip *s,
 
 weft_code truth_compare_reflectance(const truth *t, weft_dataset *dataset, truth_errors *result, weft_error *error)
 {
+    return truth_compare_above(t, dataset, dim_limit(t), result, error);
+}
+
+weft_code truth_compare_above(const truth *t, weft_dataset *dataset, float dim, truth_errors *result, weft_error *error)
+{
     enum { rows = 8 };
-    *result = (truth_errors){.capacity = 3 * t->size * t->size, .dim = dim_limit(t)};
+    *result = (truth_errors){.capacity = 3 * t->size * t->size, .dim = dim};
     WEFT_TRY(check_dataset(t, dataset, error));
     strip s = {.layout = weft_dataset_get_layout(dataset)};
     size_t samples = (size_t)rows * (size_t)t->size * (size_t)s.layout->image_count;

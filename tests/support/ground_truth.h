@@ -41,6 +41,10 @@ typedef struct truth_errors {
  * near light at each texel, the dataset that of the far direction: the truth is converted. The caller frees with
  * truth_errors_free. Errors: WEFT_BAD_INPUT for a dataset of another size or kind; WEFT_SYSTEM. */
 weft_code truth_compare_reflectance(const truth *t, weft_dataset *dataset, truth_errors *result, weft_error *error);
+
+/* The same, where what is dim is another question than elsewhere. */
+weft_code truth_compare_above(const truth *t, weft_dataset *dataset, float dim, truth_errors *result,
+                              weft_error *error);
 void truth_errors_free(truth_errors *errors);
 
 #endif

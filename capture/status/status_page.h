@@ -1,9 +1,9 @@
 /* A page that tells, while photographs are taken, how it goes: how many, how long still, how steady the lamp is, and
  * what was repeated. It is rewritten when a stay is over. */
-#ifndef WEFT_CAPTURE_STATUS_PAGE_H
-#define WEFT_CAPTURE_STATUS_PAGE_H
+#ifndef WEFT_CAPTURE_STATUS_STATUS_PAGE_H
+#define WEFT_CAPTURE_STATUS_STATUS_PAGE_H
 
-#include "capture/exposure.h"
+#include "btf/session/session.h"
 
 /* What has happened so far. */
 typedef struct weft_status_counts {
@@ -15,17 +15,16 @@ typedef struct weft_status_counts {
 
 typedef struct weft_status_page weft_status_page;
 
-/* Makes the folder. `status` is NULL where `folder` is: every function below then does nothing. Borrows session.
- * Errors: WEFT_SYSTEM. */
-weft_code weft_status_page_begin(const char *folder, const weft_session *session, weft_status_page **status,
-                                 weft_error *error);
+/* `status` is NULL where `folder` is: every function below then does nothing. `camera` names one of several, for the
+ * title; NULL: there is one. Borrows session and camera. Errors: WEFT_SYSTEM. */
+weft_code weft_status_page_begin(const char *folder, const weft_session *session, const char *camera,
+                                 weft_status_page **status, weft_error *error);
 
 /* Notes the photograph of a shot: the first one of a stay is shown, and the lamp is measured on the white patches of
- * each, where they do not clip and the light stands at most 60 degrees from the zenith. Writes the page when a stay was
- * over. Errors: WEFT_SYSTEM. */
-weft_code weft_status_page_note(weft_status_page *status, int shot, const weft_shot_record *record,
-                                const weft_meter *meter, const uint16_t *samples, const weft_status_counts *counts,
-                                weft_error *error);
+ * each, where they do not clip and the light stands at most 60 degrees from the zenith. `white` is what they show above
+ * the black level, in raw values. Writes the page when a stay was over. Errors: WEFT_SYSTEM. */
+weft_code weft_status_page_note(weft_status_page *status, int shot, const weft_shot_record *record, double white,
+                                const uint16_t *samples, const weft_status_counts *counts, weft_error *error);
 
 /* Writes the page a last time, with why the run ended early (NULL: it did not), and frees. Errors: WEFT_SYSTEM. */
 weft_code weft_status_page_end(weft_status_page *status, const weft_status_counts *counts, const char *why,

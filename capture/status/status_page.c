@@ -1,4 +1,4 @@
-#include "capture/status_page.h"
+#include "capture/status/status_page.h"
 
 #include "base/atomic_file.h"
 #include "base/numeric/statistics.h"
@@ -21,6 +21,7 @@ typedef struct lamp_level {
 struct weft_status_page {
     char folder[PATH_MAX];
     const weft_session *session;
+    const char *camera;      /* NULL: there is one */
     int stay;                /* of the last photograph; -1: none yet */
     int *shown, shown_count; /* [shot_count] first shots of the stays */
     lamp_level *lamp;        /* [shot_count] */
@@ -34,8 +35,8 @@ static void free_status(weft_status_page *status)
     free(status);
 }
 
-weft_code weft_status_page_begin(const char *folder, const weft_session *session, weft_status_page **result,
-                                 weft_error *error)
+weft_code weft_status_page_begin(const char *folder, const weft_session *session, const char *camera,
+                                 weft_status_page **result, weft_error *error)
 {
     *result = NULL;
     if (!folder)
@@ -45,6 +46,7 @@ weft_code weft_status_page_begin(const char *folder, const weft_session *session
         return weft_fail_memory(error, "status page", sizeof *status);
     snprintf(status->folder, sizeof status->folder, "%s", folder);
     status->session = session;
+    status->camera = camera;
     status->stay = -1;
     status->shown = calloc((size_t)session->shot_count, sizeof *status->shown);
     status->lamp = calloc((size_t)session->shot_count, sizeof *status->lamp);
@@ -58,20 +60,11 @@ weft_code weft_status_page_begin(const char *folder, const weft_session *session
 
 /* ---- The lamp ---- */
 
-static double white_value(const weft_session *session, const weft_meter *meter, const uint16_t *samples)
-{
-    double sum = 0;
-    for (int i = 0; i < meter->white_count; i++)
-        sum += samples[3 * (size_t)meter->white[i] + 1] - session->black_level;
-    return meter->white_count ? sum / meter->white_count : 0;
-}
-
 /* Power of the lamp in units of its own: what the white patches show, per second and per cosine of its direction. */
-static void measure_lamp(weft_status_page *status, int shot, const weft_shot_record *record, const weft_meter *meter,
-                         const uint16_t *samples)
+static void measure_lamp(weft_status_page *status, int shot, const weft_shot_record *record, double value)
 {
     const weft_session *session = status->session;
-    double theta_rad = session->shot[shot].light_driven.theta_rad, value = white_value(session, meter, samples);
+    double theta_rad = session->shot[shot].light_driven.theta_rad;
     double range = (1 << session->bits) - 1 - session->black_level;
     if (theta_rad > weft_rad_of_deg(60) || value < 0.01 * range || value > 0.95 * range)
         return;
@@ -187,7 +180,10 @@ static weft_code write_page(const weft_status_page *status, const weft_status_co
                             weft_error *error)
 {
     weft_page page;
-    WEFT_TRY(weft_page_begin(status->folder, status->session->sample, &page, error));
+    char title[WEFT_MESSAGE_SIZE];
+    snprintf(title, sizeof title, "%s%s%s", status->session->sample, status->camera ? ", camera " : "",
+             status->camera ? status->camera : "");
+    WEFT_TRY(weft_page_begin(status->folder, title, &page, error));
     write_tiles(&page, status, counts);
     write_faults(&page, counts, why);
     weft_code code = write_drift(&page, status, error);
@@ -199,13 +195,12 @@ static weft_code write_page(const weft_status_page *status, const weft_status_co
     return weft_page_finish(&page, error);
 }
 
-weft_code weft_status_page_note(weft_status_page *status, int shot, const weft_shot_record *record,
-                                const weft_meter *meter, const uint16_t *samples, const weft_status_counts *counts,
-                                weft_error *error)
+weft_code weft_status_page_note(weft_status_page *status, int shot, const weft_shot_record *record, double white,
+                                const uint16_t *samples, const weft_status_counts *counts, weft_error *error)
 {
     if (!status)
         return WEFT_OK;
-    measure_lamp(status, shot, record, meter, samples);
+    measure_lamp(status, shot, record, white);
     status->noted++;
     if (record->stay == status->stay)
         return WEFT_OK;
