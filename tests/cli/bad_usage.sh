@@ -64,6 +64,7 @@ done <<'TABLE'
 1|'cloth.wv' is a weave: FILE.stitch belongs|compare good.btf.h5 good.weft --truth cloth.wv -o out
 1|'good' is a folder|compare good good.weft -o out
 3|'/dev/full' is a file|compare good.btf.h5 good.weft -o /dev/full
+1|'good.btf.h5' is no prediction|compare good.btf.h5 good.weft --bard good.btf.h5 -o out
 2|needs --weave|compare good.btf.h5 good.weft --fit -o out
 1|'picture.png' is a picture: NAME.btf.h5 or NAME.weft belongs|tile picture.png -o out
 1|'cloth.wv' is a weave|relief cloth.wv -o out
@@ -92,7 +93,7 @@ done <<'TABLE'
 1|'cloth.wv' is a weave: PATH.csv belongs|render good.weft --path cloth.wv -o out-%d.png
 1|'cloth.wv' is a weave: PATH.csv belongs|prune good.weft --path cloth.wv -o out
 1|'picture.png' is no .weft file|render picture.png -o out.png
-1|'zero.png' is cut|render zero.png -o out.png
+1|'zero.png' is no .weft file|render zero.png -o out.png
 1|twice as wide as high|render good.weft --environment picture.png -o out.png
 1|carries no settings|render good.weft --settings picture.png -o out.png
 2|not 'nan,0'|render good.weft --light nan,0 -o out.png
@@ -140,6 +141,9 @@ expect_no_file out.png
 # A window is not opened for what is not there: no display is needed to say so.
 expect_one_line 1 "no file 'absent'" play --raw absent
 expect_one_line 1 "no file 'absent.weft'" play absent.weft
+for file in picture.png plan.csv folder zero.png knit.stitch; do
+    expect_one_line 1 "'$file' is no .weft file" play "$file"
+done
 expect_one_line 1 "drape, sphere, plane" play good.weft --mesh cube
 
 # What can be shown is shown, whatever it is.
