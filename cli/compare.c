@@ -62,7 +62,7 @@ static void say_error(const weft_common_options *common, const char *model, cons
                      model, what, 100 * e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
     char event[256];
     snprintf(event, sizeof event,
-             "{\"event\":\"error\",\"model\":\"%s\",\"of\":\"%s\",\"values\":%ld,\"relative_rmse\":%.6g,"
+             "{\"event\":\"measurement\",\"model\":\"%s\",\"of\":\"%s\",\"values\":%ld,\"relative_rmse\":%.6g,"
              "\"median_relative\":%.6g,\"percentile80_relative\":%.6g}",
              model, what, e->count, e->relative_rmse, e->median_relative, e->percentile80_relative);
     weft_command_event(common, event);

@@ -298,13 +298,13 @@ static void say_errors(const weft_common_options *common, const weft_material *m
     if (material->layers)
         snprintf(errors_of, sizeof errors_of, ",\"errors_of\":\"%s\"", weft_material_errors_of(material));
     weft_command_say(common, "on the samples that were fitted:");
-    weft_command_say(common, "level       texels   median rel.  80 %% rel.  RMSE       rel. RMSE  PSNR dB");
+    weft_command_say(common, "level       texels   rel. RMSE  median rel.  80 %% rel.  PSNR dB  RMSE");
     for (int k = 0; k < material->level_count; k++) {
         const weft_material_level *level = &material->level[k];
         const weft_error_summary *error = &level->error;
-        weft_command_say(common, "%5d  %5d x %-5d  %9.2f %%  %7.2f %%  %9.3e  %7.2f %%  %7.2f", k, level->width,
-                         level->height, 100 * error->median_relative, 100 * error->percentile80_relative, error->rmse,
-                         100 * error->relative_rmse, error->psnr_db);
+        weft_command_say(common, "%5d  %5d x %-5d  %7.2f %%  %9.2f %%  %7.2f %%  %7.2f  %9.3e", k, level->width,
+                         level->height, 100 * error->relative_rmse, 100 * error->median_relative,
+                         100 * error->percentile80_relative, error->psnr_db, error->rmse);
         char event[320];
         snprintf(event, sizeof event,
                  "{\"event\":\"level\",\"level\":%d,\"width\":%d,\"height\":%d,\"median_relative\":%.6g,"
@@ -339,10 +339,10 @@ static void say_layers(const weft_common_options *common, const weft_compress_op
                      100 * layers->trial_error[1]);
     weft_command_say(
         common,
-        "layers at those texels, fitted samples: median rel. %.2f %%, 80 %% rel. %.2f %%, rel. RMSE %.2f %%, "
+        "layers at those texels, fitted samples: rel. RMSE %.2f %%, median rel. %.2f %%, 80 %% rel. %.2f %%, "
         "PSNR %.2f dB",
-        100 * layers->fitted.median_relative, 100 * layers->fitted.percentile80_relative,
-        100 * layers->fitted.relative_rmse, layers->fitted.psnr_db);
+        100 * layers->fitted.relative_rmse, 100 * layers->fitted.median_relative,
+        100 * layers->fitted.percentile80_relative, layers->fitted.psnr_db);
     weft_command_say(common, "the %s beside them, for players without layers:",
                      has_layers_alone(options) ? "diffuse term" : "lobes");
 }

@@ -1,4 +1,5 @@
 #include "btf/file_kind.h"
+#include "capture/plan.h"
 #include "cli/command/arguments.h"
 #include "cli/command/describe.h"
 #include "compress/options/options.h"
@@ -61,6 +62,9 @@ static weft_code check(void *values, weft_error *error)
     truth_command *command = values;
     if (command->cloth_count == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "needs %s", weft_command_truth.needs);
+    weft_plan plan;
+    WEFT_TRY(weft_plan_read(command->request.chain.plan, &plan, error));
+    weft_plan_free(&plan);
     command->request.chain.layer_count = command->layer_count > 0 ? command->layer_count : WEFT_LAYERS_AUTOMATIC;
     return WEFT_OK;
 }

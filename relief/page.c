@@ -22,7 +22,7 @@ void weft_relief_reason(const weft_relief_report *report, char *text, size_t siz
         snprintf(
             text, size,
             "relief: views that are left out are predicted with an error of %.1f %% through the heights, %.0f %% of "
-            "the %.1f %% through the best plane (at most %.0f %% is wanted)",
+            "the %.1f %% through the best plane (at most %.0f %% wanted)",
             100 * error->heights, 100 * against_plane, 100 * error->plane, 100 * WEFT_RELIEF_GAIN);
         break;
     case WEFT_RELIEF_PLANE:
