@@ -25,7 +25,8 @@ static void put_choice(weft_page *page, const weft_tradeoff_row *row, int number
         between = row->is_chosen[preset] ? ", " : between;
     }
     fprintf(page->html,
-            "</td><td class=\"text\"><a href=\"#model-%d\">%s</a></td><td>%.0f</td><td>%.2f %%</td><td class=\"text\">",
+            "</td><td class=\"text\"><a href=\"#model-%d\">%s</a></td><td>%.0f</td><td>%.2f %%</td><td class=\"text "
+            "reason\">",
             number, row->model.name, row->price.bytes, 100 * error_of(row));
     between = "";
     for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++) {
