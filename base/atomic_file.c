@@ -94,7 +94,10 @@ static weft_code check_name(const char *path, weft_error *error)
 static weft_code check_folder(const char *path, weft_error *error)
 {
     char folder[PATH_MAX];
+    struct stat status;
     folder_of(path, folder);
+    if (stat(folder, &status) == 0 && !S_ISDIR(status.st_mode))
+        return weft_fail(error, WEFT_SYSTEM, "cannot write '%s': '%s' is a file", path, folder);
     return access(folder, W_OK | X_OK) == 0 ? WEFT_OK : weft_fail_errno(error, "write into folder", folder);
 }
 

@@ -31,8 +31,8 @@ static const weft_option option_table[] = {
 
 static void say_ring(const weft_common_options *common, const char *name, const weft_error_summary *error)
 {
-    weft_command_say(common, "%-12s  %12ld  %13.4f  %15.4f", name, error->count, error->relative_rmse,
-                     error->median_relative);
+    weft_command_say(common, "%-12s  %12ld  %11.2f %%  %13.2f %%", name, error->count, 100 * error->relative_rmse,
+                     100 * error->median_relative);
     char event[256];
     snprintf(event, sizeof event,
              "{\"event\":\"prediction\",\"lights\":\"%s\",\"values\":%ld,\"relative_rmse\":%.6g,"

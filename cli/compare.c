@@ -1,6 +1,7 @@
 #include "study/compare/compare.h"
 #include "cli/command/arguments.h"
 #include "cli/command/describe.h"
+#include "study/bard/predict.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -57,11 +58,11 @@ static weft_code check(void *values, weft_error *error)
 static void say_error(const weft_common_options *common, const char *model, const char *what,
                       const weft_error_summary *e)
 {
-    weft_command_say(common, "%s, %s: relative RMSE %.4f, median relative error %.2f %%, 80th percentile %.2f %%",
-                     model, what, e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
+    weft_command_say(common, "%s, %s: relative RMSE %.2f %%, median relative error %.2f %%, 80th percentile %.2f %%",
+                     model, what, 100 * e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
     char event[256];
     snprintf(event, sizeof event,
-             "{\"event\":\"error\",\"model\":\"%s\",\"of\":\"%s\",\"values\":%ld,\"relative_rmse\":%.6g,"
+             "{\"event\":\"measurement\",\"model\":\"%s\",\"of\":\"%s\",\"values\":%ld,\"relative_rmse\":%.6g,"
              "\"median_relative\":%.6g,\"percentile80_relative\":%.6g}",
              model, what, e->count, e->relative_rmse, e->median_relative, e->percentile80_relative);
     weft_command_event(common, event);
@@ -75,9 +76,9 @@ static void say_truth_error(const weft_common_options *common, const weft_truth_
     const weft_truth_error *e = flat ? &under->flat[model] : &under->error[model];
     char what[64];
     snprintf(what, sizeof what, "%s%s", weft_truth_model_name((weft_truth_model)model), flat ? " without heights" : "");
-    weft_command_say(common, "%s, %s light, %s against truth: relative RMSE %.4f, PSNR %.2f dB, of blocks %.4f",
-                     scene->caption, name[light], what, e->error.relative_rmse, e->error.psnr_db,
-                     e->block_relative_rmse);
+    weft_command_say(common, "%s, %s light, %s against truth: relative RMSE %.2f %%, PSNR %.2f dB, of blocks %.2f %%",
+                     scene->caption, name[light], what, 100 * e->error.relative_rmse, e->error.psnr_db,
+                     100 * e->block_relative_rmse);
     char event[384];
     snprintf(event, sizeof event,
              "{\"event\":\"truth\",\"scene\":\"%s\",\"light\":\"%s\",\"model\":\"%s\",\"relative_rmse\":%.6g,"
@@ -142,8 +143,9 @@ static void say_scene(const weft_common_options *common, const weft_scenes *scen
         double frame_ms = model == WEFT_SCENE_BARD ? raw_ms : scenes->frame_ms[model];
         if (!scenes->drawn || !scenes->has[model] || model == WEFT_MODE_RAW || e->count == 0)
             continue;
-        weft_command_say(common, "%s, %s beside raw: PSNR %.2f dB, relative RMSE %.4f; %.1f ms a frame, raw %.1f ms",
-                         scene->caption, weft_scenes_model_name(model), e->psnr_db, e->relative_rmse, frame_ms, raw_ms);
+        weft_command_say(common, "%s, %s beside raw: PSNR %.2f dB, relative RMSE %.2f %%; %.1f ms a frame, raw %.1f ms",
+                         scene->caption, weft_scenes_model_name(model), e->psnr_db, 100 * e->relative_rmse, frame_ms,
+                         raw_ms);
         char event[384];
         snprintf(event, sizeof event,
                  "{\"event\":\"scene\",\"scene\":\"%s\",\"model\":\"%s\",\"relative_rmse\":%.6g,"
@@ -160,11 +162,12 @@ static void say_coverage(const weft_common_options *common, const weft_compariso
     const weft_coverage *coverage = &comparison->model[0].texture.coverage;
     if (coverage->all.count == 0)
         return;
-    weft_command_say(common,
-                     "certificate: %.2f %% of the samples lie in their interval of %g %%; mean width %.3f of the mean "
-                     "sample, %.3f if all were alike",
-                     100 * coverage->all.covered, 100 * comparison->held_out.certificate.probability,
-                     coverage->all.width, coverage->even_width);
+    weft_command_say(
+        common,
+        "certificate: %.2f %% of the samples lie in their interval of %g %%; mean width %.1f %% of the mean "
+        "sample, %.1f %% if all were alike",
+        100 * coverage->all.covered, 100 * comparison->held_out.certificate.probability, 100 * coverage->all.width,
+        100 * coverage->even_width);
     char event[256];
     snprintf(event, sizeof event,
              "{\"event\":\"coverage\",\"values\":%ld,\"covered\":%.6g,\"width\":%.6g,\"even_width\":%.6g,"
@@ -189,10 +192,10 @@ static void say_numbers(const compare_command *command, const weft_comparison *c
     weft_command_say(common, "size: %.0f bytes, 1:%.1f of the half floats", comparison->material_bytes,
                      comparison->half_float_bytes / comparison->material_bytes);
     if (comparison->left_out.count > 0)
-        weft_command_say(common,
-                         "leave one out: relative RMSE %.4f, median relative error %.4f (means of %d photographs)",
-                         comparison->left_out.mean_relative_rmse, comparison->left_out.mean_median_relative,
-                         comparison->left_out.count);
+        weft_command_say(
+            common, "leave one out: relative RMSE %.2f %%, median relative error %.2f %% (means of %d photographs)",
+            100 * comparison->left_out.mean_relative_rmse, 100 * comparison->left_out.mean_median_relative,
+            comparison->left_out.count);
     /* Interpolated, a handful of photographs is no picture to be compared with. */
     if (comparison->left_out.count == 0)
         say_scene(common, &comparison->scenes);
@@ -211,7 +214,9 @@ static int run(int argc, char **argv)
     weft_progress progress = weft_command_progress(&command.common);
     weft_comparison comparison;
     weft_error error = {0};
-    weft_code code = weft_compare(&command.options, &progress, &comparison, &error);
+    weft_code code = command.options.bard ? weft_bard_check(command.options.bard, &error) : WEFT_OK;
+    if (code == WEFT_OK)
+        code = weft_compare(&command.options, &progress, &comparison, &error);
     if (code == WEFT_OK) {
         code = say_held_out(&command.common, &comparison, &error);
         say_numbers(&command, &comparison);

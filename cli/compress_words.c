@@ -116,13 +116,13 @@ static void say_errors(const weft_common_options *common, const weft_material *m
     if (material->layers)
         snprintf(errors_of, sizeof errors_of, ",\"errors_of\":\"%s\"", weft_material_errors_of(material));
     weft_command_say(common, "on the samples that were fitted:");
-    weft_command_say(common, "level       texels   median rel.  80 %% rel.  RMSE       rel. RMSE  PSNR dB");
+    weft_command_say(common, "level       texels   rel. RMSE  median rel.  80 %% rel.  PSNR dB  RMSE");
     for (int k = 0; k < material->level_count; k++) {
         const weft_material_level *level = &material->level[k];
         const weft_error_summary *error = &level->error;
-        weft_command_say(common, "%5d  %5d x %-5d  %10.4f  %9.4f  %9.3e  %9.4f  %7.2f", k, level->width, level->height,
-                         error->median_relative, error->percentile80_relative, error->rmse, error->relative_rmse,
-                         error->psnr_db);
+        weft_command_say(common, "%5d  %5d x %-5d  %7.2f %%  %9.2f %%  %7.2f %%  %7.2f  %9.3e", k, level->width,
+                         level->height, 100 * error->relative_rmse, 100 * error->median_relative,
+                         100 * error->percentile80_relative, error->psnr_db, error->rmse);
         char event[320];
         snprintf(event, sizeof event,
                  "{\"event\":\"level\",\"level\":%d,\"width\":%d,\"height\":%d,\"median_relative\":%.6g,"
@@ -144,20 +144,23 @@ static void say_layers(const weft_common_options *common, const weft_compress_op
         weft_command_say(common,
                          "a photograph alone tells nothing of other directions: what is said of them is a guess");
     else if (layers->scattered)
-        weft_command_say(common,
-                         "photographs that are no grid: completed by kriging; relative RMSE %.4f where each of %d is "
-                         "predicted by the others of these",
-                         layers->left_out_error, layers->left_out_count);
+        weft_command_say(
+            common,
+            "photographs that are no grid: completed by kriging; relative RMSE %.2f %% where each of %d is "
+            "predicted by the others of these",
+            100 * layers->left_out_error, layers->left_out_count);
     weft_command_say(common,
-                     "%d layers over %s, learned from %d texels; on images %s to choose: %.4f over the light, "
-                     "%.4f over the half vector (relative RMSE)",
+                     "%d layers over %s, learned from %d texels; on images %s to choose: %.2f %% over the light, "
+                     "%.2f %% over the half vector (relative RMSE)",
                      options->layer_count, kind[layers->kind], layers->training_texels,
-                     layers->scattered ? "fitted" : "held out", layers->trial_error[0], layers->trial_error[1]);
-    weft_command_say(common,
-                     "layers at those texels, fitted samples: median rel. %.4f, 80 %% rel. %.4f, rel. RMSE %.4f, "
-                     "PSNR %.2f dB",
-                     layers->fitted.median_relative, layers->fitted.percentile80_relative, layers->fitted.relative_rmse,
-                     layers->fitted.psnr_db);
+                     layers->scattered ? "fitted" : "held out", 100 * layers->trial_error[0],
+                     100 * layers->trial_error[1]);
+    weft_command_say(
+        common,
+        "layers at those texels, fitted samples: rel. RMSE %.2f %%, median rel. %.2f %%, 80 %% rel. %.2f %%, "
+        "PSNR %.2f dB",
+        100 * layers->fitted.relative_rmse, 100 * layers->fitted.median_relative,
+        100 * layers->fitted.percentile80_relative, layers->fitted.psnr_db);
     weft_command_say(common, "the %s beside them, for players without layers:",
                      has_layers_alone(options) ? "diffuse term" : "lobes");
 }
@@ -197,8 +200,8 @@ weft_code weft_say_preset(const weft_common_options *common, const weft_preset_p
     print_speed(prediction->frame_ms, speed);
     weft_command_say(common, "preset %s: %s (%s)", weft_preset_name(prediction->wish.preset), prediction->model,
                      prediction->arguments);
-    weft_command_say(common, "  predicted: %.3f MB, relative RMSE %.3f on directions that are not fitted%s%s",
-                     prediction->bytes * 1e-6, prediction->error, speed[0] ? ", " : "", speed);
+    weft_command_say(common, "  predicted: %.3f MB, relative RMSE %.1f %% on directions that are not fitted%s%s",
+                     prediction->bytes * 1e-6, 100 * prediction->error, speed[0] ? ", " : "", speed);
     json_t *object = common->json ? weft_preset_to_event(prediction) : NULL;
     weft_code code = object ? weft_command_describe(common, "predicted", object, error) : WEFT_OK;
     json_decref(object);
@@ -235,8 +238,9 @@ static void say_prediction(const weft_compressed *done)
     weft_command_say(done->common, "predicted %.3f MB, is %.3f MB (%+.1f %%)", prediction->bytes * 1e-6, bytes * 1e-6,
                      100 * (bytes / prediction->bytes - 1));
     if (held_out->split_count > 0)
-        weft_command_say(done->common, "predicted relative RMSE %.3f %s, is %.3f (%+.1f %%)", prediction->error,
-                         weft_hold_out_about(held_out), held_out->material.all.relative_rmse,
+        weft_command_say(done->common, "predicted relative RMSE %.1f %% %s, is %.1f %% (%+.1f %%)",
+                         100 * prediction->error, weft_hold_out_about(held_out),
+                         100 * held_out->material.all.relative_rmse,
                          100 * (held_out->material.all.relative_rmse / prediction->error - 1));
     say_speed(done);
 }

@@ -67,10 +67,10 @@ static void say_report(const relief_command *command, const weft_relief_report *
                      report->low_mm, report->high_mm, report->width, report->height,
                      report->repeats ? "repeats" : "does not repeat");
     weft_command_say(common,
-                     "left out  %d of %d views in turn: error %.3f flat, %.3f through the plane, %.3f through "
+                     "left out  %d of %d views in turn: error %.1f %% flat, %.1f %% through the plane, %.1f %% through "
                      "the heights",
-                     report->compared_count, report->view_count, report->error.flat, report->error.plane,
-                     report->error.heights);
+                     report->compared_count, report->view_count, 100 * report->error.flat, 100 * report->error.plane,
+                     100 * report->error.heights);
     weft_command_say(common, "levels    the finest %d of %d gain", report->levels_used, report->level_count);
     if (command->move && report->verdict != WEFT_RELIEF_NOTHING)
         weft_command_say(common, "texels    moved by %.3f mm, onto that plane", report->plane_mm);

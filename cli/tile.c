@@ -4,6 +4,7 @@
 #include "study/blend/blend.h"
 
 #include <stdio.h>
+#include <string.h>
 
 typedef struct tile_command {
     weft_common_options common;
@@ -140,6 +141,11 @@ static weft_code run_on(const tile_command *command, weft_error *error)
         return weft_fail(error, WEFT_BAD_INPUT,
                          "'%s' is a material, not a dataset (.btf.h5): to make a material tile, use --blend",
                          command->input);
+    const char *dot = strrchr(command->output, '.');
+    if (dot && strcmp(dot, command->blend ? ".h5" : ".weft") == 0)
+        return weft_fail(error, WEFT_BAD_USAGE, "'%s' is the name of a %s: of a %s a %s is made", command->output,
+                         command->blend ? "dataset" : "material", command->blend ? "material" : "dataset",
+                         command->blend ? "material" : "dataset");
     return command->blend ? blend(command, error) : average(command, error);
 }
 

@@ -28,11 +28,11 @@ static void say_row(const weft_common_options *common, const weft_tradeoff_row *
     if (row->price.frame_ms > 0)
         snprintf(frame, sizeof frame, "%.1f", row->price.frame_ms);
     if (fitted->count > 0)
-        snprintf(beside, sizeof beside, "%.4f", fitted->relative_rmse);
+        snprintf(beside, sizeof beside, "%.2f %%", 100 * fitted->relative_rmse);
     if (row->measured.interval_width > 0)
-        snprintf(width, sizeof width, "%.3f", row->measured.interval_width);
-    weft_command_say(common, "%-36s %12.0f %8.1f %9s %12.4f %8s %9s  %s", row->model.name, row->price.bytes,
-                     row->price.fit_s, frame, held->relative_rmse, beside, width, presets);
+        snprintf(width, sizeof width, "%.1f %%", 100 * row->measured.interval_width);
+    weft_command_say(common, "%-36s %12.0f %8.1f %9s %10.2f %% %8s %9s  %s", row->model.name, row->price.bytes,
+                     row->price.fit_s, frame, 100 * held->relative_rmse, beside, width, presets);
 }
 
 static weft_code say_results(const tradeoff_command *command, const weft_tradeoff *result, weft_error *error)

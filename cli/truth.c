@@ -1,4 +1,5 @@
 #include "btf/file_kind.h"
+#include "capture/plan.h"
 #include "cli/command/arguments.h"
 #include "cli/command/describe.h"
 #include "compress/options/options.h"
@@ -61,6 +62,9 @@ static weft_code check(void *values, weft_error *error)
     truth_command *command = values;
     if (command->cloth_count == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "needs %s", weft_command_truth.needs);
+    weft_plan plan;
+    WEFT_TRY(weft_plan_read(command->request.chain.plan, &plan, error));
+    weft_plan_free(&plan);
     command->request.chain.layer_count = command->layer_count > 0 ? command->layer_count : WEFT_LAYERS_AUTOMATIC;
     return WEFT_OK;
 }
@@ -68,10 +72,10 @@ static weft_code check(void *values, weft_error *error)
 static weft_code say_result(const truth_command *command, const weft_sources *result, weft_error *error)
 {
     const weft_error_stack *stack = &result->stack;
-    weft_command_say(&command->common, "%-24s %8.4f %11.4f %12.4f %9.4f %9.4f %9.4f %8.4f", result->name,
-                     sqrt(fmax(stack->whole.value, 0)), stack->part[WEFT_SOURCE_DIRECTIONS].value,
+    weft_command_say(&command->common, "%-24s %6.2f %% %11.4f %12.4f %9.4f %9.4f %9.4f %6.2f %%", result->name,
+                     100 * sqrt(fmax(stack->whole.value, 0)), stack->part[WEFT_SOURCE_DIRECTIONS].value,
                      stack->part[WEFT_SOURCE_REGISTRATION].value, stack->part[WEFT_SOURCE_MODEL].value,
-                     stack->part[WEFT_SOURCE_STORAGE].value, stack->whole.value, stack->noise);
+                     stack->part[WEFT_SOURCE_STORAGE].value, stack->whole.value, 100 * stack->noise);
     json_t *object = command->common.json ? weft_sources_to_json(result) : NULL;
     weft_code code = object ? weft_command_describe(&command->common, "sources", object, error) : WEFT_OK;
     json_decref(object);

@@ -1,11 +1,12 @@
 #include "relief/page.h"
 
-#include "base/text/html_page.h"
+#include "base/text/chart.h"
 #include "btf/direction/direction.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-enum { PICTURE_WIDTH = 360, CHART_WIDTH = 1000, CHART_HEIGHT = 320, CHART_MARGIN = 40 };
+enum { PICTURE_WIDTH = 360 };
 
 static double ratio(double a, double b)
 {
@@ -18,23 +19,24 @@ void weft_relief_reason(const weft_relief_report *report, char *text, size_t siz
     double against_plane = ratio(error->heights, error->plane), plane_gain = ratio(error->plane, error->flat);
     switch (report->verdict) {
     case WEFT_RELIEF_HEIGHTS:
-        snprintf(text, size,
-                 "relief: views that are left out are predicted with %.3f through the heights, %.2f of the "
-                 "%.3f through the best plane (at most %.2f is wanted)",
-                 error->heights, against_plane, error->plane, WEFT_RELIEF_GAIN);
+        snprintf(
+            text, size,
+            "relief: views that are left out are predicted with an error of %.1f %% through the heights, %.0f %% of "
+            "the %.1f %% through the best plane (at most %.0f %% wanted)",
+            100 * error->heights, 100 * against_plane, 100 * error->plane, 100 * WEFT_RELIEF_GAIN);
         break;
     case WEFT_RELIEF_PLANE:
         snprintf(text, size,
-                 "plane: heights predict views that are left out with %.2f of the error of the best plane "
-                 "(%.2f is wanted), the plane with %.2f of that of no depth (%.2f is wanted)",
-                 against_plane, WEFT_RELIEF_GAIN, plane_gain, WEFT_RELIEF_PLANE_GAIN);
+                 "plane: heights predict views that are left out with %.0f %% of the error of the best plane "
+                 "(%.0f %% is wanted), the plane with %.0f %% of that of no depth (%.0f %% is wanted)",
+                 100 * against_plane, 100 * WEFT_RELIEF_GAIN, 100 * plane_gain, 100 * WEFT_RELIEF_PLANE_GAIN);
         break;
     default:
         snprintf(text, size,
-                 "nothing: neither heights (%.2f of the error of the best plane, %.2f is wanted) nor the "
-                 "plane (%.2f of that of no depth, %.2f is wanted) predict views that are left out well "
+                 "nothing: neither heights (%.0f %% of the error of the best plane, %.0f %% is wanted) nor the "
+                 "plane (%.0f %% of that of no depth, %.0f %% is wanted) predict views that are left out well "
                  "enough",
-                 against_plane, WEFT_RELIEF_GAIN, plane_gain, WEFT_RELIEF_PLANE_GAIN);
+                 100 * against_plane, 100 * WEFT_RELIEF_GAIN, 100 * plane_gain, 100 * WEFT_RELIEF_PLANE_GAIN);
     }
 }
 
@@ -81,51 +83,50 @@ static double angle_of(const weft_relief_view *view)
     return weft_deg_of_rad(acos(fmin((double)view->direction.z, 1)));
 }
 
-static double largest_error(const weft_relief_report *report)
+static weft_code write_chart(weft_page *page, const weft_relief_report *report, weft_error *error)
 {
-    double most = 1e-3;
-    for (int i = 0; i < report->compared_count; i++)
-        most = fmax(most,
-                    fmax(report->view[i].error.flat, fmax(report->view[i].error.plane, report->view[i].error.heights)));
-    return most;
-}
-
-static void write_dot(weft_page *page, double angle, double error, double most, const char *colour)
-{
-    double x = CHART_MARGIN + angle / 65 * (CHART_WIDTH - 2 * CHART_MARGIN);
-    double y = CHART_HEIGHT - CHART_MARGIN - error / most * (CHART_HEIGHT - 2 * CHART_MARGIN);
-    fprintf(page->html, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\" fill-opacity=\".7\"/>", x, y, colour);
-}
-
-static void write_chart(weft_page *page, const weft_relief_report *report)
-{
-    double most = largest_error(report);
-    fprintf(page->html,
-            "<h2>Error by view</h2>\n<p class=\"note\">Each view predicted from its neighbours: as if all lay in the "
-            "plane of the texels (red), through the best plane (grey), through heights that it had no part in (blue). "
-            "Relative RMSE up to %.3f, over the angle of the view up to 65 degrees.</p>\n"
-            "<svg class=\"chart\" viewBox=\"0 0 %d %d\"><path d=\"M%d %d V%d H%d\" fill=\"none\" stroke=\"#999\"/>",
-            most, CHART_WIDTH, CHART_HEIGHT, CHART_MARGIN, CHART_MARGIN, CHART_HEIGHT - CHART_MARGIN,
-            CHART_WIDTH - CHART_MARGIN);
-    for (int i = 0; i < report->compared_count; i++) {
-        double angle = angle_of(&report->view[i]);
-        write_dot(page, angle, report->view[i].error.flat, most, "#d9483b");
-        write_dot(page, angle, report->view[i].error.plane, most, "#888");
-        write_dot(page, angle, report->view[i].error.heights, most, "#2166ac");
+    static const char *const name[] = {"flat", "best plane", "heights"};
+    static const int colour[] = {1, 3, 0};
+    int count = report->compared_count;
+    double(*point)[2] = calloc(3 * (size_t)count + 1, sizeof *point);
+    if (!point)
+        return weft_fail_memory(error, "errors by view", 3 * (size_t)count * sizeof *point);
+    weft_chart_series series[3];
+    for (int s = 0; s < 3; s++) {
+        double(*of)[2] = point + s * count;
+        for (int i = 0; i < count; i++) {
+            const weft_relief_errors *e = &report->view[i].error;
+            of[i][0] = angle_of(&report->view[i]);
+            of[i][1] = 100 * (s == 0 ? e->flat : s == 1 ? e->plane : e->heights);
+        }
+        series[s] = (weft_chart_series){name[s], colour[s], false, count, (const double(*)[2])of};
     }
-    fputs("</svg>\n", page->html);
+    fputs(
+        "<h2>Error by view</h2>\n<p class=\"note\">Each view predicted from its neighbours: as if all lay flat in the "
+        "plane of the texels, through the best plane, and through heights that it had no part in.</p>\n",
+        page->html);
+    const weft_chart chart = {"Error of views that are left out",
+                              {"view from the normal", "\u00b0", 0, 60, 0},
+                              {"relative RMSE", " %", 0, 10, 0},
+                              3,
+                              series};
+    weft_chart_write(page, &chart);
+    free(point);
+    return WEFT_OK;
 }
 
 static void write_views(weft_page *page, const weft_relief_report *report)
 {
     fputs("<table class=\"long\">\n", page->html);
-    weft_page_columns(page, "view|theta, degrees|phi, degrees|flat|plane|heights");
+    weft_page_columns(page, "view|theta|phi|flat|plane|heights");
     for (int i = 0; i < report->compared_count; i++) {
         const weft_relief_view *view = &report->view[i];
         double phi = weft_deg_of_rad(atan2((double)view->direction.y, (double)view->direction.x));
-        fprintf(page->html, "<tr%s><td>%d</td><td>%.1f</td><td>%.1f</td><td>%.3f</td><td>%.3f</td><td>%.3f</td></tr>\n",
+        fprintf(page->html,
+                "<tr%s><td>%d</td><td>%.1f\u00b0</td><td>%.1f\u00b0</td><td>%.1f %%</td><td>%.1f %%</td><td>%.1f "
+                "%%</td></tr>\n",
                 view->error.heights > view->error.plane ? " class=\"weak\"" : "", view->number, angle_of(view), phi,
-                view->error.flat, view->error.plane, view->error.heights);
+                100 * view->error.flat, 100 * view->error.plane, 100 * view->error.heights);
     }
     fputs("</table>\n", page->html);
 }
@@ -136,8 +137,9 @@ static void write_levels(weft_page *page, const weft_relief_report *report)
     weft_page_columns(page, "level|flat|plane|heights");
     for (int level = 0; level < report->level_count; level++) {
         const weft_relief_errors *error = &report->level_error[level];
-        fprintf(page->html, "<tr><td>%d%s</td><td>%.3f</td><td>%.3f</td><td>%.3f</td></tr>\n", level,
-                level < report->levels_used ? "" : " (left flat)", error->flat, error->plane, error->heights);
+        fprintf(page->html, "<tr><td>%d%s</td><td>%.1f %%</td><td>%.1f %%</td><td>%.1f %%</td></tr>\n", level,
+                level < report->levels_used ? "" : " (left flat)", 100 * error->flat, 100 * error->plane,
+                100 * error->heights);
     }
     fputs("</table>\n", page->html);
 }
@@ -147,13 +149,15 @@ static void write_facts(weft_page *page, const weft_relief_report *report)
     static const char *const name[] = {"nothing", "plane", "relief"};
     fputs("<div class=\"tiles\">\n", page->html);
     weft_page_tile(page, "decided", "%s", name[report->verdict]);
-    weft_page_tile(page, "error through heights / plane", "%.2f", ratio(report->error.heights, report->error.plane));
-    weft_page_tile(page, "error through the plane / flat", "%.2f", ratio(report->error.plane, report->error.flat));
-    weft_page_tile(page, "best plane, mm", "%.3f", report->plane_mm);
+    weft_page_tile(page, "of the error through the plane, through heights", "%.0f %%",
+                   100 * ratio(report->error.heights, report->error.plane));
+    weft_page_tile(page, "of the error if flat, through the best plane", "%.0f %%",
+                   100 * ratio(report->error.plane, report->error.flat));
+    weft_page_tile(page, "best plane above that of the texels", "%.3f mm", report->plane_mm);
     fputs("</div>\n<table>\n", page->html);
-    weft_page_fact(page, "material", "%.3g x %.3g mm, %s", report->width_mm, report->height_mm,
+    weft_page_fact(page, "material", "%.3g \u00d7 %.3g mm, %s", report->width_mm, report->height_mm,
                    report->repeats ? "repeats" : "does not repeat");
-    weft_page_fact(page, "difference across the borders / inside", "%.2f", report->seam);
+    weft_page_fact(page, "difference across the borders, of that inside", "%.0f %%", 100 * report->seam);
     weft_page_fact(page, "views", "%d, of which %d were left out in turn", report->view_count, report->compared_count);
     weft_page_fact(page, "lights", "%d", report->light_count);
     weft_page_fact(page, "heights looked for", "%.3f to %.3f mm", report->low_mm, report->high_mm);
@@ -170,7 +174,7 @@ static weft_code write_page(weft_page *page, const weft_relief_report *report, w
     write_facts(page, report);
     WEFT_TRY(write_maps(page, report, error));
     write_levels(page, report);
-    write_chart(page, report);
+    WEFT_TRY(write_chart(page, report, error));
     write_views(page, report);
     return WEFT_OK;
 }

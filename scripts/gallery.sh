@@ -57,7 +57,7 @@ of_scene() {
 }
 
 # samples NAME MODEL: its relative RMSE over all samples.
-samples() { printf '%.3f' "$(sed -n "s/^$2, samples: relative RMSE \([0-9.]*\),.*/\1/p" "$1.scenes")"; }
+samples() { sed -n "s/^$2, samples: relative RMSE \([0-9.]*\) %,.*/\1/p" "$1.scenes" | awk '{ printf "%.3f", $1 / 100 }'; }
 
 stitches() {
     cat <<'TEXT'
@@ -175,7 +175,7 @@ timed.
 TEXT
     echo "| 256 x 256 | $(kilobytes cards.btf.h5) / $(kilobytes cards.weft)" \
         "| $(held_out cards.weft photographs_interpolated) / $(held_out cards.weft not_fitted)" \
-        "| $(sed -n 's/^leave one out: .*median relative error \([0-9.]*\) .*/\1/p' cards.scenes) |"
+        "| $(sed -n 's/^leave one out: .*median relative error \([0-9.]*\) %.*/\1/p' cards.scenes | awk '{ printf "%.4f", $1 / 100 }') |"
 }
 
 heading_of() {

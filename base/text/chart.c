@@ -82,9 +82,11 @@ static void draw_frame(weft_page *page, const weft_chart *chart, const linear_ax
     draw_axis(page, y, true, chart->y.unit);
     fprintf(page->html, "</g>\n<text x=\"%d\" y=\"20\" class=\"title\">", LEFT);
     weft_page_text(page, chart->title);
-    fprintf(page->html, "</text><text x=\"%d\" y=\"%d\" text-anchor=\"end\">", WIDTH - RIGHT, HEIGHT - 8);
+    fprintf(page->html, "</text><text class=\"axis\" x=\"%d\" y=\"%d\" text-anchor=\"end\">", WIDTH - RIGHT,
+            HEIGHT - 8);
     weft_page_text(page, chart->x.label);
-    fprintf(page->html, "</text><text x=\"14\" y=\"%d\" text-anchor=\"end\" transform=\"rotate(-90 14 %d)\">", TOP,
+    fprintf(page->html,
+            "</text><text class=\"axis\" x=\"14\" y=\"%d\" text-anchor=\"end\" transform=\"rotate(-90 14 %d)\">", TOP,
             TOP);
     weft_page_text(page, chart->y.label);
     fputs("</text>\n", page->html);

@@ -114,7 +114,7 @@ void weft_page_fact(weft_page *page, const char *name, const char *format, ...)
     va_start(arguments, format);
     fputs("<tr><td>", page->html);
     weft_page_text(page, name);
-    fputs("</td><td>", page->html);
+    fputs("</td><td class=\"fact\">", page->html);
     put_formatted(page, format, arguments);
     fputs("</td></tr>\n", page->html);
     va_end(arguments);

@@ -6,10 +6,11 @@
  *     <div class="row">            figures side by side; "row even": in columns of one width that fill the page
  *     <div class="gallery">        cards; each is a <figure> with a <div> of up to three pictures and a <figcaption>
  *     <table class="long">         many rows and columns: smaller, and the heading stays in sight
- *     <td class="text">            a cell of words, at the left; a table's first column is at the left anyway
+ *     <td class="text">            a cell of words, at the left; a table's first column is at the left anyway;
+ *                                  "text reason": a sentence, which is not squeezed
  *     <tr class="bad">, "weak"     a row that reports a failure, or something to look at; also <figure class="bad">
- *     <svg class="plot">           points and curves, by base/text/chart.h, a scatter, by study/tradeoff/plot.h, or
- *                                  stacks, by study/sources/page.c;
+ *     <svg class="plot">           drawn in the colours of the page, as by base/text/chart.h, 560 units wide;
+ *                                  "plot wide": 760; "plot disc": small, without a frame;
  *                                  <div class="plots"> holds two or three
  *     <div class="pairs">          rows of two small pictures side by side
  *     class="colour0" to "colour6" what belongs together

@@ -164,14 +164,16 @@ static void write_faults(weft_page *page, const weft_status_counts *counts, cons
 
 static void write_gallery(weft_page *page, const weft_status_page *status)
 {
-    fputs("<h2>The first photograph of each stay</h2><div class=\"gallery\">", page->html);
+    fputs("<h2>The first photograph of each stay</h2><div class=\"row even\">", page->html);
     for (int i = 0; i < status->shown_count; i++) {
         const weft_shot *shot = &status->session->shot[status->shown[i]];
         fprintf(page->html,
-                "<figure><div><img src=\"shot%d.png\" alt=\"\"></div><figcaption>view %.0f %.0f, light %.0f "
-                "%.0f</figcaption></figure>",
-                status->shown[i], weft_deg_of_rad(shot->view.theta_rad), weft_deg_of_rad(shot->view.phi_rad),
-                weft_deg_of_rad(shot->light_driven.theta_rad), weft_deg_of_rad(shot->light_driven.phi_rad));
+                "<figure><img src=\"shot%d.png\" alt=\"photograph %d\"><figcaption>view %.0f\u00b0 (azimuth "
+                "%.0f\u00b0), light "
+                "%.0f\u00b0 (azimuth %.0f\u00b0)</figcaption></figure>\n",
+                status->shown[i], status->shown[i], weft_deg_of_rad(shot->view.theta_rad),
+                weft_deg_of_rad(shot->view.phi_rad), weft_deg_of_rad(shot->light_driven.theta_rad),
+                weft_deg_of_rad(shot->light_driven.phi_rad));
     }
     fputs("</div>", page->html);
 }

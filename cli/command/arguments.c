@@ -205,6 +205,17 @@ static void check_inputs(const arguments *a, struct argp_state *state)
     }
 }
 
+/* Before a window opens. */
+static void check_scene_inputs(const weft_scene_request *scene, struct argp_state *state)
+{
+    weft_error error = {0};
+    for (int i = 0; i < scene->option_count; i++) {
+        const weft_option *option = &scene->option[i].setting->option;
+        if (option->name && option->kind == WEFT_OPTION_NAME)
+            insist(weft_argument_belongs(option->argument, scene->option[i].text, &error), &error, state);
+    }
+}
+
 static void complete(arguments *a, struct argp_state *state)
 {
     weft_error error = {0};
@@ -214,6 +225,7 @@ static void complete(arguments *a, struct argp_state *state)
     refuse_overwriting(a, state);
     if (a->command->shows_scene) {
         insist(weft_scene_request_complete(scene_of(a), &error), &error, state);
+        check_scene_inputs(scene_of(a), state);
         refuse_overwriting(a, state); /* what the settings of another picture name, too */
     }
     check_inputs(a, state);

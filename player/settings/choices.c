@@ -32,7 +32,7 @@ weft_code weft_choose_file(const weft_option *option, const char *text, void *ta
     (void)option;
     weft_settings *s = &((weft_scene_request *)target)->settings;
     weft_file_kind kind;
-    /* A file of another kind, or none, is left to the reader of materials to refuse. */
+    /* A file of another kind, or none, is refused as no material. */
     if (weft_file_kind_of(text, &kind, NULL) != WEFT_OK)
         kind = WEFT_FILE_MATERIAL;
     char **shown = kind == WEFT_FILE_DATASET                                    ? &s->dataset

@@ -1,9 +1,11 @@
 #include "player/settings/scene_options.h"
 
+#include "btf/file_kind.h"
 #include "player/scene/surroundings.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static bool is_material(const weft_setting *setting)
@@ -67,7 +69,11 @@ static weft_code check_files(const weft_settings *s, weft_error *error)
     for (size_t i = 0; i < sizeof file / sizeof file[0]; i++)
         if (file[i] && access(file[i], F_OK) != 0)
             return weft_fail(error, WEFT_BAD_INPUT, "there is no file '%s'", file[i]);
-    if (!weft_mesh_is_built_in(s->mesh) && access(s->mesh, F_OK) != 0)
+    weft_file_kind kind;
+    struct stat mesh;
+    if (s->material && (weft_file_kind_of(s->material, &kind, NULL) != WEFT_OK || kind != WEFT_FILE_MATERIAL))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no .weft file, dataset or cloth", s->material);
+    if (!weft_mesh_is_built_in(s->mesh) && (stat(s->mesh, &mesh) != 0 || S_ISDIR(mesh.st_mode)))
         return weft_fail(error, WEFT_BAD_INPUT,
                          "there is no mesh '%s': --mesh takes drape, sphere, plane or an OBJ file", s->mesh);
     return WEFT_OK;

@@ -2,7 +2,7 @@
 
 #include "base/numeric/statistics.h"
 #include "base/picture/colour.h"
-#include "base/text/html_page.h"
+#include "base/text/chart.h"
 
 #include <limits.h>
 #include <math.h>
@@ -70,53 +70,57 @@ static void write_camera(weft_page *page, const weft_hand *hand)
 
 /* ---- Charts ---- */
 
-static void plot_directions(weft_page *page, const weft_hand *hand, const char *title, bool lamps)
+enum { CHART_WIDTH = 560, CHART_HEIGHT = 270, RADIUS = 104, MIDDLE = 152 };
+
+static void draw_direction(weft_page *page, const weft_hand_photograph *p, bool lamps, int x)
 {
-    enum { side = 260, radius = 110 };
-    fprintf(
-        page->html,
-        "<figure><svg viewBox=\"0 0 %d %d\" width=\"%d\" font-size=\"11\" fill=\"#5b6675\" style=\"background:#fff\">",
-        side, side, side);
-    for (int ring = 30; ring <= 90; ring += 30)
-        fprintf(page->html,
-                "<circle cx=\"%d\" cy=\"%d\" r=\"%d\" fill=\"none\" stroke=\"#dfe3e8\"/><text x=\"%d\" "
-                "y=\"%d\">%d&deg;</text>",
-                side / 2, side / 2, radius * ring / 90, side / 2 + 3, side / 2 - radius * ring / 90 + 11, ring);
-    for (int i = 0; i < hand->count; i++) {
-        const weft_hand_photograph *p = &hand->photograph[i];
-        if (!weft_hand_used(p))
-            continue;
-        weft_angles angles = weft_angles_of_direction(weft_unit(lamps ? p->lamp.position_mm : view_of(p)));
-        double reach = radius * weft_deg_of_rad(angles.theta_rad) / 90;
-        fprintf(page->html, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3.5\" fill=\"%s\"><title>",
-                side / 2 + reach * cos(angles.phi_rad), side / 2 - reach * sin(angles.phi_rad),
-                lamps ? "#b7791f" : "#2b6cb0");
-        weft_page_text(page, p->name);
-        fputs("</title></circle>", page->html);
-    }
-    fprintf(page->html, "</svg><figcaption>%s</figcaption></figure>\n", title);
+    weft_angles angles = weft_angles_of_direction(weft_unit(lamps ? p->lamp.position_mm : view_of(p)));
+    double reach = RADIUS * weft_deg_of_rad(angles.theta_rad) / 90;
+    fprintf(page->html, "<circle class=\"colour%d\" cx=\"%.1f\" cy=\"%.1f\" r=\"3.5\"><title>", lamps ? 3 : 0,
+            x + reach * cos(angles.phi_rad), MIDDLE - reach * sin(angles.phi_rad));
+    weft_page_text(page, p->name);
+    fputs("</title></circle>\n", page->html);
 }
 
-static void plot_curve(weft_page *page, const weft_tone_curve *tone, const char *stroke)
+/* The hemisphere over the sample, seen from above, about (x, MIDDLE). */
+static void draw_hemisphere(weft_page *page, const weft_hand *hand, bool lamps, int x)
 {
-    fputs("<polyline fill=\"none\" stroke-width=\"2\" points=\"", page->html);
-    for (int i = 0; i <= WEFT_TONE_STEPS; i += WEFT_TONE_STEPS / 64)
-        fprintf(page->html, "%.1f,%.1f ", 30 + 220.0 * i / WEFT_TONE_STEPS, 230 - 220 * (double)tone->linear[i]);
-    fprintf(page->html, "\" stroke=\"%s\"/>", stroke);
+    fprintf(page->html, "<text class=\"title\" x=\"%d\" y=\"20\" text-anchor=\"middle\">%s</text>\n", x,
+            lamps ? "Lamps" : "Views");
+    for (int deg = 30; deg <= 90; deg += 30)
+        fprintf(page->html,
+                "<circle class=\"ring\" cx=\"%d\" cy=\"%d\" r=\"%d\"/><text x=\"%d\" y=\"%d\">%d\u00b0</text>\n", x,
+                MIDDLE, RADIUS * deg / 90, x + 3, MIDDLE - RADIUS * deg / 90 - 3, deg);
+    for (int i = 0; i < hand->count; i++) {
+        if (weft_hand_used(&hand->photograph[i]))
+            draw_direction(page, &hand->photograph[i], lamps, x);
+    }
+}
+
+static void plot_directions(weft_page *page, const weft_hand *hand)
+{
+    const char *title = "Directions of views and lamps, as seen from above the sample";
+    fprintf(page->html, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s\">\n", CHART_WIDTH,
+            CHART_HEIGHT, title);
+    draw_hemisphere(page, hand, false, CHART_WIDTH / 4);
+    draw_hemisphere(page, hand, true, 3 * CHART_WIDTH / 4);
+    fputs("</svg>\n", page->html);
 }
 
 static void plot_tone(weft_page *page, const weft_hand *hand)
 {
+    enum { STEPS = 16 };
     weft_tone_curve srgb = weft_tone_srgb();
-    fputs(
-        "<figure><svg viewBox=\"0 0 260 260\" width=\"260\" font-size=\"11\" fill=\"#5b6675\" "
-        "style=\"background:#fff\">"
-        "<path d=\"M30 10V230H250\" fill=\"none\" stroke=\"#dfe3e8\"/><text x=\"90\" y=\"250\">value in the file</text>"
-        "<text transform=\"rotate(-90)\" x=\"-140\" y=\"20\">light</text>",
-        page->html);
-    plot_curve(page, &srgb, "#cbd5e0");
-    plot_curve(page, &hand->tone, "#2b6cb0");
-    fputs("</svg><figcaption>The camera's tone curve (blue) and sRGB (grey)</figcaption></figure>\n", page->html);
+    double camera[STEPS + 1][2], standard[STEPS + 1][2];
+    for (int i = 0; i <= STEPS; i++) {
+        camera[i][0] = standard[i][0] = (double)i / STEPS;
+        camera[i][1] = (double)hand->tone.linear[i * (WEFT_TONE_STEPS / STEPS)];
+        standard[i][1] = (double)srgb.linear[i * (WEFT_TONE_STEPS / STEPS)];
+    }
+    const weft_chart_series series[] = {{"sRGB", 6, true, STEPS + 1, (const double(*)[2])standard},
+                                        {"the camera", 0, true, STEPS + 1, (const double(*)[2])camera}};
+    const weft_chart chart = {"The tone curve", {"value in the file", "", 0, 1, 0}, {"light", "", 0, 1, 0}, 2, series};
+    weft_chart_write(page, &chart);
 }
 
 /* ---- Photographs ---- */
@@ -125,7 +129,7 @@ static void write_left_out(weft_page *page, const weft_hand *hand)
 {
     if (hand->used_count == hand->count)
         return;
-    fputs("<h2>Left out</h2>\n<table class=\"long\">\n", page->html);
+    fputs("<h2>Left out</h2>\n<table>\n", page->html);
     weft_page_columns(page, "photograph|:why");
     for (int i = 0; i < hand->count; i++) {
         if (weft_hand_used(&hand->photograph[i]))
@@ -206,13 +210,15 @@ static weft_code write_page(weft_page *page, const char *dataset, const weft_han
 {
     fputs("<p class=\"note\">Dataset ", page->html);
     weft_page_text(page, dataset);
-    fprintf(page->html, ", %d &times; %d texels of %.3f mm</p>\n", settings->width, settings->height,
+    fprintf(page->html, ", %d \u00d7 %d texels of %.3f mm</p>\n", settings->width, settings->height,
             settings->target.opening_mm / settings->width);
     write_tiles(page, hand);
     write_left_out(page, hand);
-    fputs("<h2>Where camera and lamp stood</h2>\n<div class=\"row\">\n", page->html);
-    plot_directions(page, hand, "Views, as seen from above the sample", false);
-    plot_directions(page, hand, "Lamps", true);
+    fputs("<h2>Where camera and lamp stood</h2>\n<p class=\"note\">Directions as seen from above the sample, by their "
+          "angle "
+          "from its normal.</p>\n<div class=\"plots\">\n",
+          page->html);
+    plot_directions(page, hand);
     plot_tone(page, hand);
     fputs("</div>\n", page->html);
     write_camera(page, hand);

@@ -14,8 +14,8 @@ static weft_code write_summary(weft_page *page, const weft_session *session, con
     weft_page_tile(page, "photographs in the dataset", "%d of %d", r->image_count, session->shot_count);
     weft_page_tile(page, "stays of the camera registered", "%d of %d", r->survey.stay_count - r->failed_stays,
                    r->survey.stay_count);
-    weft_page_tile(page, "texels: random error, median stay", "%.4f", all.median_uncertainty);
-    weft_page_tile(page, "texels: random error, worst stay", "%.4f", all.worst_uncertainty);
+    weft_page_tile(page, "thousandths of a texel: random error, median stay", "%.2f", 1000 * all.median_uncertainty);
+    weft_page_tile(page, "thousandths of a texel: random error, worst stay", "%.2f", 1000 * all.worst_uncertainty);
     weft_page_tile(page, "median shift against the rig's promise", "%.3f mm", all.median_shift_mm);
     if (session->colour.terms > 0)
         weft_page_tile(page, "CIEDE2000: linear sRGB, of a chart's patch left out", "%.2f",
@@ -39,8 +39,11 @@ static void write_figure(weft_page *page, const weft_registration *r, int stay)
     if (r->used[stay] > 0)
         fprintf(page->html,
                 "<img class=\"texels\" loading=\"lazy\" alt=\"rectified\" src=\"pictures/%03d_texels.png\">", stay);
-    fprintf(page->html, "</div><figcaption>%s, stay %d: %s</figcaption></figure>\n", weft_view_name_of(view).text,
-            one->stay, failed ? "failed" : weft_pose_source_name(pose));
+    fprintf(
+        page->html,
+        "</div><figcaption>%.0f\u00b0 from the normal, azimuth %.0f\u00b0 (%s), stay %d: %s%s</figcaption></figure>\n",
+        weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), weft_view_name_of(view).text, one->stay,
+        failed ? "failed" : "pose from ", failed ? "" : weft_pose_source_name(pose));
 }
 
 static void write_gallery(weft_page *page, const weft_registration *r)
@@ -63,7 +66,7 @@ static weft_code write_page(weft_page *page, const weft_session *session, const 
     weft_page_text(page, session->folder);
     fputs(", dataset ", page->html);
     weft_page_text(page, dataset);
-    fprintf(page->html, ", %d &times; %d texels of %.3f mm</p>\n", r->settings.width, r->settings.height,
+    fprintf(page->html, ", %d \u00d7 %d texels of %.3f mm</p>\n", r->settings.width, r->settings.height,
             session->target.opening_mm / r->settings.width);
     WEFT_TRY(write_summary(page, session, r, error));
     weft_write_faults(page, session, r);

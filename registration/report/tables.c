@@ -123,19 +123,20 @@ weft_code weft_write_rings(weft_page *page, const weft_session *session, const w
         "here. The shift is against the pose that the rig promised.</p>\n"
         "<table>",
         page->html);
-    weft_page_columns(page, "view|stays|failed|error, median (texels)|worst|correlation, median|worst|shift, median "
-                            "(mm)|worst|saturated (%)");
+    weft_page_columns(page,
+                      "view|stays|failed|error, median (texel/1000)|worst|correlation, median|worst|shift, median "
+                      "(mm)|worst|saturated (%)");
     for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
         weft_ring_summary s;
         WEFT_TRY(weft_ring_summarise(session, r, ring, &s, error));
         if (s.stays == 0)
             continue;
         fprintf(page->html,
-                "<tr%s><td>%d&deg;</td><td>%d</td><td>%d</td><td>%.4f</td><td>%.4f</td><td>%.4f</td><td>%.4f</td>"
+                "<tr%s><td>%d\u00b0</td><td>%d</td><td>%d</td><td>%.2f</td><td>%.2f</td><td>%.4f</td><td>%.4f</td>"
                 "<td>%.3f</td><td>%.3f</td><td>%.3f</td></tr>\n",
-                s.failed ? " class=\"weak\"" : "", 15 * ring, s.stays, s.failed, s.median_uncertainty,
-                s.worst_uncertainty, s.median_correlation, s.worst_correlation, s.median_shift_mm, s.worst_shift_mm,
-                100 * s.saturated);
+                s.failed ? " class=\"weak\"" : "", 15 * ring, s.stays, s.failed, 1000 * s.median_uncertainty,
+                1000 * s.worst_uncertainty, s.median_correlation, s.worst_correlation, s.median_shift_mm,
+                s.worst_shift_mm, 100 * s.saturated);
     }
     fputs("</table>\n<div class=\"plots\">\n", page->html);
     WEFT_TRY(draw_stays(page, session, r, STAY_ERROR, error));
@@ -156,9 +157,9 @@ static void write_stay(weft_page *page, const weft_session *session, const weft_
             "<tr%s><td>%s</td><td>%.1f</td><td>%.1f</td><td>%d</td><td>%d of %d</td><td class=\"text\">%s</td>", class,
             weft_view_name_of(view).text, weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), one->stay,
             r->used[stay], one->count, weft_pose_source_name(pose));
-    fprintf(page->html, "<td>%d</td><td>%.2f</td><td>%.4f</td><td>%.4f</td><td>%.3f</td><td class=\"text\">",
+    fprintf(page->html, "<td>%d</td><td>%.2f</td><td>%.4f</td><td>%.2f</td><td>%.3f</td><td class=\"text\">",
             pose->marker_count, pose->marker_rms_px, pose->correlation,
-            weft_registration_uncertainty_texels(session, r, stay), pose->shift_mm);
+            1000 * weft_registration_uncertainty_texels(session, r, stay), pose->shift_mm);
     weft_page_text(page, pose->remark);
     fputs("</td></tr>\n", page->html);
 }
@@ -168,7 +169,7 @@ void weft_write_stays(weft_page *page, const weft_session *session, const weft_r
     fputs("<h2>Every view</h2>\n<table class=\"long\">", page->html);
     weft_page_columns(
         page, "view|\u03b8\u00b0|\u03c6\u00b0|stay|photographs|:used|markers|markers' RMS (px)|correlation|error "
-              "(texels)|shift (mm)|:remark");
+              "(texel/1000)|shift (mm)|:remark");
     for (int stay = 0; stay < r->survey.stay_count; stay++)
         write_stay(page, session, r, stay);
     fputs("</table>\n", page->html);

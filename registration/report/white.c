@@ -33,9 +33,10 @@ static void write_ring(weft_page *page, int ring, double overall, double *level,
     double median = weft_quantile(level, count, 0.5);
     fprintf(
         page->html,
-        "<tr><td>%d&deg;</td><td>%d</td><td>%.5g</td><td>%+.2f</td><td>%+.2f &hellip; %+.2f</td><td>%.2f</td></tr>\n",
-        15 * ring, count, median, 100 * (median / overall - 1), 100 * (weft_quantile(level, count, 0.05) / median - 1),
-        100 * (weft_quantile(level, count, 0.95) / median - 1), 100 * weft_quantile(disagreement, count, 0.5));
+        "<tr><td>%d\u00b0</td><td>%d</td><td>%.*f</td><td>%+.2f</td><td>%+.2f \u2026 %+.2f</td><td>%.2f</td></tr>\n",
+        15 * ring, count, median < 1000, median, 100 * (median / overall - 1),
+        100 * (weft_quantile(level, count, 0.05) / median - 1), 100 * (weft_quantile(level, count, 0.95) / median - 1),
+        100 * weft_quantile(disagreement, count, 0.5));
 }
 
 /* Median level of the measured photographs of a stay; 0 where there is none. */

@@ -157,6 +157,9 @@ static weft_code copy_opacity(weft_dataset *dataset, weft_dataset_block_writer *
     return code;
 }
 
+/* What the provenance of a prediction has. */
+static const char provenance_name[] = "prediction";
+
 static weft_code finish(const predicting *pass, weft_dataset_block_writer *writer, weft_error *error)
 {
     const weft_bard_report *report = pass->report;
@@ -164,7 +167,7 @@ static weft_code finish(const predicting *pass, weft_dataset_block_writer *write
                              pass->options->map == WEFT_BARD_PRINTED ? "printed" : "in plane", "diffuse_share",
                              pass->options->diffuse_share, "largest_tilt_deg", report->largest_tilt_deg,
                              "photographs_used", report->photograph_count, "images", report->image_count);
-    return weft_derived_dataset_finish(writer, pass->layout, "prediction", made, error);
+    return weft_derived_dataset_finish(writer, pass->layout, provenance_name, made, error);
 }
 
 static weft_code write_predictions(predicting *pass, const char *output, const weft_progress *progress,
@@ -256,4 +259,17 @@ weft_code weft_bard_predict(weft_dataset *dataset, const char *output, const wef
         code = summarise(&pass, error);
     free_pass(&pass);
     return code;
+}
+
+weft_code weft_bard_check(const char *path, weft_error *error)
+{
+    weft_dataset *dataset;
+    WEFT_TRY(weft_dataset_open(path, &dataset, error));
+    json_t *provenance = json_loads(weft_dataset_get_layout(dataset)->provenance, 0, NULL);
+    bool is_predicted = json_object_get(provenance, provenance_name) != NULL;
+    json_decref(provenance);
+    weft_dataset_close(dataset);
+    return is_predicted
+               ? WEFT_OK
+               : weft_fail(error, WEFT_BAD_INPUT, "'%s' is no prediction: `weft bard` makes one of a dataset", path);
 }

@@ -38,4 +38,7 @@ typedef struct weft_bard_report {
 weft_code weft_bard_predict(weft_dataset *dataset, const char *output, const weft_bard_options *options,
                             const weft_progress *progress, weft_bard_report *report, weft_error *error);
 
+/* Errors: WEFT_BAD_INPUT where `path` is no dataset that weft_bard_predict wrote; those of weft_dataset_open. */
+weft_code weft_bard_check(const char *path, weft_error *error);
+
 #endif

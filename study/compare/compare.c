@@ -14,6 +14,7 @@ typedef struct compared_files {
     weft_dataset *dataset;
     weft_material material;
     weft_compared_weave weave;
+    weft_predictor *bard; /* NULL: not compared */
 } compared_files;
 
 static void weigh(const weft_compare_options *options, const weft_dataset_layout *layout, weft_comparison *comparison)
@@ -70,16 +71,6 @@ static weft_code measure_weave(const compared_files *files, const weft_progress 
     return code;
 }
 
-static weft_code measure_bard(const compared_files *files, const char *path, const weft_progress *progress,
-                              weft_comparison *comparison, weft_error *error)
-{
-    weft_predictor *predictor;
-    WEFT_TRY(weft_predictor_of_dataset(files->dataset, path, &predictor, error));
-    weft_code code = measure_texture(files->dataset, predictor, NULL, "BARD", progress, comparison, error);
-    weft_predictor_free(predictor);
-    return code;
-}
-
 /* ---- Mean BRDFs ---- */
 
 static weft_code measure_means(const weft_compare_options *options, const compared_files *files,
@@ -129,7 +120,7 @@ static weft_code measure(const weft_compare_options *options, const compared_fil
     if (options->weave)
         WEFT_TRY(measure_weave(files, progress, comparison, error));
     if (options->bard)
-        WEFT_TRY(measure_bard(files, options->bard, progress, comparison, error));
+        WEFT_TRY(measure_texture(files->dataset, files->bard, NULL, "BARD", progress, comparison, error));
     WEFT_TRY(measure_means(options, files, progress, comparison, error));
     if (layout->image_count > 1 && layout->image_count < WEFT_LEAVE_ONE_OUT_LIMIT)
         WEFT_TRY(weft_leave_one_out_measure(files->dataset, progress, &comparison->left_out, error));
@@ -196,6 +187,8 @@ static weft_code open_files(const weft_compare_options *options, const weft_prog
     WEFT_TRY(weft_material_read(options->material, &files->material, error));
     if (options->truth)
         WEFT_TRY(check_stitch(options->truth, error));
+    if (options->bard)
+        WEFT_TRY(weft_predictor_of_dataset(files->dataset, options->bard, &files->bard, error));
     if (!options->weave)
         return WEFT_OK;
     return weft_compare_weave_open(options, files->dataset, progress, &files->weave, comparison, error);
@@ -206,6 +199,7 @@ static void close_files(compared_files *files)
     weft_dataset_close(files->dataset);
     weft_material_free(&files->material);
     weft_compare_weave_close(&files->weave);
+    weft_predictor_free(files->bard);
 }
 
 weft_code weft_compare(const weft_compare_options *options, const weft_progress *progress, weft_comparison *comparison,

@@ -175,13 +175,13 @@ void weft_hold_out_headline(const weft_hold_out *r, char line[WEFT_HOLD_OUT_LINE
     char photographs[128] = "";
     if (r->photographs.all.count > 0 && r->photographs_flat > 0)
         snprintf(photographs, sizeof photographs,
-                 " (the photographs themselves, interpolated through their heights: %.3f, without them: %.3f)",
-                 r->photographs.all.relative_rmse, r->photographs_flat);
+                 " (the photographs themselves, interpolated through their heights: %.1f %%, without them: %.1f %%)",
+                 100 * r->photographs.all.relative_rmse, 100 * r->photographs_flat);
     else if (r->photographs.all.count > 0)
-        snprintf(photographs, sizeof photographs, " (the photographs themselves, interpolated: %.3f)",
-                 r->photographs.all.relative_rmse);
-    snprintf(line, WEFT_HOLD_OUT_LINE, "%s: relative RMSE %.3f%s; on those that were: %.3f", weft_hold_out_about(r),
-             r->material.all.relative_rmse, photographs, r->fitted.relative_rmse);
+        snprintf(photographs, sizeof photographs, " (the photographs themselves, interpolated: %.1f %%)",
+                 100 * r->photographs.all.relative_rmse);
+    snprintf(line, WEFT_HOLD_OUT_LINE, "%s: relative RMSE %.1f %%%s; on those that were: %.1f %%",
+             weft_hold_out_about(r), 100 * r->material.all.relative_rmse, photographs, 100 * r->fitted.relative_rmse);
 }
 
 /* Appends to a line; what does not fit is cut. */
@@ -198,11 +198,11 @@ static void explain_directions(const weft_hold_out *r, char line[WEFT_HOLD_OUT_L
         APPEND(line, "%s%d of %d lights", joint, r->light_held_count, r->light_count);
     APPEND(line, " left out");
     if (r->material.view.count > 0)
-        APPEND(line, ", relative RMSE of the views %.3f", r->material.view.relative_rmse);
+        APPEND(line, ", relative RMSE of the views %.1f %%", 100 * r->material.view.relative_rmse);
     if (r->material.light.count > 0)
-        APPEND(line, ", of the lights %.3f", r->material.light.relative_rmse);
+        APPEND(line, ", of the lights %.1f %%", 100 * r->material.light.relative_rmse);
     if (r->material.both.count > 0)
-        APPEND(line, ", of both %.3f", r->material.both.relative_rmse);
+        APPEND(line, ", of both %.1f %%", 100 * r->material.both.relative_rmse);
 }
 
 void weft_certificate_describe(const weft_certificate *c, char line[WEFT_HOLD_OUT_LINE])
@@ -250,8 +250,8 @@ void weft_hold_out_explain(const weft_hold_out *r, char line[WEFT_HOLD_OUT_LINE]
     if (r->texel_count < r->dataset_texel_count)
         APPEND(line, "; on %ld of %ld texels", r->texel_count, r->dataset_texel_count);
     if (r->heights.asked)
-        APPEND(line, "; through the heights %.3f, without them %.3f%s", r->heights.with, r->heights.without,
-               r->heights.used ? "" : ": they are left out");
+        APPEND(line, "; through the heights %.1f %%, without them %.1f %%%s", 100 * r->heights.with,
+               100 * r->heights.without, r->heights.used ? "" : ": they are left out");
     if (r->smaller_model)
         APPEND(line, "; too few were left for the whole model");
 }

@@ -11,6 +11,9 @@
 
 enum { WANTED_SIDE = 512, LEGEND_WIDTH = 300, LETTER_SIZE = 14, LINE_HEIGHT = 18, SWATCH = 10 };
 
+/* Dark, so that the picture stands well on a light page and on a dark one. */
+#define GROUND 0.13f
+
 void weft_model_colour(uint8_t code, float rgb[3])
 {
     /* Greys without tables, blues with T, oranges with S, greens with both; the paler the fewer bits. */
@@ -35,14 +38,14 @@ static void write_letter(weft_image *image, const weft_letters *letters, const s
 {
     for (int row = glyph->y0; row < glyph->y1; row++) {
         for (int column = glyph->x0; column < glyph->x1; column++) {
-            float share = 1 - (float)letters->coverage[row * letters->side + column] / 255;
+            float share = GROUND + (1 - GROUND) * (float)letters->coverage[row * letters->side + column] / 255;
             const float ink[3] = {share, share, share};
             fill_square(image, x + column - glyph->x0, y + row - glyph->y0, 1, 1, ink);
         }
     }
 }
 
-/* Black on white, from the left end of the baseline. */
+/* White on the ground, from the left end of the baseline. */
 static void write_text(weft_image *image, const weft_letters *letters, int x, int y, const char *text)
 {
     for (; *text; text++) {
@@ -104,7 +107,7 @@ static void draw_legend(weft_image *image, const weft_letters *letters, const we
 
 weft_code weft_model_picture(const weft_material *material, weft_image *image, weft_error *error)
 {
-    const float white[3] = {1, 1, 1};
+    const float ground[3] = {GROUND, GROUND, GROUND};
     if (!material->has_models)
         return weft_fail(error, WEFT_BAD_USAGE, "the material does not say which model its texels have");
     weft_mip_layout layout =
@@ -120,7 +123,7 @@ weft_code weft_model_picture(const weft_material *material, weft_image *image, w
         weft_letters_free(&letters);
         return code;
     }
-    fill_square(image, 0, 0, image->width, image->height, white);
+    fill_square(image, 0, 0, image->width, image->height, ground);
     for (int k = 0; k < material->level_count; k++)
         draw_level(image, &material->level[k], layout.area[k], scale);
     draw_legend(image, &letters, material, &counts, top);
@@ -144,10 +147,10 @@ static void write_numbers(weft_page *page, const weft_material *material)
     fprintf(page->html, "</tr>\n");
     for (int k = 0; k < material->level_count; k++) {
         const weft_material_level *level = &material->level[k];
-        fprintf(page->html, "<tr><td>%d</td><td>%d x %d</td>", k, level->width, level->height);
+        fprintf(page->html, "<tr><td>%d</td><td>%d \u00d7 %d</td>", k, level->width, level->height);
         for (int i = 0; i < counts.used_count; i++)
             fprintf(page->html, "<td>%.1f %%</td>", percent_of(level, counts.count[k][counts.used[i]]));
-        fprintf(page->html, "<td>%.4f</td></tr>\n", level->error.relative_rmse);
+        fprintf(page->html, "<td>%.2f %%</td></tr>\n", 100 * level->error.relative_rmse);
     }
     fprintf(page->html, "</table>\n");
 }

@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-enum { WIDTH = 760, LEFT = 150, RIGHT = 70, TOP = 40, BOTTOM = 34, BAR = 22, PITCH = 34 };
+/* A name stands above its bar. */
+enum { WIDTH = 560, LEFT = 16, RIGHT = 72, TOP = 34, BOTTOM = 40, BAR = 22, PITCH = 56 };
 
 /* ---- The plot ---- */
 
@@ -52,7 +53,7 @@ static void draw_grid(weft_page *page, const axis *x, int count)
                 TOP - 6, bottom, at, bottom + 15, fabs(value) < x->step / 2 ? 0 : value);
     }
     fprintf(page->html, "</g><text x=\"%d\" y=\"%d\" text-anchor=\"end\">squared relative error</text>\n", WIDTH - 8,
-            bottom + 30);
+            bottom + 35);
 }
 
 static void draw_key(weft_page *page)
@@ -83,14 +84,14 @@ static void draw_whole(weft_page *page, const axis *x, const weft_error_stack *s
             place_on(x, stack->whole.low), middle, high);
     double ends[2];
     stack_ends(stack, &ends[0], &ends[1]);
-    fprintf(page->html, "<text class=\"label\" x=\"%.1f\" y=\"%.1f\">%.3f</text>\n",
-            fmax(high, place_on(x, ends[1])) + 6, middle + 4, sqrt(fmax(stack->whole.value, 0)));
+    fprintf(page->html, "<text class=\"label\" x=\"%.1f\" y=\"%.1f\">%.1f %%</text>\n",
+            fmax(high, place_on(x, ends[1])) + 6, middle + 4, 100 * sqrt(fmax(stack->whole.value, 0)));
 }
 
 static void draw_stack(weft_page *page, const axis *x, const weft_sources *sources, double y)
 {
     double low = 0, high = 0;
-    fprintf(page->html, "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">", LEFT - 10, y + BAR / 2.0 + 4);
+    fprintf(page->html, "<text x=\"%d\" y=\"%.1f\">", LEFT, y - 7);
     weft_page_text(page, sources->name);
     fputs("</text>", page->html);
     for (int part = 0; part < WEFT_SOURCES; part++) {
@@ -110,7 +111,7 @@ static void put_plot(weft_page *page, const weft_sources *sources, int count)
     draw_key(page);
     draw_grid(page, &x, count);
     for (int i = 0; i < count; i++)
-        draw_stack(page, &x, &sources[i], TOP + i * PITCH + (PITCH - BAR) / 2.0);
+        draw_stack(page, &x, &sources[i], TOP + (i + 1) * PITCH - BAR - 6);
     fputs("</svg>\n", page->html);
 }
 
@@ -126,14 +127,14 @@ static void put_row(weft_page *page, const weft_sources *s)
     const weft_error_stack *stack = &s->stack;
     fputs("<tr><td>", page->html);
     weft_page_text(page, s->name);
-    fprintf(page->html, "</td><td><b>%.3f</b></td><td>%.3f to %.3f</td>", sqrt(fmax(stack->whole.value, 0)),
-            sqrt(fmax(stack->whole.low, 0)), sqrt(fmax(stack->whole.high, 0)));
+    fprintf(page->html, "</td><td><b>%.1f %%</b></td><td>%.1f to %.1f %%</td>", 100 * sqrt(fmax(stack->whole.value, 0)),
+            100 * sqrt(fmax(stack->whole.low, 0)), 100 * sqrt(fmax(stack->whole.high, 0)));
     for (int part = 0; part < WEFT_SOURCES; part++)
         put_share(page, &stack->part[part]);
     put_share(page, &stack->whole);
     for (int part = 0; part < WEFT_SOURCES; part++)
-        fprintf(page->html, "<td>%.3f</td>", sqrt(fmax(stack->own[part], 0)));
-    fprintf(page->html, "<td>%.3f</td><td>%zu</td><td>%d of %d</td><td>%.3g mm</td></tr>\n", stack->noise,
+        fprintf(page->html, "<td>%.1f %%</td>", 100 * sqrt(fmax(stack->own[part], 0)));
+    fprintf(page->html, "<td>%.1f %%</td><td>%zu</td><td>%d of %d</td><td>%.3g mm</td></tr>\n", 100 * stack->noise,
             stack->query_count, s->registered_count, s->photograph_count, s->opening_mm / s->size);
 }
 

@@ -25,8 +25,9 @@ static void put_choice(weft_page *page, const weft_tradeoff_row *row, int number
         between = row->is_chosen[preset] ? ", " : between;
     }
     fprintf(page->html,
-            "</td><td class=\"text\"><a href=\"#model-%d\">%s</a></td><td>%.0f</td><td>%.4f</td><td class=\"text\">",
-            number, row->model.name, row->price.bytes, error_of(row));
+            "</td><td class=\"text\"><a href=\"#model-%d\">%s</a></td><td>%.0f</td><td>%.2f %%</td><td class=\"text "
+            "reason\">",
+            number, row->model.name, row->price.bytes, 100 * error_of(row));
     between = "";
     for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++) {
         if (row->is_chosen[preset])
@@ -106,7 +107,7 @@ static weft_code put_plot(weft_page *page, const weft_tradeoff *tradeoff, int wh
         snprintf(target[i], NAME, "model-%d", i + 1);
         snprintf(picture[i], NAME, "model-%d.png", i + 1);
         point[i] = (weft_plot_point){.x = x_of(row, which),
-                                     .y = error_of(row),
+                                     .y = 100 * error_of(row),
                                      .number = i + 1,
                                      .colour = (int)row->model.family,
                                      .label = label[i],
@@ -115,7 +116,7 @@ static weft_code put_plot(weft_page *page, const weft_tradeoff *tradeoff, int wh
                                      .is_marked = row->is_chosen[WEFT_PRESET_NONE],
                                      .is_joined = which == 0 && !row->is_beaten && row->model.arguments[0]};
     }
-    const weft_plot plot = {title[which], x_label[which], "relative RMSE, not fitted", tradeoff->row_count, point};
+    const weft_plot plot = {title[which], x_label[which], "relative RMSE, not fitted (%)", tradeoff->row_count, point};
     return weft_plot_write(page, &plot, error);
 }
 
@@ -151,48 +152,56 @@ static void put_number(weft_page *page, const char *format, double value, bool i
 static void put_errors(weft_page *page, const weft_held_error *m)
 {
     const weft_error_summary *all = &m->held[WEFT_SAMPLES_ALL];
-    put_number(page, "<b>%.4f</b>", all->relative_rmse, true);
-    put_number(page, "%.4f", m->fitted[WEFT_SAMPLES_ALL].relative_rmse, m->fitted[WEFT_SAMPLES_ALL].count > 0);
-    put_number(page, "%.3f", m->interval_width, m->interval_width > 0);
+    put_number(page, "<b>%.2f %%</b>", 100 * all->relative_rmse, true);
+    put_number(page, "%.2f %%", 100 * m->fitted[WEFT_SAMPLES_ALL].relative_rmse, m->fitted[WEFT_SAMPLES_ALL].count > 0);
+    put_number(page, "%.1f %%", 100 * m->interval_width, m->interval_width > 0);
     put_number(page, "%.1f %%", 100 * all->median_relative, true);
     put_number(page, "%.1f %%", 100 * all->percentile80_relative, true);
     for (int kind = WEFT_SAMPLES_GRAZING; kind < WEFT_SAMPLE_KINDS; kind++)
-        put_number(page, "%.4f", m->held[kind].relative_rmse, m->held[kind].count > 0);
+        put_number(page, "%.2f %%", 100 * m->held[kind].relative_rmse, m->held[kind].count > 0);
     put_number(page, "%.2f", m->quality.psnr_db, m->picture_count > 0);
     put_number(page, "%.4f", m->quality.ssim, m->picture_count > 0);
     put_number(page, "%.4f", m->quality.flip, m->picture_count > 0);
 }
 
+static void put_name(weft_page *page, const weft_tradeoff_row *row, int number)
+{
+    char presets[NAME];
+    bool is_chosen = row->is_chosen[WEFT_PRESET_NONE];
+    weft_tradeoff_print_presets(row, presets, sizeof presets);
+    fprintf(page->html, "<tr id=\"model-%d\"%s><td>%d</td><td class=\"text\">%s%s%s%s</td>", number,
+            is_chosen ? " class=\"weak\"" : "", number, row->model.name, is_chosen ? " <b>(" : "", presets,
+            is_chosen ? ")</b>" : "");
+}
+
+/* What a small screen shows without scrolling comes first. */
 static void put_row(weft_page *page, const weft_tradeoff_row *row, int number)
 {
     const weft_price *price = &row->price;
     bool is_fitted = weft_priced_model_is_fit(&row->model) || price->fit_s > 0;
-    char presets[NAME];
-    weft_tradeoff_print_presets(row, presets, sizeof presets);
-    fprintf(page->html, "<tr id=\"model-%d\"%s><td>%d</td><td class=\"text\">%s%s%s%s</td><td class=\"text\">", number,
-            row->is_chosen[WEFT_PRESET_NONE] ? " class=\"weak\"" : "", number, row->model.name,
-            row->is_chosen[WEFT_PRESET_NONE] ? " <b>(" : "", presets, row->is_chosen[WEFT_PRESET_NONE] ? ")</b>" : "");
-    fprintf(page->html, "<code>%s</code></td><td>%d</td><td>%.0f</td><td>%.*f</td>", row->model.arguments,
-            price->photograph_count, price->bytes, price->bits_a_texel < 1000, price->bits_a_texel);
-    put_number(page, "%.1f", price->fit_s, is_fitted);
-    put_number(page, "%.0f", price->evaluations_a_second, price->evaluations_a_second > 0);
-    put_number(page, "%.1f", price->frame_ms, price->frame_ms > 0);
-    put_number(page, "%.1f", price->large_frame_ms, price->large_frame_ms > 0);
-    put_number(page, "%.0f", price->fetches.reads, price->fetches.reads > 0);
-    put_number(page, "%.0f", price->fetches.bytes, price->fetches.bytes > 0);
+    put_name(page, row, number);
+    put_number(page, "%.0f", price->bytes, true);
     put_errors(page, &row->measured);
     put_number(page, "%.3f", price->strobing, price->has_strobing);
-    fputs("</tr>\n", page->html);
+    put_number(page, "%.1f", price->fit_s, is_fitted);
+    put_number(page, "%.1f", price->frame_ms, price->frame_ms > 0);
+    put_number(page, "%.1f", price->large_frame_ms, price->large_frame_ms > 0);
+    put_number(page, "%.0f", price->evaluations_a_second, price->evaluations_a_second > 0);
+    put_number(page, "%.0f", price->fetches.reads, price->fetches.reads > 0);
+    put_number(page, "%.0f", price->fetches.bytes, price->fetches.bytes > 0);
+    put_number(page, price->bits_a_texel < 1000 ? "%.1f" : "%.0f", price->bits_a_texel, true);
+    fprintf(page->html, "<td>%d</td><td class=\"text\"><code>%s</code></td></tr>\n", price->photograph_count,
+            row->model.arguments);
 }
 
 static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
 {
     fputs("<h2 id=\"prices\">Prices</h2>\n<table class=\"long\">\n", page->html);
     weft_page_columns(
-        page,
-        "|:model|:weft compress|photographs|bytes|bits a texel|fit, s|evaluations/s|ms a frame|ms at 1080p|"
-        "reads a pixel|bytes a pixel|error, not fitted|fitted|95 % interval|median|80th percentile|grazing|highlights|"
-        "shadows|PSNR dB|SSIM|FLIP|strobing");
+        page, "|:model|bytes|error, not fitted|fitted|95 % interval|median|80th "
+              "percentile|grazing|highlights|shadows|PSNR dB|"
+              "SSIM|FLIP|strobing|fit, s|ms a frame|ms at 1080p|evaluations/s|reads a pixel|bytes a pixel|bits a texel|"
+              "photographs|:weft compress");
     for (int i = 0; i < tradeoff->row_count; i++)
         put_row(page, &tradeoff->row[i], i + 1);
     fputs(
@@ -205,7 +214,7 @@ static void put_table(weft_page *page, const weft_tradeoff *tradeoff)
         "from the normal; highlights: the brightest twentieth of each texel; shadows: its darkest fifth, whose error "
         "is relative to what little light there is. All of these, and PSNR, SSIM and FLIP of pictures, are of "
         "photographs that were not fitted; a texel is a pixel of these pictures. 95 % interval: the mean width "
-        "of an interval that held so many of these samples, in units of the mean sample. Strobing: while a light "
+        "of an interval that held so many of these samples, in parts of the mean sample. Strobing: while a light "
         "sweeps "
         "across, how much farther the brightness of a place goes up and down than once; 0 is smooth. Nothing plays "
         "BARD, "
@@ -224,7 +233,7 @@ static weft_code put_pictures_of(weft_page *page, const weft_tradeoff_row *row, 
     snprintf(caption, sizeof caption, "photograph %d", m->worst_image);
     WEFT_TRY(weft_page_picture(page, name, &m->sample, SHOWN_WIDTH, caption, error));
     snprintf(name, sizeof name, "model-%d", number);
-    snprintf(caption, sizeof caption, "%d: %s, error %.3f", number, row->model.name, error_of(row));
+    snprintf(caption, sizeof caption, "%d: %s, error %.1f %%", number, row->model.name, 100 * error_of(row));
     WEFT_TRY(weft_page_picture(page, name, &m->predicted, SHOWN_WIDTH, caption, error));
     fputs("</div>\n", page->html);
     return WEFT_OK;

@@ -104,9 +104,11 @@ static void draw_frame(weft_page *page, const weft_plot *plot, const log_axis *x
     draw_axis(page, y, true);
     fprintf(page->html, "</g>\n<text x=\"%d\" y=\"20\" class=\"title\">", LEFT);
     weft_page_text(page, plot->title);
-    fprintf(page->html, "</text><text x=\"%d\" y=\"%d\" text-anchor=\"end\">", WIDTH - RIGHT, HEIGHT - 8);
+    fprintf(page->html, "</text><text class=\"axis\" x=\"%d\" y=\"%d\" text-anchor=\"end\">", WIDTH - RIGHT,
+            HEIGHT - 8);
     weft_page_text(page, plot->x_label);
-    fprintf(page->html, "</text><text x=\"14\" y=\"%d\" text-anchor=\"end\" transform=\"rotate(-90 14 %d)\">", TOP,
+    fprintf(page->html,
+            "</text><text class=\"axis\" x=\"14\" y=\"%d\" text-anchor=\"end\" transform=\"rotate(-90 14 %d)\">", TOP,
             TOP);
     weft_page_text(page, plot->y_label);
     fputs("</text>\n", page->html);
@@ -193,7 +195,7 @@ weft_code weft_plot_write(weft_page *page, const weft_plot *plot, weft_error *er
     log_axis x = fit_axis(plot, false), y = fit_axis(plot, true);
     if (!isfinite(x.low))
         return WEFT_OK;
-    fprintf(page->html, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"", WIDTH, HEIGHT);
+    fprintf(page->html, "<svg class=\"plot wide\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"", WIDTH, HEIGHT);
     weft_page_text(page, plot->title);
     fputs("\">\n", page->html);
     draw_frame(page, plot, &x, &y);

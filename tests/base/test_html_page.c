@@ -34,7 +34,7 @@ static void nothing_in_a_text_is_markup(void **state)
     char *html = finished_page(&page);
     assert_non_null(strstr(html, "<title>" ESCAPED "</title>"));
     assert_non_null(strstr(html, "<h1>" ESCAPED "</h1>"));
-    assert_non_null(strstr(html, "<tr><td>" ESCAPED "</td><td>" ESCAPED "</td></tr>"));
+    assert_non_null(strstr(html, "<tr><td>" ESCAPED "</td><td class=\"fact\">" ESCAPED "</td></tr>"));
     assert_non_null(strstr(html, "<div><b>" ESCAPED "</b>" ESCAPED "</div>"));
     assert_null(strstr(html, "it's"));
     free(html);

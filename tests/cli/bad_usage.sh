@@ -35,6 +35,7 @@ expect_no_file report
 
 # A file of the wrong kind is named as what it is, by the command that was given it. CODE WORD | ARGUMENTS
 mkdir folder empty_files
+head -c 200 good.weft >cut.weft
 mkdir left && echo '{' >left/cameras.json
 : >empty
 : >zero.png
@@ -59,13 +60,17 @@ done <<'TABLE'
 2|not a regular file|compress good.btf.h5 -o /dev/full
 2|one too many|compress good.weft good.btf.h5 -o out
 2|would overwrite|compress good.btf.h5 -o good.btf.h5
+3|'empty' is a file|compress good.btf.h5 -o empty/out
 1|'picture.png' is a picture: NAME.weft belongs|compare good.btf.h5 picture.png -o out
 1|'knit.stitch' is a stitch: CLOTH.wv or CLOTH.mc belongs|compare good.btf.h5 good.weft --weave knit.stitch -o out
 1|'cloth.wv' is a weave: FILE.stitch belongs|compare good.btf.h5 good.weft --truth cloth.wv -o out
 1|'good' is a folder|compare good good.weft -o out
 3|'/dev/full' is a file|compare good.btf.h5 good.weft -o /dev/full
+1|'good.btf.h5' is no prediction|compare good.btf.h5 good.weft --bard good.btf.h5 -o out
 2|needs --weave|compare good.btf.h5 good.weft --fit -o out
 1|'picture.png' is a picture: NAME.btf.h5 or NAME.weft belongs|tile picture.png -o out
+2|'out.btf.h5' is the name of a dataset|tile good.weft --blend -o out.btf.h5
+2|'out.weft' is the name of a material|tile good.btf.h5 -o out.weft
 1|'cloth.wv' is a weave|relief cloth.wv -o out
 1|'cloth.wv' is a weave|bard cloth.wv -o out
 1|'knit.stitch' is a stitch: START.wv belongs|fit-weave good.btf.h5 --weave knit.stitch -o out
@@ -86,13 +91,14 @@ done <<'TABLE'
 1|expected 'stitch'|simulate cloth.wv -o out
 2|--noise needs|simulate knit.stitch --noise -1 -o out
 1|'good.weft' is a material: CLOTH.wv or .stitch... belongs|truth good.weft -o out
+1|'picture.png' is not text|truth cloth.wv --plan picture.png -o out
 1|no file 'absent.wv'|truth cloth.wv absent.wv -o out
 1|'picture.png' is a picture: DIRECTIONS.csv belongs|eval good.weft --at picture.png
 1|'empty' is empty|eval good.weft --at empty
 1|'cloth.wv' is a weave: PATH.csv belongs|render good.weft --path cloth.wv -o out-%d.png
 1|'cloth.wv' is a weave: PATH.csv belongs|prune good.weft --path cloth.wv -o out
 1|'picture.png' is no .weft file|render picture.png -o out.png
-1|'zero.png' is cut|render zero.png -o out.png
+1|'zero.png' is no .weft file|render zero.png -o out.png
 1|twice as wide as high|render good.weft --environment picture.png -o out.png
 1|carries no settings|render good.weft --settings picture.png -o out.png
 2|not 'nan,0'|render good.weft --light nan,0 -o out.png
@@ -131,6 +137,14 @@ if [ "$(id -u)" != 0 ]; then
 fi
 expect_one_line 1 "no file 'absent.btf.h5'" render --raw absent.btf.h5 -o out.png
 
+# A failure is told from a measurement of errors.
+expect_ok compare good.btf.h5 good.weft --size 32 --json -o report
+grep -q '"event":"measurement","model":"compressed"' out.log || fail "no measurement: $(cat out.log)"
+! grep '"event":"error"' out.log || fail "a measurement is called a failure"
+expect_one_line 1 "'cut.weft' is cut" compare good.btf.h5 cut.weft --json -o other-report
+grep -q '"event":"error","code":1,"text":".*cut.weft' out.log || fail "no failure: $(cat out.log)"
+expect_no_file other-report
+
 # Lights and meshes.
 expect_one_line 2 "below the horizon" render good.weft --light 120,0 -o out.png
 expect_ok render good.weft --light 90,0 --size 32x32 -o dark.png
@@ -140,7 +154,13 @@ expect_no_file out.png
 # A window is not opened for what is not there: no display is needed to say so.
 expect_one_line 1 "no file 'absent'" play --raw absent
 expect_one_line 1 "no file 'absent.weft'" play absent.weft
+expect_one_line 1 "'good.weft' is a material: NAME.btf.h5 belongs" play --raw good.weft
+expect_one_line 1 "'good.weft' is a material: CLOTH.wv or CLOTH.mc belongs" play --weave good.weft
+for file in picture.png plan.csv folder zero.png knit.stitch; do
+    expect_one_line 1 "'$file' is no .weft file" play "$file"
+done
 expect_one_line 1 "drape, sphere, plane" play good.weft --mesh cube
+expect_one_line 1 "drape, sphere, plane" play good.weft --mesh folder
 
 # What can be shown is shown, whatever it is.
 for file in good.btf.h5 "$weave" good.weft; do

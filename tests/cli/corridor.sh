@@ -17,6 +17,7 @@ expect_says "32" info session
 expect_ok verify session
 
 expect_says "^no heights: \|^nothing: " register session --size 32x32 -o cloth.btf.h5 --report registration
+expect_page registration
 grep -q "75" registration/index.html || fail "the report does not list the grazing view"
 expect_says "32 x 32" info cloth.btf.h5
 expect_ok verify cloth.btf.h5
@@ -37,9 +38,10 @@ expect_ok render cloth.weft --raw cloth.btf.h5 --weave "$assets/weaves/wool_gaba
 grep -q "^from raw: compressed [0-9.]* % .*, analytic [0-9.]* %" out.log || fail "render does not say how far the models are from the data"
 expect_ok render cloth.weft --mesh sphere --size 64x64 -o sphere.exr
 expect_ok compare cloth.btf.h5 cloth.weft --weave "$assets/weaves/wool_gabardine.wv" --size 100 -o report
+expect_page report
 grep -q "<img" report/index.html || fail "the comparison has no pictures"
 for model in compressed analytic; do
-    printed=$(sed -n "s/^$model, mean BRDF: relative RMSE \([0-9.]*\),.*/\1/p" out.log)
+    printed=$(sed -n "s/^$model, mean BRDF: relative RMSE \([0-9.]* %\),.*/\1/p" out.log)
     grep -q "<td>$model</td>.*<td>$printed</td>" report/index.html || fail "page and command differ on the error of $model"
 done
 shown=$(sed -n "s/.*compressed beside raw: PSNR \([0-9.]*\) dB.*/\1/p" out.log | awk '{ printf "%.0f dB", $1 }')
@@ -65,7 +67,7 @@ sed -n 's|.*percentile: \([0-9.]*\) % / .* before, \([0-9.]*\) % .*|\1 \2|p' out
 grep -q "sample: lies askew by\|sample: taken as lying straight, " out.log || fail "fit-weave does not say how the sample lies"
 grep -q "Fitted to the mean of 32 images" fitted.wv || fail "the fitted weave does not say what it was fitted to"
 error_of_analytic() {
-    sed -n "s/^analytic, mean BRDF: relative RMSE \([0-9.]*\),.*/\1/p" out.log
+    sed -n "s/^analytic, mean BRDF: relative RMSE \([0-9.]*\) %,.*/\1/p" out.log
 }
 expect_says "fitted to no dataset" compare cloth.btf.h5 cloth.weft --weave start.wv --size 100 -o report
 before=$(error_of_analytic)

@@ -40,6 +40,15 @@ expect_no_file() {
     done
 }
 
+# expect_page FOLDER: a report whose charts have the colours of the page, light or dark, and whose relative errors are percent.
+expect_page() {
+    [ -s "$1/index.html" ] || fail "there is no page in $1"
+    sed '1,/<\/style>/d; /^<script>/,$d' "$1/index.html" >page.body
+    ! grep -oE "(fill|stroke|color|background)[=:]['\"]?(#|rgb|white|black).*" page.body || fail "a chart in $1 has a colour of its own"
+    ! grep -oE '<svg.*' page.body | grep -v '^<svg class="plot' || fail "a chart in $1 has a style of its own"
+    ! grep -oE 'relative RMSE -?[0-9.]+([^0-9. ]| [^%]).*' page.body || fail "an error in $1 is no percentage"
+}
+
 write_plan() {
     echo "theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg"
     for view in 0,0 30,90 45,240 75,105; do

@@ -5,14 +5,10 @@ set -eu
 weft=$1
 python=$3
 here=$(cd "$(dirname "$0")" && pwd)
+. "$here/expect.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT INT TERM
 cd "$work"
-
-fail() {
-    echo "photographs.sh: $*" >&2
-    exit 1
-}
 
 # One line on stderr that holds the words given, exit code 1, and no dataset.
 refused() {
@@ -33,7 +29,7 @@ for fault in "blurred" "something else" "lens covered" "covered" "broken.jpg"; d
     grep -q "left out .*$fault" said || fail "nobody said '$fault'"
 done
 [ "$(grep -c "left out '" said)" = 5 ] || fail "not five are left out: $(cat said)"
-[ -s report/index.html ] || fail "no report"
+expect_page report
 
 "$weft" hand checker --opening 40 -o tripod --photographs 8 --set tripod --width 900 --truth-size 32 -q
 # The list of lamps has one row that is wrong, other case and the folders of another computer.

@@ -26,6 +26,7 @@ grep -q "^relief: " out.log || fail "the knit is refused: $(cat out.log)"
 for file in page/index.html page/height.png page/confidence.png normals.png; do
     [ -s "$file" ] || fail "there is no $file"
 done
+expect_page page
 grep -q "Error by view" page/index.html || fail "the page does not show the errors"
 [ "$(grep -c '^v ' surface.obj)" = 1280 ] || fail "the surface does not have 40 x 32 vertices"
 [ "$(grep -c '^f ' surface.obj)" = 2418 ] || fail "the surface does not have 2 x 39 x 31 triangles"
@@ -66,7 +67,7 @@ PYTHON
 
 # What is compressed keeps the heights for its layers, where held-out photographs say so.
 expect_ok compress deep.btf.h5 -o deep.weft --layers 16
-grep -q "; through the heights 0[.0-9]*, without them 0[.0-9]*" out.log || fail "nothing is said of the heights: $(cat out.log)"
+grep -q "; through the heights [.0-9]* %, without them [.0-9]* %" out.log || fail "nothing is said of the heights: $(cat out.log)"
 grep -q "they are left out" out.log && fail "the heights of a knit are left out: $(cat out.log)"
 expect_ok info deep.weft
 grep -A1 "^heights:" out.log | grep -q "range_mm: \[-0" || fail "the material does not say that it has heights"

@@ -42,6 +42,7 @@ grep -q "^vn " open.obj || fail "the surface has no normals"
 # The truth beside them; without OpenGL it is left out, and said so.
 sed 's/resolution = [0-9]*/resolution = 24/' "$stitch" >coarse.stitch
 expect_says "near light, compressed against truth: relative RMSE\|no truth: " compare open.btf.h5 open.weft --truth coarse.stitch --paths 4 --size 96 -o report
+expect_page report
 grep -q "<h2>Truth</h2>" report/index.html || fail "the page has no truth"
 expect_error 1 absent.stitch compare open.btf.h5 open.weft --truth absent.stitch -o no
 expect_error 1 "is a weave: FILE.stitch belongs in its place" compare open.btf.h5 open.weft --truth "$assets/weaves/cotton_twill.wv" -o no

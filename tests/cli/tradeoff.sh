@@ -19,12 +19,13 @@ cmp -s knit.btf.h5 before.btf.h5 || fail "the dataset is changed"
 for model in "diffuse" "1 lobe" "diffuse, T" "32 layers" "analytic cloth" "the photographs, interpolated"; do
     grep -q "^$model  *[0-9]" out.log || fail "there is no price of $model: $(cat out.log)"
 done
+expect_page prices
 for preset in small balanced best; do
     grep -q "<td><b>$preset</b></td>" prices/index.html || fail "the page does not show the preset $preset"
 done
 grep -q "no times of frames: " out.log || fail "it does not say why there are no times of frames"
 grep -q "There are no times of frames: " prices/index.html || fail "the page does not say why there are none"
-[ "$(grep -c '<svg class="plot"' prices/index.html)" = 2 ] || fail "there are not two plots: of size and of the fit"
+[ "$(grep -c '<svg class="plot wide"' prices/index.html)" = 2 ] || fail "there are not two plots: of size and of the fit"
 if ls prices | grep -v '^index.html$\|^tradeoff.csv$\|^model-[0-9]*\(-photograph\)\?.png$'; then
     fail "something is left behind"
 fi

@@ -265,6 +265,9 @@ static void the_file_says_how_it_was_made(void **state)
     assert_non_null(strstr(provenance, "\"source\":\"fixture\""));
     assert_non_null(strstr(provenance, "\"photographs_used\":7,\"images\":49"));
     weft_dataset_close(dataset);
+    expect_ok(weft_bard_check(output, &error), &error);
+    assert_int_equal(weft_bard_check(input, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, input));
     forget_files();
 }
 

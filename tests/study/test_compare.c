@@ -120,11 +120,11 @@ static void the_page_tells_the_errors_that_the_functions_have(void **state)
     assert_int_equal(comparison.left_out.count, 0);
     char *page = read_page("compare-report/index.html"), row[128];
     const weft_error_summary *m = &comparison.model[0].texture.all;
-    snprintf(row, sizeof row, "<td>all</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td>", m->count, m->relative_rmse,
-             100 * m->median_relative);
+    snprintf(row, sizeof row, "<td>all</td><td>%ld</td><td>%.2f %%</td><td>%.2f %%</td>", m->count,
+             100 * m->relative_rmse, 100 * m->median_relative);
     assert_non_null(strstr(page, row));
-    snprintf(row, sizeof row, "<title>compressed, 30\u00b0: %.4g</title>",
-             comparison.model[0].texture.by_view[2].relative_rmse);
+    snprintf(row, sizeof row, "<title>compressed, 30\u00b0: %.4g %%</title>",
+             100 * comparison.model[0].texture.by_view[2].relative_rmse);
     assert_non_null(strstr(strstr(page, "Error by view"), row));
     assert_int_equal(access("compare-report/texels-2-compressed-difference.png", R_OK), 0);
     assert_true((strstr(page, "There are no pictures of scenes") != NULL) == !comparison.scenes.drawn);
@@ -136,8 +136,8 @@ static void the_page_tells_the_errors_that_the_functions_have(void **state)
 static void expect_model_row(const char *page, const char *name, const weft_error_summary *e)
 {
     char row[160];
-    snprintf(row, sizeof row, "<td>%s</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td><td>%.2f %%</td>", name, e->count,
-             e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
+    snprintf(row, sizeof row, "<td>%s</td><td>%ld</td><td>%.2f %%</td><td>%.2f %%</td><td>%.2f %%</td>", name, e->count,
+             100 * e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
     if (!strstr(page, row))
         fail_msg("the page has no row %s", row);
 }
@@ -271,9 +271,16 @@ static void microcylinder_cloth_is_compared_as_it_is(void **state)
     assert_non_null(strstr(error.message, "shot.mc' is microcylinder cloth"));
 }
 
-static void a_prediction_of_another_dataset_is_refused(void **state)
+static void nothing_is_done(void *context, const char *stage, long done, long total)
+{
+    (void)context, (void)done, (void)total;
+    fail_msg("%s before the files are looked at", stage);
+}
+
+static void a_prediction_of_another_dataset_is_refused_before_work(void **state)
 {
     (void)state;
+    const weft_progress progress = {.report = nothing_is_done};
     fixture_far_dataset("compare.btf.h5", WIDTH, HEIGHT, 2, glossy, FIXTURE_MASK_NONE);
     fixture_far_dataset("other.btf.h5", WIDTH + 1, HEIGHT, 2, glossy, FIXTURE_MASK_NONE);
     fixture_diffuse_material("compare.weft", WIDTH, HEIGHT, flat);
@@ -281,7 +288,7 @@ static void a_prediction_of_another_dataset_is_refused(void **state)
         .dataset = "compare.btf.h5", .material = "compare.weft", .bard = "other.btf.h5", .folder = "no-report"};
     weft_comparison comparison;
     weft_error error = {0};
-    assert_int_equal(weft_compare(&options, NULL, &comparison, &error), WEFT_BAD_INPUT);
+    assert_int_equal(weft_compare(&options, &progress, &comparison, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "other.btf.h5"));
     assert_int_not_equal(access("no-report/index.html", F_OK), 0);
 }
@@ -346,7 +353,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_page_compares_every_model_that_is_given),
         cmocka_unit_test(a_fitted_weave_lies_with_its_yarns_on_those_of_the_data),
         cmocka_unit_test(microcylinder_cloth_is_compared_as_it_is),
-        cmocka_unit_test(a_prediction_of_another_dataset_is_refused),
+        cmocka_unit_test(a_prediction_of_another_dataset_is_refused_before_work),
         cmocka_unit_test(a_matt_plane_is_predicted_from_the_other_photographs),
         cmocka_unit_test(a_material_of_another_size_is_refused),
     };

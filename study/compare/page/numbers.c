@@ -66,14 +66,15 @@ void weft_page_summary(weft_page *page, const weft_dataset_layout *layout, const
     fputs("<div class=\"tiles\">\n", page->html);
     print_drape(page, comparison);
     if (comparison->has_held_out)
-        weft_page_tile(page, "relative RMSE where it was not fitted", "%.4f",
-                       comparison->held_out.material.all.relative_rmse);
-    weft_page_tile(page, "relative RMSE, fitted samples, level 0", "%.4f", all->relative_rmse);
+        weft_page_tile(page, "relative RMSE where it was not fitted", "%.2f %%",
+                       100 * comparison->held_out.material.all.relative_rmse);
+    weft_page_tile(page, "relative RMSE, fitted samples, level 0", "%.2f %%", 100 * all->relative_rmse);
     weft_page_tile(page, "median relative error, fitted samples, level 0", "%.2f %%", 100 * all->median_relative);
     weft_page_tile(page, "half floats : material", "%.1f : 1",
                    comparison->half_float_bytes / comparison->material_bytes);
     if (comparison->left_out.count > 0) {
-        weft_page_tile(page, "relative RMSE, photographs left out", "%.4f", comparison->left_out.mean_relative_rmse);
+        weft_page_tile(page, "relative RMSE, photographs left out", "%.2f %%",
+                       100 * comparison->left_out.mean_relative_rmse);
         weft_page_tile(page, "median relative error, photographs left out", "%.2f %%",
                        100 * comparison->left_out.mean_median_relative);
     }
@@ -125,8 +126,8 @@ static void print_weave(weft_page *page, const weft_comparison *comparison)
 
 static void print_model_error(weft_page *page, const char *name, const weft_error_summary *e)
 {
-    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td><td>%.2f %%</td></tr>\n", name,
-            e->count, e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
+    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.2f %%</td><td>%.2f %%</td><td>%.2f %%</td></tr>\n", name,
+            e->count, 100 * e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
 }
 
 void weft_page_models(weft_page *page, const weft_comparison *comparison)
@@ -164,10 +165,10 @@ static void print_levels(weft_page *page, const weft_material *material)
         const weft_material_level *level = &material->level[i];
         const weft_error_summary *e = &level->error;
         fprintf(page->html,
-                "<tr><td>%d \u00d7 %d</td><td>%.4f</td><td>%.2f %%</td><td>%.2f %%</td><td>%.1f dB</td>"
+                "<tr><td>%d\u00a0\u00d7\u00a0%d</td><td>%.2f %%</td><td>%.2f %%</td><td>%.2f %%</td><td>%.1f dB</td>"
                 "<td>%.4f</td></tr>\n",
-                level->width, level->height, e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative,
-                e->psnr_db, e->rmse);
+                level->width, level->height, 100 * e->relative_rmse, 100 * e->median_relative,
+                100 * e->percentile80_relative, e->psnr_db, e->rmse);
     }
     fputs("</table>\n", page->html);
 }
@@ -176,8 +177,8 @@ static void print_error(weft_page *page, const char *name, const weft_error_summ
 {
     if (e->count == 0)
         return;
-    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.4f</td><td>%.2f %%</td></tr>\n", name, e->count,
-            e->relative_rmse, 100 * e->median_relative);
+    fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.2f %%</td><td>%.2f %%</td></tr>\n", name, e->count,
+            100 * e->relative_rmse, 100 * e->median_relative);
 }
 
 static void print_rings(weft_page *page, const char *title, const weft_error_summary ring[WEFT_RING_COUNT])
@@ -200,14 +201,14 @@ static void draw_rings(weft_page *page, const weft_comparison *comparison, bool 
         const weft_error_summary *ring = of_light ? texture->by_light : texture->by_view;
         for (int i = 0; i < WEFT_RING_COUNT; i++) {
             point[m][i][0] = 15 * i;
-            point[m][i][1] = ring[i].count > 0 ? ring[i].relative_rmse : NAN;
+            point[m][i][1] = ring[i].count > 0 ? 100 * ring[i].relative_rmse : NAN;
         }
         series[m] =
             (weft_chart_series){comparison->model[m].name, m, true, WEFT_RING_COUNT, (const double(*)[2])point[m]};
     }
     weft_chart chart = {of_light ? "Error by light" : "Error by view",
                         {of_light ? "light from the normal" : "view from the normal", "\u00b0", 0, 75, 0},
-                        {"relative RMSE, fitted samples", "", 0, 0.1, 0},
+                        {"relative RMSE, fitted samples", " %", 0, 10, 0},
                         comparison->model_count,
                         series};
     weft_chart_write(page, &chart);
@@ -235,8 +236,9 @@ static void print_directions(weft_page *page, const weft_dataset_layout *layout,
 static void print_covered(weft_page *page, const char *name, const weft_coverage_share *share, const char *says)
 {
     if (share->count > 0)
-        fprintf(page->html, "<tr><td>%s</td><td>%ld</td><td>%.1f %%</td><td>%.3f</td><td>%s</td></tr>\n", name,
-                share->count, 100 * share->covered, share->width, says);
+        fprintf(page->html,
+                "<tr><td>%s</td><td>%ld</td><td>%.1f %%</td><td>%.1f %%</td><td class=\"text\">%s</td></tr>\n", name,
+                share->count, 100 * share->covered, 100 * share->width, says);
 }
 
 /* What the material says of its error, and whether the samples of the dataset keep to it. */
@@ -254,10 +256,10 @@ static void print_certificate(weft_page *page, const weft_comparison *comparison
     fprintf(
         page->html,
         ". How many samples of this dataset lie in theirs; where they were fitted, more do than it promises. Widths "
-        "are means, in units of the mean sample; %.3f if all intervals were alike and held as many. On the right: "
+        "are means, in parts of the mean sample; %.1f %% if all intervals were alike and held as many. On the right: "
         "half the width where %.3g is said, under light at 30\u00b0, and the shares of its parts.</p>\n<table>",
-        coverage->even_width, certificate->mean);
-    weft_page_columns(page, "|values|in their interval|width|");
+        100 * coverage->even_width, certificate->mean);
+    weft_page_columns(page, "|values|in their interval|width|:its parts");
     print_covered(page, "all", &coverage->all, "");
     print_covered(page, "darkest fifth that is said", &coverage->dark, "");
     print_covered(page, "brightest fifth that is said", &coverage->bright, "");

@@ -25,8 +25,9 @@ static weft_code put_difference(weft_page *page, int index, const weft_scene_pic
     const weft_error_summary *e = &scene->error[model];
     snprintf(name, sizeof name, "%s-minus-raw", weft_scenes_model_name(model));
     snprintf(caption, sizeof caption,
-             "%s minus raw: relative RMSE %.4f, median relative %.2f %%, 80th percentile %.2f %%",
-             weft_scenes_model_name(model), e->relative_rmse, 100 * e->median_relative, 100 * e->percentile80_relative);
+             "%s minus raw: relative RMSE %.2f %%, median relative %.2f %%, 80th percentile %.2f %%",
+             weft_scenes_model_name(model), 100 * e->relative_rmse, 100 * e->median_relative,
+             100 * e->percentile80_relative);
     weft_image picture;
     WEFT_TRY(weft_picture_difference(&scene->picture[WEFT_MODE_RAW], &scene->picture[model], NULL, exposure, &picture,
                                      error));

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { DISC = 150, LABEL = 34 };
+enum { DISC = 150, LABEL = 24 };
 
 /* The picture of a row, white where there is no value. */
 static weft_code write_picture(const char *path, const weft_slices *slices, int row, double exposure, uint8_t *mask,
@@ -28,42 +28,48 @@ static weft_code write_picture(const char *path, const weft_slices *slices, int 
     return code;
 }
 
-static void draw_circle(weft_page *page, double x, double y, double radius, const char *style)
+static void draw_circle(weft_page *page, const char *class, double x, double y, double radius)
 {
-    fprintf(page->html, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"none\" %s/>", x, y, radius, style);
+    fprintf(page->html, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>", class, x, y, radius);
 }
 
 /* Rings of 30, 60 and 90 degrees, the exitant direction (cross) and its mirror direction (ring). */
-static void draw_axes(weft_page *page, weft_vec3 view, double left)
+static void draw_axes(weft_page *page, weft_vec3 view)
 {
-    const double radius = DISC / 2.0, x = left + radius, y = LABEL + radius, arm = 4;
-    draw_circle(page, x, y, radius - 0.5, "stroke=\"#555\"");
+    const double radius = DISC / 2.0, x = radius, y = LABEL + radius, arm = 4;
+    draw_circle(page, "ring", x, y, radius - 0.5);
     for (int theta_deg = 30; theta_deg <= 60; theta_deg += 30)
-        draw_circle(page, x, y, radius * sin(weft_rad_of_deg(theta_deg)),
-                    "stroke=\"#999\" stroke-width=\"0.6\" stroke-dasharray=\"2 3\"");
+        draw_circle(page, "ring dashed", x, y, radius * sin(weft_rad_of_deg(theta_deg)));
     double view_x = x + radius * view.x, view_y = y - radius * view.y;
-    fprintf(page->html,
-            "<path d=\"M%.1f %.1fh%.1fm%.1f %.1fv%.1f\" stroke=\"#d00000\" stroke-width=\"1.5\" fill=\"none\"/>",
-            view_x - arm, view_y, 2 * arm, -arm, -arm, 2 * arm);
-    draw_circle(page, 2 * x - view_x, 2 * y - view_y, arm, "stroke=\"#0060d0\" stroke-width=\"1.5\"");
+    fprintf(page->html, "<path class=\"curve colour1\" d=\"M%.1f %.1fh%.1fm%.1f %.1fv%.1f\"/>", view_x - arm, view_y,
+            2 * arm, -arm, -arm, 2 * arm);
+    draw_circle(page, "curve colour0", 2 * x - view_x, 2 * y - view_y, arm);
     weft_angles at = weft_angles_of_direction(view);
     fprintf(page->html, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">\u03b8 %.0f\u00b0, \u03c6 %.0f\u00b0</text>",
             x, LABEL - 8, weft_deg_of_rad(at.theta_rad),
             at.theta_rad < 1e-3 ? 0 : fmod(weft_deg_of_rad(at.phi_rad) + 360, 360));
 }
 
+/* Its part of the picture of the row, cut round to what was measured, so that the page is seen beside it. */
+static void draw_disc(weft_page *page, const weft_slices *slices, int row, int view)
+{
+    const double radius = DISC / 2.0;
+    fprintf(page->html,
+            "<svg class=\"plot disc\" viewBox=\"-4 0 %d %d\" role=\"img\" aria-label=\"%s\">\n"
+            "<image href=\"slices-%d.png\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" "
+            "style=\"clip-path:circle(%.1fpx at %.1fpx %.1fpx)\"/>\n",
+            DISC + 8, DISC + LABEL + 4, slices->name[row], row, -view * DISC, LABEL, slices->view_count * DISC, DISC,
+            radius * sin(slices->largest_theta_rad), view * DISC + radius, radius);
+    draw_axes(page, slices->view[view]);
+    fputs("\n</svg>\n", page->html);
+}
+
 static void draw_row(weft_page *page, const weft_slices *slices, int row)
 {
-    int width = slices->view_count * DISC;
-    fprintf(page->html,
-            "<svg viewBox=\"0 0 %d %d\" width=\"100%%\" style=\"max-width:%dpx;background:#fff\" "
-            "font-size=\"12\" font-family=\"sans-serif\" fill=\"#1c1c1c\" role=\"img\" aria-label=\"%s\">\n"
-            "<image href=\"slices-%d.png\" x=\"0\" y=\"%d\" width=\"%d\" height=\"%d\"/>\n",
-            width, DISC + LABEL + 4, width, slices->name[row], row, LABEL, width, DISC);
-    fprintf(page->html, "<text x=\"2\" y=\"11\" font-weight=\"600\">%s</text>", slices->name[row]);
+    fprintf(page->html, "<h3>%s</h3>\n<div class=\"row\">\n", slices->name[row]);
     for (int view = 0; view < slices->view_count; view++)
-        draw_axes(page, slices->view[view], view * DISC);
-    fputs("\n</svg>\n", page->html);
+        draw_disc(page, slices, row, view);
+    fputs("</div>\n", page->html);
 }
 
 static weft_code data_exposure(const weft_slices *slices, uint8_t *mask, double *exposure, weft_error *error)

@@ -26,9 +26,9 @@ static weft_code put_difference(weft_page *page, const char *row, const weft_tru
     char name[64], caption[160];
     const weft_truth_error *e = &under->error[model];
     snprintf(name, sizeof name, "%s-minus-truth", weft_truth_model_name((weft_truth_model)model));
-    snprintf(caption, sizeof caption, "%s minus truth: relative RMSE %.4f, %.1f dB; of blocks %.4f",
-             weft_truth_model_name((weft_truth_model)model), e->error.relative_rmse, e->error.psnr_db,
-             e->block_relative_rmse);
+    snprintf(caption, sizeof caption, "%s minus truth: relative RMSE %.2f %%, %.1f dB; of blocks %.2f %%",
+             weft_truth_model_name((weft_truth_model)model), 100 * e->error.relative_rmse, e->error.psnr_db,
+             100 * e->block_relative_rmse);
     weft_image picture;
     WEFT_TRY(weft_picture_difference(&under->picture[WEFT_TRUTH_TRACED], &under->picture[model], NULL, exposure,
                                      &picture, error));
@@ -72,8 +72,9 @@ static weft_code put_scene(weft_page *page, int index, const weft_traced_truth *
 
 static void print_errors(weft_page *page, const weft_truth_error *e)
 {
-    fprintf(page->html, "<td>%.4f</td><td>%.2f %%</td><td>%.1f dB</td><td>%.4f</td>", e->error.relative_rmse,
-            100 * e->error.median_relative, e->error.psnr_db, e->block_relative_rmse);
+    fprintf(page->html, "<td>%.2f %%</td><td>%.2f %%</td><td>%.1f dB</td><td>%.2f %%</td>",
+            100 * e->error.relative_rmse, 100 * e->error.median_relative, e->error.psnr_db,
+            100 * e->block_relative_rmse);
 }
 
 static void print_row(weft_page *page, const weft_truth_scene *scene, int model, bool flat)
