@@ -17,14 +17,19 @@ enum {
     WEFT_FORMAT_MAX_SECTIONS = 4096,
     WEFT_FORMAT_MAX_SIDE = 16384,
     WEFT_FORMAT_MAX_METADATA = 1 << 24,
-    WEFT_FORMAT_MAX_RATIO = 1024,     /* a zstd section decodes to at most MAX_RATIO x stored + FREE_RATIO bytes */
-    WEFT_FORMAT_FREE_RATIO = 1 << 16, /* and a compact one expands to MAX_RATIO x the whole file + FREE_RATIO */
-    WEFT_FORMAT_ERRORS = 5            /* numbers in an ERRO section */
+    WEFT_FORMAT_PLAIN_METADATA = 4096, /* bytes that are never compressed */
+    WEFT_FORMAT_MAX_RATIO = 1024,      /* a zstd section decodes to at most MAX_RATIO x stored + FREE_RATIO bytes */
+    WEFT_FORMAT_FREE_RATIO = 1 << 16,  /* and a compact one expands to MAX_RATIO x the whole file + FREE_RATIO */
+    WEFT_FORMAT_ERRORS = 5             /* numbers in an ERRO section */
 };
 
 extern const unsigned char weft_format_magic[8];
 
-typedef enum weft_codec { WEFT_CODEC_NONE = 0, WEFT_CODEC_ZSTD = 1 } weft_codec;
+typedef enum weft_codec {
+    WEFT_CODEC_NONE = 0,
+    WEFT_CODEC_ZSTD = 1,
+    WEFT_CODEC_DIFFERENCES = 2 /* of LAYR alone: Zstandard, with its values by differences */
+} weft_codec;
 
 typedef enum weft_section_kind {
     WEFT_SECTION_META,

@@ -1,5 +1,7 @@
 #include "btf/material/layers.h"
 
+#include "btf/material/layer_values.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -173,9 +175,10 @@ size_t weft_ceiling_count(int width, int height)
 /* ---- The file ---- */
 
 /* The arrays in the order of the file, with their bytes. */
+enum { VALUES = 4, ARRAYS };
 typedef struct array_list {
-    void *array[5];
-    size_t size[5];
+    void *array[ARRAYS];
+    size_t size[ARRAYS];
 } array_list;
 
 static array_list arrays_of(const weft_layers *layers)
@@ -190,12 +193,17 @@ size_t weft_layers_header_size(const weft_layers *layers)
 {
     array_list list = arrays_of(layers);
     size_t size = 4 * HEADER_WORDS;
-    for (int i = 0; i < 5; i++)
+    for (int i = 0; i < ARRAYS; i++)
         size += list.size[i];
     return size;
 }
 
-void weft_layers_header_write(const weft_layers *layers, uint8_t *bytes)
+bool weft_layers_have_differences(const weft_layers *layers)
+{
+    return weft_layer_values_are_whole(layers);
+}
+
+void weft_layers_header_write(const weft_layers *layers, weft_layers_coding coding, uint8_t *bytes)
 {
     const uint32_t whole[] = {(uint32_t)layers->kind,       (uint32_t)layers->layer_count,
                               (uint32_t)layers->view_count, (uint32_t)layers->image_count,
@@ -206,10 +214,14 @@ void weft_layers_header_write(const weft_layers *layers, uint8_t *bytes)
     memcpy(bytes + sizeof whole, real, sizeof real);
     bytes += 4 * HEADER_WORDS;
     array_list list = arrays_of(layers);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < VALUES; i++) {
         memcpy(bytes, list.array[i], list.size[i]);
         bytes += list.size[i];
     }
+    if (coding == WEFT_LAYERS_BY_DIFFERENCES)
+        weft_layer_values_write(layers, bytes);
+    else
+        memcpy(bytes, list.array[VALUES], list.size[VALUES]);
 }
 
 static int limited_int(uint32_t value)
@@ -271,11 +283,28 @@ static const char *fault_of_arrays(const weft_layers *layers)
         if (layers->first[i] >= layers->first[i + 1])
             fault = "has views that are empty or out of order";
     }
+    return fault;
+}
+
+static const char *read_arrays(const uint8_t *bytes, weft_layers_coding coding, weft_layers *layers)
+{
+    array_list list = arrays_of(layers);
+    for (int i = 0; i < VALUES; i++) {
+        memcpy(list.array[i], bytes, list.size[i]);
+        bytes += list.size[i];
+    }
+    const char *fault = fault_of_arrays(layers);
+    if (fault)
+        return fault;
+    if (coding == WEFT_LAYERS_BY_DIFFERENCES)
+        fault = weft_layer_values_read(bytes, layers);
+    else
+        memcpy(list.array[VALUES], bytes, list.size[VALUES]);
     return fault ? fault : fault_of_values(layers);
 }
 
-weft_code weft_layers_header_read(const uint8_t *bytes, size_t size, int width, int height, int level_count,
-                                  weft_layers **result, const char **fault, weft_error *error)
+weft_code weft_layers_header_read(const uint8_t *bytes, size_t size, weft_layers_coding coding, int width, int height,
+                                  int level_count, weft_layers **result, const char **fault, weft_error *error)
 {
     *fault = size < 4 * HEADER_WORDS ? "is too short" : NULL;
     weft_layers shape = {0};
@@ -292,13 +321,7 @@ weft_code weft_layers_header_read(const uint8_t *bytes, size_t size, int width, 
         return WEFT_BAD_INPUT;
     weft_layers *layers = NULL;
     WEFT_TRY(weft_layers_create(&shape, width, height, level_count, &layers, error));
-    array_list list = arrays_of(layers);
-    bytes += 4 * HEADER_WORDS;
-    for (int i = 0; i < 5; i++) {
-        memcpy(list.array[i], bytes, list.size[i]);
-        bytes += list.size[i];
-    }
-    *fault = fault_of_arrays(layers);
+    *fault = read_arrays(bytes + 4 * HEADER_WORDS, coding, layers);
     if (*fault) {
         weft_layers_free(layers);
         return WEFT_BAD_INPUT;

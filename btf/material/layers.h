@@ -24,6 +24,7 @@
 #include "base/status.h"
 #include "base/vector.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -103,12 +104,18 @@ size_t weft_ceiling_count(int width, int height);
 /* Bytes of the section LAYR. Pure. */
 size_t weft_layers_header_size(const weft_layers *layers);
 
+/* How the section has the values. */
+typedef enum weft_layers_coding { WEFT_LAYERS_AS_THEY_ARE, WEFT_LAYERS_BY_DIFFERENCES } weft_layers_coding;
+
+/* Whether the values may be told by differences: they are whole numbers of -2048 .. 2048. Pure. */
+bool weft_layers_have_differences(const weft_layers *layers);
+
 /* Writes the section LAYR to bytes [weft_layers_header_size]. */
-void weft_layers_header_write(const weft_layers *layers, uint8_t *bytes);
+void weft_layers_header_write(const weft_layers *layers, weft_layers_coding coding, uint8_t *bytes);
 
 /* Reads a section LAYR of `size` bytes for a material of width x height texels and so many levels. `fault` receives
  * what is wrong with it ("holds ...") or NULL. Errors: WEFT_BAD_INPUT where something is, WEFT_SYSTEM. */
-weft_code weft_layers_header_read(const uint8_t *bytes, size_t size, int width, int height, int level_count,
-                                  weft_layers **result, const char **fault, weft_error *error);
+weft_code weft_layers_header_read(const uint8_t *bytes, size_t size, weft_layers_coding coding, int width, int height,
+                                  int level_count, weft_layers **result, const char **fault, weft_error *error);
 
 #endif

@@ -126,6 +126,11 @@ static weft_code read_opacity(const weft_file_image *file, const weft_section *s
     return code;
 }
 
+static weft_layers_coding coding_of(const weft_section *section)
+{
+    return section->codec == WEFT_CODEC_DIFFERENCES ? WEFT_LAYERS_BY_DIFFERENCES : WEFT_LAYERS_AS_THEY_ARE;
+}
+
 /* Before LCOE, whose sizes show that the file is as large as the layers it claims. */
 static weft_code read_layers(const weft_file_image *file, const weft_section *section, weft_material *material,
                              weft_error *error)
@@ -145,8 +150,8 @@ static weft_code read_layers(const weft_file_image *file, const weft_section *se
             code = weft_fail_section(file, section, error, "its layers are not those of the coefficients");
     }
     if (code == WEFT_OK)
-        code = weft_layers_header_read(bytes, section->decoded_size, level[0].width, level[0].height,
-                                       material->level_count, &material->layers, &fault, error);
+        code = weft_layers_header_read(bytes, section->decoded_size, coding_of(section), level[0].width,
+                                       level[0].height, material->level_count, &material->layers, &fault, error);
     free(bytes);
     return fault ? weft_fail_section(file, section, error, fault) : code;
 }

@@ -126,7 +126,8 @@ static weft_code check_codec(const weft_file_image *file, const weft_section *se
         return section->decoded_size == section->stored_size
                    ? WEFT_OK
                    : weft_fail_section(file, section, error, "stored and decoded size differ without a codec");
-    if (section->codec != WEFT_CODEC_ZSTD)
+    bool is_layers = weft_section_kind_of(section->type) == WEFT_SECTION_LAYR;
+    if (section->codec != WEFT_CODEC_ZSTD && !(section->codec == WEFT_CODEC_DIFFERENCES && is_layers))
         return weft_fail_section(file, section, error, "unknown codec");
     /* stored_size is at most the size of the file, so the product cannot overflow. */
     if (section->decoded_size > section->stored_size * WEFT_FORMAT_MAX_RATIO + WEFT_FORMAT_FREE_RATIO)

@@ -95,6 +95,14 @@ static size_t compress_section(void *stored, size_t capacity, const void *bytes,
     return size <= (uint64_t)packed * WEFT_FORMAT_MAX_RATIO + WEFT_FORMAT_FREE_RATIO ? packed : 0;
 }
 
+/* Directions, errors and short metadata are left to readers without a Zstandard decoder. */
+static bool may_be_packed(weft_section_kind kind, size_t size)
+{
+    if (kind == WEFT_SECTION_META)
+        return size > WEFT_FORMAT_PLAIN_METADATA;
+    return kind >= WEFT_SECTION_FRAM && kind != WEFT_SECTION_ERRO;
+}
+
 static weft_code add_section(file_image *file, weft_section_kind kind, int level, const void *bytes, size_t size,
                              weft_error *error)
 {
@@ -104,8 +112,7 @@ static weft_code add_section(file_image *file, weft_section_kind kind, int level
                          weft_section_type[kind], level, fault);
     size_t offset = aligned(file->size), bound = ZSTD_compressBound(size);
     unsigned char *stored = file->bytes + offset;
-    bool is_texels = kind >= WEFT_SECTION_FRAM && kind != WEFT_SECTION_ERRO;
-    size_t packed = is_texels ? compress_section(stored, bound, bytes, size, file->level) : 0;
+    size_t packed = may_be_packed(kind, size) ? compress_section(stored, bound, bytes, size, file->level) : 0;
     size_t stored_size = packed > 0 ? packed : size;
     if (packed == 0)
         memcpy(stored, bytes, size);
@@ -179,14 +186,36 @@ static weft_code add_opacity(file_image *file, const weft_material *material, in
     return code;
 }
 
+/* Bytes that the next section would take in the file, in whose free room it is tried. */
+static size_t packed_size(const file_image *file, const void *bytes, size_t size)
+{
+    size_t packed =
+        compress_section(file->bytes + aligned(file->size), ZSTD_compressBound(size), bytes, size, file->level);
+    return packed > 0 ? packed : size;
+}
+
+/* The smaller one. Copies, as of images that a scene never reaches, are smaller as they are. */
+static weft_layers_coding choose_coding(const file_image *file, const weft_layers *layers, uint8_t *bytes, size_t size)
+{
+    if (!weft_layers_have_differences(layers))
+        return WEFT_LAYERS_AS_THEY_ARE;
+    weft_layers_header_write(layers, WEFT_LAYERS_AS_THEY_ARE, bytes);
+    size_t plain = packed_size(file, bytes, size);
+    weft_layers_header_write(layers, WEFT_LAYERS_BY_DIFFERENCES, bytes);
+    return packed_size(file, bytes, size) < plain ? WEFT_LAYERS_BY_DIFFERENCES : WEFT_LAYERS_AS_THEY_ARE;
+}
+
 static weft_code add_layers(file_image *file, const weft_material *material, weft_error *error)
 {
     size_t size = weft_layers_header_size(material->layers);
     uint8_t *bytes = malloc(size);
     if (!bytes)
         return weft_fail_memory(error, "layers", size);
-    weft_layers_header_write(material->layers, bytes);
+    weft_layers_coding coding = choose_coding(file, material->layers, bytes, size);
+    weft_layers_header_write(material->layers, coding, bytes);
     weft_code code = add_section(file, WEFT_SECTION_LAYR, 0, bytes, size, error);
+    if (code == WEFT_OK && coding == WEFT_LAYERS_BY_DIFFERENCES)
+        file->section[file->section_count - 1].codec = WEFT_CODEC_DIFFERENCES;
     free(bytes);
     return code;
 }

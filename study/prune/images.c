@@ -219,18 +219,16 @@ static void round_layer(weft_layers *layers, int layer, double grid)
     layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
 }
 
-/* To multiples of `grid` that a coefficient may be. */
-static void round_coefficients(const weft_layers *layers, int layer, int grid)
+/* The coefficients become fewer whole numbers, and the scale grows by as much. */
+static void round_coefficients(weft_layers *layers, int layer, double grid)
 {
-    int most = WEFT_LAYERS_LARGEST_CODE / grid;
     for (int k = 0; k < layers->level_count; k++) {
         size_t texels;
         int8_t *c = coefficients_of(layers, k, layer, &texels);
-        for (size_t i = 0; i < texels; i++) {
-            long multiple = lround((double)c[WEFT_LAYERS_GROUP * i] / grid);
-            c[WEFT_LAYERS_GROUP * i] = (int8_t)(grid * (multiple > most ? most : multiple < -most ? -most : multiple));
-        }
+        for (size_t i = 0; i < texels; i++)
+            c[WEFT_LAYERS_GROUP * i] = (int8_t)lround((double)c[WEFT_LAYERS_GROUP * i] / grid);
     }
+    layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
 }
 
 void weft_prune_round_values(double step, weft_layers *layers)
@@ -238,8 +236,8 @@ void weft_prune_round_values(double step, weft_layers *layers)
     for (int layer = 0; layer < layers->layer_count; layer++) {
         double of_value = (double)layers->scale[layer] * coefficient_rms(layers, layer);
         double of_coefficient = value_rms(layers, layer);
-        if (of_coefficient > 0 && step / of_coefficient >= 2)
-            round_coefficients(layers, layer, (int)fmin(step / of_coefficient, WEFT_LAYERS_LARGEST_CODE));
+        if (of_coefficient > 0 && step / of_coefficient > 1)
+            round_coefficients(layers, layer, fmin(step / of_coefficient, WEFT_LAYERS_LARGEST_CODE));
         if (of_value > 0)
             round_layer(layers, layer, step / of_value);
     }

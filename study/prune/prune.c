@@ -9,7 +9,8 @@
 
 enum { ATTEMPTS = 3, DECIDING = 3, MOST_ALLOWANCE = 4 };
 
-static const double reserve = 0.8; /* of what is allowed: the rest is for other moments */
+static const double reserve = 0.9; /* of what is allowed: the rest is for other moments */
+static const double less = 0.6;    /* of what was asked, where other moments show more */
 
 /* The slope of sRGB at black: a value of linear radiance changes a pixel by no more than this many times itself. */
 static const double steepest_srgb = 12.92;
@@ -94,6 +95,8 @@ static weft_code prune_by_bounds(const weft_reach_scene *scene, weft_prune_error
     note_reach(reach, report);
     WEFT_TRY(weft_prune_texels(reach, material, &report->finer_levels, &report->coarser_levels, error));
     WEFT_TRY(weft_prune_tables(reach, material, error));
+    if (material->layers && allowed.rmse > 0)
+        weft_prune_round_diffuse(material);
     if (!scene->scene.environment)
         weft_prune_lobes(reach, allowed.rmse / 255 / steepest_srgb / brightness(scene), material, &report->lobes_gone);
     report->views.kept = material->view_count;
@@ -161,7 +164,7 @@ static weft_code prune_by_pictures(const weft_prune_pictures pictures[3], const 
         asked = i == ATTEMPTS ? (weft_prune_error){0} : asked;
         WEFT_TRY(attempt(&pictures[0], reach, whole, asked, material, report, error));
         WEFT_TRY(weft_prune_pictures_compare(&pictures[1], WEFT_LAYERS_MAX, &report->predicted, error));
-        double factor = i == 0 && whole ? allowance(&report->predicted, &report->allowed) : 0.5;
+        double factor = i == 0 && whole ? allowance(&report->predicted, &report->allowed) : less;
         asked = (weft_prune_error){factor * asked.rmse, factor * asked.flip};
         if (i == 0 && whole && report->allowed.rmse > 0)
             continue;

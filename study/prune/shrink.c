@@ -9,9 +9,9 @@
  */
 static const double share_of_images = 0.35, share_of_digits = 0.9, share_of_layers = 1;
 static const double margin_deg[] = {20, 40};
-static const double finest_step = 1e-4, step_ratio = 1.3;
+static const double finest_step = 1e-4, step_ratio = 1.1;
 
-enum { MARGINS = 2, STEPS = 31 /* the coarsest: a fifth of white */ };
+enum { MARGINS = 2, STEPS = 82 /* the coarsest: a fifth of white */ };
 
 typedef struct shrinking {
     const weft_prune_pictures *pictures;

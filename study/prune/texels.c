@@ -152,6 +152,28 @@ weft_code weft_prune_texels(weft_reach *reach, weft_material *material, int *fin
     return WEFT_OK;
 }
 
+/* ---- The diffuse terms ---- */
+
+enum { HALF_MANTISSA = 10, KEPT_MANTISSA = 5, LARGEST_FINITE = 0x7bff };
+
+/* The carry of a mantissa goes into the exponent, as it should. */
+static weft_half rounded(weft_half value)
+{
+    const int cut = HALF_MANTISSA - KEPT_MANTISSA;
+    int sum = value + (1 << (cut - 1));
+    return (weft_half)((sum > LARGEST_FINITE ? value : sum) >> cut << cut);
+}
+
+void weft_prune_round_diffuse(weft_material *material)
+{
+    for (int k = 0; k < material->level_count; k++) {
+        weft_material_level *level = &material->level[k];
+        size_t count = 4 * (size_t)level->width * (size_t)level->height;
+        for (size_t i = 0; i < count; i++)
+            level->diffuse[i] = rounded(level->diffuse[i]);
+    }
+}
+
 /* ---- What is seen ---- */
 
 /* All texels that interpolation reads within a cell are kept. */

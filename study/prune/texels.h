@@ -10,6 +10,10 @@
  * are how many are gone. Errors: WEFT_SYSTEM. */
 weft_code weft_prune_texels(weft_reach *reach, weft_material *material, int *finer, int *coarser, weft_error *error);
 
+/* Rounds the diffuse terms to 5 bits of mantissa, a 64th of themselves. Of a material with layers they are read by
+ * players alone that do not know layers. */
+void weft_prune_round_diffuse(weft_material *material);
+
 /* The maps of what is seen (btf/material/seen.h) of the material as it is now. Errors: WEFT_SYSTEM. */
 weft_code weft_prune_note_seen(const weft_reach *reach, int finer, int coarser, weft_material *material,
                                weft_error *error);

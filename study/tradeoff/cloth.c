@@ -31,6 +31,7 @@ weft_code weft_priced_cloth_fit(weft_priced_cloth *cloth, weft_dataset *dataset,
         return WEFT_OK;
     WEFT_TRY(weft_fit_weave_to_dataset(dataset, &cloth->weave, NULL, &source, &report, error));
     cloth->fit_s = weft_now_s() - began;
+    cloth->is_fitted = true;
     return WEFT_OK;
 }
 
@@ -42,9 +43,9 @@ weft_code weft_priced_cloth_write(const weft_priced_cloth *cloth, const char *pa
 weft_code weft_priced_cloth_predictor(const weft_priced_cloth *cloth, const weft_excerpt *excerpt,
                                       weft_predictor **predictor, weft_error *error)
 {
-    const weft_weave_layout tiles =
-        cloth->is_threads ? (weft_weave_layout){0} : weft_weave_lay_out(&cloth->weave, 0, 0);
-    return cloth->is_threads
-               ? weft_predictor_of_threads(&excerpt->layout, &cloth->threads.cloth, predictor, error)
-               : weft_predictor_of_weave(&excerpt->layout, &excerpt->window, &cloth->weave, &tiles, predictor, error);
+    if (cloth->is_threads)
+        return weft_predictor_of_threads(&excerpt->layout, &cloth->threads.cloth, predictor, error);
+    const weft_weave_layout tiles = weft_weave_lay_out(&cloth->weave, 0, 0);
+    const weft_predicted_window *window = cloth->is_fitted ? NULL : &excerpt->window;
+    return weft_predictor_of_weave(&excerpt->layout, window, &cloth->weave, &tiles, predictor, error);
 }

@@ -1,6 +1,7 @@
 #include "study/tradeoff/preset.h"
 
 #include "base/text/json_text.h"
+#include "btf/material/metadata.h"
 #include "compress/compress.h"
 #include "study/hold_out/record.h"
 #include "study/tradeoff/frame_timer.h"
@@ -131,37 +132,40 @@ static weft_certificate usual_certificate(void)
     return c;
 }
 
-/* What the measurement afterwards adds, with numbers of full length. */
-static weft_code added_bytes(const weft_preset_prediction *prediction, const weft_priced_dataset *dataset, bool heights,
-                             double *bytes, weft_error *error)
+/* What is measured afterwards, with numbers of full length. */
+static weft_hold_out usual_hold_out(bool has_surface, bool heights)
 {
     const double number = 0.12345678901234567;
     const weft_error_summary summary = {number, number, number, number, 10 + number, 1000000};
     const weft_hold_out_error errors = {summary, summary, summary, summary};
-    const weft_hold_out held_out = {.split_count = 1,
-                                    .view_count = 81,
-                                    .view_held_count = 8,
-                                    .light_count = 81,
-                                    .light_held_count = 8,
-                                    .image_count = 6561,
-                                    .image_held_count = 1232,
-                                    .texel_count = 144,
-                                    .dataset_texel_count = 4096,
-                                    .material = errors,
-                                    .heights = {heights, heights, number, number},
-                                    .photographs = errors,
-                                    .photographs_flat = dataset->has_surface ? number : 0,
-                                    .fitted = summary,
-                                    .has_certificate = true,
-                                    .certificate = usual_certificate()};
-    static const char name[] = ",\"predicted\":";
-    uint64_t measured;
-    WEFT_TRY(weft_hold_out_bytes(&held_out, &measured, error));
-    json_t *own = weft_preset_to_json(prediction);
-    size_t predicted = own ? json_dumpb(own, NULL, 0, JSON_COMPACT) : 0;
-    json_decref(own);
-    *bytes = (double)(measured + predicted + sizeof name - 1);
-    return predicted > 0 ? WEFT_OK : weft_fail_memory(error, "prediction", 0);
+    return (weft_hold_out){.split_count = 1,
+                           .view_count = 81,
+                           .view_held_count = 8,
+                           .light_count = 81,
+                           .light_held_count = 8,
+                           .image_count = 6561,
+                           .image_held_count = 1232,
+                           .texel_count = 144,
+                           .dataset_texel_count = 4096,
+                           .material = errors,
+                           .heights = {heights, heights, number, number},
+                           .photographs = errors,
+                           .photographs_flat = has_surface ? number : 0,
+                           .fitted = summary,
+                           .has_certificate = true,
+                           .certificate = usual_certificate()};
+}
+
+/* What the file will say, so that it is weighed as it is stored. */
+static weft_code complete_metadata(const choosing *work, const weft_compress_options *options,
+                                   const weft_preset_prediction *prediction, weft_material *material, weft_error *error)
+{
+    const weft_priced_dataset parts = weft_priced_dataset_of(work->dataset);
+    const weft_hold_out held_out = usual_hold_out(parts.has_surface, options->heights);
+    const char *provenance = weft_dataset_get_layout(work->dataset)->provenance;
+    WEFT_TRY(weft_material_put_metadata(material, "provenance", json_loads(provenance, 0, NULL), error));
+    WEFT_TRY(weft_hold_out_store(&held_out, material, error));
+    return weft_material_put_metadata(material, "predicted", weft_preset_to_json(prediction), error);
 }
 
 /* What nobody asked for is no reason to fail. */
@@ -176,9 +180,9 @@ static weft_code time_frame(const choosing *work, const weft_material *material,
     return must ? code : WEFT_OK;
 }
 
-/* What it weighs, and how long a frame of it takes. */
-static weft_code fit_block(const choosing *work, const weft_compress_options *options, weft_weight *weight,
-                           double *frame_ms, weft_error *error)
+/* What it weighs, and how long a frame of it takes. The metadata are those of the whole dataset, not of the block. */
+static weft_code fit_block(const choosing *work, const weft_compress_options *options,
+                           weft_preset_prediction *prediction, weft_weight *weight, weft_error *error)
 {
     weft_excerpt excerpt;
     weft_dataset *block;
@@ -193,25 +197,22 @@ static weft_code fit_block(const choosing *work, const weft_compress_options *op
     code = weft_compress(block, options, NULL, &material, NULL, error);
     weft_dataset_close(block);
     WEFT_TRY(code);
-    code = weft_weight_of(&material, weight, error);
+    code = complete_metadata(work, options, prediction, &material, error);
     if (code == WEFT_OK)
-        code = time_frame(work, &material, frame_ms, error);
+        code = weft_weight_of(&material, weight, error);
+    if (code == WEFT_OK)
+        code = time_frame(work, &material, &prediction->frame_ms, error);
     weft_material_free(&material);
     return code;
 }
 
-/* The metadata are those of the whole dataset, not of the block. */
 static weft_code predict_costs(const choosing *work, const weft_compress_options *options,
                                weft_preset_prediction *prediction, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
-    const weft_priced_dataset parts = weft_priced_dataset_of(work->dataset);
     weft_weight weight;
-    double added;
-    WEFT_TRY(fit_block(work, options, &weight, &prediction->frame_ms, error));
-    WEFT_TRY(added_bytes(prediction, &parts, options->heights, &added, error));
-    prediction->bytes = weft_weight_scaled(&weight, layout->width, layout->height, options->levels) + added +
-                        (double)strlen(layout->provenance);
+    WEFT_TRY(fit_block(work, options, prediction, &weight, error));
+    prediction->bytes = weft_weight_scaled(&weight, layout->width, layout->height, options->levels);
     return WEFT_OK;
 }
 

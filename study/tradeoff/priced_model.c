@@ -11,7 +11,7 @@
 
 /* BARD is offered where so many views were photographed under the light along the normal: then none of these lights is
  * held out (study/hold_out/split.h). */
-enum { FEWEST_VIEWS_OF_BARD = 10, FEWEST_LAYERS = 4 };
+enum { FEWEST_VIEWS_OF_BARD = 10, FEWEST_LAYERS = 4, LEAST_RANK = 2 };
 
 /* Of the images this share at least is left where a tenth of the views and a tenth of the lights are held out. */
 static const double least_share = 0.8;
@@ -155,12 +155,24 @@ static bool add_flat(model_list *list, const weft_compress_options *options, int
     return add(list, WEFT_PRICED_LAYERS, options, 5, name, arguments);
 }
 
+/* Files hold layers by fours: the first ones of these. */
+static void add_least_rank(model_list *list, const weft_compress_options *options)
+{
+    char name[WEFT_PRICED_NAME];
+    snprintf(name, sizeof name, "%d layers, the first of %d", LEAST_RANK, FEWEST_LAYERS);
+    weft_priced_model *model = add(list, WEFT_PRICED_LAYERS, options, 1, name, "");
+    if (model)
+        model->first_layers = LEAST_RANK;
+}
+
 static void add_layers(model_list *list)
 {
     for (int layers = FEWEST_LAYERS; layers <= WEFT_LAYERS_MAX; layers *= 2) {
         weft_compress_options options = layers_alone(list, layers);
         char name[WEFT_PRICED_NAME];
         bool added = list->dataset->has_surface ? add_pair(list, &options, layers) : add_flat(list, &options, layers);
+        if (added && layers == FEWEST_LAYERS)
+            add_least_rank(list, &options);
         snprintf(name, sizeof name, "%d layers, half the texels a side", layers);
         if (added && layers == 32)
             add_coarser(list, &options, name);

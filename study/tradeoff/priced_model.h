@@ -34,6 +34,7 @@ typedef struct weft_priced_model {
     weft_photographs_taken photographs;
     int table_bits;    /* 4 or 6: T is rounded after the fit; 0: as it was fitted */
     const char *cloth; /* file of a WEFT_PRICED_CLOTH; not owned */
+    int first_layers;  /* these of the layers alone, the most important; 0: all */
     bool fewer_texels; /* half of them along each side */
     int work;          /* of a fit, beside that of others */
 } weft_priced_model;
@@ -49,8 +50,8 @@ typedef struct weft_priced_dataset {
 weft_priced_dataset weft_priced_dataset_of(const weft_dataset *dataset);
 
 /* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. One that is made
- * from the fit of another (table_bits, fewer_texels, options.heights) comes after it; layers through heights come right
- * after the same without. Pure. */
+ * from the fit of another (table_bits, first_layers, fewer_texels, options.heights) comes after it; layers through
+ * heights come right after the same without. Pure. */
 int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced_dataset *dataset,
                             weft_priced_model *model);
 

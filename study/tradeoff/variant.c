@@ -2,7 +2,26 @@
 
 #include "btf/material/models.h"
 
+#include <string.h>
 #include <unistd.h>
+
+/* The others add nothing, and take next to no room in a file. */
+static void keep_first_layers(weft_layers *layers, int kept)
+{
+    for (size_t image = 0; image < (size_t)layers->image_count; image++) {
+        weft_half *value = layers->value + 3 * image * (size_t)layers->layer_count;
+        memset(value + 3 * kept, 0, 3 * (size_t)(layers->layer_count - kept) * sizeof *value);
+    }
+    for (int k = 0; k < layers->level_count; k++) {
+        const weft_layers_level *level = &layers->level[k];
+        size_t texels = (size_t)level->width * (size_t)level->height;
+        for (size_t i = 0; i < texels * (size_t)layers->layer_count; i++) {
+            size_t layer = i / (WEFT_LAYERS_GROUP * texels) * WEFT_LAYERS_GROUP + i % WEFT_LAYERS_GROUP;
+            if (layer >= (size_t)kept)
+                level->coefficient[i] = 0;
+        }
+    }
+}
 
 weft_code weft_variant_make(const weft_material *fitted, const weft_priced_model *model, const char *path,
                             weft_material *result, weft_error *error)
@@ -13,6 +32,8 @@ weft_code weft_variant_make(const weft_material *fitted, const weft_priced_model
     WEFT_TRY(code);
     if (!model->options.heights)
         weft_material_take_heights(result, NULL);
+    if (model->first_layers > 0 && result->layers)
+        keep_first_layers(result->layers, model->first_layers);
     if (model->fewer_texels)
         weft_material_drop_finest(result);
     if (model->table_bits > 0)

@@ -5,9 +5,9 @@
 #include "btf/material/material.h"
 #include "study/tradeoff/priced_model.h"
 
-/* A material as the model wants it: a copy of `fitted` with rounded tables, without its finest level or without
- * heights. It goes through a file at `path`, which is gone afterwards. The caller frees *result. Errors: those of
- * writing and reading. */
+/* A material as the model wants it: a copy of `fitted` with rounded tables, with the first of its layers alone, without
+ * its finest level or without heights. It goes through a file at `path`, which is gone afterwards. The caller frees
+ * *result. Errors: those of writing and reading. */
 weft_code weft_variant_make(const weft_material *fitted, const weft_priced_model *model, const char *path,
                             weft_material *result, weft_error *error);
 

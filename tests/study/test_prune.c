@@ -327,6 +327,74 @@ static void texels_that_are_not_seen_become_copies(void **state)
     close_stage(&s);
 }
 
+enum { SIDE = 16, SHARED = 4, SHOTS = 300 };
+
+static weft_layers *make_layers(void)
+{
+    const weft_layers shape = {WEFT_LAYERS_OF_LIGHT, SHARED, 1, SHOTS, 8, 4, 1, 1, 0.1f, .scale = NULL};
+    weft_layers *layers;
+    assert_int_equal(weft_layers_create(&shape, SIDE, SIDE, 1, &layers, NULL), WEFT_OK);
+    layers->first[1] = SHOTS;
+    for (int k = 0; k < SHARED; k++)
+        layers->scale[k] = 0.01f / (float)(k + 1);
+    for (int i = 0; i < 3 * SHOTS * SHARED; i++)
+        layers->value[i] = weft_half_of_float(0.3f * sinf(3.7f * (float)i) * (float)(i % 5));
+    for (int i = 0; i < SHARED * SIDE * SIDE; i++)
+        layers->level[0].coefficient[i] = (int8_t)lround(127 * sin(1.9 * i));
+    return layers;
+}
+
+static double value_of(const weft_layers *layers, int texel, int i)
+{
+    double sum = 0;
+    for (int k = 0; k < SHARED; k++)
+        sum += (double)layers->scale[k] * layers->level[0].coefficient[SHARED * texel + k] *
+               (double)weft_float_of_half(layers->value[3 * (SHARED * (i / 3) + k) + i % 3]);
+    return sum;
+}
+
+/* Values and coefficients of each layer are rounded to steps that change what they add by `step`, RMS: each of these
+ * 2 x 4 errors spreads evenly over its step. */
+static void rounding_changes_reflectance_by_its_step(void **state)
+{
+    (void)state;
+    const double step = 0.05, expected = step * sqrt(2 * SHARED / 12.0);
+    weft_layers *whole = make_layers(), *layers = make_layers();
+    double squares = 0;
+    int most = 0;
+    weft_prune_round_values(step, layers);
+    for (int texel = 0; texel < SIDE * SIDE; texel++)
+        for (int i = 0; i < 3 * SHOTS; i++) {
+            double difference = value_of(layers, texel, i) - value_of(whole, texel, i);
+            squares += difference * difference;
+        }
+    for (int i = 0; i < SHARED * SIDE * SIDE; i++)
+        most = abs(layers->level[0].coefficient[i]) > most ? abs(layers->level[0].coefficient[i]) : most;
+    double is = sqrt(squares / (SIDE * SIDE * 3 * SHOTS));
+    assert_in_range((long)(100 * is / expected), 80, 115);
+    assert_true(most < 64);
+    assert_true(weft_layers_have_differences(layers));
+    weft_layers_free(whole);
+    weft_layers_free(layers);
+}
+
+static void diffuse_terms_stay_within_a_64th(void **state)
+{
+    (void)state;
+    weft_material material = make_material();
+    weft_half *diffuse = material.level[0].diffuse;
+    const float value[] = {0, 1, 0.123f, 0.4999f, 65504, 6e-8f, 1.9999f, 0.7f};
+    for (int i = 0; i < 8; i++)
+        diffuse[i] = weft_half_of_float(value[i]);
+    weft_prune_round_diffuse(&material);
+    for (int i = 0; i < 8; i++) {
+        double is = (double)weft_float_of_half(diffuse[i]), was = (double)value[i];
+        assert_int_equal(diffuse[i] & 31, 0);
+        assert_true(fabs(is - was) <= (i == 4 ? was / 32 : fmax(was / 64, 16 * 0x1p-24)) * 1.01);
+    }
+    weft_material_free(&material);
+}
+
 /* The finest levels go, and with them the size of a texel grows; the material stays as wide. */
 static void far_cameras_take_finer_levels_away(void **state)
 {
@@ -413,6 +481,8 @@ int main(void)
         cmocka_unit_test(pictures_stay_as_they_were),
         cmocka_unit_test(texels_that_are_not_seen_become_copies),
         cmocka_unit_test(far_cameras_take_finer_levels_away),
+        cmocka_unit_test(rounding_changes_reflectance_by_its_step),
+        cmocka_unit_test(diffuse_terms_stay_within_a_64th),
         cmocka_unit_test(the_tint_is_what_the_maps_say),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -130,7 +130,7 @@ static void the_list_has_what_the_photographs_carry(void **state)
     for (int i = 0; i < count; i++) {
         for (int j = 0; j < i; j++)
             assert_string_not_equal(model[i].name, model[j].name);
-        if (model[i].table_bits > 0 || model[i].fewer_texels)
+        if (model[i].table_bits > 0 || model[i].first_layers > 0 || model[i].fewer_texels)
             assert_true(weft_priced_models_share_fit(&model[i], &model[i - 1]));
     }
     assert_false(weft_priced_models_share_fit(find(model, count, "1 lobe"), find(model, count, "1 lobe, T")));
@@ -309,6 +309,39 @@ static void variants_are_made_of_the_same_fit(void **state)
     weft_held_bench_free(bench);
     weft_dataset_close(dataset);
     forget_grid();
+}
+
+/* One brightness a texel under one reflectance is rank 1: two layers say all of it. Of as many colours as texels they
+ * say less than four. */
+static weft_rgb tinted(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    weft_rgb value = rough(0, 0, light, view);
+    double a = x % 2, b = y % 2, c = (x / 2 + y / 2) % 2;
+    return (weft_rgb){value.r * (0.2 + a * (double)light.x * (double)light.x),
+                      value.g * (0.2 + b * (double)view.y * (double)view.y), value.b * (0.2 + c * (double)light.z)};
+}
+
+static void two_layers_are_the_first_of_four(void **state)
+{
+    (void)state;
+    const char *const names[] = {"4 layers", "2 layers, the first of 4"};
+    double error[2][2];
+    for (int colours = 0; colours < 2; colours++) {
+        weft_dataset *dataset;
+        write_grid(4, colours ? tinted : rough);
+        weft_held_bench *bench = open_bench(&dataset);
+        for (int i = 0; i < 2; i++) {
+            weft_held_error measured = measure(bench, names[i]);
+            error[colours][i] = measured.fitted[0].relative_rmse;
+            weft_held_error_free(&measured);
+        }
+        print_message("4 layers %.4f, 2 of them %.4f\n", error[colours][0], error[colours][1]);
+        weft_held_bench_free(bench);
+        weft_dataset_close(dataset);
+        forget_grid();
+    }
+    assert_true(error[0][1] < 1.1 * error[0][0] + 0.01);
+    assert_true(error[1][1] > 1.3 * error[1][0] && error[1][1] < 0.8);
 }
 
 /* ---- Prices ---- */
@@ -561,6 +594,7 @@ int main(void)
         cmocka_unit_test(fewer_photographs_are_spread),
         cmocka_unit_test(errors_are_told_apart_where_eyes_look),
         cmocka_unit_test(variants_are_made_of_the_same_fit),
+        cmocka_unit_test(two_layers_are_the_first_of_four),
         cmocka_unit_test(bytes_are_those_of_the_file),
         cmocka_unit_test(a_preset_predicts_size_and_error),
         cmocka_unit_test(frames_that_are_too_slow_are_not_chosen),

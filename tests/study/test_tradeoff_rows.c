@@ -193,6 +193,34 @@ static void a_block_sees_the_cloth_of_the_whole(void **state)
     unlink(path);
 }
 
+/* A fitted one lies where it was fitted, be that a block alone. The photographs are its own formula: what is tried is
+ * where it lies. */
+static void a_fitted_cloth_lies_where_it_was_fitted(void **state)
+{
+    (void)state;
+    enum { WHOLE = 56, SIDE = 32 };
+    weft_dataset *dataset;
+    weft_held_bench *bench;
+    weft_held_error measured;
+    weft_error error = {0};
+    weft_priced_model model[WEFT_PRICED_MOST];
+    const weft_priced_dataset parts = {.cloth = weave};
+    expect_ok(weft_weave_read(weave, NULL, 0, &fixture_cloth.weave, NULL, &error), &error);
+    fixture_cloth.width = fixture_cloth.height = 13.3, fixture_cloth.left = 5.2, fixture_cloth.top = 9.7;
+    fixture_far_dataset(path, WHOLE, WHOLE, 3, fixture_woven, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    expect_ok(weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, SIDE, 0, scratch, &bench, &error), &error);
+    int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &parts, model);
+    expect_ok(weft_held_bench_measure(bench, find(model, count, "analytic cloth"), &measured, &error), &error);
+    print_message("analytic cloth on a block: %.4f\n", measured.held[WEFT_SAMPLES_ALL].relative_rmse);
+    assert_true(measured.held[WEFT_SAMPLES_ALL].relative_rmse < 0.2);
+    weft_held_error_free(&measured);
+    weft_held_bench_free(bench);
+    weft_dataset_close(dataset);
+    weft_weave_free(&fixture_cloth.weave);
+    unlink(path);
+}
+
 /* ---- Strobing ---- */
 
 static double excess_of(const double *value, int count)
@@ -308,6 +336,7 @@ int main(void)
         cmocka_unit_test(third_rings_are_those_of_0_and_45_degrees),
         cmocka_unit_test(bard_and_cloth_do_not_see_what_is_held_out),
         cmocka_unit_test(a_block_sees_the_cloth_of_the_whole),
+        cmocka_unit_test(a_fitted_cloth_lies_where_it_was_fitted),
         cmocka_unit_test(strobing_counts_what_moves_more_than_once),
         cmocka_unit_test(photographs_strobe_and_matte_cloth_does_not),
         cmocka_unit_test(nothing_beats_a_preset_in_bytes_time_and_error),

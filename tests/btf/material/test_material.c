@@ -212,6 +212,34 @@ static void metadata_and_errors_of_the_fit_are_kept(void **state)
     weft_material_free(&material);
 }
 
+/* Codec of the metadata of `count` bytes, {"a":"xx..x"}, which are read back as they were. */
+static uint32_t codec_of_metadata(size_t count)
+{
+    weft_material material = read_material(path);
+    free(material.metadata);
+    material.metadata = malloc(count + 1);
+    memset(material.metadata, 'x', count);
+    memcpy(material.metadata, "{\"a\":\"", 6);
+    strcpy(material.metadata + count - 2, "\"}");
+    assert_int_equal(weft_material_write("long.weft", &material, NULL), WEFT_OK);
+    weft_material read = read_material("long.weft");
+    assert_string_equal(read.metadata, material.metadata);
+    size_t size;
+    unsigned char *bytes = scratch_load("long.weft", &size);
+    uint32_t codec = weft_bytes_u32(weft_bytes_entry(bytes, weft_bytes_find(bytes, "META", 0)) + ENTRY_CODEC);
+    free(bytes);
+    weft_material_free(&read);
+    weft_material_free(&material);
+    return codec;
+}
+
+static void long_metadata_are_compressed(void **state)
+{
+    (void)state;
+    assert_int_equal(codec_of_metadata(4096), 0);
+    assert_int_equal(codec_of_metadata(4097), 1);
+}
+
 static void an_all_black_material_is_no_bomb(void **state)
 {
     (void)state;
@@ -375,6 +403,7 @@ static void impossible_sections_are_refused_with_right_checksums(void **state)
         {"FRAM", 0, ENTRY_LEVEL, 4, "no such section"},
         {"FRAM", 0, ENTRY_TYPE, 0x58585858, "FRAM of level 0 is missing"},
         {"FRAM", 0, ENTRY_CODEC, 7, "unknown codec"},
+        {"FRAM", 0, ENTRY_CODEC, 2, "unknown codec"},
         {"FRAM", 0, ENTRY_OFFSET, 1, "does not follow"},
         {"FRAM", 0, ENTRY_OFFSET, 64, "does not follow"},
         {"FRAM", 0, ENTRY_STORED, 0xffffffff, "beyond the end"},
@@ -578,6 +607,7 @@ int main(void)
         cmocka_unit_test(impossible_shapes_are_refused),
         cmocka_unit_test(models_and_fewer_bits_are_coded_without_loss),
         cmocka_unit_test(metadata_and_errors_of_the_fit_are_kept),
+        cmocka_unit_test(long_metadata_are_compressed),
         cmocka_unit_test(an_all_black_material_is_no_bomb),
         cmocka_unit_test(missing_files_and_folders_are_refused),
         cmocka_unit_test(a_file_cut_anywhere_is_refused),

@@ -119,6 +119,131 @@ static void sections_of_layers_can_be_skipped(void **state)
     weft_material_free(&material);
 }
 
+/* ---- Differences ---- */
+
+enum { EXAMPLE_VALUES = 7 * 8 * 3 };
+
+static const weft_half *values_of_example(weft_material *material)
+{
+    layers_write_example(NAME);
+    assert_int_equal(weft_material_read(NAME, material, NULL), WEFT_OK);
+    return material->layers->value;
+}
+
+static uint8_t *write_differences(const weft_layers *layers, size_t *size)
+{
+    *size = weft_layers_header_size(layers);
+    uint8_t *bytes = malloc(*size);
+    weft_layers_header_write(layers, WEFT_LAYERS_BY_DIFFERENCES, bytes);
+    return bytes;
+}
+
+/* All signs and sizes, of views of 2, 1 and 4 images. */
+static void values_by_differences_are_read_back(void **state)
+{
+    (void)state;
+    static const int whole[] = {2048, -2048, 2048, 0, 1, -1, -2048, 2048, -2048, 7, 300, -255, 256};
+    weft_material material;
+    const weft_half *value = values_of_example(&material);
+    assert_false(weft_layers_have_differences(material.layers));
+    for (int i = 0; i < EXAMPLE_VALUES; i++)
+        material.layers->value[i] = weft_half_of_float((float)whole[i % 13]);
+    assert_true(weft_layers_have_differences(material.layers));
+    size_t size;
+    uint8_t *bytes = write_differences(material.layers, &size);
+    weft_layers *again = NULL;
+    const char *fault = NULL;
+    assert_int_equal(weft_layers_header_read(bytes, size, WEFT_LAYERS_BY_DIFFERENCES, 5, 3, 4, &again, &fault, NULL),
+                     WEFT_OK);
+    assert_memory_equal(again->value, value, EXAMPLE_VALUES * sizeof *value);
+    material.layers->value[5] = weft_half_of_float(2050);
+    assert_false(weft_layers_have_differences(material.layers));
+    weft_layers_free(again);
+    free(bytes);
+    weft_material_free(&material);
+}
+
+/* By hand, from the document: red, green and blue of layer 0, of views of 2, 3 and 2 images. */
+static void differences_are_those_of_the_document(void **state)
+{
+    (void)state;
+    static const int rgb[7][3] = {{3, 5, 4}, {6, 9, 9}, {0, 2, 0}, {1, 1, 1}, {300, 1, 1}, {1, 1, 1}, {0, 0, -1}};
+    /* x: (-2 5 -1) (-3 9 0) | (-2 2 -2) (0 1 0) (299 1 0) | (0 1 0) (0 0 -1)
+     * d: (-2 5 -1) (-1 4 1) | (0 -3 -1) (3 -4 1) (299 0 0) | (2 -1 2) (0 -1 -1) */
+    static const uint32_t first[] = {0, 2, 5, 7};
+    static const unsigned code[7][3] = {{3, 10, 1}, {1, 8, 2}, {0, 5, 1}, {6, 7, 2}, {598, 0, 0}, {4, 1, 4}, {0, 1, 1}};
+    weft_material material;
+    values_of_example(&material);
+    memset(material.layers->value, 0, EXAMPLE_VALUES * sizeof *material.layers->value);
+    memcpy(material.layers->first, first, sizeof first);
+    for (int i = 0; i < 21; i++)
+        material.layers->value[24 * (i / 3) + i % 3] = weft_half_of_float((float)rgb[i / 3][i % 3]);
+    size_t size;
+    uint8_t *bytes = write_differences(material.layers, &size);
+    const uint8_t *low = bytes + size - 2 * EXAMPLE_VALUES, *high = low + EXAMPLE_VALUES;
+    for (int i = 0; i < 21; i++) {
+        int at = 24 * (i / 3) + i % 3;
+        assert_int_equal(low[at] + 256 * high[at], code[i / 3][i % 3]);
+    }
+    free(bytes);
+    weft_material_free(&material);
+}
+
+static uint32_t codec_of_layers(const char *path)
+{
+    size_t size;
+    unsigned char *bytes = scratch_load(path, &size);
+    uint32_t codec = weft_bytes_u32(weft_bytes_entry(bytes, weft_bytes_find(bytes, "LAYR", 0)) + ENTRY_CODEC);
+    free(bytes);
+    return codec;
+}
+
+/* Values that grow from image to image are smaller by differences, copies are not. */
+static void a_file_has_the_smaller_of_both(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    for (int copies = 0; copies < 2; copies++) {
+        weft_material material, again;
+        const weft_half *value = values_of_example(&material);
+        for (int i = 0; i < EXAMPLE_VALUES; i++)
+            material.layers->value[i] =
+                weft_half_of_float((float)(copies ? i * 7919 % 24 * 80 % 1999 * (i % 24 * 37 % 100) % 2000
+                                                  : i / 24 * (10 + i / 3 % 8) + i / 3 % 8 * 211));
+        if (copies)
+            for (int i = 24; i < EXAMPLE_VALUES; i++)
+                material.layers->value[i] = i / 24 % 2 ? 0 : value[i % 24];
+        expect_ok(weft_material_write("whole.weft", &material, &error), &error);
+        assert_int_equal(codec_of_layers("whole.weft"), copies ? 1 : 2);
+        expect_ok(weft_material_read("whole.weft", &again, &error), &error);
+        assert_memory_equal(again.layers->value, value, EXAMPLE_VALUES * sizeof *value);
+        weft_material_free(&material);
+        weft_material_free(&again);
+    }
+}
+
+static void values_too_large_are_refused(void **state)
+{
+    (void)state;
+    weft_material material;
+    values_of_example(&material);
+    memset(material.layers->value, 0, EXAMPLE_VALUES * sizeof *material.layers->value);
+    for (int i = 0; i < 2; i++) {
+        size_t size;
+        uint8_t *bytes = write_differences(material.layers, &size);
+        bytes[size - EXAMPLE_VALUES - 1] = i == 0 ? 1 : 2;
+        bytes[size - 1] = 16; /* 4096: 2048; with 2 more: 2049; with 1 more: -2049 */
+        weft_layers *layers = NULL;
+        const char *fault = NULL;
+        assert_int_equal(
+            weft_layers_header_read(bytes, size, WEFT_LAYERS_BY_DIFFERENCES, 5, 3, 4, &layers, &fault, NULL),
+            WEFT_BAD_INPUT);
+        assert_non_null(strstr(fault, "no whole number"));
+        free(bytes);
+    }
+    weft_material_free(&material);
+}
+
 /* ---- Damage ---- */
 
 /* LAYR of the example in memory, uncompressed. */
@@ -134,7 +259,7 @@ static header take_header(void)
     assert_int_equal(weft_material_read(NAME, &material, NULL), WEFT_OK);
     header h = {.size = weft_layers_header_size(material.layers)};
     h.bytes = malloc(h.size);
-    weft_layers_header_write(material.layers, h.bytes);
+    weft_layers_header_write(material.layers, WEFT_LAYERS_AS_THEY_ARE, h.bytes);
     weft_material_free(&material);
     return h;
 }
@@ -143,7 +268,8 @@ static void expect_fault(header h, const char *what)
 {
     weft_layers *layers = NULL;
     const char *fault = NULL;
-    assert_int_equal(weft_layers_header_read(h.bytes, h.size, 5, 3, 4, &layers, &fault, NULL), WEFT_BAD_INPUT);
+    assert_int_equal(weft_layers_header_read(h.bytes, h.size, WEFT_LAYERS_AS_THEY_ARE, 5, 3, 4, &layers, &fault, NULL),
+                     WEFT_BAD_INPUT);
     assert_non_null(fault);
     assert_non_null(strstr(fault, what));
     free(h.bytes);
@@ -237,6 +363,10 @@ int main(void)
         cmocka_unit_test(floors_are_there_on_all_levels),
         cmocka_unit_test(floors_are_rounded_down),
         cmocka_unit_test(sections_of_layers_can_be_skipped),
+        cmocka_unit_test(values_by_differences_are_read_back),
+        cmocka_unit_test(differences_are_those_of_the_document),
+        cmocka_unit_test(a_file_has_the_smaller_of_both),
+        cmocka_unit_test(values_too_large_are_refused),
         cmocka_unit_test(every_field_is_checked),
         cmocka_unit_test(coefficients_must_be_those_of_the_layers),
         cmocka_unit_test(ceilings_never_round_down),
