@@ -1,0 +1,11 @@
+/* What the user should know of the lamps that were found. */
+#ifndef WEFT_REGISTRATION_HAND_NOTES_H
+#define WEFT_REGISTRATION_HAND_NOTES_H
+
+#include "registration/hand/hand.h"
+
+/* Adds a line to the notes of `hand` where balls or pin contradict the paper, and where the tone curve leaves dark
+ * cloth open. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_hand_note(weft_hand *hand, weft_error *error);
+
+#endif
