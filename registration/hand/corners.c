@@ -91,6 +91,7 @@ weft_code weft_corners_find(const weft_target *target, const weft_light_values *
         snprintf(photograph->remark, sizeof photograph->remark, "%d of the target's %d markers are seen: %s",
                  photograph->marker_count, WEFT_SHEET_MARKER_COUNT, weft_photograph_fault(values));
     else if (photograph->corner_count < 4 * fewest_markers)
-        snprintf(photograph->remark, sizeof photograph->remark, "its markers do not lie on one plane");
+        snprintf(photograph->remark, sizeof photograph->remark,
+                 "its markers lie otherwise than on the target: it is another print, or the sheet is bent");
     return WEFT_OK;
 }

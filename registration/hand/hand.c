@@ -364,6 +364,7 @@ static weft_code run(work *w, const char *output, weft_error *error)
     if (w->settings->lights)
         WEFT_TRY(weft_listed_compare(w->settings->lights, hand->photograph, hand->count, &hand->notes, error));
     WEFT_TRY(check_enough(w, "can be used", what_helps, error));
+    WEFT_TRY(weft_hand_check_variety(w->folder, hand, error));
     return weft_hand_write_dataset(w->folder, output, w->settings, w->progress, hand, error);
 }
 

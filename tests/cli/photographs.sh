@@ -68,6 +68,9 @@ refused "bad.lp:2" free --lights bad.lp
 printf '1\nfree.jpg 0 0 1\n' >other.lp
 refused "none of the photographs" free --lights other.lp
 refused "holds no photograph .*: it is empty" empty
+mkdir same
+for i in 1 2 3; do cp "$(find tripod -iname 'IMG*' | head -1)" same/$i.jpg; done
+refused "all 3 photographs that can be used show one view under one light" same --opening 40
 mkdir few
 find free -iname "IMG*" | head -2 | xargs -I{} cp {} few/
 refused "holds 2 photographs, 3 are needed and 20 do better: take more" few
