@@ -5,7 +5,6 @@
 #include "registration/hand/corners.h"
 #include "registration/hand/folder.h"
 #include "registration/hand/material.h"
-#include "registration/hand/notes.h"
 #include "registration/hand/pose.h"
 #include "registration/hand/thumbnail.h"
 
