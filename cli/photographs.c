@@ -61,15 +61,28 @@ static void say_left_out(const photographs_command *command, const weft_hand *ha
     }
 }
 
+static void say_lens(const photographs_command *command, const weft_lens_estimate *lens)
+{
+    const weft_camera *c = &lens->camera;
+    const weft_lens_errors *e = &lens->errors;
+    if (lens->knowledge == WEFT_LENS_UNKNOWN)
+        weft_command_say(&command->common,
+                         "lens: focal length %.1f +- %.1f pixels, k1 %.4f +- %.4f, k2 %.4f +- %.4f (standard errors); "
+                         "markers lie %.2f pixels off, RMS",
+                         c->fx, e->focal_px, c->k1, e->k1, c->k2, e->k2, lens->rms_px);
+    else
+        weft_command_say(&command->common,
+                         "lens: focal length %.1f pixels, as %s; k1 %.4f, k2 %.4f; markers lie %.2f pixels off, RMS",
+                         c->fx, lens->knowledge == WEFT_LENS_KNOWN ? "--lens says" : "the camera wrote it", c->k1,
+                         c->k2, lens->rms_px);
+}
+
 static void say_outcome(const photographs_command *command, const weft_hand *hand)
 {
-    const weft_camera *camera = &hand->lens.camera;
     say_left_out(command, hand);
     for (int i = 0; i < hand->notes.count; i++)
         weft_command_say(&command->common, "%s", hand->notes.line[i]);
-    weft_command_say(&command->common,
-                     "lens: focal length %.1f pixels, k1 %.4f, k2 %.4f; markers lie %.2f pixels off, RMS", camera->fx,
-                     camera->k1, camera->k2, hand->lens.rms_px);
+    say_lens(command, &hand->lens);
     if (command->settings.colour)
         weft_command_say(&command->common,
                          "colours: linear sRGB; a patch of the chart that was left out is met within %.2f CIEDE2000 in "

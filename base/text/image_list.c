@@ -5,43 +5,51 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_image(const char *name)
+static const char *const image_extension[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".dng", ".cr2", ".cr3",
+                                              ".nef", ".arw", ".raf",  ".orf", ".rw2", ".pef",  ".srw", NULL};
+static const char *const film_extension[] = {".mov", ".mp4", ".m4v", ".avi", ".mkv", ".mts", ".3gp", ".webm", NULL};
+static const char *const heif_extension[] = {".heic", ".heif", ".hif", ".avif", NULL};
+
+static bool ends_in(const char *name, const char *const *extension)
 {
-    static const char *const extension[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".dng", ".cr2",
-                                            ".cr3", ".nef", ".arw",  ".raf", ".orf", ".rw2",  ".pef", ".srw"};
     const char *dot = strrchr(name, '.');
     if (!dot || name[0] == '.')
         return false;
-    for (size_t i = 0; i < sizeof extension / sizeof *extension; i++) {
-        if (strcasecmp(dot, extension[i]) == 0)
-            return true;
-    }
-    return false;
+    while (*extension && strcasecmp(dot, *extension) != 0)
+        extension++;
+    return *extension != NULL;
 }
+
+/* ---- The files of a folder and of the folders in it ---- */
+
+/* What is done with a file, whose name is relative. */
+typedef weft_code (*visitor)(void *into, const char *name, weft_error *error);
 
 static int by_name(const FTSENT **a, const FTSENT **b)
 {
     return strcmp((*a)->fts_name, (*b)->fts_name);
 }
 
-static weft_code list_tree(FTS *tree, size_t folder_length, weft_lines *names, weft_error *error)
+static weft_code visit_tree(FTS *tree, size_t folder_length, visitor visit, void *into, weft_error *error)
 {
     FTSENT *entry;
     while ((entry = fts_read(tree))) {
-        if (entry->fts_info == FTS_DNR || entry->fts_info == FTS_ERR)
+        bool is_folder_itself = entry->fts_level == 0;
+        if (entry->fts_info == FTS_DNR || entry->fts_info == FTS_ERR || (entry->fts_info == FTS_NS && is_folder_itself))
             return weft_fail(error, WEFT_BAD_INPUT, "cannot list '%s': %s", entry->fts_path,
                              strerror(entry->fts_errno));
+        if (entry->fts_info == FTS_F && is_folder_itself)
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a file, not a folder", entry->fts_path);
         if (entry->fts_info == FTS_D && entry->fts_level > 1)
             fts_set(tree, entry, FTS_SKIP);
-        if (entry->fts_info == FTS_F && is_image(entry->fts_name))
-            WEFT_TRY(weft_lines_add(names, error, "%s", entry->fts_path + folder_length + 1));
+        if (entry->fts_info == FTS_F)
+            WEFT_TRY(visit(into, entry->fts_path + folder_length + 1, error));
     }
     return WEFT_OK;
 }
 
-weft_code weft_images_list(const char *folder, weft_lines *names, weft_error *error)
+static weft_code visit_files(const char *folder, visitor visit, void *into, weft_error *error)
 {
-    *names = (weft_lines){0};
     size_t length = strlen(folder);
     while (length > 1 && folder[length - 1] == '/')
         length--;
@@ -50,11 +58,65 @@ weft_code weft_images_list(const char *folder, weft_lines *names, weft_error *er
         return weft_fail_memory(error, "path", length);
     char *roots[] = {root, NULL};
     FTS *tree = fts_open(roots, FTS_LOGICAL | FTS_NOCHDIR, by_name);
-    weft_code code = tree ? list_tree(tree, length, names, error) : weft_fail_errno(error, "list", folder);
+    weft_code code = tree ? visit_tree(tree, length, visit, into, error) : weft_fail_errno(error, "list", folder);
     if (tree)
         fts_close(tree);
     free(root);
+    return code;
+}
+
+/* ---- Images, and what there is instead ---- */
+
+static const char *without_folder(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
+static weft_code add_image(void *into, const char *name, weft_error *error)
+{
+    return ends_in(without_folder(name), image_extension) ? weft_lines_add(into, error, "%s", name) : WEFT_OK;
+}
+
+weft_code weft_images_list(const char *folder, weft_lines *names, weft_error *error)
+{
+    *names = (weft_lines){0};
+    weft_code code = visit_files(folder, add_image, names, error);
     if (code != WEFT_OK)
         weft_lines_free(names);
     return code;
+}
+
+typedef struct census {
+    int files, films, heifs;
+} census;
+
+static weft_code count_file(void *into, const char *name, weft_error *error)
+{
+    (void)error;
+    census *seen = into;
+    seen->files++;
+    seen->films += ends_in(without_folder(name), film_extension);
+    seen->heifs += ends_in(without_folder(name), heif_extension);
+    return WEFT_OK;
+}
+
+weft_code weft_images_missing(const char *folder, weft_error *error)
+{
+    static const char *const holds = "holds no photograph (JPEG, PNG, TIFF, EXR or camera raw)";
+    census seen = {0};
+    WEFT_TRY(visit_files(folder, count_file, &seen, error));
+    if (seen.files == 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s: it is empty; copy the files of the camera into it", folder,
+                         holds);
+    if (seen.heifs > 0)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' %s: %d of its %d files are HEIF (.heic); set the phone to JPEG ('most compatible'), or "
+                         "convert them",
+                         folder, holds, seen.heifs, seen.files);
+    if (seen.films > 0)
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s: %d of its %d files are films; take single photographs",
+                         folder, holds, seen.films, seen.files);
+    return weft_fail(error, WEFT_BAD_INPUT, "'%s' %s: by their names its %d files are something else", folder, holds,
+                     seen.files);
 }

@@ -14,7 +14,7 @@ static const double marker_center[WEFT_SHEET_MARKER_COUNT][2] = {
 static const double reference_center[4][2] = {{22.5, 0}, {0, 22.5}, {-22.5, 0}, {0, -22.5}};
 static const double reference_across = 7, reference_along = 13;
 static const double sheet_width = 124, sheet_height = 168;
-static const double ball_place[WEFT_TARGET_BALL_COUNT][2] = {{-54, 76}, {54, -76}}, pin_place[2] = {54, 76};
+static const double ball_place[WEFT_TARGET_BALL_COUNT][2] = {{-54, 76}, {54, -76}}, pin_place[2] = {28, 66};
 
 /* The 4 x 4 cells of the ArUco markers 0..13 of DICT_4X4_50: rows from the top, most significant bit first, 1 = white.
  */

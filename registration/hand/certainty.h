@@ -1,4 +1,5 @@
-/* How far a photograph can be trusted: what the dataset keeps of it as figures of its image. */
+/* How far photographs can be trusted: what the dataset keeps of each as figures of its image, and what the user should
+ * know of all. */
 #ifndef WEFT_REGISTRATION_HAND_CERTAINTY_H
 #define WEFT_REGISTRATION_HAND_CERTAINTY_H
 
@@ -35,5 +36,13 @@ double weft_hand_variance(const weft_hand *hand, const weft_hand_photograph *pho
  * (lamps.dark_error). Errors: those of weft_dataset_writer_put_figure. */
 weft_code weft_hand_put_figures(const weft_hand *hand, const int *index, int count, double pitch_mm,
                                 weft_dataset_writer *writer, weft_error *error);
+
+/* Adds a line to the notes of `hand` where balls or pin contradict the paper, and where the tone curve leaves dark
+ * cloth open. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_hand_note(weft_hand *hand, weft_error *error);
+
+/* Refuses photographs that all show the cloth from one side under one light, within 3 degrees. Errors: WEFT_BAD_INPUT
+ * naming the folder. Pure. */
+weft_code weft_hand_check_variety(const char *folder, const weft_hand *hand, weft_error *error);
 
 #endif

@@ -1,6 +1,5 @@
 #include "registration/hand/corners.h"
 
-#include "registration/hand/fault.h"
 #include "registration/hand/hand_bridge.h"
 
 #include <math.h>
@@ -11,6 +10,8 @@ enum { fewest_markers = 3 };
 
 /* How far the distortion of a lens may take a corner from a plane, as a share of the longer side. */
 static const double distortion_share = 0.01;
+
+/* ---- Markers ---- */
 
 /* Marker search takes what is clipped as white. */
 static weft_code find_markers(const weft_light_values *values, weft_marker *marker, int *count, weft_error *error)
@@ -77,6 +78,71 @@ static weft_code keep_plane(const weft_light_values *values, weft_hand_photograp
     return code == WEFT_BAD_INPUT ? WEFT_OK : code;
 }
 
+/* ---- Why a photograph shows no target ---- */
+
+enum { longer_lag = 8 };
+
+static const double darkest_mean = 0.004, clipped_share = 0.5;
+
+/* Of sharp edges the sharpness is 1, of edges as wide as the longer lag and wider 1 / longer_lag. */
+static const double least_sharpness = 0.3;
+
+/* Mean squared difference of the square root of light at a lag, which evens out its noise. */
+static double difference(const weft_light_values *values, int dx, int dy)
+{
+    double sum = 0;
+    long count = 0;
+    int reach = longer_lag;
+    for (int y = reach; y < values->height - reach; y += 2) {
+        for (int x = reach; x < values->width - reach; x++) {
+            float a = values->grey[(long)y * values->width + x],
+                  b = values->grey[(long)(y + dy) * values->width + x + dx];
+            if (!isfinite(a) || !isfinite(b))
+                continue;
+            double step = sqrt((double)b) - sqrt((double)a);
+            sum += step * step;
+            count++;
+        }
+    }
+    return count > 0 ? sum / (double)count : 0;
+}
+
+static double sharpness(const weft_light_values *values)
+{
+    static const int direction[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    double least = INFINITY;
+    for (int i = 0; i < 4; i++) {
+        int dx = direction[i][0], dy = direction[i][1];
+        double far = difference(values, longer_lag * dx, longer_lag * dy);
+        least = fmin(least, far > 0 ? longer_lag * difference(values, dx, dy) / far : 0);
+    }
+    return least;
+}
+
+/* In words: it is dark, overexposed, blurred, or of something else. An edge between two greys that is spread over w
+ * pixels has the sum of squared differences 1 / w at a lag of one pixel, and lag / w (w >= lag) at a longer lag; so the
+ * share of the two tells how wide edges are, whatever the picture shows. The least of four directions counts, because a
+ * shake blurs one. */
+static const char *fault_of(const weft_light_values *values)
+{
+    double sum = 0, clipped = 0, pixels = (double)values->width * values->height;
+    for (long i = 0; i < (long)values->width * values->height; i++) {
+        if (isfinite(values->grey[i]))
+            sum += (double)values->grey[i];
+        else
+            clipped++;
+    }
+    if (clipped > clipped_share * pixels)
+        return "it is overexposed";
+    if (sum < darkest_mean * pixels)
+        return "it is dark (was the lens covered?)";
+    if (sharpness(values) < least_sharpness)
+        return "it is blurred";
+    return "it shows something else, or too little of the sheet";
+}
+
+/* ---- All of it ---- */
+
 weft_code weft_corners_find(const weft_target *target, const weft_light_values *values,
                             weft_hand_photograph *photograph, weft_error *error)
 {
@@ -89,8 +155,9 @@ weft_code weft_corners_find(const weft_target *target, const weft_light_values *
         WEFT_TRY(keep_plane(values, photograph, error));
     if (photograph->marker_count < fewest_markers)
         snprintf(photograph->remark, sizeof photograph->remark, "%d of the target's %d markers are seen: %s",
-                 photograph->marker_count, WEFT_SHEET_MARKER_COUNT, weft_photograph_fault(values));
+                 photograph->marker_count, WEFT_SHEET_MARKER_COUNT, fault_of(values));
     else if (photograph->corner_count < 4 * fewest_markers)
-        snprintf(photograph->remark, sizeof photograph->remark, "its markers do not lie on one plane");
+        snprintf(photograph->remark, sizeof photograph->remark,
+                 "its markers lie otherwise than on the target: it is another print, or the sheet is bent");
     return WEFT_OK;
 }

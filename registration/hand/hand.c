@@ -1,9 +1,9 @@
 #include "registration/hand/hand.h"
 
 #include "base/clock.h"
-#include "base/text/image_list.h"
 #include "registration/hand/certainty.h"
 #include "registration/hand/corners.h"
+#include "registration/hand/folder.h"
 #include "registration/hand/material.h"
 #include "registration/hand/pose.h"
 #include "registration/hand/thumbnail.h"
@@ -13,8 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Fewer photographs than this make no material. */
-enum { fewest_photographs = 3 };
+static const char *const what_helps = "see 'When it goes wrong' in docs/guide/photograph-your-cloth.md";
 
 /* Everything at work. */
 typedef struct work {
@@ -46,89 +45,16 @@ void weft_hand_free(weft_hand *hand)
     *hand = (weft_hand){0};
 }
 
-/* ---- The folder ---- */
+/* ---- Looking at all photographs ---- */
+
+/* What is done with one photograph: fills it from its pixels. */
+typedef weft_code (*look)(work *w, int index, const weft_light_values *values, weft_error *error);
 
 static char *path_of(const char *folder, const char *name)
 {
     char *path = NULL;
     return asprintf(&path, "%s/%s", folder, name) < 0 ? NULL : path;
 }
-
-static void read_exif(const char *folder, weft_hand_photograph *photograph)
-{
-    weft_error error = {0};
-    char *path = path_of(folder, photograph->name);
-    if (!path)
-        snprintf(photograph->remark, sizeof photograph->remark, "memory is short");
-    else if (weft_exif_read(path, &photograph->exif, &error) != WEFT_OK)
-        snprintf(photograph->remark, sizeof photograph->remark, "%.180s", error.message);
-    free(path);
-}
-
-/* The size that most photographs have. */
-static const weft_exif *common_size(const weft_hand *hand)
-{
-    const weft_exif *best = NULL;
-    int most = 0;
-    for (int i = 0; i < hand->count; i++) {
-        const weft_exif *one = &hand->photograph[i].exif;
-        int same = 0;
-        for (int k = 0; k < hand->count && weft_hand_used(&hand->photograph[i]); k++)
-            same += weft_hand_used(&hand->photograph[k]) && hand->photograph[k].exif.width == one->width &&
-                    hand->photograph[k].exif.height == one->height;
-        if (same > most)
-            most = same, best = one;
-    }
-    return best;
-}
-
-static void leave_out_other_sizes(weft_hand *hand, const weft_exif *common)
-{
-    for (int i = 0; i < hand->count; i++) {
-        weft_hand_photograph *p = &hand->photograph[i];
-        if (!weft_hand_used(p) || (p->exif.width == common->width && p->exif.height == common->height))
-            continue;
-        bool turned = p->exif.width == common->height && p->exif.height == common->width;
-        snprintf(p->remark, sizeof p->remark, "it has %d x %d pixels, most have %d x %d%s", p->exif.width,
-                 p->exif.height, common->width, common->height,
-                 turned ? ": a program turned it; copy the files as the camera wrote them" : "");
-    }
-}
-
-static weft_code list_photographs(work *w, weft_error *error)
-{
-    weft_lines names;
-    WEFT_TRY(weft_images_list(w->folder, &names, error));
-    weft_hand *hand = w->hand;
-    weft_code code = WEFT_OK;
-    if (names.count == 0)
-        code = weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no photograph (JPEG, PNG, TIFF, EXR or camera raw)",
-                         w->folder);
-    else if (!(hand->photograph = calloc((size_t)names.count, sizeof *hand->photograph)) ||
-             !(w->evidence = calloc((size_t)names.count, sizeof *w->evidence)))
-        code = weft_fail_memory(error, "photographs", (size_t)names.count * sizeof *hand->photograph);
-    for (int i = 0; code == WEFT_OK && i < names.count; i++, hand->count++) {
-        if (!(hand->photograph[i].name = strdup(names.line[i])))
-            code = weft_fail_memory(error, names.line[i], strlen(names.line[i]));
-    }
-    weft_lines_free(&names);
-    if (code != WEFT_OK)
-        return code;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int i = 0; i < hand->count; i++)
-        read_exif(w->folder, &hand->photograph[i]);
-    const weft_exif *common = common_size(hand);
-    if (!common)
-        return weft_fail(error, WEFT_BAD_INPUT, "none of the %d images in '%s' can be read: %s", hand->count, w->folder,
-                         hand->photograph[0].remark);
-    leave_out_other_sizes(hand, common);
-    return WEFT_OK;
-}
-
-/* ---- Looking at all photographs ---- */
-
-/* What is done with one photograph: fills it from its pixels. */
-typedef weft_code (*look)(work *w, int index, const weft_light_values *values, weft_error *error);
 
 static weft_code look_at(work *w, int index, look what, weft_error *error)
 {
@@ -229,16 +155,17 @@ static int count_used(const weft_hand *hand)
     return used;
 }
 
-static weft_code check_enough(const work *w, const char *missing, weft_error *error)
+/* `missing`: what photographs must do; `advice`: how they come to do it. */
+static weft_code check_enough(const work *w, const char *missing, const char *advice, weft_error *error)
 {
     int used = count_used(w->hand), first = 0;
-    if (used >= fewest_photographs)
+    if (used >= WEFT_HAND_FEWEST)
         return WEFT_OK;
     while (first < w->hand->count - 1 && weft_hand_used(&w->hand->photograph[first]))
         first++;
-    return weft_fail(error, WEFT_BAD_INPUT, "'%s': %d of %d photographs %s, %d are needed; '%s': %s", w->folder, used,
-                     w->hand->count, missing, fewest_photographs, w->hand->photograph[first].name,
-                     w->hand->photograph[first].remark);
+    return weft_fail(error, WEFT_BAD_INPUT, "'%s': %d of %d photographs %s, %d are needed; '%s': %s; %s", w->folder,
+                     used, w->hand->count, missing, WEFT_HAND_FEWEST, w->hand->photograph[first].name,
+                     w->hand->photograph[first].remark, advice);
 }
 
 /* ---- The lamps ---- */
@@ -405,49 +332,21 @@ static weft_code refine_and_sample(work *w, weft_error *error)
     return code;
 }
 
-/* Balls and pin have true sizes, the sheet has what --opening says: where they contradict the paper, one is wrong. */
-static weft_code note_misfits(weft_hand *hand, weft_error *error)
-{
-    const double most = 3;
-    if (hand->lamps.ball_misfit > most)
-        WEFT_TRY(weft_lines_add(&hand->notes, error,
-                                "the highlights on the balls lie %.0f standard errors off, median: is the opening, or "
-                                "the diameter of the balls, what was said?",
-                                hand->lamps.ball_misfit));
-    if (hand->lamps.pin_misfit > most)
-        return weft_lines_add(&hand->notes, error,
-                              "the shadows of the pin lie %.0f standard errors off, median: is the opening, or the "
-                              "height of the pin, what was said?",
-                              hand->lamps.pin_misfit);
-    return WEFT_OK;
-}
-
-/* Paper and ink leave the middle of the tone curve open. */
-static weft_code note_tone(weft_hand *hand, weft_error *error)
-{
-    const double most = 0.05;
-    if (!(hand->lamps.dark_error > most))
-        return WEFT_OK;
-    return weft_lines_add(
-        &hand->notes, error,
-        "dark cloth, a tenth as bright as the paper, may be off by %.0f %% (a standard error), bright "
-        "cloth by less: the tone curve is known no better. Next time take four photographs twice, the "
-        "second two stops darker, or use raw files",
-        100 * hand->lamps.dark_error);
-}
-
 static weft_code run(work *w, const char *output, weft_error *error)
 {
     weft_hand *hand = w->hand;
-    WEFT_TRY(list_photographs(w, error));
-    WEFT_TRY(check_enough(w, "can be read", error));
+    WEFT_TRY(weft_hand_list(w->folder, hand, error));
+    if (!(w->evidence = calloc((size_t)hand->count, sizeof *w->evidence)))
+        return weft_fail_memory(error, "evidence", (size_t)hand->count * sizeof *w->evidence);
+    WEFT_TRY(check_enough(w, "can be read", "copy the files as the camera wrote them", error));
     if (w->settings->lights)
         WEFT_TRY(weft_listed_check(w->settings->lights, hand->photograph, hand->count, error));
-    const weft_exif *common = common_size(hand);
+    const weft_exif *common = weft_hand_common_size(hand);
     hand->tone_found = !w->settings->linear && !common->is_linear;
     hand->tone = hand->tone_found ? weft_tone_srgb() : weft_tone_linear();
     WEFT_TRY(look_at_all(w, "looking for the target", look_for_corners, error));
-    WEFT_TRY(check_enough(w, "show the target", error));
+    WEFT_TRY(check_enough(w, "show the target", "photograph the whole sheet that weft target prints, sharp and bright",
+                          error));
     WEFT_TRY(weft_lens_estimate_from(hand->photograph, hand->count, common->width, common->height, w->settings->lens,
                                      &hand->lens, error));
     WEFT_TRY(weft_paper_places_create(&w->settings->target, &w->places, error));
@@ -457,14 +356,14 @@ static weft_code run(work *w, const char *output, weft_error *error)
         WEFT_TRY(find_pin(w, error));
     free_pin(w);
     leave_out_paperless(w);
-    WEFT_TRY(check_enough(w, "can be used", error));
+    WEFT_TRY(check_enough(w, "can be used", what_helps, error));
     WEFT_TRY(find_lamps(w, error));
     leave_out_underexposed(hand);
-    WEFT_TRY(note_misfits(hand, error));
-    WEFT_TRY(note_tone(hand, error));
+    WEFT_TRY(weft_hand_note(hand, error));
     if (w->settings->lights)
         WEFT_TRY(weft_listed_compare(w->settings->lights, hand->photograph, hand->count, &hand->notes, error));
-    WEFT_TRY(check_enough(w, "can be used", error));
+    WEFT_TRY(check_enough(w, "can be used", what_helps, error));
+    WEFT_TRY(weft_hand_check_variety(w->folder, hand, error));
     return weft_hand_write_dataset(w->folder, output, w->settings, w->progress, hand, error);
 }
 

@@ -96,8 +96,16 @@ int flags_of(weft_lens_knowledge knowledge)
     return held | cv::CALIB_FIX_K1;
 }
 
+/* OpenCV's order: fx, fy, cx, cy, k1, k2; fx follows fy. It may leave numbers for what is held. */
+weft_lens_errors errors_of(const cv::Mat &deviation, weft_lens_knowledge knowledge)
+{
+    const bool all = knowledge == WEFT_LENS_UNKNOWN;
+    return {all ? deviation.at<double>(1) : 0, knowledge != WEFT_LENS_KNOWN ? deviation.at<double>(4) : 0,
+            all ? deviation.at<double>(5) : 0};
+}
+
 weft_code fit_lens(const weft_corner_view *view, int count, weft_lens_knowledge knowledge, weft_camera *camera,
-                   weft_pose *pose, double *rms_px, weft_error *error)
+                   weft_lens_errors *errors, weft_pose *pose, double *rms_px, weft_error *error)
 {
     points_3d plate;
     points_2d seen;
@@ -106,10 +114,13 @@ weft_code fit_lens(const weft_corner_view *view, int count, weft_lens_knowledge 
     cv::Mat distortion = (cv::Mat_<double>(1, 5) << camera->k1, camera->k2, camera->p1, camera->p2, camera->k3);
     std::vector<cv::Mat> turns, shifts;
     const cv::TermCriteria until(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 100, 1e-10);
-    const double rms = cv::calibrateCamera(plate, seen, cv::Size(camera->width, camera->height), matrix, distortion,
-                                           turns, shifts, flags_of(knowledge), until);
+    cv::Mat deviation;
+    const double rms =
+        cv::calibrateCamera(plate, seen, cv::Size(camera->width, camera->height), matrix, distortion, turns, shifts,
+                            deviation, cv::noArray(), cv::noArray(), flags_of(knowledge), until);
     if (!std::isfinite(rms))
         return weft_fail(error, WEFT_BAD_INPUT, "no lens explains the markers of %d photographs", count);
+    *errors = errors_of(deviation, knowledge);
     camera->fx = matrix.at<double>(0, 0), camera->fy = matrix.at<double>(1, 1);
     camera->cx = matrix.at<double>(0, 2), camera->cy = matrix.at<double>(1, 2);
     camera->k1 = distortion.at<double>(0), camera->k2 = distortion.at<double>(1);
@@ -149,8 +160,9 @@ extern "C" weft_code weft_opencv_find_markers_in_photograph(const float *grey, i
 }
 
 extern "C" weft_code weft_opencv_fit_lens(const weft_corner_view *view, int count, weft_lens_knowledge knowledge,
-                                          weft_camera *camera, weft_pose *pose, double *rms_px, weft_error *error)
+                                          weft_camera *camera, weft_lens_errors *errors, weft_pose *pose,
+                                          double *rms_px, weft_error *error)
 {
     return weft_opencv_guarded("fitting a lens", error,
-                               [&] { return fit_lens(view, count, knowledge, camera, pose, rms_px, error); });
+                               [&] { return fit_lens(view, count, knowledge, camera, errors, pose, rms_px, error); });
 }

@@ -28,11 +28,17 @@ typedef enum weft_lens_knowledge {
     WEFT_LENS_KNOWN       /* `camera` is right: only poses are estimated */
 } weft_lens_knowledge;
 
+/* How well a lens is known: standard errors under the scatter of the corners; 0 for what is not estimated. */
+typedef struct weft_lens_errors {
+    double focal_px, k1, k2;
+} weft_lens_errors;
+
 /* One lens and a pose a view, by bundle adjustment: least squares of the reprojection (Zhang 2000). `camera` (in: size
  * and what is known; out: the lens, its vignetting untouched). pose [count]; rms_px [count] of every view. Errors:
  * WEFT_BAD_INPUT where no lens fits; WEFT_SYSTEM. */
 weft_code weft_opencv_fit_lens(const weft_corner_view *view, int count, weft_lens_knowledge knowledge,
-                               weft_camera *camera, weft_pose *pose, double *rms_px, weft_error *error);
+                               weft_camera *camera, weft_lens_errors *errors, weft_pose *pose, double *rms_px,
+                               weft_error *error);
 
 #ifdef __cplusplus
 }

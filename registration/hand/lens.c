@@ -54,12 +54,13 @@ static weft_code pack(const weft_hand_photograph *photograph, int count, packing
     return WEFT_OK;
 }
 
-static weft_code fit(weft_hand_photograph *photograph, int count, weft_lens_knowledge knowledge, weft_camera *camera,
-                     weft_error *error)
+static weft_code fit(weft_hand_photograph *photograph, int count, weft_lens_knowledge knowledge,
+                     weft_lens_estimate *lens, weft_error *error)
 {
     packing p;
     WEFT_TRY(pack(photograph, count, &p, error));
-    weft_code code = weft_opencv_fit_lens(p.view, p.count, knowledge, camera, p.pose, p.rms_px, error);
+    weft_code code =
+        weft_opencv_fit_lens(p.view, p.count, knowledge, &lens->camera, &lens->errors, p.pose, p.rms_px, error);
     for (int i = 0; code == WEFT_OK && i < p.count; i++) {
         photograph[p.index[i]].pose = p.pose[i];
         photograph[p.index[i]].corner_rms_px = p.rms_px[i];
@@ -167,8 +168,9 @@ static weft_code share_pose(weft_hand_photograph *photograph, const int *index, 
         all.count += p->corner_count;
     }
     weft_pose pose;
+    weft_lens_errors none;
     double rms_px;
-    weft_code code = weft_opencv_fit_lens(&all, 1, WEFT_LENS_KNOWN, camera, &pose, &rms_px, error);
+    weft_code code = weft_opencv_fit_lens(&all, 1, WEFT_LENS_KNOWN, camera, &none, &pose, &rms_px, error);
     for (int i = 0; code == WEFT_OK && i < count; i++)
         photograph[index[i]].pose = pose;
     free(corner);
@@ -217,7 +219,7 @@ static weft_code fit_unknown(weft_hand_photograph *photograph, int count, int wi
     double written = written_focal_length(photograph, count, width, height), steepest;
     double guess = written > 0 ? written : 1.2 * fmax(width, height);
     lens->camera = ideal_camera(width, height, guess);
-    WEFT_TRY(fit(photograph, count, WEFT_LENS_FOCAL_ONLY, &lens->camera, error));
+    WEFT_TRY(fit(photograph, count, WEFT_LENS_FOCAL_ONLY, lens, error));
     lens->distinct_views = count_views(photograph, count, &steepest);
     lens->knowledge = lens->distinct_views >= views_enough && steepest >= steepest_at_least_deg ? WEFT_LENS_UNKNOWN
                                                                                                 : WEFT_LENS_FOCAL_ONLY;
@@ -241,7 +243,7 @@ weft_code weft_lens_estimate_from(weft_hand_photograph *photograph, int count, i
     else
         WEFT_TRY(fit_unknown(photograph, count, width, height, lens, error));
     do {
-        WEFT_TRY(fit(photograph, count, lens->knowledge, &lens->camera, error));
+        WEFT_TRY(fit(photograph, count, lens->knowledge, lens, error));
     } while (leave_out(photograph, count, &lens->camera) > 0);
     lens->rms_px = rms_of(photograph, count);
     return share_poses(photograph, count, &lens->camera, error);

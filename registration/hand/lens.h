@@ -9,6 +9,7 @@
 typedef struct weft_lens_estimate {
     weft_camera camera; /* no vignetting */
     weft_lens_knowledge knowledge;
+    weft_lens_errors errors;
     int distinct_views; /* whose directions differ by 10 degrees and more */
     double rms_px;      /* of all corners used */
 } weft_lens_estimate;

@@ -185,16 +185,18 @@ static json_t *pack_photograph(const weft_hand_photograph *p)
 static char *provenance(const work *w)
 {
     const weft_camera *c = &w->hand->lens.camera;
+    const weft_lens_errors *e = &w->hand->lens.errors;
     json_t *photographs = json_array(), *tone = json_array();
     for (int i = 0; i <= WEFT_TONE_STEPS; i += WEFT_TONE_STEPS / 64)
         weft_json_append(&tone, json_real((double)w->hand->tone.linear[i]));
     for (int i = 0; i < w->hand->count; i++)
         weft_json_append(&photographs, pack_photograph(&w->hand->photograph[i]));
-    json_t *root = json_pack(
-        "{ss s{si si sf sf sf sf sf sf s[fff]} sf sf so so}", "program", "weft photographs " WEFT_VERSION, "lens",
-        "width", c->width, "height", c->height, "fx", c->fx, "fy", c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2",
-        c->k2, "vignetting", c->vignetting[0], c->vignetting[1], c->vignetting[2], "opening_mm",
-        w->settings->target.opening_mm, "ink_over_paper", w->hand->lamps.ink, "tone", tone, "photographs", photographs);
+    json_t *root = json_pack("{ss s{si si sf sf sf sf sf sf s[fff] s{sf sf sf}} sf sf so so}", "program",
+                             "weft photographs " WEFT_VERSION, "lens", "width", c->width, "height", c->height, "fx",
+                             c->fx, "fy", c->fy, "cx", c->cx, "cy", c->cy, "k1", c->k1, "k2", c->k2, "vignetting",
+                             c->vignetting[0], c->vignetting[1], c->vignetting[2], "standard_error", "f", e->focal_px,
+                             "k1", e->k1, "k2", e->k2, "opening_mm", w->settings->target.opening_mm, "ink_over_paper",
+                             w->hand->lamps.ink, "tone", tone, "photographs", photographs);
     if (w->settings->colour)
         weft_json_put(&root, "colour", weft_colour_pack(w->settings->colour));
     char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;

@@ -1,6 +1,7 @@
 /* The printed sheet, seen by tools that are not ours: poppler and librsvg make pixels of the files, OpenCV finds the
  * markers in them. */
 #include "base/picture/image.h"
+#include "btf/direction/direction.h"
 #include "btf/session/camera.h"
 #include "btf/session/target.h"
 #include "capture/print/target_sheet.h"
@@ -347,6 +348,40 @@ static void every_corner_is_found_from_75_degrees(void **state)
     free(r.grey);
 }
 
+/* ---- The pin ---- */
+
+/* Where the lamp throws the shadow of a place above the sheet. */
+static weft_pixel shadow_of(const double foot[2], double height, weft_vec3 lamp)
+{
+    double part = height / (lamp.z - height);
+    return (weft_pixel){foot[0] + (foot[0] - lamp.x) * part, foot[1] + (foot[1] - lamp.y) * part};
+}
+
+static bool is_inside(weft_rectangle r, weft_pixel place, double margin)
+{
+    return place.x > r.x0 - margin && place.x < r.x1 + margin && place.y > r.y0 - margin && place.y < r.y1 + margin;
+}
+
+/* As docs/guide/target.md says of a sheet with the default opening and a pin of 30 mm. */
+static void the_shadow_of_the_pin_ends_on_the_sheet_and_not_on_the_sample(void **state)
+{
+    (void)state;
+    weft_target target = weft_target_printed(weft_target_default_opening_mm);
+    weft_rectangle sheet = weft_target_sheet(&target);
+    double foot[2], half = target.opening_mm / 2;
+    weft_target_pin(&target, foot);
+    for (int azimuth = 0; azimuth < 360; azimuth += 5) {
+        weft_angles high = {weft_rad_of_deg(35), weft_rad_of_deg(azimuth)}, low = {weft_rad_of_deg(65), high.phi_rad};
+        weft_pixel end = shadow_of(foot, 28.5, weft_scale(weft_direction_of_angles(high), 700));
+        assert_true(is_inside(sheet, end, -1.5));
+        weft_vec3 lamp = weft_scale(weft_direction_of_angles(low), 700);
+        for (double height = 0; height <= 30; height += 0.5)
+            assert_false(is_inside((weft_rectangle){-half, -half, half, half}, shadow_of(foot, height, lamp), 2));
+    }
+    for (int id = 0; id < WEFT_SHEET_MARKER_COUNT; id++)
+        assert_false(is_inside(weft_target_marker(&target, id), (weft_pixel){foot[0], foot[1]}, 10));
+}
+
 /* ---- What is written, and what is refused ---- */
 
 static void the_same_sheet_has_the_same_bytes_and_says_what_to_do(void **state)
@@ -404,6 +439,7 @@ int main(void)
         cmocka_unit_test(nothing_but_the_drawing_is_inside_the_plate),
         cmocka_unit_test(both_bars_measure_100_mm),
         cmocka_unit_test(every_corner_is_found_from_75_degrees),
+        cmocka_unit_test(the_shadow_of_the_pin_ends_on_the_sheet_and_not_on_the_sample),
         cmocka_unit_test(the_same_sheet_has_the_same_bytes_and_says_what_to_do),
         cmocka_unit_test(what_does_not_fit_is_refused_with_the_largest_that_does),
     };

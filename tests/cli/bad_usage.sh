@@ -41,6 +41,7 @@ mkdir left && echo '{' >left/cameras.json
 : >zero.png
 : >empty_files/a.jpg
 : >empty_files/b.jpg
+: >empty_files/c.jpg
 convert -size 32x32 xc:gray picture.png
 cp "$weave" cloth.wv
 cp "$assets/stitches/plain_knit.stitch" knit.stitch

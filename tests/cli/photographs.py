@@ -43,6 +43,15 @@ good &= check("share of lamps not within two standard errors", 1 - np.mean(cover
 view_error, weight = found["view_standard_error_deg"][()], found["weight"][()]
 good &= check("share of views not within two standard errors", np.mean(np.array(view) > 2 * view_error), 0.35)
 good &= check("standard errors of views over their errors, median", np.median(view_error / np.array(view)), 6)
+lens_truth = json.load(open(name + ".truth.json"))["lens"]
+focal = truth[used[0]["file"]][1]["image_distance_mm"] * lens_truth["width"] / lens_truth["sensor_width_mm"]
+focal_error = told["lens"]["standard_error"]["f"]
+if name in ("free", "linear"):
+    good &= check("focal length, relative error", abs(told["lens"]["fx"] / focal - 1), 0.004)
+    good &= check("focal length, error over the standard error", abs(told["lens"]["fx"] - focal) / focal_error, 4)
+    good &= check("standard error of the focal length, relative", focal_error / focal, 0.004)
+else:
+    good &= check("standard error of a focal length that is not found", focal_error, 0)
 good &= check("weights, mean from 1", abs(np.mean(weight) - 1), 1e-9)
 good &= check("share of weights that are alike", np.mean(np.abs(weight - 1) < 1e-6), 0.5)
 sys.exit(0 if good else 1)

@@ -63,9 +63,18 @@ printf '1\nfree.jpg 0 0 up\n' >bad.lp
 refused "bad.lp:2" free --lights bad.lp
 printf '1\nfree.jpg 0 0 1\n' >other.lp
 refused "none of the photographs" free --lights other.lp
-refused "holds no photograph" empty
+refused "holds no photograph .*: it is empty" empty
+mkdir same
+for i in 1 2 3; do cp "$(find tripod -iname 'IMG*' | head -1)" same/$i.jpg; done
+refused "all 3 photographs that can be used show one view under one light" same --opening 40
+mkdir few
+find free -iname "IMG*" | head -2 | xargs -I{} cp {} few/
+refused "holds 2 photographs, 3 are needed and 20 do better: take more" few
+mkdir raw
+for i in 1 2 3; do echo noise >raw/$i.CR2; done
+refused "none of the 3 images in 'raw' can be read: .*; save them as JPEG" raw
 mkdir other
 for name in free/*; do
     cp report/000_sample.png "other/$(basename "$name").png"
 done
-refused "show the target" other
+refused "show the target, 3 are needed; .*; photograph the whole sheet that weft target prints" other

@@ -72,7 +72,7 @@ static float *draw_patch(const weft_pin_area *area, const weft_target *target, w
 
 enum { LAMPS = 7 };
 static const double lamp_mm[LAMPS][3] = {{300, 500, 500}, {200, 420, 600},  {250, 100, 600}, {-40, 350, 700},
-                                         {500, 60, 500},  {-500, 200, 400}, {700, 420, 330}};
+                                         {500, 60, 620},  {-700, 200, 330}, {600, 250, 380}};
 
 static void find_all(bool pin, weft_pin_area *area, weft_pin_shadow shadow[LAMPS])
 {
