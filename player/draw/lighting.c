@@ -51,16 +51,14 @@ static weft_vec3 fill_at(const weft_lighting *l, double at)
     return d[2] > 0 ? weft_vec3_of((weft_real)d[0], (weft_real)d[1], (weft_real)d[2]) : weft_vec3_of(0, 0, 1);
 }
 
-/* One of them moves on a frame: its shadows are drawn, those of the others are kept. */
+/* All of them move on a frame. */
 static void choose_fill(weft_lighting *l, long frame)
 {
     int wanted = frame < 0 ? WEFT_FILL_DIRECTIONS / 2 : WEFT_FILL_DIRECTIONS;
+    double place = fmod(0.5 + (double)(frame < 0 ? 0 : frame) * 0.6180339887498949, 1);
     l->fill_count = l->count > l->scene_count ? wanted : 0;
-    for (int i = 0; i < l->fill_count; i++) {
-        long move = frame < 0 ? 0 : (frame + i) / WEFT_FILL_DIRECTIONS;
-        double place = fmod(0.5 + (double)move * 0.6180339887498949, 1);
+    for (int i = 0; i < l->fill_count; i++)
         l->fill[i] = fill_at(l, (i + place) / l->fill_count);
-    }
 }
 
 weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame)
