@@ -10,6 +10,7 @@
 #include "player/scene/surroundings.h"
 #include "player/texture/fetches.h"
 #include "reflectance/lafortune/lafortune.h"
+#include "study/error/picture_quality.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -158,6 +159,40 @@ static void judge_environment(weft_player *player, weft_scene scene, weft_canvas
     weft_image_free(&moving);
 }
 
+static weft_image shown(const weft_scene *scene, const weft_image *picture)
+{
+    weft_error error = {0};
+    weft_image image;
+    stop_on(weft_image_create(WIDTH, HEIGHT, &image, &error), &error);
+    memcpy(image.pixels, picture->pixels, 3 * sizeof(float) * WIDTH * HEIGHT);
+    weft_scene_show(scene, &image);
+    return image;
+}
+
+/* The same of what the screen shows, and of the reference as a file of 8 bits holds it. */
+static void judge_shown_frames(weft_player *player, const weft_scene *scene, const weft_image *reference,
+                               weft_canvas *canvas)
+{
+    static const int frames[] = {0, 4, 8, 16, 32};
+    weft_image screen = shown(scene, reference);
+    printf("    as shown, RMSE of 255 levels and FLIP:");
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+        weft_error error = {0};
+        weft_picture_quality quality;
+        weft_image image = frames[i] > 0 ? picture(player, scene, 0, frames[i], canvas) : shown(scene, reference);
+        if (frames[i] > 0)
+            weft_scene_show(scene, &image);
+        for (int k = 0; frames[i] == 0 && k < 3 * WIDTH * HEIGHT; k++)
+            image.pixels[k] = roundf(255 * image.pixels[k]) / 255;
+        stop_on(weft_picture_quality_measure(&screen, &image, &quality, &error), &error);
+        printf(frames[i] > 0 ? " %d" : " rounded", frames[i]);
+        printf(" %.2f %.4f", 255 * pow(10, -quality.psnr_db / 20), quality.flip);
+        weft_image_free(&image);
+    }
+    printf("\n");
+    weft_image_free(&screen);
+}
+
 /* What the first frames of a resting picture lack against many. */
 static void judge_rest(weft_player *player, weft_scene scene, weft_canvas *canvas)
 {
@@ -169,6 +204,7 @@ static void judge_rest(weft_player *player, weft_scene scene, weft_canvas *canva
     weft_image reference = picture(player, &scene, 0, MANY, canvas);
     printf("    at rest, against %d frames:", MANY);
     judge_frames(player, &scene, &reference, &background, canvas);
+    judge_shown_frames(player, &scene, &reference, canvas);
     weft_image_free(&background);
     weft_image_free(&reference);
 }

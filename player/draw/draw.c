@@ -17,7 +17,7 @@ static void set_lights(const weft_player *p, GLuint program, const weft_scene *s
     glUniform3fv(glGetUniformLocation(program, "light_direction"), lighting.count, lighting.direction[0]);
     glUniform3fv(glGetUniformLocation(program, "light_irradiance"), lighting.count, lighting.irradiance[0]);
     weft_gl_set_int(program, "scene_count", lighting.scene_count);
-    weft_gl_set_int(program, "key_count", lighting.scene_count > 0);
+    weft_gl_set_int(program, "key_count", lighting.key_count);
     weft_gl_set_int(program, "fill_count", lighting.fill_count);
     /* What moves under many lights has no time for more. */
     weft_gl_set_int(program, "shadow_taps", frame < 0 && lighting.fill_count > 0 ? 1 : 4);

@@ -17,14 +17,14 @@ static weft_vec3 turned(weft_vec3 direction, double angle_rad)
                         direction.z);
 }
 
-/* A disc of radius key_size_rad about the light, filled evenly by successive frames (Roberts' sequence R2). */
-static weft_vec3 place_in_key(const weft_scene *scene, long frame)
+/* Of a disc of radius key_size_rad about the light, which successive numbers fill evenly (Roberts' sequence R2). */
+static weft_vec3 place_in_key(const weft_scene *scene, long number)
 {
     weft_vec3 middle = weft_direction_of_angles(scene->light[0].direction);
-    if (frame <= 0 || !(scene->key_size_rad > 0))
+    if (number <= 0 || !(scene->key_size_rad > 0))
         return middle;
-    double radius = tan(scene->key_size_rad) * sqrt(fmod((double)frame * 0.7548776662466927, 1));
-    double angle_rad = 2 * WEFT_PI * fmod((double)frame * 0.5698402909980532, 1);
+    double radius = tan(scene->key_size_rad) * sqrt(fmod((double)number * 0.7548776662466927, 1));
+    double angle_rad = 2 * WEFT_PI * fmod((double)number * 0.5698402909980532, 1);
     weft_vec3 aside = fabs((double)middle.z) < 0.9 ? weft_vec3_of(0, 0, 1) : weft_vec3_of(1, 0, 0);
     weft_vec3 x = weft_unit(weft_cross(aside, middle)), y = weft_cross(middle, x);
     weft_vec3 shift = weft_add(weft_scale(x, (weft_real)(radius * cos(angle_rad))),
@@ -51,16 +51,23 @@ static weft_vec3 fill_at(const weft_lighting *l, double at)
     return d[2] > 0 ? weft_vec3_of((weft_real)d[0], (weft_real)d[1], (weft_real)d[2]) : weft_vec3_of(0, 0, 1);
 }
 
-/* One of them moves on a frame: its shadows are drawn, those of the others are kept. */
+/* One shadow a frame would leave bands in the penumbra of a picture that has just come to rest. */
+static void choose_key(weft_lighting *l, const weft_scene *scene, long frame)
+{
+    bool is_one = frame < 0 || !(scene->key_size_rad > 0);
+    l->key_count = l->scene_count == 0 ? 0 : is_one ? 1 : WEFT_KEY_PLACES;
+    for (int i = 0; i < l->key_count; i++)
+        l->key[i] = place_in_key(scene, is_one ? frame : frame * WEFT_KEY_PLACES + i);
+}
+
+/* All of them move on a frame. */
 static void choose_fill(weft_lighting *l, long frame)
 {
     int wanted = frame < 0 ? WEFT_FILL_DIRECTIONS / 2 : WEFT_FILL_DIRECTIONS;
+    double place = fmod(0.5 + (double)(frame < 0 ? 0 : frame) * 0.6180339887498949, 1);
     l->fill_count = l->count > l->scene_count ? wanted : 0;
-    for (int i = 0; i < l->fill_count; i++) {
-        long move = frame < 0 ? 0 : (frame + i) / WEFT_FILL_DIRECTIONS;
-        double place = fmod(0.5 + (double)move * 0.6180339887498949, 1);
+    for (int i = 0; i < l->fill_count; i++)
         l->fill[i] = fill_at(l, (i + place) / l->fill_count);
-    }
 }
 
 weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame)
@@ -70,6 +77,7 @@ weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *
         add(&lighting, i == 0 ? place_in_key(scene, frame) : weft_direction_of_angles(scene->light[i].direction),
             scene->light[i].irradiance);
     lighting.scene_count = lighting.count;
+    choose_key(&lighting, scene, frame);
     for (int i = 0; environment && scene->environment && i < environment->region_count; i++) {
         const weft_distant_light *light =
             frame < 0 ? &environment->region[i] : &environment->part[frame % WEFT_ENVIRONMENT_PARTS][i];

@@ -6,14 +6,17 @@
 #include "player/scene/environment.h"
 #include "player/scene/scene.h"
 
-/* Directions at a time from which the environment's shadows are seen. */
-enum { WEFT_FILL_DIRECTIONS = 4 }; /* half of them while a picture moves */
+/* Places in the key light, and directions of the environment, from which a frame at rest sees their shadows. A moving
+ * one takes the middle of the key light, and half of the directions. */
+enum { WEFT_KEY_PLACES = 4, WEFT_FILL_DIRECTIONS = 4 };
 
 typedef struct weft_lighting {
     int count;
     float direction[WEFT_MAX_LIGHTS][3]; /* of the world, unit, toward the light */
     float irradiance[WEFT_MAX_LIGHTS][3];
-    int scene_count; /* the first of them, which are the scene's */
+    int scene_count;                /* the first of them, which are the scene's */
+    int key_count;                  /* 0 without a light of the scene, 1 where the first has no size */
+    weft_vec3 key[WEFT_KEY_PLACES]; /* what the mesh hides of these stands for what it hides of the first light */
     /* Of the environment, as likely as it is bright from there: what the mesh hides of these stands for what it hides
      * of all of it. Those that follow each other in time fill the gaps. */
     int fill_count; /* 0 without an environment */
@@ -22,7 +25,7 @@ typedef struct weft_lighting {
 
 /* `environment` may be NULL. frame: number of the frame in the mean of a picture at rest, or -1 for a picture that
  * moves (player/scene/environment.h says what follows). There is always a light, though it may be black. With a key
- * light of some size its place in it moves with the frame; frame 0 has its middle. */
+ * light of some size its direction and its places move with the frame; frame 0 begins with its middle. */
 weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame);
 
 /* Its number of lights. */

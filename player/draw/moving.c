@@ -1,10 +1,18 @@
 #include "player/draw/moving.h"
 
+#include <math.h>
+
+/* However small, it has a pixel for every pane. */
+static double side_of(const weft_scene *scene, const weft_pace *pace, const weft_canvas *canvas)
+{
+    return fmin(1, fmax(weft_pace_side(pace), (double)weft_scene_panes(scene) / canvas->width));
+}
+
 weft_code weft_player_draw_moving(weft_player *p, const weft_scene *scene, const weft_pace *pace, weft_canvas *canvas,
                                   weft_error *error)
 {
     const weft_sampling sampling = {.frame = -1, .hurry = weft_pace_hurries(pace)};
-    double side = weft_pace_side(pace);
+    double side = side_of(scene, pace, canvas);
     weft_canvas_clear(canvas);
     if (side == 1) {
         weft_canvas_begin_frame(canvas);

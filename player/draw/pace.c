@@ -52,12 +52,19 @@ static void become_larger(weft_pace *pace, double side)
     pace->step--;
 }
 
+static void note_exact(weft_pace *pace, double drawn_ms)
+{
+    double usual_ms = pace->last_ms > 0 ? fmin(pace->last_ms, drawn_ms) : drawn_ms;
+    pace->exact_ms = pace->exact_ms > 0 ? memory * pace->exact_ms + (1 - memory) * usual_ms : usual_ms;
+    pace->last_ms = drawn_ms;
+}
+
 void weft_pace_note(weft_pace *pace, bool hurried, double drawn_ms, double shown_ms)
 {
     if (!(drawn_ms >= 0 && shown_ms >= 0) || !isfinite(drawn_ms) || !isfinite(shown_ms))
         return;
     if (!hurried) {
-        pace->exact_ms = pace->exact_ms > 0 ? memory * pace->exact_ms + (1 - memory) * drawn_ms : drawn_ms;
+        note_exact(pace, drawn_ms);
         return;
     }
     double budget = budget_ms(WEFT_PACE_MS, shown_ms);

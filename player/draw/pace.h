@@ -13,6 +13,7 @@
 /* Zeroed, it has heard of no frame: nothing is left out. */
 typedef struct weft_pace {
     double exact_ms;  /* smoothed, of frames that did not hurry; 0: none yet */
+    double last_ms;   /* of the last of them */
     int step;         /* of the sides that a hurried frame may have, from the whole one */
     int slow, fast;   /* hurried frames in a row that took too long, and that had time for the next larger side */
     double slow_side; /* the largest that these slow ones had time for */
@@ -25,9 +26,11 @@ bool weft_pace_hurries(const weft_pace *pace);
 double weft_pace_side(const weft_pace *pace);
 
 /* Takes in how long a frame took, in ms: drawn_ms to draw at weft_pace_side, and shown_ms to bring it and the panel to
- * the screen, which no smaller side saves. `hurried`: whether it did (frames at rest do not). The second slow frame in
- * a row makes the picture as small as it has to be, so that one hiccup does not; eight in a row that had time for the
- * next larger side, and some to spare, give it that. Times that are negative or not finite are ignored. */
+ * the screen, which no smaller side saves. `hurried`: whether it did (frames at rest do not). Of frames that did not,
+ * the faster one of two in a row counts: the first one with other programs of the graphics driver takes long. The
+ * second slow frame in a row makes the picture as small as it has to be, so that one hiccup does not; eight in a row
+ * that had time for the next larger side, and some to spare, give it that. Times that are negative or not finite are
+ * ignored. */
 void weft_pace_note(weft_pace *pace, bool hurried, double drawn_ms, double shown_ms);
 
 #endif

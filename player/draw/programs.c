@@ -1,5 +1,6 @@
 #include "player/draw/programs.h"
 
+#include "player/draw/lighting.h"
 #include "player/draw/shadow.h"
 #include "player/gl/shaders.h"
 #include "player/scene/false_colour.h"
@@ -31,17 +32,18 @@ static void define(const weft_program_kind *kind, char *text, size_t size)
 {
     snprintf(
         text, size,
-        "#define MAX_LIGHTS %d\n#define SHADOW_LAYERS %d\n#define LEVEL_COLOURS %d\n#define LIGHT_COUNT %s\n#define "
+        "#define MAX_LIGHTS %d\n#define SHADOW_LAYERS %d\n#define KEY_PLACES %d\n#define LEVEL_COLOURS %d\n#define "
+        "LIGHT_COUNT %s\n#define "
         "ONE_LIGHT %s\n#define CHOSEN_LIGHTS %d\n"
         "#define STOCHASTIC %s\n#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
         "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n"
         "#define LAYER_GROUPS %d\n#define DRAWN_GROUPS %d\n#define HALF_VECTOR %s\n#define RELIEF %s\n#define PRUNED "
         "%d\n",
-        WEFT_MAX_LIGHTS, WEFT_SHADOW_LAYERS, WEFT_LEVEL_COLOURS, light_count_of(kind), name_of(kind->one_light),
-        kind->chosen_lights, name_of(kind->stochastic), name_of(kind->shadows), kind->plot, name_of(kind->opacity),
-        kind->lobe_count, name_of(kind->view_table), name_of(kind->light_table), name_of(kind->fewer_bits),
-        name_of(kind->noise), kind->layer_groups, kind->drawn_groups, name_of(kind->half_vector), name_of(kind->relief),
-        kind->pruned);
+        WEFT_MAX_LIGHTS, WEFT_SHADOW_LAYERS, WEFT_KEY_PLACES, WEFT_LEVEL_COLOURS, light_count_of(kind),
+        name_of(kind->one_light), kind->chosen_lights, name_of(kind->stochastic), name_of(kind->shadows), kind->plot,
+        name_of(kind->opacity), kind->lobe_count, name_of(kind->view_table), name_of(kind->light_table),
+        name_of(kind->fewer_bits), name_of(kind->noise), kind->layer_groups, kind->drawn_groups,
+        name_of(kind->half_vector), name_of(kind->relief), kind->pruned);
 }
 
 static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)

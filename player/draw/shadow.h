@@ -7,8 +7,8 @@
 
 #include <stdbool.h>
 
-/* The key light's, then those of the environment (player/draw/lighting.h). */
-enum { WEFT_SHADOW_LAYERS = 5 };
+/* Those of the key light, then those of the environment (player/draw/lighting.h). */
+enum { WEFT_SHADOW_LAYERS = 8 };
 
 typedef struct weft_shadow_map {
     GLuint buffer, depth, program;

@@ -114,15 +114,15 @@ static void draw_shadow(weft_player *p, int layer, weft_vec3 light, bool is_soft
     }
 }
 
+_Static_assert(WEFT_KEY_PLACES + WEFT_FILL_DIRECTIONS <= WEFT_SHADOW_LAYERS, "every shadow of a frame has its layer");
+
 void weft_player_draw_shadows(weft_player *p, const weft_scene *scene, long frame)
 {
     if (!weft_scene_has_shadows(scene))
         return;
     weft_lighting lighting = weft_lighting_of(scene, p->environment, frame);
-    const float *key = lighting.direction[0];
-    if (lighting.scene_count > 0)
-        draw_shadow(p, 0, weft_vec3_of((weft_real)key[0], (weft_real)key[1], (weft_real)key[2]),
-                    scene->key_size_rad > 0);
+    for (int i = 0; i < lighting.key_count; i++)
+        draw_shadow(p, i, lighting.key[i], scene->key_size_rad > 0);
     for (int i = 0; i < lighting.fill_count; i++)
-        draw_shadow(p, 1 + i, lighting.fill[i], true);
+        draw_shadow(p, WEFT_KEY_PLACES + i, lighting.fill[i], true);
 }

@@ -161,13 +161,16 @@ static weft_distant_light light_of(const double sum[SUMS], double scale)
     return light;
 }
 
-/* Reversed bits: neighbours become far apart in time. */
-static int reversed(int part)
+/* The frame that takes a part. Reversed bits: neighbours become far apart in time. Without more, the first frames would
+ * all take a corner of the region and of each of its quarters; so two cuts in four, which are one across and one
+ * upright, count from their other end: the part then lies a third from the edges. */
+static int frame_of(int part)
 {
-    int result = 0;
+    const int other_end = 0x19;
+    int frame = 0;
     for (int bit = 1; bit < WEFT_ENVIRONMENT_PARTS; bit <<= 1)
-        result = result << 1 | ((part & bit) != 0);
-    return result;
+        frame = frame << 1 | (((part ^ other_end) & bit) != 0);
+    return frame;
 }
 
 /* Parts being filled one after the other, each up to its share of the region's weight. */
@@ -180,7 +183,7 @@ typedef struct filling {
 
 static void finish_part(filling *f)
 {
-    f->environment->part[reversed(f->part)][f->region] = light_of(f->sum, WEFT_ENVIRONMENT_PARTS);
+    f->environment->part[frame_of(f->part)][f->region] = light_of(f->sum, WEFT_ENVIRONMENT_PARTS);
     memset(f->sum, 0, sizeof f->sum);
     f->part++;
 }

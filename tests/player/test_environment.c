@@ -1,8 +1,10 @@
 /* Environment maps as lights. */
 #include "player/draw/lighting.h"
+#include "player/scene/surroundings.h"
 #include "tests/support/cmocka_all.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { WIDTH = 128, HEIGHT = WIDTH / 2 };
@@ -101,6 +103,81 @@ static void a_bright_pixel_becomes_a_light_where_the_map_has_it(void **state)
     weft_image_free(&image);
 }
 
+static weft_environment *studio(void)
+{
+    weft_error error = {0};
+    weft_image map;
+    weft_environment *environment = malloc(sizeof *environment);
+    assert_int_equal(weft_surroundings_map("studio", &map, &error), WEFT_OK);
+    assert_int_equal(weft_environment_of_image(&map, WEFT_ENVIRONMENT_SMOOTH_REGIONS, environment, &error), WEFT_OK);
+    weft_image_free(&map);
+    return environment;
+}
+
+/* How far from the middle of a region its first parts lie in the mean, as a share of how far one does. */
+static double lean(const weft_environment *environment, int region, int first)
+{
+    weft_vec3 of_first = weft_vec3_of(0, 0, 0), middle = weft_vec3_of(0, 0, 0);
+    double spread = 0;
+    for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++) {
+        weft_vec3 at = environment->part[part][region].direction;
+        middle = weft_add(middle, weft_scale(at, 1.0 / WEFT_ENVIRONMENT_PARTS));
+        of_first = weft_add(of_first, weft_scale(at, part < first ? 1.0 / first : 0));
+    }
+    for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++)
+        spread += (double)weft_length(weft_subtract(environment->part[part][region].direction, middle));
+    return (double)weft_length(weft_subtract(of_first, middle)) * WEFT_ENVIRONMENT_PARTS / spread;
+}
+
+/* Highlights and shadows would wander while a picture comes to rest. */
+static void the_first_frames_lean_to_no_corner_of_a_region(void **state)
+{
+    (void)state;
+    static const int first[] = {1, 4, 8};
+    static const double most[] = {1, 0.4, 0.2};
+    weft_environment *environment = studio();
+    for (int i = 0; i < 3; i++) {
+        double sum = 0;
+        for (int region = 0; region < WEFT_ENVIRONMENT_SMOOTH_REGIONS; region++)
+            sum += lean(environment, region, first[i]) / WEFT_ENVIRONMENT_SMOOTH_REGIONS;
+        printf("%d frames lean by %.3f\n", first[i], sum);
+        assert_true(sum < most[i]);
+    }
+    free(environment);
+}
+
+/* The region that a direction of the environment's shadows lies in. */
+static int region_of(const weft_lighting *lighting, int fill)
+{
+    int region = lighting->scene_count;
+    while (region < lighting->count - 1 &&
+           weft_dot(lighting->fill[fill], weft_vec3_of(lighting->direction[region][0], lighting->direction[region][1],
+                                                       lighting->direction[region][2])) < 1 - 1e-6)
+        region++;
+    return region;
+}
+
+static void the_shadows_of_a_frame_come_from_other_regions_than_those_before(void **state)
+{
+    (void)state;
+    enum { FRAMES = 32 };
+    weft_image image = map_of(1);
+    weft_environment *environment = environment_of(&image);
+    weft_scene scene = weft_scene_default();
+    int stays = 0;
+    scene.environment = true;
+    for (int frame = 1; frame <= FRAMES; frame++) {
+        weft_lighting before = weft_lighting_of(&scene, environment, frame - 1),
+                      now = weft_lighting_of(&scene, environment, frame);
+        for (int i = 0; i < now.fill_count; i++)
+            stays += region_of(&before, i) == region_of(&now, i);
+    }
+    printf("%d of %d directions stay in their region\n", stays, FRAMES * WEFT_FILL_DIRECTIONS);
+    assert_true(stays < FRAMES * WEFT_FILL_DIRECTIONS / 4);
+    free(environment);
+    weft_image_free(&image);
+}
+
 static void expect_refused(const weft_image *image)
 {
     weft_error error = {0};
@@ -182,6 +259,8 @@ int main(void)
         cmocka_unit_test(a_uniform_sky_lights_every_surface_with_its_radiance),
         cmocka_unit_test(the_parts_of_a_region_carry_its_power_in_equal_shares),
         cmocka_unit_test(a_bright_pixel_becomes_a_light_where_the_map_has_it),
+        cmocka_unit_test(the_first_frames_lean_to_no_corner_of_a_region),
+        cmocka_unit_test(the_shadows_of_a_frame_come_from_other_regions_than_those_before),
         cmocka_unit_test(black_and_square_maps_are_refused_and_spoilt_pixels_are_black),
         cmocka_unit_test(maps_of_two_pixels_and_of_enormous_values_give_finite_lights),
         cmocka_unit_test(the_scene_lists_its_lights_before_those_of_the_map),

@@ -140,6 +140,21 @@ static void words_stay_sharp(void **state)
     assert_memory_equal(all, small, sizeof all);
 }
 
+static void a_narrow_picture_keeps_a_pixel_for_every_pane(void **state)
+{
+    weft_scene scene = scene_of_cloth();
+    scene.layout = WEFT_LAYOUT_PANES;
+    scene.pane_count = 3;
+    scene.pane[0] = scene.pane[1] = scene.pane[2] = WEFT_MODE_COMPRESSED;
+    for (int width = 3; width < 20; width++) {
+        weft_canvas canvas = canvas_of(width, 7);
+        weft_image image = moving(state, &scene, &(weft_pace){.exact_ms = 1000, .step = 5}, &canvas);
+        assert_int_equal(canvas.drawn_width, (int)fmax(3, lround(width / 4.0)));
+        weft_image_free(&image);
+        weft_canvas_free(&canvas);
+    }
+}
+
 static weft_image at_rest(void **state, const weft_scene *scene, weft_canvas *canvas)
 {
     stage *s = *state;
@@ -251,6 +266,7 @@ int main(void)
         cmocka_unit_test(a_small_frame_shows_the_same_at_the_same_places),
         cmocka_unit_test(enlarging_keeps_what_is_smooth),
         cmocka_unit_test(words_stay_sharp),
+        cmocka_unit_test(a_narrow_picture_keeps_a_pixel_for_every_pane),
         cmocka_unit_test(a_picture_at_rest_keeps_nothing_of_small_frames),
         cmocka_unit_test(few_lights_have_the_mean_of_all_of_them),
     };

@@ -88,6 +88,20 @@ static void one_hiccup_changes_nothing_and_two_slow_frames_do(void **state)
     assert_float_equal(weft_pace_side(&pace), 5.0 / 6, 1e-12);
 }
 
+static void one_hiccup_of_an_exact_frame_makes_nothing_hurry(void **state)
+{
+    (void)state;
+    weft_pace pace = {0};
+    play(&(machine){.pixels_ms = 5}, &pace, 20);
+    weft_pace_note(&pace, false, 900, 5);
+    assert_false(weft_pace_hurries(&pace));
+    play(&(machine){.pixels_ms = 5}, &pace, 1);
+    assert_false(weft_pace_hurries(&pace));
+    /* What goes on does. */
+    play(&(machine){.pixels_ms = 60}, &pace, 3);
+    assert_true(weft_pace_hurries(&pace));
+}
+
 static void what_became_faster_gets_its_pixels_back(void **state)
 {
     (void)state;
@@ -156,6 +170,7 @@ int main(void)
         cmocka_unit_test(a_machine_that_hurries_in_time_draws_every_pixel),
         cmocka_unit_test(a_slow_machine_keeps_the_promise_after_a_few_frames_and_does_not_pump),
         cmocka_unit_test(one_hiccup_changes_nothing_and_two_slow_frames_do),
+        cmocka_unit_test(one_hiccup_of_an_exact_frame_makes_nothing_hurry),
         cmocka_unit_test(what_became_faster_gets_its_pixels_back),
         cmocka_unit_test(a_panel_that_takes_long_leaves_less_for_the_picture),
         cmocka_unit_test(frames_at_rest_are_whole_and_say_nothing_of_moving_ones),

@@ -108,6 +108,32 @@ static void the_key_light_fills_its_disc_and_starts_in_the_middle(void **state)
     assert_true(weft_dot(weft_unit(sum), middle) > cos(weft_rad_of_deg(0.3)));
 }
 
+/* 16 frames, which half a second has time for, leave no more than one of 64 shadows to a band. */
+static void the_shadows_of_the_key_light_come_from_all_of_its_disc(void **state)
+{
+    (void)state;
+    enum { FRAMES = 16, ALL = FRAMES * WEFT_KEY_PLACES };
+    weft_scene scene = weft_scene_default();
+    weft_vec3 middle = weft_direction_of_angles(scene.light[0].direction), at[ALL];
+    assert_int_equal(weft_lighting_of(&scene, NULL, 3).key_count, 1);
+    scene.key_size_rad = weft_rad_of_deg(9);
+    assert_int_equal(weft_lighting_of(&scene, NULL, -1).key_count, 1);
+    for (int frame = 0; frame < FRAMES; frame++) {
+        weft_lighting lighting = weft_lighting_of(&scene, NULL, frame);
+        assert_int_equal(lighting.key_count, WEFT_KEY_PLACES);
+        memcpy(at + frame * WEFT_KEY_PLACES, lighting.key, sizeof lighting.key);
+    }
+    double square = 0;
+    for (int i = 0; i < ALL; i++) {
+        square += pow(acos(fmin((double)weft_dot(at[i], middle), 1)), 2) / ALL;
+        for (int k = 0; k < i; k++)
+            assert_true(acos(fmin((double)weft_dot(at[i], at[k]), 1)) > weft_rad_of_deg(0.3));
+    }
+    assert_float_equal(square, pow(weft_rad_of_deg(9), 2) / 2, 0.1 * square);
+    scene.light_count = 0;
+    assert_int_equal(weft_lighting_of(&scene, NULL, 0).key_count, 0);
+}
+
 /* Half of the light comes from one side: so do half of the directions. */
 static void the_fill_comes_from_where_the_environment_is_bright(void **state)
 {
@@ -188,6 +214,31 @@ static void a_ball_casts_no_shadow_on_its_lit_side(void **state)
     printf("%ld pixels, the least share of the light is %.4f\n", lit, darkest);
     assert_true(lit > 100000);
     assert_true(darkest > 0.999);
+}
+
+/* Pixels that see part of the key light, but neither nearly all nor nearly nothing of it. */
+static long partly_shaded(weft_player *player, double key_size_deg)
+{
+    weft_error error = {0};
+    weft_surface_sample *at;
+    weft_scene scene = weft_scene_default();
+    long count = 0;
+    scene.shadows = true;
+    scene.key_size_rad = weft_rad_of_deg(key_size_deg);
+    expect_ok(weft_player_read_surface(player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error), &error);
+    for (int k = 0; k < PIXELS; k++)
+        count += at[k].covered > 0 && at[k].key_share > 0.2f && at[k].key_share < 0.8f;
+    free(at);
+    return count;
+}
+
+static void a_large_key_light_has_a_penumbra_in_the_first_frame(void **state)
+{
+    stage *s = *state;
+    show(s->player, "drape");
+    long small = partly_shaded(s->player, 0), large = partly_shaded(s->player, 9);
+    printf("%ld pixels are partly shaded from a key light of 9 degrees, %ld from one without size\n", large, small);
+    assert_true(large > 3 * small);
 }
 
 static float largest_step(const weft_image *image, const weft_surface_sample *at, float quantile, float *value)
@@ -334,8 +385,10 @@ int main(void)
         cmocka_unit_test(the_clear_sky_is_bright_round_its_sun),
         cmocka_unit_test(only_the_overcast_sky_has_no_key_light),
         cmocka_unit_test(the_key_light_fills_its_disc_and_starts_in_the_middle),
+        cmocka_unit_test(the_shadows_of_the_key_light_come_from_all_of_its_disc),
         cmocka_unit_test(the_fill_comes_from_where_the_environment_is_bright),
         cmocka_unit_test(a_ball_casts_no_shadow_on_its_lit_side),
+        cmocka_unit_test(a_large_key_light_has_a_penumbra_in_the_first_frame),
         cmocka_unit_test(smooth_cloth_has_no_stronger_edge_with_shadows_than_without),
         cmocka_unit_test(cloth_stands_on_a_ground_that_takes_its_shadow),
         cmocka_unit_test(unlit_folds_are_not_black_and_lit_ones_not_white),

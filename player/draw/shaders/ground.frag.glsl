@@ -20,7 +20,7 @@ vec3 unshaded(vec3 place)
     if (!SHADOWS)
         return vec3(1.0);
     const vec3 up = vec3(0.0, 0.0, 1.0);
-    vec3 key = key_count > 0 ? ground_key * unshadowed_share(place, up, 0) : vec3(0.0);
+    vec3 key = ground_key * key_share_of(place, up);
     vec3 fill = ground_fill * fill_share(place, up);
     return (key + fill) / max(ground_key + ground_fill, vec3(1e-6));
 }

@@ -10,12 +10,12 @@ uniform vec3 ray_right, ray_up, ray_forward; // the ray through a pixel: x right
 uniform vec2 pane_origin;
 uniform vec3 eye;
 uniform mat4 shadow_of_world[SHADOW_LAYERS];
-uniform highp sampler2DArrayShadow shadow_map; // of the first light, then of directions of the environment
+uniform highp sampler2DArrayShadow shadow_map; // of places in the first light, then of directions of the environment
 uniform float shadow_texel;                    // of the map, in the world, where a layer uses all of it
 uniform float shadow_share[SHADOW_LAYERS];     // of its side that a layer uses
-uniform vec3 fill_direction[SHADOW_LAYERS - 1];
+uniform vec3 fill_direction[SHADOW_LAYERS - KEY_PLACES];
 uniform int shadow_taps; // 1 or 4
-uniform int key_count;   // lights that cast a shadow: 0 or the first
+uniform int key_count;   // places in the first light from which shadows fall: 0, 1 or KEY_PLACES
 uniform int scene_count; // the first of them; the others are the environment
 uniform int fill_count;  // 0: the environment casts no shadows
 uniform int light_count;
@@ -102,17 +102,26 @@ bool is_in_map(vec3 at)
 
 // Four or sixteen comparisons, bilinear by the hardware: an edge of one texel of the map or of about three. Software
 // rasterisers pass over a loop that no pixel takes, not over a branch.
-float unshadowed_share(vec3 position, vec3 normal, int layer)
+float unshadowed_share(vec3 position, vec3 normal, int layer, int taps)
 {
     vec3 at = place_in_shadow(position, normal, layer);
-    int count = is_in_map(at) ? shadow_taps : 0;
-    float texel = shadow_taps > 1 ? 1.5 / float(textureSize(shadow_map, 0).x) : 0.0;
-    float seen = float(shadow_taps - count);
+    int count = is_in_map(at) ? taps : 0;
+    float texel = taps > 1 ? 1.5 / float(textureSize(shadow_map, 0).x) : 0.0;
+    float seen = float(taps - count);
     for (int i = 0; i < count; i++) {
         vec2 shift = (vec2(float(i % 2), float(i / 2)) - 0.5) * texel;
         seen += texture(shadow_map, vec4(at.xy * shadow_share[layer] + shift, float(layer), at.z));
     }
-    return seen / float(shadow_taps);
+    return seen / float(taps);
+}
+
+// Of the first light. Where its places are many, their edges lie apart, and one comparison does for each.
+float key_share_of(vec3 position, vec3 normal)
+{
+    float seen = 0.0;
+    for (int i = 0; i < key_count; i++)
+        seen += unshadowed_share(position, normal, i, key_count > 1 ? 1 : shadow_taps);
+    return key_count > 0 ? seen / float(key_count) : 1.0;
 }
 
 // What is seen of a few directions of the environment, those counting more that the surface faces.
@@ -121,13 +130,8 @@ float fill_share(vec3 position, vec3 normal)
     float seen = 1e-3, all_of_it = 1e-3;
     for (int i = 0; i < fill_count; i++) {
         float cosine = max(dot(fill_direction[i], normal), 0.0);
-        vec3 at = place_in_shadow(position, normal, i + 1);
-        int count = is_in_map(at) ? 1 : 0;
-        float share = float(1 - count);
-        for (int tap = 0; tap < count; tap++)
-            share = texture(shadow_map, vec4(at.xy * shadow_share[i + 1], float(i + 1), at.z));
         all_of_it += cosine;
-        seen += cosine * share;
+        seen += cosine * unshadowed_share(position, normal, KEY_PLACES + i, 1);
     }
     return seen / all_of_it;
 }
@@ -137,8 +141,7 @@ void find_shadows(vec3 position, inout SurfacePoint point)
     point.key_share = point.env_share = 1.0;
     if (!SHADOWS)
         return;
-    if (key_count > 0)
-        point.key_share = unshadowed_share(position, point.axes[2], 0);
+    point.key_share = key_share_of(position, point.axes[2]);
     point.env_share = fill_share(position, point.axes[2]);
 }
 
@@ -222,7 +225,7 @@ vec3 surface_light(SurfacePoint point, int i)
 
 float unshaded_share(SurfacePoint point, int light)
 {
-    return light < key_count ? point.key_share : light >= scene_count ? point.env_share : 1.0;
+    return light >= scene_count ? point.env_share : light == 0 ? point.key_share : 1.0;
 }
 
 // Over pi, with the cosine; 0 below the horizon of the surface.
