@@ -57,8 +57,8 @@ typedef struct weft_layers {
     int view_side;          /* of those over v */
     float light_smoothness; /* of the same maps */
     float view_smoothness;
-    float doubt; /* variance of a node of the maps over l or h at which its view counts a quarter; 0: all count alike */
     float least_cosine; /* of the lights: nearer the horizon r falls in proportion to l_z, 0 < it <= 1 */
+    float doubt;        /* variance of a node over l or h at which its view counts a quarter; 0: all count alike */
     float *view;        /* [view_count][3] unit, z > 0 */
     float *light;       /* [image_count][3] unit, z > 0; view by view */
     uint32_t *first;    /* [view_count + 1] the images of view i are first[i] .. first[i + 1] - 1 */
