@@ -318,13 +318,16 @@ static weft_code find(estimate *e, const weft_relief_options *options, weft_erro
 }
 
 /* Whether the texels were put where the views agree, by a simulation or by `weft relief --move`. */
-static void note_plane(const weft_dataset_layout *layout, weft_relief_report *report)
+static weft_code note_plane(const weft_dataset_layout *layout, weft_relief_report *report, weft_error *error)
 {
     json_t *provenance = json_loads(layout->provenance, 0, NULL);
+    if (!provenance)
+        return weft_fail_memory(error, "provenance", strlen(layout->provenance));
     const json_t *moved = json_object_get(json_object_get(provenance, "relief"), "moved_mm");
     report->moved_mm = json_number_value(moved);
     report->on_its_plane = moved || json_number_value(json_object_get(provenance, "plane_below_top_mm")) > 0;
     json_decref(provenance);
+    return WEFT_OK;
 }
 
 static weft_code estimate_with(weft_dataset *dataset, const weft_relief_views *views,
@@ -333,7 +336,7 @@ static weft_code estimate_with(weft_dataset *dataset, const weft_relief_views *v
     WEFT_TRY(weft_features_read(dataset, views, e->progress, &e->features, error));
     WEFT_TRY(allocate(e, error));
     note_features(e, views, options);
-    note_plane(weft_dataset_get_layout(dataset), e->report);
+    WEFT_TRY(note_plane(weft_dataset_get_layout(dataset), e->report, error));
     WEFT_TRY(find_compared(e, weft_dataset_path(dataset), error));
     name_views(e, views);
     return find(e, options, error);

@@ -265,10 +265,13 @@ weft_code weft_bard_check(const char *path, weft_error *error)
 {
     weft_dataset *dataset;
     WEFT_TRY(weft_dataset_open(path, &dataset, error));
+    /* The dataset was opened, so its provenance is JSON. */
     json_t *provenance = json_loads(weft_dataset_get_layout(dataset)->provenance, 0, NULL);
-    bool is_predicted = json_object_get(provenance, provenance_name) != NULL;
+    bool is_short = !provenance, is_predicted = json_object_get(provenance, provenance_name) != NULL;
     json_decref(provenance);
     weft_dataset_close(dataset);
+    if (is_short)
+        return weft_fail_memory(error, "provenance", 0);
     return is_predicted
                ? WEFT_OK
                : weft_fail(error, WEFT_BAD_INPUT, "'%s' is no prediction: `weft bard` makes one of a dataset", path);

@@ -43,6 +43,7 @@ static bool shorten_lists(json_t *object)
 /* A JSON text that came with a file, as an object; NULL where memory is short. */
 static json_t *parsed(const char *text)
 {
+    errno = 0;
     json_t *value = json_loads(text, JSON_DECODE_ANY, NULL);
     if (!value)
         return errno == ENOMEM ? NULL : json_string("not JSON");
