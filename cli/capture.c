@@ -84,7 +84,8 @@ static void ask_to_stop(int number)
 
 static void listen_for_stop(void)
 {
-    /* A second signal ends the program at once; that is safe too. */
+    /* A second signal ends the program at once. That is safe, too: a session holds what was taken, axes stop when
+     * nobody asks for them, and lamps are guarded. */
     struct sigaction action = {.sa_handler = ask_to_stop, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);

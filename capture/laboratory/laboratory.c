@@ -2,6 +2,7 @@
 
 #include "base/text/csv.h"
 #include "capture/laboratory/lab_camera.h"
+#include "capture/motion/lamp_guard.h"
 #include "capture/motion/relay.h"
 
 #include <limits.h>
@@ -17,6 +18,7 @@ struct weft_laboratory {
     char *sample;
     weft_controller *controller;
     weft_relay *relay;
+    weft_lamp_guard *guard; /* of the lamps of either; NULL: they burn anyway */
     weft_releases releases;
     int camera_count;
     weft_lab_camera camera[WEFT_CAMERAS_MAX]; /* [camera_count] */
@@ -113,6 +115,10 @@ static weft_code create_stage(weft_laboratory *lab, weft_error *error)
         WEFT_TRY(create_relay(lab, error));
         parts.lamps = weft_relay_lamps(lab->relay);
     }
+    if (parts.lamps.set) {
+        WEFT_TRY(weft_lamp_guard_create(parts.lamps, &lab->guard, error));
+        parts.lamps = weft_lamp_guard_lamps(lab->guard);
+    }
     weft_lab_camera *first = &lab->camera[0];
     WEFT_TRY(weft_stage_create(&parts, &first->stage, error));
     for (weft_lab_camera *c = first + 1; c < first + lab->camera_count; c++)
@@ -186,6 +192,7 @@ void weft_laboratory_close(weft_laboratory *lab)
     }
     weft_relay_free(lab->relay);
     weft_controller_free(lab->controller);
+    weft_lamp_guard_free(lab->guard);
     pthread_mutex_destroy(&lab->releases.one_question);
     free(lab->lamp);
     free(lab->sample);

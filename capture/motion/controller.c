@@ -362,6 +362,14 @@ static weft_code set_lamp(void *device, int lamp, double level, weft_error *erro
                : weft_fail(error, WEFT_SYSTEM, "stage: lamp %d does not switch", lamp);
 }
 
+static void abandon_lamps(void *device)
+{
+    weft_controller *c = device;
+    c->link.handle = NULL;
+    c->greeted = false;
+    c->link.stop = c->settings.stop = NULL;
+}
+
 weft_code weft_controller_pulse(weft_controller *c, double seconds, weft_error *error)
 {
     weft_stage_reply reply;
@@ -410,7 +418,7 @@ weft_axis_driver weft_controller_driver(weft_controller *controller)
 
 weft_lamp_switch weft_controller_lamps(weft_controller *controller)
 {
-    return (weft_lamp_switch){controller, set_lamp};
+    return (weft_lamp_switch){controller, set_lamp, abandon_lamps};
 }
 
 weft_controller_log weft_controller_said(const weft_controller *c)

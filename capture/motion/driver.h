@@ -28,6 +28,9 @@ typedef struct weft_lamp_switch {
     void *device;
     /* Lamp `lamp` alone at a level from 0 to 1; -1: all off. Returns when it is known to be so. Errors: WEFT_SYSTEM. */
     weft_code (*set)(void *device, int lamp, double level, weft_error *error);
+    /* In a copy of the process: forgets the connection, which is another's. `set` then opens one of its own, and waits
+     * for nothing. */
+    void (*abandon)(void *device);
 } weft_lamp_switch;
 
 #endif

@@ -63,6 +63,14 @@ static weft_code set(void *device, int lamp, double level, weft_error *error)
     return weft_fail(error, WEFT_SYSTEM, "relay board: relay %d does not switch %s", lamp + 1, on ? "on" : "off");
 }
 
+static void abandon(void *device)
+{
+    weft_relay *relay = device;
+    relay->handle = NULL;
+    relay->was_open = false;
+    relay->settings.stop = NULL;
+}
+
 weft_code weft_relay_create(const weft_relay_settings *settings, weft_relay **result, weft_error *error)
 {
     weft_relay *relay = calloc(1, sizeof *relay);
@@ -85,5 +93,5 @@ void weft_relay_free(weft_relay *relay)
 
 weft_lamp_switch weft_relay_lamps(weft_relay *relay)
 {
-    return (weft_lamp_switch){relay, set};
+    return (weft_lamp_switch){relay, set, abandon};
 }

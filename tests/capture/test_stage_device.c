@@ -2,7 +2,6 @@
  * umockdev-wrapper. */
 #include "capture/capture.h"
 #include "capture/motion/controller.h"
-#include "capture/motion/relay.h"
 #include "capture/motion/stage.h"
 #include "tests/capture/fake_controller.h"
 #include "tests/support/cmocka_all.h"
@@ -450,77 +449,6 @@ static void a_session_with_faults_holds_no_wrong_pose(void **state)
     close_bench(&b);
 }
 
-/* ---- Relay boards ---- */
-
-typedef struct fake_relay {
-    unsigned closed;
-    int ignores; /* changes that it will not carry out */
-} fake_relay;
-
-static void set_feature(void *context, const unsigned char *bytes, size_t size)
-{
-    fake_relay *relay = context;
-    if (size < 3 || relay->ignores-- > 0)
-        return;
-    unsigned bit = bytes[2] >= 1 && bytes[2] <= 8 ? 1u << (bytes[2] - 1) : 0;
-    relay->closed = bytes[1] == 0xff   ? relay->closed | bit
-                    : bytes[1] == 0xfd ? relay->closed & ~bit
-                    : bytes[1] == 0xfc ? 0
-                                       : relay->closed;
-}
-
-static void get_feature(void *context, unsigned char *bytes, size_t size)
-{
-    const unsigned char state[9] = {0, 'A', 'B', 'C', 'D', 'E', 0, 0, (unsigned char)((fake_relay *)context)->closed};
-    memcpy(bytes, state, size < sizeof state ? size : sizeof state);
-}
-
-static void a_relay_board_switches_one_lamp_at_a_time_and_is_found_again(void **state)
-{
-    static const unsigned char descriptor[] = {0x06, 0x00, 0xff, 0x09, 0x01, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff,
-                                               0x00, 0x75, 0x08, 0x95, 0x08, 0x09, 0x00, 0xb2, 0x02, 0x01, 0xc0};
-    fake_relay fake = {0};
-    const fake_hid_kind kind = {.vendor = 0x16c0,
-                                .product = 0x05df,
-                                .maker = "www.dcttech.com",
-                                .name = "USBRelay8",
-                                .serial = "",
-                                .descriptor = descriptor,
-                                .descriptor_size = sizeof descriptor,
-                                .context = &fake,
-                                .set_feature = set_feature,
-                                .get_feature = get_feature};
-    fake_hid *hid = fake_hid_plug(*state, 3, &kind);
-    const weft_relay_settings settings = {.address = {0x16c0, 0x05df, ""}, .replug_s = 5, .retries = 2};
-    weft_relay *relay;
-    weft_error error = {0};
-    assert_int_equal(weft_relay_create(&settings, &relay, NULL), WEFT_OK);
-    weft_lamp_switch lamps = weft_relay_lamps(relay);
-    assert_int_equal(lamps.set(lamps.device, 2, 1, NULL), WEFT_OK);
-    assert_int_equal(fake.closed, 4);
-    assert_int_equal(lamps.set(lamps.device, 7, 0.1, NULL), WEFT_OK);
-    assert_int_equal(fake.closed, 128);
-    fake.ignores = 2; /* read back, found wanting, sent again */
-    assert_int_equal(lamps.set(lamps.device, 0, 1, NULL), WEFT_OK);
-    assert_int_equal(fake.closed, 1);
-    assert_int_equal(lamps.set(lamps.device, 8, 1, &error), WEFT_SYSTEM);
-    assert_non_null(strstr(error.message, "no relay 9"));
-    fake_hid_unplug(hid);
-    fake_hid_free(hid);
-    hid = fake_hid_plug(*state, 4, &kind);
-    assert_int_equal(lamps.set(lamps.device, -1, 0, NULL), WEFT_OK);
-    assert_int_equal(fake.closed, 0);
-    fake.ignores = 100;
-    assert_int_equal(lamps.set(lamps.device, 1, 1, &error), WEFT_SYSTEM);
-    assert_non_null(strstr(error.message, "relay 2 does not switch on"));
-    fake.ignores = 0;
-    assert_int_equal(lamps.set(lamps.device, 1, 1, NULL), WEFT_OK);
-    weft_relay_free(relay);
-    assert_int_equal(fake.closed, 0);
-    fake_hid_unplug(hid);
-    fake_hid_free(hid);
-}
-
 /* ---- Two processes: umockdev holds no more than fifty devices that were opened ---- */
 
 static int run_in_a_process(const struct CMUnitTest *tests, size_t count)
@@ -571,7 +499,6 @@ int main(void)
         WITH_TESTBED(a_restart_between_move_and_photograph_is_noticed),
         WITH_TESTBED(a_lamp_burns_at_its_level_and_goes_off),
         WITH_TESTBED(a_shutter_is_released_once_whatever_is_lost),
-        WITH_TESTBED(a_relay_board_switches_one_lamp_at_a_time_and_is_found_again),
         WITH_TESTBED(a_session_with_faults_holds_no_wrong_pose),
     };
     const struct CMUnitTest many[] = {WITH_TESTBED(faults_in_two_thousand_moves_give_no_wrong_pose)};
