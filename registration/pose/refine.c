@@ -1,7 +1,7 @@
 #include "registration/pose/refine.h"
 
 #include "registration/pose/normal_equations.h"
-#include "registration/pose/opencv_bridge.h"
+#include "registration/pose/plate_comparison.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@ enum {
     motion_at = 0,
     motion_count = 8,
     gain_at = 8,
-    gain_count = 6,
+    gain_count = WEFT_LIGHTING_COUNT,
     stray_at = 14,
     spread_at = 15,
     unknown_count = 17,
@@ -28,107 +28,17 @@ enum {
 
 static const double settled_px = 0.005, held_stiffness = 1e12, largest_step_px = 3, robust_reach = 6;
 
-typedef struct comparison {
-    const weft_sight *sight;
-    double blur_px;
-    float *photograph, *weight; /* [height][width]; weight is the blurred mask where blur_px > 0 */
-    weft_prediction prediction;
-    double gain[gain_count], stray;
+typedef struct refining {
+    weft_plate_comparison seen;
     bool weighs_bend;
     weft_plate_view view; /* where it does */
     double deviation;     /* of the residual of the last step, 0 before the first */
-    double focus_limit;   /* largest focus factor among the compared pixels */
     weft_normal_equations equations;
-} comparison;
+} refining;
 
-static void comparison_free(comparison *c)
+static weft_code look(refining *c, const float *photograph, const weft_refinement *estimate, weft_error *error)
 {
-    free(c->photograph);
-    free(c->weight);
-    weft_prediction_free(&c->prediction);
-}
-
-static size_t pixel_count(const weft_sight *sight)
-{
-    return (size_t)sight->camera.width * (size_t)sight->camera.height;
-}
-
-static weft_code comparison_create(const weft_sight *sight, double blur_px, comparison *c, weft_error *error)
-{
-    size_t pixels = pixel_count(sight);
-    *c = (comparison){.sight = sight, .blur_px = blur_px};
-    WEFT_TRY(weft_prediction_create(&sight->camera, &c->prediction, error));
-    c->photograph = malloc(pixels * sizeof(float));
-    c->weight = malloc(pixels * sizeof(float));
-    if (c->photograph && c->weight)
-        return WEFT_OK;
-    comparison_free(c);
-    return weft_fail_memory(error, "refinement", pixels * 8);
-}
-
-/* Blurs both sides with the pixels that are not compared taken out (normalised convolution), so that neither the sample
- * nor the world beyond the plate leaks in. */
-static weft_code blur_both(comparison *c, weft_error *error)
-{
-    int width = c->sight->camera.width, height = c->sight->camera.height;
-    size_t pixels = pixel_count(c->sight);
-    for (size_t i = 0; i < pixels; i++) {
-        c->weight[i] = c->prediction.compared[i];
-        c->photograph[i] = c->prediction.compared[i] ? c->photograph[i] : 0;
-        c->prediction.reflectance[i] *= c->weight[i];
-    }
-    WEFT_TRY(weft_opencv_blur(c->weight, width, height, c->blur_px, error));
-    WEFT_TRY(weft_opencv_blur(c->photograph, width, height, c->blur_px, error));
-    WEFT_TRY(weft_opencv_blur(c->prediction.reflectance, width, height, c->blur_px, error));
-    for (size_t i = 0; i < pixels; i++) {
-        float inverse = c->weight[i] > 1e-6f ? 1 / c->weight[i] : 0;
-        c->photograph[i] *= inverse;
-        c->prediction.reflectance[i] *= inverse;
-    }
-    return WEFT_OK;
-}
-
-static weft_code look(comparison *c, const float *photograph, const weft_refinement *estimate, weft_error *error)
-{
-    size_t pixels = pixel_count(c->sight);
-    weft_prediction_draw(c->sight, &estimate->homography, estimate->point_spread, &c->prediction);
-    memcpy(c->photograph, photograph, pixels * sizeof(float));
-    c->focus_limit = 0;
-    for (size_t i = 0; i < pixels; i++) {
-        c->prediction.compared[i] &= isfinite(photograph[i]) != 0;
-        if (c->prediction.compared[i])
-            c->focus_limit = fmax(c->focus_limit, c->prediction.focus[i]);
-    }
-    return c->blur_px > 0 ? blur_both(c, error) : WEFT_OK;
-}
-
-/* Before the first step: the lighting is even and there is no stray light. */
-static void guess_lighting(comparison *c)
-{
-    double photograph = 0, drawing = 0;
-    for (size_t i = 0; i < pixel_count(c->sight); i++) {
-        photograph += c->prediction.compared[i] ? c->photograph[i] : 0;
-        drawing += c->prediction.compared[i] ? c->prediction.reflectance[i] : 0;
-    }
-    memset(c->gain, 0, sizeof c->gain);
-    c->gain[0] = drawing > 0 ? photograph / drawing : 1;
-    c->stray = 0;
-}
-
-static void lighting_basis(const weft_camera *camera, int x, int y, double basis[gain_count])
-{
-    double scale = 2.0 / (camera->width > camera->height ? camera->width : camera->height);
-    double u = (x - 0.5 * camera->width) * scale, v = (y - 0.5 * camera->height) * scale;
-    const double values[gain_count] = {1, u, v, u * u, u * v, v * v};
-    memcpy(basis, values, sizeof values);
-}
-
-static double polynomial(const double basis[gain_count], const double coefficient[gain_count])
-{
-    double sum = 0;
-    for (int k = 0; k < gain_count; k++)
-        sum += coefficient[k] * basis[k];
-    return sum;
+    return weft_plate_comparison_look(&c->seen, photograph, &estimate->homography, estimate->point_spread, error);
 }
 
 /* Motion, in pixels, of the image of a plate point at normalised coordinates (x, y) by D: du . d and dv . d. */
@@ -143,10 +53,10 @@ static void motion_rows(const weft_camera *camera, double x, double y, double du
 }
 
 /* The same by the bend of the plate, mm at its unit. */
-static void bend_rows(const comparison *c, const float undistorted[2], double du[bend_count], double dv[bend_count])
+static void bend_rows(const refining *c, const float undistorted[2], double du[bend_count], double dv[bend_count])
 {
     const weft_plate_view *view = &c->view;
-    const double(*m)[3] = view->homography.m, unit = weft_bend_unit_mm(c->sight);
+    const double(*m)[3] = view->homography.m, unit = weft_bend_unit_mm(c->seen.sight);
     weft_pixel plate = weft_plate_view_meet(view, undistorted[0], undistorted[1]);
     double x = plate.x / unit, y = plate.y / unit, height = weft_bend_height(&view->bend, plate.x, plate.y);
     double w = m[2][0] * plate.x + m[2][1] * plate.y + m[2][2] + height * view->lift[2];
@@ -159,15 +69,15 @@ static void bend_rows(const comparison *c, const float undistorted[2], double du
     }
 }
 
-static void equation_at(const comparison *c, int x, int y, double row[WEFT_UNKNOWNS_LIMIT], double *residual)
+static void equation_at(const refining *c, int x, int y, double row[WEFT_UNKNOWNS_LIMIT], double *residual)
 {
-    const weft_camera *camera = &c->sight->camera;
+    const weft_camera *camera = &c->seen.sight->camera;
     long width = camera->width, at = y * width + x;
-    const float *t = c->prediction.reflectance + at;
+    const float *t = c->seen.prediction.reflectance + at;
     double basis[gain_count], du[motion_count], dv[motion_count];
-    lighting_basis(camera, x, y, basis);
-    double gain = polynomial(basis, c->gain);
-    const float *undistorted = c->sight->undistorted[at];
+    weft_lighting_basis(camera, x, y, basis);
+    double gain = weft_lighting_at(basis, c->seen.gain);
+    const float *undistorted = c->seen.sight->undistorted[at];
     motion_rows(camera, (undistorted[0] - camera->cx) / camera->fx, (undistorted[1] - camera->cy) / camera->fy, du, dv);
     double slope_x = gain * 0.5 * (t[1] - t[-1]), slope_y = gain * 0.5 * (t[width] - t[-width]);
     double half_laplacian = 0.5 * gain * (t[1] + t[-1] + t[width] + t[-width] - 4 * t[0]);
@@ -183,8 +93,8 @@ static void equation_at(const comparison *c, int x, int y, double row[WEFT_UNKNO
         row[gain_at + k] = basis[k] * t[0];
     row[stray_at] = 1;
     row[spread_at] = half_laplacian;
-    row[spread_at + 1] = half_laplacian * c->prediction.focus[at];
-    *residual = c->photograph[at] - gain * t[0] - c->stray;
+    row[spread_at + 1] = half_laplacian * c->seen.prediction.focus[at];
+    *residual = c->seen.photograph[at] - gain * t[0] - c->seen.stray;
 }
 
 /* Cauchy's weight: what the drawing does not explain (a hair, a hand, a stain) hardly counts. */
@@ -196,17 +106,17 @@ static double robust_weight(double residual, double deviation)
     return 1 / (1 + t * t);
 }
 
-WEFT_HOT static void gather_strip(const comparison *c, int first, int end, weft_normal_equations *equations,
+WEFT_HOT static void gather_strip(const refining *c, int first, int end, weft_normal_equations *equations,
                                   double *deviation)
 {
     double row[WEFT_UNKNOWNS_LIMIT] = {0};
     for (int y = first; y < end; y++) {
-        for (int x = 1; x + 1 < c->sight->camera.width; x++) {
-            if (!c->prediction.compared[(long)y * c->sight->camera.width + x])
+        for (int x = 1; x + 1 < c->seen.sight->camera.width; x++) {
+            if (!c->seen.prediction.compared[(long)y * c->seen.sight->camera.width + x])
                 continue;
             double residual;
             equation_at(c, x, y, row, &residual);
-            weft_normal_equations_add(equations, row, c->photograph[(long)y * c->sight->camera.width + x],
+            weft_normal_equations_add(equations, row, c->seen.photograph[(long)y * c->seen.sight->camera.width + x],
                                       robust_weight(residual, c->deviation));
             deviation[0] += fabs(residual);
             deviation[1]++;
@@ -214,13 +124,13 @@ WEFT_HOT static void gather_strip(const comparison *c, int first, int end, weft_
     }
 }
 
-static weft_code gather(comparison *c, weft_error *error)
+static weft_code gather(refining *c, weft_error *error)
 {
     weft_normal_equations *strip = calloc(strip_count, sizeof *strip);
     double deviation[strip_count][2] = {{0}}, sum = 0, count = 0;
     if (!strip)
         return weft_fail_memory(error, "refinement", strip_count * sizeof *strip);
-    int rows = c->sight->camera.height - 2;
+    int rows = c->seen.sight->camera.height - 2;
 #pragma omp parallel for schedule(dynamic, 1)
     for (int i = 0; i < strip_count; i++)
         gather_strip(c, 1 + rows * i / strip_count, 1 + rows * (i + 1) / strip_count, &strip[i], deviation[i]);
@@ -268,12 +178,12 @@ static double largest_motion(const weft_sight *sight, const weft_homography *fro
 
 /* Applies a solution, its motion shortened where it leaves the reach of the linearisation. Returns the motion, pixels.
  */
-static double apply_step(comparison *c, const double *solution, weft_refinement *refinement)
+static double apply_step(refining *c, const double *solution, weft_refinement *refinement)
 {
-    const weft_camera *camera = &c->sight->camera;
+    const weft_camera *camera = &c->seen.sight->camera;
     weft_homography next = moved(camera, &refinement->homography, solution);
-    double motion = largest_motion(c->sight, &refinement->homography, &next);
-    double limit = largest_step_px * fmax(1, c->blur_px);
+    double motion = largest_motion(c->seen.sight, &refinement->homography, &next);
+    double limit = largest_step_px * fmax(1, c->seen.blur_px);
     if (motion > limit) {
         double shorter[motion_count];
         for (int k = 0; k < motion_count; k++)
@@ -281,9 +191,9 @@ static double apply_step(comparison *c, const double *solution, weft_refinement 
         next = moved(camera, &refinement->homography, shorter);
     }
     refinement->homography = next;
-    memcpy(c->gain, solution + gain_at, sizeof c->gain);
-    c->stray = solution[stray_at];
-    if (c->blur_px <= 0) {
+    memcpy(c->seen.gain, solution + gain_at, sizeof c->seen.gain);
+    c->seen.stray = solution[stray_at];
+    if (c->seen.blur_px <= 0) {
         refinement->point_spread.constant = fmax(0, refinement->point_spread.constant + solution[spread_at]);
         refinement->point_spread.depth = fmax(0, refinement->point_spread.depth + solution[spread_at + 1]);
     }
@@ -291,10 +201,10 @@ static double apply_step(comparison *c, const double *solution, weft_refinement 
 }
 
 /* At a frontal view the depth term has no effect: hold it where it is. */
-static void hold_point_spread(comparison *c)
+static void hold_point_spread(refining *c)
 {
     double(*m)[WEFT_UNKNOWNS_LIMIT] = c->equations.matrix;
-    double scale = fmax(c->focus_limit, 1e-3);
+    double scale = fmax(c->seen.focus_limit, 1e-3);
     m[spread_at][spread_at] *= 1 + 1e-6;
     m[spread_at + 1][spread_at + 1] += 1e-4 * scale * scale * m[spread_at][spread_at];
 }
@@ -326,75 +236,10 @@ static double uncertainty_mm(const weft_sight *sight, const weft_normal_equation
     return sqrt(variance * sum / (grid * grid));
 }
 
-/* The prediction under the fitted lighting at a pixel. */
-static double lit_prediction(const comparison *c, const double basis[gain_count], size_t at)
-{
-    return polynomial(basis, c->gain) * (double)c->prediction.reflectance[at] + c->stray;
-}
-
-/* Polynomials of the lighting's degree through the photograph and through the prediction under the fitted lighting. */
-static bool smooth_parts(const comparison *c, double photograph[gain_count], double prediction[gain_count])
-{
-    const weft_camera *camera = &c->sight->camera;
-    weft_normal_equations seen = {0}, model = {0};
-    double row[WEFT_UNKNOWNS_LIMIT] = {0};
-    for (int y = 0; y < camera->height; y++) {
-        for (int x = 0; x < camera->width; x++) {
-            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
-            if (!c->prediction.compared[at])
-                continue;
-            lighting_basis(camera, x, y, row);
-            weft_normal_equations_add(&seen, row, (double)c->photograph[at], 1);
-            weft_normal_equations_add(&model, row, lit_prediction(c, row, at), 1);
-        }
-    }
-    if (!weft_normal_equations_factor(&seen, gain_count) || !weft_normal_equations_factor(&model, gain_count))
-        return false;
-    weft_normal_equations_solve(&seen, gain_count, photograph);
-    weft_normal_equations_solve(&model, gain_count, prediction);
-    return true;
-}
-
-/* Correlation of the photograph with the prediction under the fitted lighting, over what is left of both when their
- * smooth parts are taken away: a lighting gradient on a bare surface would correlate by itself. */
-static double correlate(const comparison *c)
-{
-    const weft_camera *camera = &c->sight->camera;
-    double photograph[gain_count], prediction[gain_count], aa = 0, bb = 0, ab = 0;
-    if (!smooth_parts(c, photograph, prediction))
-        return 0;
-    for (int y = 0; y < camera->height; y++) {
-        for (int x = 0; x < camera->width; x++) {
-            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
-            double basis[gain_count];
-            if (!c->prediction.compared[at])
-                continue;
-            lighting_basis(camera, x, y, basis);
-            double a = (double)c->photograph[at] - polynomial(basis, photograph);
-            double b = lit_prediction(c, basis, at) - polynomial(basis, prediction);
-            aa += a * a, bb += b * b, ab += a * b;
-        }
-    }
-    return aa > 0 && bb > 0 ? ab / sqrt(aa * bb) : 0;
-}
-
-static void write_fitted(const comparison *c, float *fitted)
-{
-    const weft_camera *camera = &c->sight->camera;
-    for (int y = 0; y < camera->height; y++) {
-        for (int x = 0; x < camera->width; x++) {
-            double basis[gain_count];
-            size_t at = (size_t)y * (size_t)camera->width + (size_t)x;
-            lighting_basis(camera, x, y, basis);
-            fitted[at] = (float)lit_prediction(c, basis, at);
-        }
-    }
-}
-
 /* Solves for a step; a point spread that would become negative is held (an active set, at most two constraints), and so
  * are both where `hold_both`. False where the equations have no solution. `factored` receives what the uncertainty is
  * computed from. */
-static bool solve(const comparison *c, weft_point_spread point_spread, bool hold_both, int count, double *solution,
+static bool solve(const refining *c, weft_point_spread point_spread, bool hold_both, int count, double *solution,
                   weft_normal_equations *factored)
 {
     bool held[2] = {hold_both, hold_both};
@@ -416,9 +261,9 @@ static bool solve(const comparison *c, weft_point_spread point_spread, bool hold
 }
 
 /* One step. False where the equations have no solution. */
-static bool step(comparison *c, weft_refinement *refinement, bool hold_point_spread_now, double *motion)
+static bool step(refining *c, weft_refinement *refinement, bool hold_point_spread_now, double *motion)
 {
-    int count = c->blur_px > 0 ? unknown_count_blurred : unknown_count;
+    int count = c->seen.blur_px > 0 ? unknown_count_blurred : unknown_count;
     double solution[WEFT_UNKNOWNS_LIMIT] = {0};
     weft_normal_equations factored;
     hold_point_spread(c);
@@ -426,24 +271,24 @@ static bool step(comparison *c, weft_refinement *refinement, bool hold_point_spr
         return false;
     double freedom = fmax(1, c->equations.weights - count);
     double variance = c->deviation * c->deviation * fmax(1, c->equations.weights) / freedom;
-    refinement->uncertainty_mm = uncertainty_mm(c->sight, &factored, count, variance, &refinement->homography);
+    refinement->uncertainty_mm = uncertainty_mm(c->seen.sight, &factored, count, variance, &refinement->homography);
     *motion = apply_step(c, solution, refinement);
     return isfinite(*motion);
 }
 
-static weft_code iterate(comparison *c, const float *photograph, weft_refinement *refinement, weft_error *error)
+static weft_code iterate(refining *c, const float *photograph, weft_refinement *refinement, weft_error *error)
 {
     for (int i = 0; i < iteration_limit && !refinement->converged; i++) {
         double motion;
         WEFT_TRY(look(c, photograph, refinement, error));
         if (i == 0)
-            guess_lighting(c);
+            weft_plate_comparison_guess_lighting(&c->seen);
         WEFT_TRY(gather(c, error));
         refinement->iterations = i + 1;
         if (!step(c, refinement, i >= spread_steps, &motion))
             return WEFT_OK;
         /* The second step is the first one with robust weights. */
-        refinement->converged = i > 0 && motion < settled_px * fmax(1, 10 * c->blur_px);
+        refinement->converged = i > 0 && motion < settled_px * fmax(1, 10 * c->seen.blur_px);
     }
     return WEFT_OK;
 }
@@ -451,18 +296,18 @@ static weft_code iterate(comparison *c, const float *photograph, weft_refinement
 weft_code weft_refinement_run(const weft_sight *sight, const float *photograph, double blur_px,
                               weft_refinement *refinement, float *fitted, weft_error *error)
 {
-    comparison c;
-    WEFT_TRY(comparison_create(sight, blur_px, &c, error));
+    refining c = {0};
+    WEFT_TRY(weft_plate_comparison_create(sight, blur_px, &c.seen, error));
     refinement->converged = false;
     refinement->correlation = refinement->uncertainty_mm = 0;
     weft_code code = iterate(&c, photograph, refinement, error);
     if (code == WEFT_OK)
         code = look(&c, photograph, refinement, error);
     if (code == WEFT_OK)
-        refinement->correlation = correlate(&c);
+        refinement->correlation = weft_plate_comparison_correlate(&c.seen);
     if (code == WEFT_OK && fitted)
-        write_fitted(&c, fitted);
-    comparison_free(&c);
+        weft_plate_comparison_write_fitted(&c.seen, fitted);
+    weft_plate_comparison_free(&c.seen);
     return code;
 }
 
@@ -472,18 +317,18 @@ double weft_bend_unit_mm(const weft_sight *sight)
 }
 
 /* One step for the lighting, then the equations with the bend among the unknowns. */
-static weft_code weigh_bend(comparison *c, const float *photograph, weft_refinement *refinement,
+static weft_code weigh_bend(refining *c, const float *photograph, weft_refinement *refinement,
                             weft_bend_evidence *evidence, weft_error *error)
 {
     double motion;
     WEFT_TRY(look(c, photograph, refinement, error));
-    guess_lighting(c);
+    weft_plate_comparison_guess_lighting(&c->seen);
     WEFT_TRY(gather(c, error));
     if (!step(c, refinement, true, &motion))
         return WEFT_OK;
     WEFT_TRY(look(c, photograph, refinement, error));
     c->weighs_bend = true;
-    c->view = weft_plate_view_of(&c->sight->camera, &refinement->homography, &c->sight->bend);
+    c->view = weft_plate_view_of(&c->seen.sight->camera, &refinement->homography, &c->seen.sight->bend);
     WEFT_TRY(gather(c, error));
     for (int k = 0; k < 2; k++)
         c->equations.matrix[spread_at + k][spread_at + k] =
@@ -504,10 +349,10 @@ static weft_code weigh_bend(comparison *c, const float *photograph, weft_refinem
 weft_code weft_refinement_weigh_bend(const weft_sight *sight, const float *photograph, weft_refinement *refinement,
                                      weft_bend_evidence *evidence, weft_error *error)
 {
-    comparison c;
+    refining c = {0};
     *evidence = (weft_bend_evidence){0};
-    WEFT_TRY(comparison_create(sight, 0, &c, error));
+    WEFT_TRY(weft_plate_comparison_create(sight, 0, &c.seen, error));
     weft_code code = weigh_bend(&c, photograph, refinement, evidence, error);
-    comparison_free(&c);
+    weft_plate_comparison_free(&c.seen);
     return code;
 }
