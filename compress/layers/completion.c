@@ -2,6 +2,7 @@
 
 #include "btf/direction/direction.h"
 #include "compress/layers/dots.h"
+#include "compress/layers/known.h"
 
 #include <omp.h>
 #include <stdlib.h>
@@ -54,130 +55,17 @@ static weft_code make_directions(const weft_layer_images *from, weft_layer_image
     return WEFT_OK;
 }
 
-/* ---- Samples ---- */
-
-/* The images that are learned from, with their samples of a few texels, channel by channel. */
-typedef struct known {
-    int count, series_count;
-    int *image;                /* [count] of the images of layers */
-    weft_direction_pair *pair; /* [count] */
-    double *weight;            /* [count] */
-    double *sample;            /* [series_count][count] */
-} known;
-
-static void known_free(known *k)
-{
-    free(k->image);
-    free(k->pair);
-    free(k->weight);
-    free(k->sample);
-    *k = (known){0};
-}
-
-static weft_code known_allocate(int count, int series_count, known *k, weft_error *error)
-{
-    size_t all = count > 0 ? (size_t)count : 1; /* one that is not used, where nothing is known */
-    *k = (known){.count = count,
-                 .series_count = series_count,
-                 .image = calloc(all, sizeof *k->image),
-                 .pair = calloc(all, sizeof *k->pair),
-                 .weight = calloc(all, sizeof *k->weight),
-                 .sample = calloc(all * (size_t)series_count, sizeof *k->sample)};
-    if (k->image && k->pair && k->weight && k->sample)
-        return WEFT_OK;
-    known_free(k);
-    return weft_fail_memory(error, "samples to complete", all * (size_t)series_count * sizeof(double));
-}
-
-static weft_kriging_places places_of(const known *k)
-{
-    return (weft_kriging_places){k->count, k->pair, k->weight};
-}
-
-/* Number i of `some` that are an even choice of `all`. */
-static int even_choice(int i, int some, int all)
-{
-    return (int)((long)i * all / some);
-}
-
-static int at_most(int count, int most)
-{
-    return count < most ? count : most;
-}
-
-static int view_of(const weft_layer_images *images, int image)
-{
-    int view = 0;
-    while ((int)images->first[view + 1] <= image)
-        view++;
-    return view;
-}
-
-static void take_sample(const weft_training *training, const weft_layer_images *images, int texel, int image, known *k,
-                        int series, int at)
-{
-    const float *vector = training->vector + (size_t)texel * training->length + 3 * (size_t)image;
-    for (int c = 0; c < 3; c++)
-        k->sample[(size_t)(series + c) * (size_t)k->count + (size_t)at] = (double)(vector[c] / images->weight[image]);
-}
-
-static void take_image(const weft_layer_images *images, int image, known *k, int at)
-{
-    k->image[at] = image;
-    k->pair[at] = weft_direction_pair_of(images->light[image], images->view[view_of(images, image)]);
-    k->weight[at] = (double)(images->weight[image] * images->weight[image]);
-}
-
-/* Whether any of the texels first .. last has a sample of an image. */
-static bool is_seen(const weft_training *training, int first, int last, int image)
-{
-    for (int texel = first; texel <= last; texel++) {
-        if (training->valid[(size_t)texel * training->image_count + (size_t)image])
-            return true;
-    }
-    return false;
-}
-
-/* Texels first .. last at an even choice of the images that any of them has. */
-static weft_code take(const weft_training *training, const weft_layer_images *images, int first, int last, int most,
-                      known *k, weft_error *error)
-{
-    int all = 0, found = 0, taken = 0;
-    for (int i = 0; i < images->image_count; i++)
-        all += is_seen(training, first, last, i);
-    int count = at_most(all, most);
-    WEFT_TRY(known_allocate(count, 3 * (last - first + 1), k, error));
-    for (int i = 0; i < images->image_count && taken < count; i++) {
-        if (!is_seen(training, first, last, i) || found++ != even_choice(taken, count, all))
-            continue;
-        take_image(images, i, k, taken);
-        for (int texel = first; texel <= last; texel++)
-            take_sample(training, images, texel, i, k, 3 * (texel - first), taken);
-        taken++;
-    }
-    return WEFT_OK;
-}
-
-static double mean_square(const known *k)
-{
-    size_t count = (size_t)k->count * (size_t)k->series_count;
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += k->sample[i] * k->sample[i];
-    return count > 0 ? sum / (double)count : 0;
-}
-
 /* ---- Far lights and cameras: all texels have the same directions ---- */
 
 static weft_code choose_far(const weft_layer_images *images, const weft_training *training,
                             const weft_progress *progress, weft_completion *c, weft_error *error)
 {
-    known k;
-    WEFT_TRY(take(training, images, 0, training->texel_count - 1, MOST_LEFT_OUT, &k, error));
-    weft_kriging_samples set = {places_of(&k), k.series_count, k.sample};
+    weft_known k;
+    WEFT_TRY(weft_known_take(training, images, 0, training->texel_count - 1, MOST_LEFT_OUT, &k, error));
+    weft_kriging_samples set = {weft_known_places(&k), k.series_count, k.sample};
     c->left_out_count = k.count;
     weft_code code = weft_kriging_choose(&set, 1, progress, &c->covariance, &c->left_out_error, error);
-    known_free(&k);
+    weft_known_free(&k);
     return code;
 }
 
@@ -198,11 +86,11 @@ static void fill_series(const weft_kriging *inverse, const uint8_t *valid, const
         }
 }
 
-static weft_code fill_masked(const weft_training *training, const weft_covariance *covariance, known *k,
+static weft_code fill_masked(const weft_training *training, const weft_covariance *covariance, weft_known *k,
                              weft_error *error)
 {
     weft_kriging inverse;
-    weft_kriging_places places = places_of(k);
+    weft_kriging_places places = weft_known_places(k);
     WEFT_TRY(weft_kriging_create(covariance, &places, &inverse, error));
     weft_kriging_invert(&inverse);
 #pragma omp parallel for schedule(dynamic, 8)
@@ -255,7 +143,7 @@ static weft_code predict_all(const prediction *p, weft_error *error)
         failures += !row || !value;
         if (row && value) {
             memset(row, 0, row_bytes);
-            predict_rows(p, chunk * ROWS, at_most(ROWS, directions - chunk * ROWS), row, value);
+            predict_rows(p, chunk * ROWS, weft_at_most(ROWS, directions - chunk * ROWS), row, value);
         }
         free(row);
         free(value);
@@ -264,9 +152,9 @@ static weft_code predict_all(const prediction *p, weft_error *error)
 }
 
 /* Weights as rows of floats in whole lanes. */
-static weft_code predict_far(const known *k, weft_completion *c, weft_error *error)
+static weft_code predict_far(const weft_known *k, weft_completion *c, weft_error *error)
 {
-    prediction p = {.places = places_of(k),
+    prediction p = {.places = weft_known_places(k),
                     .terms = weft_covariance_terms_of(&c->covariance),
                     .length = ((size_t)k->count + WHOLE_LANES - 1) / WHOLE_LANES * WHOLE_LANES,
                     .series_count = k->series_count,
@@ -290,10 +178,10 @@ static weft_code predict_far(const known *k, weft_completion *c, weft_error *err
     return code;
 }
 
-static weft_code complete_known(const known *k, weft_completion *c, weft_error *error)
+static weft_code complete_known(const weft_known *k, weft_completion *c, weft_error *error)
 {
     weft_kriging kriging;
-    weft_kriging_places places = places_of(k);
+    weft_kriging_places places = weft_known_places(k);
     WEFT_TRY(weft_kriging_create(&c->covariance, &places, &kriging, error));
     weft_kriging_solve(&kriging, k->sample, k->series_count);
     weft_kriging_free(&kriging);
@@ -303,17 +191,17 @@ static weft_code complete_known(const known *k, weft_completion *c, weft_error *
 static weft_code complete_far(const weft_layer_images *images, weft_training *training, const weft_progress *progress,
                               weft_completion *c, weft_error *error)
 {
-    known k;
+    weft_known k;
     bool masked = weft_training_has_masked(training);
     if (masked)
         WEFT_TRY(weft_training_fill_by_mean(training, error));
     WEFT_TRY(choose_far(images, training, progress, c, error));
-    WEFT_TRY(take(training, images, 0, training->texel_count - 1, MOST_LEARNED, &k, error));
+    WEFT_TRY(weft_known_take(training, images, 0, training->texel_count - 1, MOST_LEARNED, &k, error));
     weft_code code = masked ? fill_masked(training, &c->covariance, &k, error) : WEFT_OK;
-    c->noise = mean_square(&k);
+    c->noise = weft_known_mean_square(&k);
     if (code == WEFT_OK)
         code = complete_known(&k, c, error);
-    known_free(&k);
+    weft_known_free(&k);
     if (masked)
         weft_training_clear_masked(training);
     return code;
@@ -328,40 +216,40 @@ typedef struct nearby {
 } nearby;
 
 /* The training texel `index` of `count`. */
-static weft_code take_nearby(const nearby *n, int index, int count, int most, known *k, weft_error *error)
+static weft_code take_nearby(const nearby *n, int index, int count, int most, weft_known *k, weft_error *error)
 {
     weft_layer_images seen;
-    int texel = even_choice(index, count, n->training->texel_count);
+    int texel = weft_even_choice(index, count, n->training->texel_count);
     const weft_training_place *place = &n->training->place[texel];
-    *k = (known){0};
+    *k = (weft_known){0};
     WEFT_TRY(weft_layer_images_copy(n->images, &seen, error));
     weft_layer_images_look_from(n->layout, place->x, place->y, &seen);
-    weft_code code = take(n->training, &seen, texel, texel, most, k, error);
+    weft_code code = weft_known_take(n->training, &seen, texel, texel, most, k, error);
     weft_layer_images_free(&seen);
     return code;
 }
 
 static weft_code choose_near(const nearby *n, const weft_progress *progress, weft_completion *c, weft_error *error)
 {
-    known k[MOST_NEAR_SETS] = {0};
+    weft_known k[MOST_NEAR_SETS] = {0};
     weft_kriging_samples set[MOST_NEAR_SETS];
-    int count = at_most(n->training->texel_count, MOST_NEAR_SETS);
+    int count = weft_at_most(n->training->texel_count, MOST_NEAR_SETS);
     weft_code code = WEFT_OK;
     for (int i = 0; i < count && code == WEFT_OK; i++) {
         code = take_nearby(n, i, count, MOST_NEAR_LEFT_OUT, &k[i], error);
-        set[i] = (weft_kriging_samples){places_of(&k[i]), k[i].series_count, k[i].sample};
+        set[i] = (weft_kriging_samples){weft_known_places(&k[i]), k[i].series_count, k[i].sample};
         c->left_out_count = k[i].count > c->left_out_count ? k[i].count : c->left_out_count;
     }
     if (code == WEFT_OK)
         code = weft_kriging_choose(set, count, progress, &c->covariance, &c->left_out_error, error);
     for (int i = 0; i < count; i++) {
-        c->noise += mean_square(&k[i]) / count;
-        known_free(&k[i]);
+        c->noise += weft_known_mean_square(&k[i]) / count;
+        weft_known_free(&k[i]);
     }
     return code;
 }
 
-static void predict_near(const known *k, const weft_completion *c, float *vector)
+static void predict_near(const weft_known *k, const weft_completion *c, float *vector)
 {
     weft_covariance_terms terms = weft_covariance_terms_of(&c->covariance);
     size_t count = (size_t)k->count;
@@ -380,17 +268,17 @@ static void predict_near(const known *k, const weft_completion *c, float *vector
 
 static weft_code complete_texel(const nearby *n, int index, weft_completion *c, weft_error *error)
 {
-    known k;
+    weft_known k;
     weft_kriging kriging = {0};
     WEFT_TRY(take_nearby(n, index, c->training.texel_count, MOST_NEAR_LEARNED, &k, error));
-    weft_kriging_places places = places_of(&k);
+    weft_kriging_places places = weft_known_places(&k);
     weft_code code = weft_kriging_create(&c->covariance, &places, &kriging, error);
     if (code == WEFT_OK) {
         weft_kriging_solve(&kriging, k.sample, k.series_count);
         predict_near(&k, c, c->training.vector + (size_t)index * c->training.length);
     }
     weft_kriging_free(&kriging);
-    known_free(&k);
+    weft_known_free(&k);
     return code;
 }
 
@@ -419,7 +307,7 @@ static weft_code complete_near(const nearby *n, const weft_progress *progress, w
 static uint64_t bytes_for(const weft_layer_images *images, const weft_training *training, const weft_completion *c)
 {
     bool near_images = c->training.texel_count < training->texel_count;
-    uint64_t learned = (uint64_t)at_most(images->image_count, near_images ? MOST_NEAR_LEARNED : MOST_LEARNED);
+    uint64_t learned = (uint64_t)weft_at_most(images->image_count, near_images ? MOST_NEAR_LEARNED : MOST_LEARNED);
     uint64_t texels = (uint64_t)training->texel_count, threads = (uint64_t)omp_get_max_threads();
     uint64_t matrices =
         8 * learned * learned * (near_images ? threads : 1) + threads * 24 * MOST_LEFT_OUT * MOST_LEFT_OUT;
@@ -432,7 +320,7 @@ weft_code weft_completion_make(const weft_dataset_layout *layout, const weft_lay
                                const weft_progress *progress, weft_completion *completion, weft_error *error)
 {
     bool is_near = layout->distance == WEFT_NEAR;
-    int texels = is_near ? at_most(training->texel_count, MOST_NEAR_TEXELS) : training->texel_count;
+    int texels = is_near ? weft_at_most(training->texel_count, MOST_NEAR_TEXELS) : training->texel_count;
     *completion = (weft_completion){0};
     WEFT_TRY(make_directions(images, &completion->images, error));
     completion->training.texel_count = texels;
