@@ -1,6 +1,7 @@
 #include "capture/motion/controller.h"
 
 #include "base/clock.h"
+#include "capture/motion/stage_words.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -37,50 +38,9 @@ static bool stop_asked(const weft_controller *c)
     return c->settings.stop && *c->settings.stop;
 }
 
-/* ---- Words for what it answers ---- */
-
-static const char *axis_name(const weft_controller *c, int channel)
-{
-    for (int k = 0; k < c->axes->count; k++) {
-        if (c->axes->axis[k].channel == channel && !c->axes->axis[k].by_hand)
-            return c->axes->axis[k].name;
-    }
-    return "that nobody named";
-}
-
-static double degrees(int32_t position)
-{
-    return position * 1e-3;
-}
-
 static int32_t thousandths(double deg)
 {
     return (int32_t)lround(deg * 1e3);
-}
-
-static weft_code fail_fault(const weft_controller *c, const weft_stage_reply *reply, weft_error *error)
-{
-    const char *axis = axis_name(c, reply->fault_axis);
-    double at = reply->fault_axis < WEFT_PROTOCOL_AXES ? degrees(reply->position[reply->fault_axis]) : 0;
-    if (reply->fault == WEFT_FAULT_STALLED)
-        return weft_fail(error, WEFT_SYSTEM, "stage: axis '%s' stalled at %.3f degrees", axis, at);
-    if (reply->fault == WEFT_FAULT_LIMIT)
-        return weft_fail(error, WEFT_SYSTEM, "stage: axis '%s' hit its limit switch at %.3f degrees", axis, at);
-    return weft_fail(error, WEFT_SYSTEM, "stage: axis '%s' does not find its reference", axis);
-}
-
-static weft_code fail_result(const weft_stage_reply *reply, const char *what, weft_error *error)
-{
-    static const char *const words[] = {[WEFT_RESULT_DONE] = "did it",
-                                        [WEFT_RESULT_BAD_CRC] = "got a broken question",
-                                        [WEFT_RESULT_BAD_VERSION] = "speaks another version of the protocol",
-                                        [WEFT_RESULT_BAD_COMMAND] = "cannot do that",
-                                        [WEFT_RESULT_BEYOND_LIMIT] = "says that this is beyond its limits",
-                                        [WEFT_RESULT_NOT_HOMED] = "is not homed",
-                                        [WEFT_RESULT_BUSY] = "is still moving"};
-    bool known = (unsigned)reply->result < sizeof words / sizeof *words;
-    return weft_fail(error, WEFT_SYSTEM, "stage: asked to %s, the controller %s", what,
-                     known ? words[reply->result] : "answers nonsense");
 }
 
 /* ---- Asking ---- */
@@ -126,7 +86,7 @@ static weft_code greet(weft_controller *c, weft_error *error)
     if (outcome != WEFT_LINK_ANSWERED)
         return fail_outcome(outcome, error);
     if (reply.result != WEFT_RESULT_DONE)
-        return fail_result(&reply, "say hello", error);
+        return weft_stage_fail_result(&reply, "say hello", error);
     c->log.restarted += c->greeted && reply.boot != c->boot;
     /* Another start: its references are gone, and with them whatever was known of where the axes stand. */
     bool restarted = !c->greeted || reply.boot != c->boot;
@@ -201,7 +161,7 @@ static weft_code wait_for_rest(weft_controller *c, double limit_s, weft_stage_re
         if (c->boot != c->reference_boot)
             return fail_restarted(failure, error);
         if (reply->state == WEFT_STATE_FAULT) {
-            fail_fault(c, reply, error);
+            weft_stage_fail_fault(c->axes, reply, error);
             return fail_lost(failure);
         }
         if (reply->state != WEFT_STATE_MOVING && reply->state != WEFT_STATE_HOMING)
@@ -235,14 +195,14 @@ static weft_code home(void *device, unsigned mask, weft_move_failure *failure, w
     uint8_t channels = channels_of(c, mask);
     WEFT_TRY(ask_surely(c, (weft_stage_request){.command = WEFT_COMMAND_HOME, .mask = channels}, &reply, error));
     if (reply.result != WEFT_RESULT_DONE)
-        return fail_result(&reply, "home its axes", error);
+        return weft_stage_fail_result(&reply, "home its axes", error);
     WEFT_TRY(wait_for_rest(c, homing_patience_s, &reply, failure, error));
     if ((reply.homed & channels) != channels || reply.state != WEFT_STATE_IDLE) {
         weft_error_set(error, WEFT_SYSTEM, "stage: homing was interrupted");
         return fail_lost(failure);
     }
     for (int k = 0; k < c->axes->count; k++)
-        c->reached.deg[k] = degrees(reply.position[c->axes->axis[k].channel]);
+        c->reached.deg[k] = weft_stage_degrees(reply.position[c->axes->axis[k].channel]);
     c->disturbances = reply.disturbances;
     return WEFT_OK;
 }
@@ -286,7 +246,7 @@ static bool stands_at(const weft_controller *c, const weft_stage_reply *reply, u
                       const weft_axis_positions *to)
 {
     for (int k = 0; k < c->axes->count; k++) {
-        double at = degrees(reply->position[c->axes->axis[k].channel]);
+        double at = weft_stage_degrees(reply->position[c->axes->axis[k].channel]);
         if ((mask >> k & 1) && !(fabs(at - to->deg[k]) <= c->settings.tolerance_deg))
             return false;
     }
@@ -296,7 +256,7 @@ static bool stands_at(const weft_controller *c, const weft_stage_reply *reply, u
 /* A refusal that a new homing may mend. */
 static weft_code fail_move(const weft_stage_reply *reply, weft_move_failure *failure, weft_error *error)
 {
-    fail_result(reply, "move its axes", error);
+    weft_stage_fail_result(reply, "move its axes", error);
     bool mends = reply->result == WEFT_RESULT_NOT_HOMED || reply->result == WEFT_RESULT_BUSY;
     *failure = mends ? WEFT_MOVE_LOST : WEFT_MOVE_OVER;
     return WEFT_SYSTEM;
@@ -356,7 +316,7 @@ static weft_code set_lamp(void *device, int lamp, double level, weft_error *erro
     WEFT_TRY(ask_surely(c, (weft_stage_request){.command = WEFT_COMMAND_LIGHT, .number = number, .word = word}, &reply,
                         error));
     if (reply.result != WEFT_RESULT_DONE)
-        return fail_result(&reply, "switch a lamp", error);
+        return weft_stage_fail_result(&reply, "switch a lamp", error);
     return reply.lamp == number && reply.level == word
                ? WEFT_OK
                : weft_fail(error, WEFT_SYSTEM, "stage: lamp %d does not switch", lamp);
@@ -378,7 +338,7 @@ weft_code weft_controller_pulse(weft_controller *c, double seconds, weft_error *
     weft_link_outcome outcome = ask(c, request, &reply);
     if (outcome != WEFT_LINK_ANSWERED)
         return fail_outcome(outcome, error);
-    return reply.result == WEFT_RESULT_DONE ? WEFT_OK : fail_result(&reply, "release the shutter", error);
+    return reply.result == WEFT_RESULT_DONE ? WEFT_OK : weft_stage_fail_result(&reply, "release the shutter", error);
 }
 
 /* ---- The controller ---- */
