@@ -6,8 +6,8 @@
 
 #include "base/progress.h"
 #include "btf/session/colour.h"
-#include "registration/hand/lamp.h"
 #include "registration/hand/lens.h"
+#include "registration/lamp/lamp.h"
 
 typedef struct weft_hand_settings {
     weft_target target;

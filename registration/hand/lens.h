@@ -3,7 +3,7 @@
 #define WEFT_REGISTRATION_HAND_LENS_H
 
 #include "registration/hand/hand_bridge.h"
-#include "registration/hand/photograph.h"
+#include "registration/lamp/photograph.h"
 
 /* How a lens became known. */
 typedef struct weft_lens_estimate {

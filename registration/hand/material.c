@@ -3,8 +3,8 @@
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
 #include "registration/hand/certainty.h"
-#include "registration/hand/read.h"
 #include "registration/hand/thumbnail.h"
+#include "registration/lamp/read.h"
 #include "registration/resample/resample.h"
 
 #include <math.h>

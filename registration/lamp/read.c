@@ -1,4 +1,4 @@
-#include "registration/hand/read.h"
+#include "registration/lamp/read.h"
 
 #include "base/picture/image.h"
 

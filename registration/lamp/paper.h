@@ -1,10 +1,10 @@
 /* The light on the sheet: brightness of bare paper and of ink at places of the plate. */
-#ifndef WEFT_REGISTRATION_HAND_PAPER_H
-#define WEFT_REGISTRATION_HAND_PAPER_H
+#ifndef WEFT_REGISTRATION_LAMP_PAPER_H
+#define WEFT_REGISTRATION_LAMP_PAPER_H
 
 #include "base/status.h"
-#include "registration/hand/photograph.h"
-#include "registration/hand/read.h"
+#include "registration/lamp/photograph.h"
+#include "registration/lamp/read.h"
 
 /* Places of the plate with nothing but paper, or nothing but ink, within reach; mm. */
 typedef struct weft_paper_places {

@@ -1,4 +1,4 @@
-#include "registration/hand/paper.h"
+#include "registration/lamp/paper.h"
 
 #include <math.h>
 #include <stdlib.h>

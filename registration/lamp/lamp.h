@@ -1,14 +1,14 @@
 /* Where the lamp stood in every photograph, and how bright it was: from the fall of its light over the paper, and from
  * its highlights on mirror balls. The tone curve of the camera and the vignetting of its lens are found with it,
  * because the same brightness tells all three. */
-#ifndef WEFT_REGISTRATION_HAND_LAMP_H
-#define WEFT_REGISTRATION_HAND_LAMP_H
+#ifndef WEFT_REGISTRATION_LAMP_LAMP_H
+#define WEFT_REGISTRATION_LAMP_LAMP_H
 
-#include "registration/hand/ball.h"
-#include "registration/hand/flash.h"
-#include "registration/hand/listed.h"
-#include "registration/hand/paper.h"
-#include "registration/hand/pin.h"
+#include "registration/lamp/ball.h"
+#include "registration/lamp/flash.h"
+#include "registration/lamp/listed.h"
+#include "registration/lamp/paper.h"
+#include "registration/lamp/pin.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,9 +1,9 @@
 /* The pixels of a photograph, in proportion to light. */
-#ifndef WEFT_REGISTRATION_HAND_READ_H
-#define WEFT_REGISTRATION_HAND_READ_H
+#ifndef WEFT_REGISTRATION_LAMP_READ_H
+#define WEFT_REGISTRATION_LAMP_READ_H
 
 #include "base/status.h"
-#include "registration/hand/tone.h"
+#include "registration/lamp/tone.h"
 
 #include <stdint.h>
 

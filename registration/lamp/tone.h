@@ -1,6 +1,6 @@
 /* The tone curve of a camera: from the encoded values of a file to values in proportion to light. */
-#ifndef WEFT_REGISTRATION_HAND_TONE_H
-#define WEFT_REGISTRATION_HAND_TONE_H
+#ifndef WEFT_REGISTRATION_LAMP_TONE_H
+#define WEFT_REGISTRATION_LAMP_TONE_H
 
 enum { WEFT_TONE_STEPS = 1024 };
 

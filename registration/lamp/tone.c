@@ -1,4 +1,4 @@
-#include "registration/hand/tone.h"
+#include "registration/lamp/tone.h"
 
 #include "base/picture/colour.h"
 

@@ -1,6 +1,6 @@
 /* One photograph of a camera in the hand, and what is found out about it. */
-#ifndef WEFT_REGISTRATION_HAND_PHOTOGRAPH_H
-#define WEFT_REGISTRATION_HAND_PHOTOGRAPH_H
+#ifndef WEFT_REGISTRATION_LAMP_PHOTOGRAPH_H
+#define WEFT_REGISTRATION_LAMP_PHOTOGRAPH_H
 
 #include "base/picture/exif.h"
 #include "base/picture/image.h"
