@@ -21,4 +21,7 @@ typedef struct weft_lens_estimate {
 weft_code weft_lens_estimate_from(weft_hand_photograph *photograph, int count, int width, int height,
                                   const weft_camera *known, weft_lens_estimate *lens, weft_error *error);
 
+/* Squared distance from the axis of the farthest corner of a photograph, in focal lengths. Pure. */
+double weft_lens_corner_radius_squared(const weft_camera *camera);
+
 #endif

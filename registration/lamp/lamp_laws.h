@@ -31,6 +31,10 @@ constexpr double beam_mean[WEFT_BEAM_TERMS] = {0, 0, -1, 0, -1}, beam_deviation[
 
 constexpr double tone_deviation[WEFT_TONE_TERMS] = {0.5, 0.5, 0.25, 0.25, 0.125};
 
+/* Of two exposures: the camera says 1/100 s and means 1/102 s, and its shutter errs. Of the light of a place in both:
+ * what a hand that is not still changes, and what the mean over a square leaves of the rounding to 8 bits. */
+constexpr double ratio_deviation = 0.02, pair_deviation = 0.02, rounding_deviation = 0.1 / 255;
+
 using vec3 = std::array<double, 3>;
 
 /* From the lamp's unknowns to its place on the plate: itself, or moved with the camera. */
@@ -195,6 +199,33 @@ struct power_residual {
         mount.place(unknown, lamp);
         const T squared = lamp[0] * lamp[0] + lamp[1] * lamp[1] + lamp[2] * lamp[2];
         residual[0] = (level[1] + log(squared) - log_exposure - power[0]) / power_deviation;
+        return true;
+    }
+};
+
+/* A place in two photographs that differ in exposure alone: the logarithms of its light differ by that of the ratio. */
+struct pair_residual {
+    double difference[3], power[3][WEFT_TONE_TERMS], weight[3];
+
+    template <typename T> bool operator()(const T *tone, const T *ratio, T *residual) const
+    {
+        for (int c = 0; c < 3; c++) {
+            T value = difference[c] - ratio[c];
+            for (int k = 0; k < WEFT_TONE_TERMS; k++)
+                value += tone[k] * power[c][k];
+            residual[c] = weight[c] * value;
+        }
+        return true;
+    }
+};
+
+/* What the camera wrote of the ratio of two exposures. The white balance may change, so it holds for green. */
+struct ratio_residual {
+    double log_ratio;
+
+    template <typename T> bool operator()(const T *ratio, T *residual) const
+    {
+        residual[0] = (ratio[1] - log_ratio) / ratio_deviation;
         return true;
     }
 };

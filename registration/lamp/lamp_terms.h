@@ -36,7 +36,7 @@ class lamp_terms
   public:
     /* `guess` gives places and ink, where the search starts. */
     lamp_terms(const weft_lamp_problem *given, const weft_lamp_solution *guess)
-        : input(given), own((size_t)given->count)
+        : input(given), own((size_t)given->count), ratios((size_t)given->pair_count)
     {
         shared.ink = std::log(guess->ink);
         if (input->flash)
@@ -50,12 +50,15 @@ class lamp_terms
             add_listed(i);
         }
         add_power(guess);
+        for (int i = 0; input->tone_unknown && i < input->pair_count; i++)
+            add_pair(input->pair[i], ratios[(size_t)i].data());
         add_priors();
     }
 
   protected:
     const weft_lamp_problem *input;
     std::vector<photograph_unknowns> own;
+    std::vector<vec3> ratios; /* of exposures: logarithms in three channels */
     shared_unknowns shared = {};
     owned_problem terms;
 
@@ -100,6 +103,15 @@ class lamp_terms
         }
     }
 
+    /* Adds `sign` times the powers of the tone curve at a value; returns so much of the logarithm of its light. */
+    static double add_powers(float light, double sign, double power[WEFT_TONE_TERMS])
+    {
+        double raised = sign, encoded = 2 * (double)weft_srgb_of_linear(light) - 1;
+        for (int k = 0; k < WEFT_TONE_TERMS; k++)
+            power[k] += raised *= encoded;
+        return sign * std::log((double)light);
+    }
+
     void add_paper(int i)
     {
         const weft_paper_samples &paper = input->evidence[i].paper;
@@ -114,14 +126,8 @@ class lamp_terms
             residual.radius_squared = (double)s.radius_squared / input->corner_radius_squared;
             residual.is_ink = is_ink;
             residual.weight = share / (is_ink ? ink_deviation : paper_deviation);
-            if (!(std::min({s.light[0], s.light[1], s.light[2]}) > 1e-4f))
-                continue;
-            for (int c = 0; c < 3; c++) {
-                residual.log_light[c] = std::log((double)s.light[c]);
-                double power = 1, encoded = 2 * (double)weft_srgb_of_linear(s.light[c]) - 1;
-                for (int term = 0; term < WEFT_TONE_TERMS; term++)
-                    residual.power[c][term] = power *= encoded;
-            }
+            for (int c = 0; c < 3; c++)
+                residual.log_light[c] = add_powers(s.light[c], 1, residual.power[c]);
             terms.add<3, 3, 3, WEFT_TONE_TERMS, 2, 1, WEFT_BEAM_TERMS>(residual, terms.cauchy(3 * share), lamp_of(i),
                                                                        own[(size_t)i].level, shared.tone,
                                                                        shared.vignetting, &shared.ink, shared.beam);
@@ -205,6 +211,30 @@ class lamp_terms
             terms.add<1, 3, 3, 1>(power_residual{mount_of(i), std::log(input->evidence[i].exposure)}, terms.cauchy(2),
                                   lamp_of(i), own[(size_t)i].level, &shared.power);
         }
+    }
+
+    /* The logarithms of light that both photographs of a pair have at a place. Samples are in the order of places. */
+    void add_pair(const weft_exposure_pair &pair, double *ratio)
+    {
+        const weft_paper_samples &bright = input->evidence[pair.bright].paper, &dark = input->evidence[pair.dark].paper;
+        const double share = std::sqrt(independent_samples / (3 * std::max(bright.count, dark.count)));
+        std::fill_n(ratio, 3, pair.log_ratio);
+        for (int i = 0, k = 0; i < bright.count && k < dark.count;) {
+            const weft_paper_sample &a = bright.sample[i], &b = dark.sample[k];
+            i += a.place <= b.place;
+            k += b.place <= a.place;
+            if (a.place != b.place)
+                continue;
+            pair_residual residual = {};
+            for (int c = 0; c < 3; c++) {
+                const double rounding = rounding_deviation / (double)weft_srgb_of_linear(b.light[c]);
+                residual.weight[c] = std::min(1.0, share) / std::hypot(pair_deviation, rounding);
+                residual.difference[c] =
+                    add_powers(a.light[c], 1, residual.power[c]) + add_powers(b.light[c], -1, residual.power[c]);
+            }
+            terms.add<3, WEFT_TONE_TERMS, 3>(residual, terms.cauchy(3 * share), shared.tone, ratio);
+        }
+        terms.add<1, 3>(ratio_residual{pair.log_ratio}, terms.cauchy(2), ratio);
     }
 
     void hold(double *block)

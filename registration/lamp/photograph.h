@@ -48,7 +48,8 @@ typedef struct weft_hand_photograph {
 
     weft_lamp_place lamp;
 
-    double contrast; /* of the texels: relative standard deviation */
+    double contrast;                  /* of the texels: relative standard deviation */
+    long clipped_texels, dark_texels; /* that are masked */
 
     weft_image thumbnail, rectified; /* for the report, sRGB; without pixels where there is none */
 } weft_hand_photograph;

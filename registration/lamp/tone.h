@@ -13,6 +13,10 @@ typedef struct weft_tone_curve {
 weft_tone_curve weft_tone_srgb(void);
 weft_tone_curve weft_tone_linear(void);
 
+/* Multiplies the light of an encoded value v by exp(sum_k term[k] (2 v - 1)^(k + 1)), lets it never fall, and divides
+ * it by what it has at 1, which is returned. Pure. */
+double weft_tone_bend(weft_tone_curve *tone, const double *term, int terms);
+
 /* Light of an encoded value, which is held to 0..1: linear between the steps. Pure. */
 static inline float weft_tone_decode(const weft_tone_curve *tone, float encoded)
 {
