@@ -7,6 +7,7 @@
 #include "registration/hand/material.h"
 #include "registration/hand/pose.h"
 #include "registration/hand/thumbnail.h"
+#include "registration/lamp/exposure.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -131,9 +132,8 @@ static weft_code look_for_light(work *w, int index, const weft_light_values *val
     WEFT_TRY(weft_hand_pose_refine(&w->sight, camera, values, p, error));
     if (!weft_hand_used(p))
         return WEFT_OK;
-    const weft_exif *exif = &p->exif;
     evidence->pose = p->pose;
-    evidence->exposure = exif->f_number > 0 ? exif->exposure_s * exif->iso / (exif->f_number * exif->f_number) : 0;
+    evidence->exposure = weft_exif_exposure(&p->exif);
     WEFT_TRY(weft_paper_sample_all(&w->places, camera, &p->homography, values, &evidence->paper, error));
     for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT && w->settings->ball_diameter_mm > 0; ball++) {
         double place[2];

@@ -24,13 +24,13 @@ typedef struct weft_lamp_evidence {
     weft_highlight highlight[WEFT_TARGET_BALL_COUNT];
     weft_pin_shadow pin;
     weft_listed_lamp listed;
-    double exposure; /* time x sensitivity / f-number^2 as the camera wrote it; 0: it wrote none */
+    double exposure; /* weft_exif_exposure; 0: the camera wrote none */
 } weft_lamp_evidence;
 
 /* Two photographs of one view under one lamp, which differ in their exposure. */
 typedef struct weft_exposure_pair {
     int bright, dark;
-    double log_ratio; /* of their exposures, as the camera wrote them */
+    double log_ratio; /* of their exposures */
 } weft_exposure_pair;
 
 typedef struct weft_lamp_problem {

@@ -31,7 +31,7 @@ constexpr double beam_mean[WEFT_BEAM_TERMS] = {0, 0, -1, 0, -1}, beam_deviation[
 
 constexpr double tone_deviation[WEFT_TONE_TERMS] = {0.5, 0.5, 0.25, 0.25, 0.125};
 
-/* Of two exposures: the camera says 1/100 s and means 1/102 s, and its shutter errs. Of the light of a place in both:
+/* Of two exposures: shutters err, and not all cameras round as others do. Of the light of a place in both:
  * what a hand that is not still changes, and what the mean over a square leaves of the rounding to 8 bits. */
 constexpr double ratio_deviation = 0.02, pair_deviation = 0.02, rounding_deviation = 0.1 / 255;
 

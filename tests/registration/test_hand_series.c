@@ -1,5 +1,6 @@
 /* Photographs of one view and one lamp that differ in exposure. The camera's curve is that of film on a screen, in
  * whole numbers of 8 bits; the room under test bends sRGB by a polynomial. */
+#include "registration/lamp/exposure.h"
 #include "registration/lamp/lamp.h"
 
 #include "tests/registration/near.h"
@@ -194,11 +195,39 @@ static void other_lamps_are_no_series(void **state)
     free(s);
 }
 
+/* Sixty is 64 to a camera, and 1/97 s is what a telephone means. */
+static void round_numbers_are_thirds_of_a_stop(void **state)
+{
+    (void)state;
+    const double written[][2] = {{1.0 / 60, 1.0 / 64},
+                                 {1.0 / 125, 1.0 / 128},
+                                 {1.0 / 15, 1.0 / 16},
+                                 {1.0 / 8000, 1.0 / 8192},
+                                 {1.0 / 100, 1 / 101.594},
+                                 {1.0 / 13, 1 / 12.699},
+                                 {0.4, 0.39685},
+                                 {2.5, 2.5198},
+                                 {30, 32},
+                                 {1.0 / 97, 1.0 / 97},
+                                 {1.0 / 300, 1.0 / 300},
+                                 {1.0 / 121, 1.0 / 121}};
+    for (size_t i = 0; i < sizeof written / sizeof *written; i++)
+        assert_near(weft_exposure_meant(written[i][0]) / written[i][1], 1, 1e-4);
+    /* Two stops, that the numbers make 4.17. */
+    weft_exif slow = {.exposure_s = 1.0 / 60, .iso = 125, .f_number = 5.6}, fast = slow;
+    fast.exposure_s = 1.0 / 250;
+    assert_near(weft_exif_exposure(&slow) / weft_exif_exposure(&fast), 4, 1e-9);
+    assert_near(weft_exif_exposure(&slow), 125.992 / 64 / (5.6 * 5.6), 1e-4);
+    slow.f_number = 0;
+    assert_near(weft_exif_exposure(&slow), 0, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exposures_tell_the_curve_and_so_the_lamps),
         cmocka_unit_test(other_lamps_are_no_series),
+        cmocka_unit_test(round_numbers_are_thirds_of_a_stop),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
