@@ -10,6 +10,7 @@ typedef struct hand_command {
 
 static const char *const set_names[] = {"free", "flash", "tripod", "stepped", NULL};
 static const char *const format_names[] = {"jpeg", "tiff", "exr", NULL};
+static const char *const curve_names[] = {"contrast", "soft", NULL};
 
 #define PLACE(field) offsetof(hand_command, request.field)
 
@@ -26,10 +27,16 @@ static const weft_option option_table[] = {
      .offset = PLACE(photograph_count), .low = 1, .high = 5000},
     {"rubbish", .argument = "N", .help = "How many of them are good for nothing (default: 0)",
      .kind = WEFT_OPTION_WHOLE, .offset = PLACE(rubbish_count), .low = 0, .high = 5000},
+    {"series", .argument = "N",
+     .help = "How many views are photographed twice, the second time two stops darker (default: 0)",
+     .kind = WEFT_OPTION_WHOLE, .offset = PLACE(series_count), .low = 0, .high = 2500},
     {"seed", .argument = "N", .help = "Start of the random numbers (default: 1)", .kind = WEFT_OPTION_SEED,
      .offset = PLACE(seed)},
     {"format", .argument = "FORMAT", .help = "jpeg (default), tiff (16 bits, linear) or exr (half floats, linear)",
      .kind = WEFT_OPTION_CHOICE, .offset = PLACE(format), .words = format_names},
+    {"curve", .argument = "WHICH",
+     .help = "Tone curve of jpeg: contrast (default; darker than sRGB in the dark) or soft (brighter)",
+     .kind = WEFT_OPTION_CHOICE, .offset = PLACE(curve), .words = curve_names},
     {"width", .argument = "N", .help = "Pixels across; the height is two thirds (default: 3000)",
      .kind = WEFT_OPTION_WHOLE, .offset = PLACE(width), .low = 300, .high = 8000},
     {"opening", .argument = "MM", .help = "Side of the opening of the printed sheet (default: 50)",
@@ -64,6 +71,9 @@ static weft_code check(void *values, weft_error *error)
     if (request->rubbish_count >= request->photograph_count)
         return weft_fail(error, WEFT_BAD_USAGE, "--rubbish %d leaves no photograph of %d", request->rubbish_count,
                          request->photograph_count);
+    if (2 * request->series_count > request->photograph_count)
+        return weft_fail(error, WEFT_BAD_USAGE, "--series %d takes %d photographs, there are %d", request->series_count,
+                         2 * request->series_count, request->photograph_count);
     return WEFT_OK;
 }
 

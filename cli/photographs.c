@@ -83,6 +83,11 @@ static void say_outcome(const photographs_command *command, const weft_hand *han
     for (int i = 0; i < hand->notes.count; i++)
         weft_command_say(&command->common, "%s", hand->notes.line[i]);
     say_lens(command, &hand->lens);
+    char words[WEFT_HAND_WORDS_SIZE];
+    weft_hand_describe_tone(hand, words);
+    weft_command_say(&command->common, "tone curve: %s", words);
+    weft_hand_describe_masks(hand, &command->settings, words);
+    weft_command_say(&command->common, "masks: %s", words);
     if (command->settings.colour)
         weft_command_say(&command->common,
                          "colours: linear sRGB; a patch of the chart that was left out is met within %.2f CIEDE2000 in "

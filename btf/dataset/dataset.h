@@ -29,7 +29,7 @@ typedef enum weft_distance {
 enum {
     WEFT_MASK_MISSING = 1,   /* no photograph, or its view could not be registered */
     WEFT_MASK_SATURATED = 2, /* the sensor clipped */
-    WEFT_MASK_DARK = 8       /* its noise is as large as its value, in the longest exposure of a bracket, too */
+    WEFT_MASK_DARK = 8       /* too dark to be read: noise, or a few steps of the file, as large as its value */
 };
 
 /* Numbers that may be known about every image. */

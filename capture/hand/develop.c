@@ -51,10 +51,21 @@ weft_code weft_snap_sense(const weft_snap_exposure *exposure, const float *radia
     return code;
 }
 
-double weft_snap_tone(double linear)
+static double contrast_curve(double linear)
 {
     const double toe = 0.002, power = 0.85, middle = 0.4589348; /* 0.4^0.85 */
     double t = linear > 0 ? linear * linear / (linear + toe) : 0, raised = pow(t, power);
     double full = pow(1 / (1 + toe), power);
     return raised / (raised + middle) * (full + middle) / full;
+}
+
+static double soft_curve(double linear)
+{
+    const double density = 2, gamma = 2.2;
+    return pow(expm1(-density * fmax(linear, 0)) / expm1(-density), 1 / gamma);
+}
+
+double weft_snap_tone(weft_snap_curve curve, double linear)
+{
+    return curve == WEFT_SNAP_SOFT ? soft_curve(linear) : contrast_curve(linear);
 }

@@ -7,6 +7,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Tone curves of cameras. */
+typedef enum weft_snap_curve {
+    WEFT_SNAP_CONTRAST, /* t = x^2 / (x + 0.002), then t^n / (t^n + m) over the same at x = 1, n = 0.85, m = 0.4^n: a
+                           toe, and a shoulder (the response of Naka and Rushton 1966). Darker than sRGB in the dark */
+    WEFT_SNAP_SOFT      /* ((1 - e^-2x) / (1 - e^-2))^(1/2.2): grains that are hit or not (Poisson), on a screen of
+                           gamma 2.2. Brighter than sRGB in the dark */
+} weft_snap_curve;
+
 typedef struct weft_snap_exposure {
     double seconds, f_number, iso; /* as the camera says */
     double gain;                   /* part of the sensor's range that 1 cd/m^2 fills, truly */
@@ -23,8 +31,7 @@ double weft_snap_gain(double seconds, double f_number, double iso);
 weft_code weft_snap_sense(const weft_snap_exposure *exposure, const float *radiance, size_t count, uint64_t key,
                           float *linear, weft_error *error);
 
-/* The tone curve of the camera's JPEG, 0..1 to 0..1: t = x^2 / (x + 0.002), then t^n / (t^n + m) over the same at x =
- * 1, n = 0.85, m = 0.4^n: a toe, and a shoulder (the response of Naka and Rushton 1966). Pure. */
-double weft_snap_tone(double linear);
+/* The tone curve of the camera's JPEG, 0..1 to 0..1. Pure. */
+double weft_snap_tone(weft_snap_curve curve, double linear);
 
 #endif

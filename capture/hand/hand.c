@@ -47,7 +47,7 @@ static weft_code light_sensor(const weft_snap_request *request, const weft_snap_
     return WEFT_OK;
 }
 
-static weft_code encode_tone(float *pixels, size_t count, weft_error *error)
+static weft_code encode_tone(weft_snap_curve kind, float *pixels, size_t count, weft_error *error)
 {
     enum { STEPS = 1 << 14 };
     static const float scale = STEPS;
@@ -55,7 +55,7 @@ static weft_code encode_tone(float *pixels, size_t count, weft_error *error)
     if (!curve)
         return weft_fail_memory(error, "a tone curve", STEPS * sizeof *curve);
     for (int i = 0; i <= STEPS + 1; i++)
-        curve[i] = (float)weft_snap_tone((double)i / STEPS);
+        curve[i] = (float)weft_snap_tone(kind, (double)i / STEPS);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < count; i++) {
         float at = pixels[i] * scale;
@@ -80,7 +80,7 @@ static weft_code develop(const weft_snap_request *request, const weft_snap_shot 
     }
     weft_code code = weft_snap_sense(&shot->exposure, seen, count, shot->key, image->pixels, error);
     if (code == WEFT_OK && request->format == WEFT_SNAP_JPEG)
-        code = encode_tone(image->pixels, count, error);
+        code = encode_tone(request->curve, image->pixels, count, error);
     weft_image_free(&shaken);
     return code;
 }

@@ -1,30 +1,9 @@
 #include "capture/hand/plan.h"
 
-#include "capture/virtual/random.h"
+#include "capture/hand/dice.h"
+#include "capture/hand/mishap.h"
 
 #include <stdio.h>
-
-enum { CHANCES = 4096 }; /* random numbers of a photograph */
-
-/* Random numbers of one photograph, in the order in which they are asked for. */
-typedef struct dice {
-    uint64_t seed, next;
-} dice;
-
-static dice dice_of(uint64_t seed, int photograph)
-{
-    return (dice){seed, (uint64_t)photograph * CHANCES};
-}
-
-static double between(dice *d, double low, double high)
-{
-    return low + (high - low) * weft_random_uniform(d->seed, WEFT_RANDOM_HAND, d->next++);
-}
-
-static double normal(dice *d, double deviation)
-{
-    return deviation * weft_random_normal(d->seed, WEFT_RANDOM_HAND, d->next++);
-}
 
 weft_snap_request weft_snap_request_default(void)
 {
@@ -40,30 +19,23 @@ weft_snap_request weft_snap_request_default(void)
                                .truth_size = 64};
 }
 
-const char *weft_snap_fault_name(weft_snap_fault fault)
-{
-    static const char *const name[] = {"good",      "shaken",       "other scene", "lens cap",
-                                       "hand over", "underexposed", "half out"};
-    return name[fault];
-}
-
 /* ---- Lens ---- */
 
 /* One lens of a kind for a seed: a little barrel distortion, an axis beside the middle. */
 static weft_snap_lens lens_of(const weft_snap_request *request)
 {
-    dice d = dice_of(request->seed, -1);
+    weft_dice d = weft_dice_of(request->seed, -1);
     weft_snap_lens lens = {.width = request->width,
                            .height = request->width * 2 / 3,
                            .sensor_width_mm = 23.5,
                            .focal_length_mm = request->focal_length_mm,
                            .rim_mm = 24,
                            .rim_radius_mm = 24 * 14.5 / request->focal_length_mm};
-    lens.image_distance_mm = lens.focal_length_mm * (1 + between(&d, -0.02, 0.03));
-    lens.axis_x = 0.5 * (lens.width - 1) + between(&d, -0.004, 0.004) * lens.width;
-    lens.axis_y = 0.5 * (lens.height - 1) + between(&d, -0.004, 0.004) * lens.width;
-    lens.division[0] = -between(&d, 0.015, 0.035);
-    lens.division[1] = between(&d, -0.004, 0.008);
+    lens.image_distance_mm = lens.focal_length_mm * (1 + weft_dice_between(&d, -0.02, 0.03));
+    lens.axis_x = 0.5 * (lens.width - 1) + weft_dice_between(&d, -0.004, 0.004) * lens.width;
+    lens.axis_y = 0.5 * (lens.height - 1) + weft_dice_between(&d, -0.004, 0.004) * lens.width;
+    lens.division[0] = -weft_dice_between(&d, 0.015, 0.035);
+    lens.division[1] = weft_dice_between(&d, -0.004, 0.008);
     return lens;
 }
 
@@ -181,15 +153,15 @@ static void fit_frame(const weft_snap_request *request, const weft_snap_lens *le
     *a = best;
 }
 
-static weft_pose free_pose(const weft_snap_request *request, const weft_snap_lens *lens, dice *d, int *orientation)
+static weft_pose free_pose(const weft_snap_request *request, const weft_snap_lens *lens, weft_dice *d, int *orientation)
 {
     double size = request->opening_mm * 4;
     /* Solid angle for solid angle, but a person takes more from above than that. */
-    double cosine = 1 - pow(between(d, 0, 1), 1.2) * (1 - cos(request->max_view_rad));
-    aim a = {.theta = acos(cosine), .phi = between(d, 0, 2 * WEFT_PI), .roll = normal(d, 0.05)};
-    a.fill = between(d, 0.84, 0.95);
-    a.at = weft_vec3_of(normal(d, 0.02 * size), normal(d, 0.02 * size), 0);
-    int upright = between(d, 0, 1) < 0.7 ? 6 : 8;
+    double cosine = 1 - pow(weft_dice_between(d, 0, 1), 1.2) * (1 - cos(request->max_view_rad));
+    aim a = {.theta = acos(cosine), .phi = weft_dice_between(d, 0, 2 * WEFT_PI), .roll = weft_dice_normal(d, 0.05)};
+    a.fill = weft_dice_between(d, 0.84, 0.95);
+    a.at = weft_vec3_of(weft_dice_normal(d, 0.02 * size), weft_dice_normal(d, 0.02 * size), 0);
+    int upright = weft_dice_between(d, 0, 1) < 0.7 ? 6 : 8;
     fit_frame(request, lens, upright, &a);
     *orientation = a.orientation;
     return stand_back(request, lens, &a);
@@ -203,12 +175,13 @@ static bool in_frame(const weft_snap_shot *shot, weft_vec3 point)
 }
 
 /* Somewhere over the sheet, neither in the picture nor behind the camera. */
-static weft_vec3 hold_lamp(const weft_snap_shot *shot, dice *d, double nearest, double farthest)
+static weft_vec3 hold_lamp(const weft_snap_shot *shot, weft_dice *d, double nearest, double farthest)
 {
     weft_vec3 at = {0, 0, 0}, toward_eye = weft_unit(weft_pose_camera_position(&shot->pose));
     for (int try = 0; try < 200; try++) {
-        double theta = acos(between(d, cos(weft_rad_of_deg(75)), 1)), phi = between(d, 0, 2 * WEFT_PI);
-        double distance = nearest * pow(farthest / nearest, between(d, 0, 1));
+        double theta = acos(weft_dice_between(d, cos(weft_rad_of_deg(75)), 1)),
+               phi = weft_dice_between(d, 0, 2 * WEFT_PI);
+        double distance = nearest * pow(farthest / nearest, weft_dice_between(d, 0, 1));
         at = weft_scale(weft_vec3_of(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)), distance);
         if (weft_dot(weft_unit(at), toward_eye) < cos(weft_rad_of_deg(9)) && !in_frame(shot, at))
             break;
@@ -227,8 +200,8 @@ static weft_vec3 from_camera(const weft_pose *pose, weft_vec3 p)
 /* A flash above the lens and a little aside, as the camera is held level. */
 static weft_snap_lamp flash_of(const weft_snap_request *request, const weft_snap_shot *shot)
 {
-    dice d = dice_of(request->seed, -2);
-    weft_vec3 offset = {-between(&d, 10, 30), -between(&d, 60, 85), between(&d, -5, 15)};
+    weft_dice d = weft_dice_of(request->seed, -2);
+    weft_vec3 offset = {-weft_dice_between(&d, 10, 30), -weft_dice_between(&d, 60, 85), weft_dice_between(&d, -5, 15)};
     const double *f = shot->pose.rotation[2];
     return (weft_snap_lamp){.at = from_camera(&shot->pose, offset),
                             .axis = {f[0], f[1], f[2]},
@@ -269,38 +242,39 @@ static double third_stop(double value)
 
 /* Aperture priority: the paper comes to a half of the range, give or take; by time, then by sensitivity. The shutter of
  * a flash is fixed. */
-static weft_snap_exposure expose(const weft_snap_request *request, const weft_snap_lamp *lamp, dice *d)
+static weft_snap_exposure expose(const weft_snap_request *request, const weft_snap_lamp *lamp, weft_dice *d)
 {
     double paper = 0.85 * weft_snap_lamp_illuminance(lamp, weft_vec3_of(0, 0, 0)) / WEFT_PI;
-    double wanted = 0.48 * exp2(between(d, -0.5, 0.4)) / fmax(paper, 1);
+    double wanted = 0.48 * exp2(weft_dice_between(d, -0.5, 0.4)) / fmax(paper, 1);
     weft_snap_exposure e = {.f_number = 11, .iso = 100, .seconds = 1.0 / 160};
     double slowest = request->set == WEFT_SNAP_FREE || request->set == WEFT_SNAP_FLASH ? 1.0 / 60 : 2;
     if (request->set != WEFT_SNAP_FLASH)
         e.seconds = third_stop(fmin(wanted / weft_snap_gain(1, e.f_number, e.iso), slowest));
     e.iso = weft_clamp(100 * third_stop(wanted / weft_snap_gain(e.seconds, e.f_number, 100)), 100, 6400);
-    e.gain = weft_snap_gain(e.seconds, e.f_number, e.iso) * (1 + normal(d, 0.004));
+    e.gain = weft_snap_gain(e.seconds, e.f_number, e.iso) * (1 + weft_dice_normal(d, 0.004));
     e.seconds = 1 / engraved(1 / e.seconds);
     e.iso = engraved(e.iso);
-    e.white_balance[0] = 1 / lamp->colour.r * lamp->colour.g * (1 + normal(d, request->white_balance));
+    e.white_balance[0] = 1 / lamp->colour.r * lamp->colour.g * (1 + weft_dice_normal(d, request->white_balance));
     e.white_balance[1] = 1;
-    e.white_balance[2] = 1 / lamp->colour.b * lamp->colour.g * (1 + normal(d, request->white_balance));
+    e.white_balance[2] = 1 / lamp->colour.b * lamp->colour.g * (1 + weft_dice_normal(d, request->white_balance));
     return e;
 }
 
 /* ---- Sets ---- */
 
-static void plan_free(const weft_snap_request *request, dice *d, weft_snap_shot *shot)
+static void plan_free(const weft_snap_request *request, weft_dice *d, weft_snap_shot *shot)
 {
     shot->pose = free_pose(request, &shot->lens, d, &shot->orientation);
     shot->lamp =
         request->set == WEFT_SNAP_FLASH ? flash_of(request, shot) : lamp_at(request, hold_lamp(shot, d, 300, 1500));
 }
 
-static void plan_tripod(const weft_snap_request *request, dice *d, weft_snap_shot *shot)
+static void plan_tripod(const weft_snap_request *request, weft_dice *d, weft_snap_shot *shot)
 {
-    dice stand = dice_of(request->seed, -3);
-    aim a = {
-        .theta = between(&stand, 0.02, 0.12), .phi = -WEFT_PI / 2 + normal(&stand, 0.1), .roll = normal(&stand, 0.02)};
+    weft_dice stand = weft_dice_of(request->seed, -3);
+    aim a = {.theta = weft_dice_between(&stand, 0.02, 0.12),
+             .phi = -WEFT_PI / 2 + weft_dice_normal(&stand, 0.1),
+             .roll = weft_dice_normal(&stand, 0.02)};
     a.fill = 0.93;
     shot->orientation = a.orientation = 6;
     shot->pose = stand_back(request, &shot->lens, &a);
@@ -309,102 +283,25 @@ static void plan_tripod(const weft_snap_request *request, dice *d, weft_snap_sho
 
 /* A turntable of 12 steps; the arm of the camera has as many places as the photographs need, and so has that of the
  * lamp, which stands on the other side of the room. */
-static void plan_stepped(const weft_snap_request *request, int photograph, dice *d, weft_snap_shot *shot)
+static void plan_stepped(const weft_snap_request *request, int photograph, weft_dice *d, weft_snap_shot *shot)
 {
     enum { STEPS = 12 };
     int arms = (request->photograph_count + STEPS - 1) / STEPS, arm = photograph / STEPS, step = photograph % STEPS;
     double theta = arms > 1 ? request->max_view_rad * arm / (arms - 1) : request->max_view_rad / 2;
     double phi = 2 * WEFT_PI * step / STEPS;
-    aim a = {.theta = theta + normal(d, 0.003), .phi = phi + normal(d, 0.003), .roll = normal(d, 0.002)};
-    a.at = weft_vec3_of(normal(d, 0.4), normal(d, 0.4), 0);
+    aim a = {.theta = theta + weft_dice_normal(d, 0.003),
+             .phi = phi + weft_dice_normal(d, 0.003),
+             .roll = weft_dice_normal(d, 0.002)};
+    a.at = weft_vec3_of(weft_dice_normal(d, 0.4), weft_dice_normal(d, 0.4), 0);
     a.fill = 0.80;
     shot->nominal_theta_rad = theta;
     shot->nominal_phi_rad = phi;
     shot->orientation = a.orientation = 1;
-    double lamp_theta = weft_rad_of_deg(15 + 50 * fmod(0.618034 * arm + 0.3, 1)) + normal(d, 0.003);
+    double lamp_theta = weft_rad_of_deg(15 + 50 * fmod(0.618034 * arm + 0.3, 1)) + weft_dice_normal(d, 0.003);
     double lamp_phi = a.phi + weft_rad_of_deg(140);
     weft_vec3 lamp = {sin(lamp_theta) * cos(lamp_phi), sin(lamp_theta) * sin(lamp_phi), cos(lamp_theta)};
-    shot->pose = look_at(eye_of(&a, 620 + normal(d, 0.5)), a.at, a.phi, a.roll, 1);
-    shot->lamp = lamp_at(request, weft_scale(lamp, 800 + normal(d, 1)));
-}
-
-/* ---- Faults ---- */
-
-/* Half of the sheet leaves the frame: the camera is turned aside by half its field. */
-static void turn_aside(weft_snap_shot *shot, dice *d)
-{
-    double angle = 0.5 * shot->lens.sensor_width_mm / shot->lens.image_distance_mm * (between(d, 0, 1) < 0.5 ? -1 : 1);
-    double c = cos(angle), s = sin(angle);
-    weft_pose old = shot->pose;
-    const double *t = &old.translation.x;
-    for (int k = 0; k < 3; k++) {
-        shot->pose.rotation[0][k] = c * old.rotation[0][k] + s * old.rotation[2][k];
-        shot->pose.rotation[2][k] = c * old.rotation[2][k] - s * old.rotation[0][k];
-    }
-    shot->pose.translation.x = c * t[0] + s * t[2];
-    shot->pose.translation.z = c * t[2] - s * t[0];
-}
-
-/* The rubbish lies evenly among the photographs, each kind in turn. */
-static weft_snap_fault fault_of(const weft_snap_request *request, int photograph)
-{
-    for (int i = 0; i < request->rubbish_count; i++) {
-        if ((int)((i + 0.6) * request->photograph_count / request->rubbish_count) == photograph)
-            return (weft_snap_fault)(1 + i % (WEFT_SNAP_FAULT_COUNT - 1));
-    }
-    return WEFT_SNAP_GOOD;
-}
-
-/* A hand in from one side: the shadow of its fingertips ends `short_of` before the middle of the opening. */
-static void reach_in(dice *d, double part, double short_of, weft_snap_shot *shot)
-{
-    const double reach = 110;
-    double turn = between(d, 0, 2 * WEFT_PI);
-    weft_vec3 along = {cos(turn), sin(turn), 0}, aside = {-along.y, along.x, 0};
-    weft_vec3 tip = weft_add(weft_scale(along, -short_of), weft_scale(aside, normal(d, 15)));
-    weft_vec3 above = weft_add(weft_scale(tip, 1 - part), weft_scale(shot->lamp.at, part));
-    shot->hand_along = along;
-    shot->hand = weft_subtract(above, weft_scale(along, reach));
-    shot->hand.z = fmax(shot->hand.z, 32);
-}
-
-/* How far the line of the arm stays from the camera's line of sight to a corner of the opening's surroundings. */
-static double room_beside_hand(const weft_snap_request *request, const weft_snap_shot *shot)
-{
-    weft_snap_solid arm = {.a = weft_add(shot->hand, weft_scale(shot->hand_along, 110)),
-                           .b = weft_add(shot->hand, weft_scale(shot->hand_along, -260))};
-    weft_vec3 eye = weft_pose_camera_position(&shot->pose);
-    double room = INFINITY, side = 1.4 * request->opening_mm;
-    for (int i = 0; i < 4; i++) {
-        weft_vec3 corner = {i & 1 ? side : -side, i & 2 ? side : -side, 0};
-        room = fmin(room, weft_snap_solid_distance(&arm, corner, eye));
-    }
-    return room;
-}
-
-/* A hand that shades keeps out of the picture of the opening if it can; one over the plate does not. */
-static void place_hand(const weft_snap_request *request, dice *d, weft_snap_shot *shot)
-{
-    const double half_hand = 55;
-    if (shot->fault == WEFT_SNAP_HAND_OVER) {
-        reach_in(d, 0.08, -0.8 * request->opening_mm, shot);
-        return;
-    }
-    for (int try = 0; try < 60; try++) {
-        reach_in(d, between(d, 0.08, 0.25), request->opening_mm * between(d, -0.2, 1.2), shot);
-        if (room_beside_hand(request, shot) > half_hand)
-            return;
-    }
-}
-
-static void spoil(dice *d, weft_snap_shot *shot)
-{
-    if (shot->fault == WEFT_SNAP_UNDEREXPOSED) {
-        shot->exposure.seconds /= 64;
-        shot->exposure.gain /= 64;
-    }
-    if (shot->fault == WEFT_SNAP_HALF_OUT)
-        turn_aside(shot, d);
+    shot->pose = look_at(eye_of(&a, 620 + weft_dice_normal(d, 0.5)), a.at, a.phi, a.roll, 1);
+    shot->lamp = lamp_at(request, weft_scale(lamp, 800 + weft_dice_normal(d, 1)));
 }
 
 /* ---- The plan ---- */
@@ -413,35 +310,66 @@ static void spoil(dice *d, weft_snap_shot *shot)
 static void name_shot(const weft_snap_request *request, int photograph, weft_snap_shot *shot)
 {
     static const char *const ending[3][2] = {{"JPG", "jpg"}, {"tif", "TIF"}, {"exr", "exr"}};
-    dice d = dice_of(request->seed, -4);
-    int first = (int)between(&d, 100, 8000), number = (first + photograph) % 10000;
+    weft_dice d = weft_dice_of(request->seed, -4);
+    int first = (int)weft_dice_between(&d, 100, 8000), number = (first + photograph) % 10000;
     snprintf(shot->name, sizeof shot->name, "IMG_%04d.%s", number, ending[request->format][photograph % 7 == 5]);
     unsigned count = (unsigned)photograph;
     snprintf(shot->date, sizeof shot->date, "2026:03:14 %02u:%02u:%02u", (14 + count / 180) % 24, count / 3 % 60,
              count % 3 * 20 + count % 17);
 }
 
+/* The first photograph of the series that a photograph belongs to: itself where it belongs to none. Series lie evenly
+ * among the photographs. */
+static int first_of_series(const weft_snap_request *request, int photograph)
+{
+    for (int i = 0; i < request->series_count; i++) {
+        if ((int)((i + 0.3) * request->photograph_count / request->series_count) == photograph - 1)
+            return photograph - 1;
+    }
+    return photograph;
+}
+
+/* The same again, two stops darker. Neither hand is quite still; a stand is. */
+static void take_darker(const weft_snap_request *request, int photograph, weft_snap_shot *shot)
+{
+    const double times = 4, camera_mm = 0.5, lamp_mm = 2;
+    weft_dice d = weft_dice_of(request->seed, photograph);
+    shot->exposure.gain *= (1 + weft_dice_normal(&d, 0.004)) / times;
+    shot->exposure.seconds = 1 / engraved(times / shot->exposure.seconds);
+    if (request->set != WEFT_SNAP_FREE && request->set != WEFT_SNAP_FLASH)
+        return;
+    double *moved[] = {&shot->pose.translation.x, &shot->pose.translation.y, &shot->pose.translation.z};
+    for (int axis = 0; axis < 3; axis++)
+        *moved[axis] += weft_dice_normal(&d, camera_mm);
+    weft_vec3 aside = {weft_dice_normal(&d, lamp_mm), weft_dice_normal(&d, lamp_mm), weft_dice_normal(&d, lamp_mm)};
+    shot->lamp =
+        request->set == WEFT_SNAP_FLASH ? flash_of(request, shot) : lamp_at(request, weft_add(shot->lamp.at, aside));
+}
+
 static void plan_shot(const weft_snap_request *request, int photograph, weft_snap_shot *shot)
 {
-    dice d = dice_of(request->seed, photograph);
+    int first = first_of_series(request, photograph);
+    weft_dice d = weft_dice_of(request->seed, first);
     *shot = (weft_snap_shot){.lens = lens_of(request),
-                             .fault = fault_of(request, photograph),
+                             .fault = weft_snap_fault_of(request, photograph),
                              .key = weft_random_bits(request->seed, WEFT_RANDOM_NOISE, (uint64_t)photograph)};
     name_shot(request, photograph, shot);
     if (request->set == WEFT_SNAP_TRIPOD)
         plan_tripod(request, &d, shot);
     else if (request->set == WEFT_SNAP_STEPPED)
-        plan_stepped(request, photograph, &d, shot);
+        plan_stepped(request, first, &d, shot);
     else
         plan_free(request, &d, shot);
     shot->exposure = expose(request, &shot->lamp, &d);
     double depth = shot->pose.translation.z;
-    dice focusing = request->set == WEFT_SNAP_TRIPOD ? dice_of(request->seed, -5) : d;
-    focus(request, depth * (1 + normal(&focusing, 0.01)), shot->exposure.f_number, &shot->lens);
+    weft_dice focusing = request->set == WEFT_SNAP_TRIPOD ? weft_dice_of(request->seed, -5) : d;
+    focus(request, depth * (1 + weft_dice_normal(&focusing, 0.01)), shot->exposure.f_number, &shot->lens);
     d.next += 2;
-    shot->hand_shadow = between(&d, 0, 1) < request->hand_shadows;
-    place_hand(request, &d, shot);
-    spoil(&d, shot);
+    shot->hand_shadow = weft_dice_between(&d, 0, 1) < request->hand_shadows;
+    if (first != photograph)
+        take_darker(request, photograph, shot);
+    weft_snap_place_hand(request, &d, shot);
+    weft_snap_spoil(&d, shot);
 }
 
 void weft_snap_plan(const weft_snap_request *request, weft_snap_shot *shot)

@@ -39,6 +39,8 @@ typedef struct weft_snap_request {
     weft_snap_format format;
     uint64_t seed;
     int photograph_count, rubbish_count; /* the latter among the former */
+    int series_count;                    /* of them are taken twice, the second time two stops darker; at most half */
+    weft_snap_curve curve;               /* of the camera's JPEG */
     int width;                           /* pixels; the height is 2/3 of it */
     double opening_mm, focal_length_mm, max_view_rad;
     double lamp_radius_mm;

@@ -101,7 +101,8 @@ static json_t *tone_json(const weft_snap_request *request)
     json_t *list = json_array();
     for (int i = 0; i <= 1024; i++) {
         double linear = i / 1024.0;
-        weft_json_append(&list, json_real(request->format == WEFT_SNAP_JPEG ? weft_snap_tone(linear) : linear));
+        weft_json_append(
+            &list, json_real(request->format == WEFT_SNAP_JPEG ? weft_snap_tone(request->curve, linear) : linear));
     }
     return list;
 }

@@ -9,7 +9,7 @@
 enum { WEFT_GREY_TONE_TERMS = 2, WEFT_GREY_TONE_FEWEST = 4 };
 
 /* light = decoded exp(sum over k of term[k] (2 e - 1)^(k + 1)), for the encoded value e that sRGB decodes to `decoded`:
- * the form that lamps and tone curve of photographs by hand are found with (registration/hand/lamp.h). */
+ * the form that lamps and tone curve of photographs by hand are found with (registration/lamp/lamp.h). */
 typedef struct weft_grey_tone {
     double term[WEFT_GREY_TONE_TERMS];
 } weft_grey_tone;

@@ -155,6 +155,20 @@ double weft_hand_contrast(const weft_half *texel, const uint8_t *mask, size_t co
     return sum > 0 ? sqrt(fmax(0, squares * valid / (sum * sum) - 1)) : 0;
 }
 
+void weft_hand_mask_dark(const float *texel, float darkest, size_t count, uint8_t *mask,
+                         weft_hand_photograph *photograph)
+{
+    photograph->clipped_texels = photograph->dark_texels = 0;
+    for (size_t i = 0; i < count; i++) {
+        const float *rgb = texel + 3 * i;
+        photograph->clipped_texels += mask[i] == WEFT_MASK_SATURATED;
+        if (mask[i] || !(fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])) < darkest))
+            continue;
+        mask[i] = WEFT_MASK_DARK;
+        photograph->dark_texels++;
+    }
+}
+
 double weft_hand_variance(const weft_hand *hand, const weft_hand_photograph *photograph, double contrast,
                           double pitch_mm)
 {

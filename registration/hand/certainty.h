@@ -21,6 +21,11 @@ weft_code weft_hand_paper_residual(const weft_paper_places *places, const weft_l
 /* Relative standard deviation of the green of texels [count] that are valid; 0 without any. Pure. */
 double weft_hand_contrast(const weft_half *texel, const uint8_t *mask, size_t count);
 
+/* Masks texels [count][3] whose brightest channel is below `darkest`, WEFT_MASK_DARK, where they are valid; writes to
+ * `photograph` how many these are, and how many are masked as clipped. */
+void weft_hand_mask_dark(const float *texel, float darkest, size_t count, uint8_t *mask,
+                         weft_hand_photograph *photograph);
+
 /* Relative variance of the samples of a photograph,
  *     s0^2 + e^2 + (d tan theta)^2 / 2 + d^4 / 4 + (c 12 b^2 / (12 b^2 + p^2))^2,
  * of which its weight is the inverse. s0 = 0.02 is what all photographs are wrong by and no figure of one tells, e the

@@ -2,8 +2,8 @@
 #ifndef WEFT_REGISTRATION_HAND_CORNERS_H
 #define WEFT_REGISTRATION_HAND_CORNERS_H
 
-#include "registration/hand/photograph.h"
-#include "registration/hand/read.h"
+#include "registration/lamp/photograph.h"
+#include "registration/lamp/read.h"
 
 /* Fills marker_count, corner_count, plate and seen with corners that one plane explains, and the remark where there are
  * too few. Errors: WEFT_SYSTEM. */

@@ -7,6 +7,7 @@
 #include "registration/hand/material.h"
 #include "registration/hand/pose.h"
 #include "registration/hand/thumbnail.h"
+#include "registration/lamp/exposure.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -41,6 +42,7 @@ void weft_hand_free(weft_hand *hand)
         weft_image_free(&hand->photograph[i].rectified);
     }
     free(hand->photograph);
+    free(hand->pair);
     weft_lines_free(&hand->notes);
     *hand = (weft_hand){0};
 }
@@ -64,9 +66,8 @@ static weft_code look_at(work *w, int index, look what, weft_error *error)
     if (!path)
         return weft_fail_memory(error, p->name, strlen(p->name));
     weft_error own = {0};
-    float clipped_at = p->exif.is_float ? INFINITY : (float)w->settings->clipped_at;
-    weft_code code =
-        weft_light_values_read(path, p->exif.width, p->exif.height, &w->hand->tone, clipped_at, &values, &own);
+    weft_file_range range = weft_file_range_of(&p->exif, w->settings->clipped_at);
+    weft_code code = weft_light_values_read(path, p->exif.width, p->exif.height, &w->hand->tone, range, &values, &own);
     free(path);
     if (code == WEFT_BAD_INPUT) {
         snprintf(p->remark, sizeof p->remark, "%.180s", own.message);
@@ -131,9 +132,8 @@ static weft_code look_for_light(work *w, int index, const weft_light_values *val
     WEFT_TRY(weft_hand_pose_refine(&w->sight, camera, values, p, error));
     if (!weft_hand_used(p))
         return WEFT_OK;
-    const weft_exif *exif = &p->exif;
     evidence->pose = p->pose;
-    evidence->exposure = exif->f_number > 0 ? exif->exposure_s * exif->iso / (exif->f_number * exif->f_number) : 0;
+    evidence->exposure = weft_exif_exposure(&p->exif);
     WEFT_TRY(weft_paper_sample_all(&w->places, camera, &p->homography, values, &evidence->paper, error));
     for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT && w->settings->ball_diameter_mm > 0; ball++) {
         double place[2];
@@ -182,36 +182,14 @@ static void leave_out_paperless(work *w)
     }
 }
 
-/* light = decoded light x exp(sum_k tone[k] (2 encoded - 1)^(k + 1)), made to end at 1 and never to fall. Levels
- * follow.
- */
+/* Levels follow the curve, which ends at 1. */
 static void correct_tone(weft_hand *hand)
 {
-    const double *term = hand->lamps.tone;
-    weft_tone_curve first = hand->tone;
-    double last = 0;
-    for (int i = 0; i <= WEFT_TONE_STEPS; i++) {
-        double power = 1, sum = 0, encoded = 2 * (i / (double)WEFT_TONE_STEPS) - 1;
-        for (int k = 0; k < WEFT_TONE_TERMS; k++)
-            sum += term[k] * (power *= encoded);
-        double light = (double)first.linear[i] * exp(sum);
-        last = i ? fmax(last, light) : light;
-        hand->tone.linear[i] = (float)last;
-    }
-    for (int i = 0; i <= WEFT_TONE_STEPS; i++)
-        hand->tone.linear[i] /= (float)last;
+    double full = weft_tone_bend(&hand->tone, hand->lamps.tone, WEFT_TONE_TERMS);
     for (int i = 0; i < hand->count; i++) {
         for (int c = 0; c < 3; c++)
-            hand->photograph[i].lamp.level[c] /= last;
+            hand->photograph[i].lamp.level[c] /= full;
     }
-}
-
-/* Of the corner of the photograph that lies farthest from the axis, in focal lengths. */
-static double corner_radius_squared(const weft_camera *camera)
-{
-    double x = fmax(camera->cx, camera->width - 1 - camera->cx) / camera->fx;
-    double y = fmax(camera->cy, camera->height - 1 - camera->cy) / camera->fy;
-    return x * x + y * y;
 }
 
 /* How far views and lamps can be trusted. Before the tone curve is corrected: the evidence is what the first one made.
@@ -267,41 +245,76 @@ static weft_code find_pin(work *w, weft_error *error)
     return code;
 }
 
-static weft_code find_lamps(work *w, weft_error *error)
+/* The evidence of the photographs that are used, packed; the caller frees it. index [used_count] of each. */
+static weft_code pack_evidence(const work *w, int used, weft_lamp_evidence **evidence, int **index, weft_error *error)
+{
+    int next = 0;
+    *evidence = malloc((size_t)used * sizeof **evidence);
+    *index = malloc((size_t)used * sizeof **index);
+    if (!*evidence || !*index)
+        return weft_fail_memory(error, "lamps", (size_t)used * sizeof **evidence);
+    for (int i = 0; i < w->hand->count; i++) {
+        if (!weft_hand_used(&w->hand->photograph[i]))
+            continue;
+        (*index)[next] = i;
+        (*evidence)[next++] = w->evidence[i];
+    }
+    return WEFT_OK;
+}
+
+/* hand->pair: by their place among those that are used. */
+static weft_code find_pairs(weft_lamp_problem *problem, weft_hand *hand, weft_error *error)
+{
+    hand->pair = malloc((size_t)problem->count * sizeof *hand->pair);
+    if (!hand->pair)
+        return weft_fail_memory(error, "exposures", (size_t)problem->count * sizeof *hand->pair);
+    WEFT_TRY(weft_exposure_pairs_find(problem, hand->pair, &hand->pair_count, error));
+    problem->pair = hand->pair;
+    problem->pair_count = hand->pair_count;
+    return WEFT_OK;
+}
+
+/* hand->lamps.place and hand->pair, by their place among those that are used. */
+static weft_code solve_lamps(const work *w, const weft_lamp_evidence *evidence, int used, weft_error *error)
 {
     weft_hand *hand = w->hand;
-    int used = count_used(hand), next = 0;
-    weft_lamp_evidence *evidence = malloc((size_t)used * sizeof *evidence);
-    hand->lamps.place = calloc((size_t)used, sizeof *hand->lamps.place);
-    weft_code code = WEFT_OK;
-    if (!evidence || !hand->lamps.place)
-        code = weft_fail_memory(error, "lamps", (size_t)used * sizeof *evidence);
-    for (int i = 0; code == WEFT_OK && i < hand->count; i++) {
-        if (weft_hand_used(&hand->photograph[i]))
-            evidence[next++] = w->evidence[i];
-    }
     weft_lamp_problem problem = {.target = &w->settings->target,
                                  .places = &w->places,
                                  .count = used,
                                  .evidence = evidence,
                                  .ball_diameter_mm = w->settings->ball_diameter_mm,
                                  .pin_height_mm = w->settings->pin_height_mm,
-                                 .corner_radius_squared = corner_radius_squared(&hand->lens.camera),
+                                 .corner_radius_squared = weft_lens_corner_radius_squared(&hand->lens.camera),
                                  .flash = w->settings->flash,
                                  .tone_unknown = hand->tone_found};
-    if (code == WEFT_OK) {
-        weft_lamp_guess(&problem, &hand->lamps);
-        code = weft_lamp_solve(&problem, &hand->lamps, error);
-    }
-    for (int i = 0, from = 0; code == WEFT_OK && i < hand->count; i++) {
-        if (weft_hand_used(&hand->photograph[i]))
-            hand->photograph[i].lamp = hand->lamps.place[from++];
-    }
+    if (hand->tone_found)
+        WEFT_TRY(find_pairs(&problem, hand, error));
+    weft_lamp_guess(&problem, &hand->lamps);
+    return weft_lamp_solve(&problem, &hand->lamps, error);
+}
+
+static weft_code find_lamps(work *w, weft_error *error)
+{
+    weft_hand *hand = w->hand;
+    int used = count_used(hand), *index = NULL;
+    weft_lamp_evidence *evidence = NULL;
+    weft_code code = pack_evidence(w, used, &evidence, &index, error);
+    if (code == WEFT_OK && !(hand->lamps.place = calloc((size_t)used, sizeof *hand->lamps.place)))
+        code = weft_fail_memory(error, "lamps", (size_t)used * sizeof *hand->lamps.place);
     if (code == WEFT_OK)
-        code = judge_photographs(w, error);
+        code = solve_lamps(w, evidence, used, error);
+    for (int i = 0; code == WEFT_OK && i < used; i++)
+        hand->photograph[index[i]].lamp = hand->lamps.place[i];
+    for (int i = 0; code == WEFT_OK && i < hand->pair_count; i++) {
+        hand->pair[i].bright = index[hand->pair[i].bright];
+        hand->pair[i].dark = index[hand->pair[i].dark];
+    }
     free(hand->lamps.place);
     hand->lamps.place = NULL;
     free(evidence);
+    free(index);
+    if (code == WEFT_OK)
+        code = judge_photographs(w, error);
     if (code != WEFT_OK)
         return code;
     memcpy(hand->lens.camera.vignetting, hand->lamps.vignetting, sizeof hand->lamps.vignetting);

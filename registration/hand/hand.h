@@ -6,8 +6,8 @@
 
 #include "base/progress.h"
 #include "btf/session/colour.h"
-#include "registration/hand/lamp.h"
 #include "registration/hand/lens.h"
+#include "registration/lamp/lamp.h"
 
 typedef struct weft_hand_settings {
     weft_target target;
@@ -31,6 +31,8 @@ typedef struct weft_hand {
     weft_tone_curve tone;
     bool tone_found;          /* else the files are linear */
     weft_lamp_solution lamps; /* without places: those are in the photographs */
+    int pair_count;
+    weft_exposure_pair *pair; /* [pair_count] of photographs that differ in exposure alone */
     weft_lines notes;         /* what the user should know, a line each */
     double seconds;
 } weft_hand;

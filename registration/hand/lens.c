@@ -248,3 +248,10 @@ weft_code weft_lens_estimate_from(weft_hand_photograph *photograph, int count, i
     lens->rms_px = rms_of(photograph, count);
     return share_poses(photograph, count, &lens->camera, error);
 }
+
+double weft_lens_corner_radius_squared(const weft_camera *camera)
+{
+    double x = fmax(camera->cx, camera->width - 1 - camera->cx) / camera->fx;
+    double y = fmax(camera->cy, camera->height - 1 - camera->cy) / camera->fy;
+    return x * x + y * y;
+}

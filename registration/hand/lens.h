@@ -3,7 +3,7 @@
 #define WEFT_REGISTRATION_HAND_LENS_H
 
 #include "registration/hand/hand_bridge.h"
-#include "registration/hand/photograph.h"
+#include "registration/lamp/photograph.h"
 
 /* How a lens became known. */
 typedef struct weft_lens_estimate {
@@ -20,5 +20,8 @@ typedef struct weft_lens_estimate {
  * where the photographs cannot tell it and no focal length is written; WEFT_SYSTEM. */
 weft_code weft_lens_estimate_from(weft_hand_photograph *photograph, int count, int width, int height,
                                   const weft_camera *known, weft_lens_estimate *lens, weft_error *error);
+
+/* Squared distance from the axis of the farthest corner of a photograph, in focal lengths. Pure. */
+double weft_lens_corner_radius_squared(const weft_camera *camera);
 
 #endif

@@ -3,8 +3,8 @@
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
 #include "registration/hand/certainty.h"
-#include "registration/hand/read.h"
 #include "registration/hand/thumbnail.h"
+#include "registration/lamp/read.h"
 #include "registration/resample/resample.h"
 
 #include <math.h>
@@ -119,8 +119,10 @@ static weft_code resample(const work *w, int image, const weft_light_values *val
     WEFT_TRY(weft_resampler_create(&resampling, w->settings->width, w->settings->height, &resampler, error));
     weft_resampler_apply(&resampler, values->samples, 0, WEFT_HAND_FULL_SCALE, texel, mask);
     weft_resampler_free(&resampler);
+    size_t texels = (size_t)w->settings->width * (size_t)w->settings->height;
+    weft_hand_mask_dark(texel, values->dark * WEFT_HAND_FULL_SCALE, texels, mask, p);
     normalise(w->settings, &w->hand->lamps.flash, p, texel, half, mask);
-    p->contrast = weft_hand_contrast(half, mask, (size_t)w->settings->width * (size_t)w->settings->height);
+    p->contrast = weft_hand_contrast(half, mask, texels);
     WEFT_TRY(weft_thumbnail_of_texels(half, w->settings->width, w->settings->height, &p->rectified, error));
     return weft_dataset_writer_put_image(w->writer, image, half, mask, error);
 }
@@ -139,7 +141,7 @@ static weft_code put_image(const work *w, int image, weft_error *error)
         code = weft_fail_memory(error, p->name, texels * 19);
     if (code == WEFT_OK)
         code = weft_light_values_read(path, p->exif.width, p->exif.height, &w->hand->tone,
-                                      p->exif.is_float ? INFINITY : (float)w->settings->clipped_at, &values, error);
+                                      weft_file_range_of(&p->exif, w->settings->clipped_at), &values, error);
     if (code == WEFT_OK)
         code = resample(w, image, &values, texel, half, mask, error);
     weft_light_values_free(&values);
@@ -175,11 +177,26 @@ static json_t *pack_photograph(const weft_hand_photograph *p)
     if (!weft_hand_used(p))
         return json_pack("{so ss}", "file", weft_json_text(p->name, strlen(p->name)), "left_out", p->remark);
     weft_vec3 eye = weft_pose_camera_position(&p->pose), lamp = p->lamp.position_mm;
-    return json_pack("{so sf sf sf s[fff] s[fff] sf s[fff]}", "file", weft_json_text(p->name, strlen(p->name)),
+    return json_pack("{so sf sf sf s[fff] s[fff] sf s[fff] sI sI}", "file", weft_json_text(p->name, strlen(p->name)),
                      "corner_rms_px", p->corner_rms_px, "correlation", p->correlation, "standard_error_mm",
                      p->uncertainty_mm, "camera_mm", eye.x, eye.y, eye.z, "lamp_mm", lamp.x, lamp.y, lamp.z,
                      "lamp_uncertainty_deg", p->lamp.uncertainty_deg, "white_level", p->lamp.level[0], p->lamp.level[1],
-                     p->lamp.level[2]);
+                     p->lamp.level[2], "clipped_texels", (json_int_t)p->clipped_texels, "dark_texels",
+                     (json_int_t)p->dark_texels);
+}
+
+/* What told the tone curve, and how well. */
+static json_t *pack_knowledge_of_tone(const weft_hand *hand)
+{
+    json_t *pairs = json_array();
+    for (int i = 0; i < hand->pair_count; i++) {
+        const char *bright = hand->photograph[hand->pair[i].bright].name;
+        const char *dark = hand->photograph[hand->pair[i].dark].name;
+        weft_json_append(&pairs,
+                         json_pack("[oo]", weft_json_text(bright, strlen(bright)), weft_json_text(dark, strlen(dark))));
+    }
+    return json_pack("{sb so sf}", "found", hand->tone_found, "exposure_pairs", pairs, "standard_error_of_a_tenth",
+                     hand->lamps.dark_error);
 }
 
 static char *provenance(const work *w)
@@ -197,6 +214,7 @@ static char *provenance(const work *w)
                              c->vignetting[0], c->vignetting[1], c->vignetting[2], "standard_error", "f", e->focal_px,
                              "k1", e->k1, "k2", e->k2, "opening_mm", w->settings->target.opening_mm, "ink_over_paper",
                              w->hand->lamps.ink, "tone", tone, "photographs", photographs);
+    weft_json_put(&root, "tone_curve", pack_knowledge_of_tone(w->hand));
     if (w->settings->colour)
         weft_json_put(&root, "colour", weft_colour_pack(w->settings->colour));
     char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;

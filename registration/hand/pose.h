@@ -2,8 +2,8 @@
 #ifndef WEFT_REGISTRATION_HAND_POSE_H
 #define WEFT_REGISTRATION_HAND_POSE_H
 
-#include "registration/hand/photograph.h"
-#include "registration/hand/read.h"
+#include "registration/lamp/photograph.h"
+#include "registration/lamp/read.h"
 
 /* What all photographs of one camera share: the drawing, seen in a photograph that is reduced by averaging squares of
  * `reduction` x `reduction` pixels. The reduced one still shows a place to a hundredth of its pixel. */

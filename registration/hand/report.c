@@ -9,6 +9,33 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+void weft_hand_describe_tone(const weft_hand *hand, char words[WEFT_HAND_WORDS_SIZE])
+{
+    if (!hand->tone_found) {
+        snprintf(words, WEFT_HAND_WORDS_SIZE, "the files are linear");
+        return;
+    }
+    int length = snprintf(words, WEFT_HAND_WORDS_SIZE, "found in the light of paper and ink");
+    if (hand->pair_count > 0)
+        length += snprintf(words + length, WEFT_HAND_WORDS_SIZE - (size_t)length,
+                           ", and in %d pairs of photographs that differ in exposure alone", hand->pair_count);
+    snprintf(words + length, WEFT_HAND_WORDS_SIZE - (size_t)length,
+             "; the light of a tenth of white paper is known to %.1f %% (standard error)",
+             100 * hand->lamps.dark_error);
+}
+
+void weft_hand_describe_masks(const weft_hand *hand, const weft_hand_settings *settings,
+                              char words[WEFT_HAND_WORDS_SIZE])
+{
+    long clipped = 0, dark = 0;
+    for (int i = 0; i < hand->count; i++) {
+        clipped += hand->photograph[i].clipped_texels;
+        dark += hand->photograph[i].dark_texels;
+    }
+    snprintf(words, WEFT_HAND_WORDS_SIZE, "%ld of %ld samples are clipped, %ld are too dark to be read", clipped,
+             (long)settings->width * settings->height * hand->used_count, dark);
+}
+
 static weft_vec3 view_of(const weft_hand_photograph *p)
 {
     return weft_pose_camera_position(&p->pose);
@@ -52,19 +79,37 @@ static const char *knowledge_name(weft_lens_knowledge knowledge)
     return "from the lens file";
 }
 
-static void write_camera(weft_page *page, const weft_hand *hand)
+/* What is known of the lens; standard errors where the photographs told it. */
+static void write_lens(weft_page *page, const weft_lens_estimate *lens)
 {
+    const weft_camera *c = &lens->camera;
+    const weft_lens_errors *e = &lens->errors;
+    if (lens->knowledge == WEFT_LENS_UNKNOWN) {
+        weft_page_fact(page, "focal length", "%.1f \u00b1 %.1f pixels (standard error)", c->fx, e->focal_px);
+        weft_page_fact(page, "distortion", "k1 %.4f \u00b1 %.4f, k2 %.4f \u00b1 %.4f", c->k1, e->k1, c->k2, e->k2);
+    } else {
+        weft_page_fact(page, "focal length", "%.1f pixels", c->fx);
+        weft_page_fact(page, "distortion", "k1 %.4f, k2 %.4f", c->k1, c->k2);
+    }
+    weft_page_fact(page, "principal point", "%.1f, %.1f", c->cx, c->cy);
+    weft_page_fact(page, "corners of markers about the lens, RMS", "%.2f pixels", lens->rms_px);
+}
+
+static void write_camera(weft_page *page, const weft_hand_settings *settings, const weft_hand *hand)
+{
+    char words[WEFT_HAND_WORDS_SIZE];
     const weft_camera *c = &hand->lens.camera;
     double corner = hypot(c->width, c->height) / 2 / c->fx, r2 = corner * corner;
     fputs("<h2>Camera</h2>\n<table>\n", page->html);
     weft_page_fact(page, "lens", "%s", knowledge_name(hand->lens.knowledge));
-    weft_page_fact(page, "focal length", "%.1f pixels", c->fx);
-    weft_page_fact(page, "principal point", "%.1f, %.1f", c->cx, c->cy);
-    weft_page_fact(page, "distortion", "k1 %.4f, k2 %.4f", c->k1, c->k2);
+    write_lens(page, &hand->lens);
     weft_page_fact(page, "light in the corner of the picture", "%.0f %% of that in the middle",
                    100 * (1 + r2 * (c->vignetting[0] + r2 * (c->vignetting[1] + r2 * c->vignetting[2]))));
     weft_page_fact(page, "ink against paper", "%.3f", hand->lamps.ink);
-    weft_page_fact(page, "tone curve", "%s", hand->tone_found ? "found in the photographs" : "the files are linear");
+    weft_hand_describe_tone(hand, words);
+    weft_page_fact(page, "tone curve", "%s", words);
+    weft_hand_describe_masks(hand, settings, words);
+    weft_page_fact(page, "masked", "%s", words);
     fputs("</table>\n", page->html);
 }
 
@@ -221,7 +266,7 @@ static weft_code write_page(weft_page *page, const char *dataset, const weft_han
     plot_directions(page, hand);
     plot_tone(page, hand);
     fputs("</div>\n", page->html);
-    write_camera(page, hand);
+    write_camera(page, settings, hand);
     WEFT_TRY(write_gallery(page, hand, error));
     write_table(page, hand);
     return WEFT_OK;

@@ -4,7 +4,7 @@
 
 #include "base/half.h"
 #include "base/picture/image.h"
-#include "registration/hand/read.h"
+#include "registration/lamp/read.h"
 
 /* The photograph reduced to about 260 pixels across, sRGB. The caller frees it with weft_image_free. Errors:
  * WEFT_SYSTEM for memory. Thread-safe. */

@@ -199,21 +199,6 @@ static void noise_is_that_of_electrons(void **state)
     free(second);
 }
 
-/* A toe, a shoulder, and no power law: the slope over that of sRGB goes up and down again. */
-static void the_tone_curve_is_an_s(void **state)
-{
-    (void)state;
-    double last = 0;
-    assert_float_equal(weft_snap_tone(0), 0, 1e-12);
-    assert_float_equal(weft_snap_tone(1), 1, 1e-12);
-    for (int i = 1; i <= 1000; i++) {
-        assert_true(weft_snap_tone(i / 1000.0) > last);
-        last = weft_snap_tone(i / 1000.0);
-    }
-    assert_true(weft_snap_tone(0.004) < 0.6 * (12.92 * 0.004));
-    assert_true(1 - weft_snap_tone(0.8) < 0.75 * (1 - 0.906));
-}
-
 /* ---- Files ---- */
 
 static void expect_same_files(const char *a, const char *b)
@@ -404,15 +389,10 @@ static void a_folder_in_use_is_left_alone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(markers_lie_where_the_truth_says),
-        cmocka_unit_test(photographs_show_the_true_reflectance),
-        cmocka_unit_test(noise_is_that_of_electrons),
-        cmocka_unit_test(the_tone_curve_is_an_s),
-        cmocka_unit_test(threads_change_nothing),
-        cmocka_unit_test(exif_says_what_the_camera_did),
-        cmocka_unit_test(exif_holds_every_exposure),
-        cmocka_unit_test(the_truth_is_written_down),
-        cmocka_unit_test(a_tripod_stands),
+        cmocka_unit_test(markers_lie_where_the_truth_says), cmocka_unit_test(photographs_show_the_true_reflectance),
+        cmocka_unit_test(noise_is_that_of_electrons),       cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(exif_says_what_the_camera_did),    cmocka_unit_test(exif_holds_every_exposure),
+        cmocka_unit_test(the_truth_is_written_down),        cmocka_unit_test(a_tripod_stands),
         cmocka_unit_test(a_folder_in_use_is_left_alone),
     };
     return cmocka_run_group_tests_name("hand photographs", tests, scratch_folder_enter, scratch_folder_leave);

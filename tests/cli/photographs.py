@@ -35,7 +35,8 @@ for k, p in enumerate(used):
         ratio = found["samples"][:, :, k][seen].astype(float) / true["samples"][:, :, index][seen].astype(float)
         error.append(np.median(np.abs(ratio - 1)))
 print(name, "lens", told["lens"], "lamps", np.round(lamp, 2))
-limits = {"free": (0.03, 0.8, 0.07), "tripod": (0.08, 0.6, 0.07), "pin": (0.15, 1.0, 0.1), "linear": (0.03, 0.8, 0.015)}[name]
+limits = {"free": (0.03, 0.8, 0.07), "tripod": (0.08, 0.6, 0.07), "pin": (0.15, 1.0, 0.1),
+          "series": (0.03, 3.0, 0.08), "linear": (0.03, 0.8, 0.015)}[name]
 good &= check("direction of the view, degrees, median", np.median(view), limits[0])
 good &= check("direction of the lamp, degrees, median", np.median(lamp), limits[1])
 good &= check("reflectance to 45 degrees, relative, median", np.median(error), limits[2])
@@ -46,7 +47,16 @@ good &= check("standard errors of views over their errors, median", np.median(vi
 lens_truth = json.load(open(name + ".truth.json"))["lens"]
 focal = truth[used[0]["file"]][1]["image_distance_mm"] * lens_truth["width"] / lens_truth["sensor_width_mm"]
 focal_error = told["lens"]["standard_error"]["f"]
-if name in ("free", "linear"):
+masked = found["mask"][()]
+for bit, key in ((2, "clipped_texels"), (8, "dark_texels")):
+    good &= check("texels masked that are not told as " + key, abs(np.sum(masked == bit) - sum(p[key] for p in used)), 0)
+if name == "series":
+    shots = json.load(open(name + ".truth.json"))["photographs"]
+    true_pairs = sorted([a["name"], b["name"]] for a, b in zip(shots, shots[1:])
+                        if np.linalg.norm(np.array(a["lamp"]["at_mm"]) - b["lamp"]["at_mm"]) < 20)
+    good &= check("pairs of exposures that are others", sorted(told["tone_curve"]["exposure_pairs"]) != true_pairs, 0)
+    good &= check("standard error of a tenth of the light", told["tone_curve"]["standard_error_of_a_tenth"], 0.05)
+if name in ("free", "linear", "series"):
     good &= check("focal length, relative error", abs(told["lens"]["fx"] / focal - 1), 0.004)
     good &= check("focal length, error over the standard error", abs(told["lens"]["fx"] - focal) / focal_error, 4)
     good &= check("standard error of the focal length, relative", focal_error / focal, 0.004)

@@ -1,8 +1,8 @@
 /* What single photographs tell of the lamp: the shadow of the pin, the highlight on a ball, a row of a list. Shadows
  * and highlights are drawn here by tracing rays, texel by texel, which the room under test does not do. */
-#include "registration/hand/ball.h"
-#include "registration/hand/listed.h"
-#include "registration/hand/pin.h"
+#include "registration/lamp/ball.h"
+#include "registration/lamp/listed.h"
+#include "registration/lamp/pin.h"
 
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"
@@ -135,7 +135,7 @@ static void where_no_pin_stands_no_shadow_is_found(void **state)
 static weft_light_values draw_ball(const weft_camera *camera, const weft_pose *pose, const double place[2],
                                    double diameter, weft_vec3 lamp)
 {
-    weft_light_values values = {camera->width, camera->height, NULL, NULL};
+    weft_light_values values = {camera->width, camera->height, NULL, NULL, 0};
     values.grey = malloc((size_t)camera->width * (size_t)camera->height * sizeof *values.grey);
     assert_non_null(values.grey);
     weft_vec3 eye = weft_pose_camera_position(pose), centre = weft_vec3_of(place[0], place[1], diameter / 2);

@@ -1,6 +1,6 @@
 /* A flash that sits beside the lens and shines past the sheet. Its light is reckoned here on the plate, with the cosine
  * of the angle to the middle of its beam; the room under test knows squares of tangents in the frame of the camera. */
-#include "registration/hand/lamp.h"
+#include "registration/lamp/lamp.h"
 
 #include "tests/registration/near.h"
 #include "tests/support/cmocka_all.h"

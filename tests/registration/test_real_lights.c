@@ -2,7 +2,7 @@
  * (DiLiGenT, Shi et al. 2016). Skipped without them. */
 #include "base/picture/image.h"
 #include "base/text/csv.h"
-#include "registration/hand/ball.h"
+#include "registration/lamp/ball.h"
 
 #include "tests/support/cmocka_all.h"
 
@@ -32,8 +32,9 @@ static double error_deg(const ball *b, const char *path, bool linear, weft_vec3 
     weft_tone_curve tone = linear ? weft_tone_linear() : weft_tone_srgb();
     weft_light_values values;
     weft_error error = {0};
-    assert_int_equal(
-        weft_light_values_read(path, b->camera.width, b->camera.height, &tone, 250.0f / 255, &values, &error), WEFT_OK);
+    assert_int_equal(weft_light_values_read(path, b->camera.width, b->camera.height, &tone,
+                                            (weft_file_range){250.0f / 255, 5.0f / 255}, &values, &error),
+                     WEFT_OK);
     const double place[2] = {0, 0};
     weft_highlight seen = weft_ball_highlight(&b->camera, &b->pose, &values, place, 20);
     weft_light_values_free(&values);

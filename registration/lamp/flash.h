@@ -1,6 +1,6 @@
 /* A lamp that is fixed to the camera: where it sits, and how its light falls off beside its beam. */
-#ifndef WEFT_REGISTRATION_HAND_FLASH_H
-#define WEFT_REGISTRATION_HAND_FLASH_H
+#ifndef WEFT_REGISTRATION_LAMP_FLASH_H
+#define WEFT_REGISTRATION_LAMP_FLASH_H
 
 #include "btf/session/camera.h"
 

@@ -1,4 +1,4 @@
-#include "registration/hand/pin.h"
+#include "registration/lamp/pin.h"
 
 #include "base/numeric/statistics.h"
 

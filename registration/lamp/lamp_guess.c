@@ -1,4 +1,4 @@
-#include "registration/hand/lamp.h"
+#include "registration/lamp/lamp.h"
 
 #include "base/numeric/statistics.h"
 

@@ -1,10 +1,17 @@
-#include "registration/hand/read.h"
+#include "registration/lamp/read.h"
 
 #include "base/picture/image.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+
+weft_file_range weft_file_range_of(const weft_exif *exif, double clipped_at)
+{
+    const double steps = 5;
+    double all = exif->is_float || exif->bits > 16 ? WEFT_HAND_FULL_SCALE : exp2(exif->bits) - 1;
+    return (weft_file_range){exif->is_float ? INFINITY : (float)clipped_at, (float)(steps / all)};
+}
 
 static void decode_pixel(const weft_tone_curve *tone, float clipped_at, const float encoded[3], uint16_t *sample,
                          float *grey)
@@ -19,11 +26,11 @@ static void decode_pixel(const weft_tone_curve *tone, float clipped_at, const fl
     *grey = sum / 3;
 }
 
-weft_code weft_light_values_read(const char *path, int width, int height, const weft_tone_curve *tone, float clipped_at,
-                                 weft_light_values *values, weft_error *error)
+weft_code weft_light_values_read(const char *path, int width, int height, const weft_tone_curve *tone,
+                                 weft_file_range range, weft_light_values *values, weft_error *error)
 {
     weft_image image;
-    *values = (weft_light_values){width, height, NULL, NULL};
+    *values = (weft_light_values){width, height, NULL, NULL, weft_tone_decode(tone, range.dark_at)};
     WEFT_TRY(weft_image_read(path, &image, NULL, error));
     size_t pixels = (size_t)image.width * (size_t)image.height;
     weft_code code = WEFT_OK;
@@ -34,7 +41,7 @@ weft_code weft_light_values_read(const char *path, int width, int height, const 
              !(values->grey = malloc(pixels * sizeof *values->grey)))
         code = weft_fail_memory(error, path, pixels * 10);
     for (size_t i = 0; code == WEFT_OK && i < pixels; i++)
-        decode_pixel(tone, clipped_at, image.pixels + 3 * i, values->samples + 3 * i, values->grey + i);
+        decode_pixel(tone, range.clipped_at, image.pixels + 3 * i, values->samples + 3 * i, values->grey + i);
     weft_image_free(&image);
     if (code != WEFT_OK)
         weft_light_values_free(values);

@@ -1,4 +1,4 @@
-#include "registration/hand/listed.h"
+#include "registration/lamp/listed.h"
 
 #include "base/numeric/statistics.h"
 

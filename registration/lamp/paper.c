@@ -1,4 +1,4 @@
-#include "registration/hand/paper.h"
+#include "registration/lamp/paper.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -121,8 +121,11 @@ static bool sample_place(const weft_paper_places *places, int place, const weft_
     weft_pixel ideal = weft_homography_apply(homography, middle[0], middle[1]);
     double x = (ideal.x - camera->cx) / camera->fx, y = (ideal.y - camera->cy) / camera->fy;
     *sample = (weft_paper_sample){.place = place, .radius_squared = (float)(x * x + y * y)};
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         sample->light[c] = (float)(sum[c] / (WEFT_HAND_FULL_SCALE * (double)(samples_across * samples_across)));
+        if (sample->light[c] < values->dark)
+            return false;
+    }
     return true;
 }
 

@@ -1,14 +1,14 @@
 /* Where the lamp stood in every photograph, and how bright it was: from the fall of its light over the paper, and from
  * its highlights on mirror balls. The tone curve of the camera and the vignetting of its lens are found with it,
  * because the same brightness tells all three. */
-#ifndef WEFT_REGISTRATION_HAND_LAMP_H
-#define WEFT_REGISTRATION_HAND_LAMP_H
+#ifndef WEFT_REGISTRATION_LAMP_LAMP_H
+#define WEFT_REGISTRATION_LAMP_LAMP_H
 
-#include "registration/hand/ball.h"
-#include "registration/hand/flash.h"
-#include "registration/hand/listed.h"
-#include "registration/hand/paper.h"
-#include "registration/hand/pin.h"
+#include "registration/lamp/ball.h"
+#include "registration/lamp/flash.h"
+#include "registration/lamp/listed.h"
+#include "registration/lamp/paper.h"
+#include "registration/lamp/pin.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -24,19 +24,27 @@ typedef struct weft_lamp_evidence {
     weft_highlight highlight[WEFT_TARGET_BALL_COUNT];
     weft_pin_shadow pin;
     weft_listed_lamp listed;
-    double exposure; /* time x sensitivity / f-number^2 as the camera wrote it; 0: it wrote none */
+    double exposure; /* weft_exif_exposure; 0: the camera wrote none */
 } weft_lamp_evidence;
+
+/* Two photographs of one view under one lamp, which differ in their exposure. */
+typedef struct weft_exposure_pair {
+    int bright, dark;
+    double log_ratio; /* of their exposures */
+} weft_exposure_pair;
 
 typedef struct weft_lamp_problem {
     const weft_target *target;
     const weft_paper_places *places;
     int count;
     const weft_lamp_evidence *evidence; /* [count] */
-    double ball_diameter_mm;            /* 0: no balls */
-    double pin_height_mm;               /* 0: no pin */
-    double corner_radius_squared;       /* of the photograph, in the units of the samples' radius_squared */
-    bool flash;                         /* the lamp is fixed to the camera */
-    bool tone_unknown;                  /* find the corrections of the tone curve, too */
+    int pair_count;
+    const weft_exposure_pair *pair; /* [pair_count], by their place in `evidence` */
+    double ball_diameter_mm;        /* 0: no balls */
+    double pin_height_mm;           /* 0: no pin */
+    double corner_radius_squared;   /* of the photograph, in the units of the samples' radius_squared */
+    bool flash;                     /* the lamp is fixed to the camera */
+    bool tone_unknown;              /* find the corrections of the tone curve, too */
 } weft_lamp_problem;
 
 typedef struct weft_lamp_solution {
@@ -57,14 +65,22 @@ typedef struct weft_lamp_solution {
  * nearly as well as that search does. The flash begins at the camera. Pure. */
 void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solution);
 
+/* Finds the pairs: every photograph with the next darker one of the same view, within a degree, and the same light,
+ * which is told by the paper: what a place has in one follows from what it has in the other. pair [problem->count];
+ * those of `problem` are not looked at. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_exposure_pairs_find(const weft_lamp_problem *problem, weft_exposure_pair *pair, int *count,
+                                   weft_error *error);
+
 /* Least squares over all photographs together (Ceres), from the guess. A sample of paper at place x under a lamp at L
  * obeys
  *     log light = log level + log(L_z |L|^2 / |L - x|^3) + log V(r^2) + [ink] log ink + [flash] log beam(x)
  * after Lambert's and the inverse square law; a highlight obeys the law of reflection on a sphere; lamp, head of the
- * pin and its shadow lie on a line; a list is believed within its standard errors. Shadows, stains and wrong rows
- * hardly count (Cauchy's weight). One lamp has one power: level |L|^2 / exposure is the same in all photographs, within
- * a tenth, where the camera wrote its exposure. Deviations from this model are smooth over the sheet, so the samples of
- * one photograph count as `independent_samples` in all. Errors: WEFT_SYSTEM. */
+ * pin and its shadow lie on a line; a list is believed within its standard errors. In a pair of exposures the
+ * logarithms of the light of a place differ by that of their ratio, which is as written within a fiftieth in green and
+ * free in red and blue (Debevec and Malik 1997). Shadows, stains and wrong rows hardly count (Cauchy's weight). One
+ * lamp has one power: level |L|^2 / exposure is the same in all photographs, within a tenth, where the camera wrote its
+ * exposure. Deviations from this model are smooth over the sheet, so the samples of one photograph count as
+ * `independent_samples` in all. Errors: WEFT_SYSTEM. */
 weft_code weft_lamp_solve(const weft_lamp_problem *problem, weft_lamp_solution *solution, weft_error *error);
 
 #ifdef __cplusplus

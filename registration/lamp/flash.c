@@ -1,4 +1,4 @@
-#include "registration/hand/flash.h"
+#include "registration/lamp/flash.h"
 
 double weft_flash_log_beam(const weft_flash *flash, const weft_pose *pose, double x, double y)
 {

@@ -1,10 +1,10 @@
 /* The shadow of the pin on the sheet. The lamp lies on the line from where the shadow of the pin's head is seen through
  * the head itself. */
-#ifndef WEFT_REGISTRATION_HAND_PIN_H
-#define WEFT_REGISTRATION_HAND_PIN_H
+#ifndef WEFT_REGISTRATION_LAMP_PIN_H
+#define WEFT_REGISTRATION_LAMP_PIN_H
 
-#include "registration/hand/photograph.h"
-#include "registration/hand/read.h"
+#include "registration/lamp/photograph.h"
+#include "registration/lamp/read.h"
 
 #ifdef __cplusplus
 extern "C" {

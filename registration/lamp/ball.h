@@ -1,9 +1,9 @@
 /* The highlight of the lamp on a mirror ball of the sheet. */
-#ifndef WEFT_REGISTRATION_HAND_BALL_H
-#define WEFT_REGISTRATION_HAND_BALL_H
+#ifndef WEFT_REGISTRATION_LAMP_BALL_H
+#define WEFT_REGISTRATION_LAMP_BALL_H
 
-#include "registration/hand/photograph.h"
-#include "registration/hand/read.h"
+#include "registration/lamp/photograph.h"
+#include "registration/lamp/read.h"
 
 /* Where a highlight is seen. */
 typedef struct weft_highlight {

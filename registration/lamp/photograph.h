@@ -1,6 +1,6 @@
 /* One photograph of a camera in the hand, and what is found out about it. */
-#ifndef WEFT_REGISTRATION_HAND_PHOTOGRAPH_H
-#define WEFT_REGISTRATION_HAND_PHOTOGRAPH_H
+#ifndef WEFT_REGISTRATION_LAMP_PHOTOGRAPH_H
+#define WEFT_REGISTRATION_LAMP_PHOTOGRAPH_H
 
 #include "base/picture/exif.h"
 #include "base/picture/image.h"
@@ -48,7 +48,8 @@ typedef struct weft_hand_photograph {
 
     weft_lamp_place lamp;
 
-    double contrast; /* of the texels: relative standard deviation */
+    double contrast;                  /* of the texels: relative standard deviation */
+    long clipped_texels, dark_texels; /* that are masked */
 
     weft_image thumbnail, rectified; /* for the report, sRGB; without pixels where there is none */
 } weft_hand_photograph;

@@ -1,4 +1,4 @@
-#include "registration/hand/ball.h"
+#include "registration/lamp/ball.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* The light on the sheet: brightness of bare paper and of ink at places of the plate. */
-#ifndef WEFT_REGISTRATION_HAND_PAPER_H
-#define WEFT_REGISTRATION_HAND_PAPER_H
+#ifndef WEFT_REGISTRATION_LAMP_PAPER_H
+#define WEFT_REGISTRATION_LAMP_PAPER_H
 
 #include "base/status.h"
-#include "registration/hand/photograph.h"
-#include "registration/hand/read.h"
+#include "registration/lamp/photograph.h"
+#include "registration/lamp/read.h"
 
 /* Places of the plate with nothing but paper, or nothing but ink, within reach; mm. */
 typedef struct weft_paper_places {
@@ -30,8 +30,8 @@ typedef struct weft_paper_samples {
 weft_code weft_paper_places_create(const weft_target *target, weft_paper_places *places, weft_error *error);
 void weft_paper_places_free(weft_paper_places *places);
 
-/* Looks at every place that the photograph shows large enough and without a clipped value. The caller frees
- * samples->sample. Errors: WEFT_SYSTEM for memory. Thread-safe. */
+/* Looks at every place that the photograph shows large enough, without a clipped value and not too dark to be read. The
+ * caller frees samples->sample. Errors: WEFT_SYSTEM for memory. Thread-safe. */
 weft_code weft_paper_sample_all(const weft_paper_places *places, const weft_camera *camera,
                                 const weft_homography *homography, const weft_light_values *values,
                                 weft_paper_samples *samples, weft_error *error);

@@ -1,5 +1,5 @@
-#include "registration/hand/owned_problem.h"
-#include "registration/hand/pin.h"
+#include "registration/lamp/owned_problem.h"
+#include "registration/lamp/pin.h"
 
 #include <ceres/ceres.h>
 

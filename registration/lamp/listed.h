@@ -1,10 +1,10 @@
 /* What a list tells of lamps and views, held against what the photographs tell. */
-#ifndef WEFT_REGISTRATION_HAND_LISTED_H
-#define WEFT_REGISTRATION_HAND_LISTED_H
+#ifndef WEFT_REGISTRATION_LAMP_LISTED_H
+#define WEFT_REGISTRATION_LAMP_LISTED_H
 
 #include "base/text/light_list.h"
 #include "base/text/lines.h"
-#include "registration/hand/photograph.h"
+#include "registration/lamp/photograph.h"
 
 #ifdef __cplusplus
 extern "C" {

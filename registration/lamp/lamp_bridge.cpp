@@ -1,0 +1,171 @@
+#include "registration/lamp/lamp.h"
+#include "registration/lamp/lamp_terms.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace
+{
+
+using namespace lamps;
+
+/* The problem, solved: places, what all photographs share, and how well it is known. */
+class lamp_search : lamp_terms
+{
+  public:
+    lamp_search(const weft_lamp_problem *given, weft_lamp_solution *wanted) : lamp_terms(given, wanted), output(wanted)
+    {
+    }
+
+    weft_code solve(weft_error *error)
+    {
+        ceres::Solver::Options options;
+        options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+        options.num_threads = 2;
+        options.max_num_iterations = 200;
+        options.function_tolerance = 1e-9;
+        options.logging_type = ceres::SILENT;
+        ceres::Solver::Summary summary;
+        ceres::Solve(options, &terms.problem, &summary);
+        if (!summary.IsSolutionUsable())
+            return weft_fail(error, WEFT_SYSTEM, "the lamps cannot be found: %s", summary.message.c_str());
+        for (int i = 0; i < input->count; i++)
+            write_place(i);
+        find_uncertainties();
+        write_shared();
+        find_misfits();
+        return WEFT_OK;
+    }
+
+  private:
+    weft_lamp_solution *output;
+
+    /* Standard errors of the lamps' directions from the middle of the sample. */
+    void find_uncertainties()
+    {
+        using block_pair = std::pair<const double *, const double *>;
+        ceres::Covariance::Options options;
+        options.algorithm_type = ceres::SPARSE_QR;
+        ceres::Covariance covariance(options);
+        std::vector<block_pair> wanted;
+        for (int i = 0; i < (input->flash ? 1 : input->count); i++)
+            wanted.emplace_back(lamp_of(i), lamp_of(i));
+        if (input->tone_unknown)
+            wanted.emplace_back(shared.tone, shared.tone);
+        const bool known = covariance.Compute(wanted, &terms.problem);
+        for (int i = 0; i < input->count; i++)
+            output->place[i].uncertainty_deg = known ? uncertainty_deg(covariance, i) : 90;
+        if (input->tone_unknown)
+            output->dark_error = known ? dark_error(covariance) : 1;
+    }
+
+    /* (2 encoded - 1)^k of an encoded value; returns the logarithm of its light. */
+    double tone_powers(double encoded, double power[WEFT_TONE_TERMS]) const
+    {
+        double value = std::log((double)weft_linear_of_srgb((float)encoded)), stretched = 1;
+        for (int k = 0; k < WEFT_TONE_TERMS; k++)
+            value += shared.tone[k] * (power[k] = stretched *= 2 * encoded - 1);
+        return value;
+    }
+
+    /* Paper in the middle of a photograph's range, and what has a tenth of its light under the curve found. */
+    double dark_error(const ceres::Covariance &covariance)
+    {
+        const double paper = 0.7, step = 1.0 / 1024;
+        double matrix[WEFT_TONE_TERMS * WEFT_TONE_TERMS], bright[WEFT_TONE_TERMS], dark[WEFT_TONE_TERMS], variance = 0;
+        if (!covariance.GetCovarianceBlock(shared.tone, shared.tone, matrix))
+            return 1;
+        const double wanted = tone_powers(paper, bright) - std::log(10);
+        for (double encoded = paper; encoded > step && tone_powers(encoded, dark) > wanted;)
+            encoded -= step;
+        for (int r = 0; r < WEFT_TONE_TERMS; r++)
+            for (int c = 0; c < WEFT_TONE_TERMS; c++)
+                variance += (dark[r] - bright[r]) * matrix[r * WEFT_TONE_TERMS + c] * (dark[c] - bright[c]);
+        return std::isfinite(variance) ? std::sqrt(std::max(0.0, variance)) : 1;
+    }
+
+    /* From the part of the covariance across the direction; of a flash two thirds of it. */
+    double uncertainty_deg(const ceres::Covariance &covariance, int i)
+    {
+        double matrix[9], lamp[3], *block = lamp_of(i), along = 0;
+        if (!covariance.GetCovarianceBlock(block, block, matrix))
+            return 90;
+        mount_of(i).place(block, lamp);
+        const double squared = lamp[0] * lamp[0] + lamp[1] * lamp[1] + lamp[2] * lamp[2];
+        const double trace = matrix[0] + matrix[4] + matrix[8];
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                along += lamp[r] * matrix[3 * r + c] * lamp[c] / squared;
+        along = input->flash ? trace / 3 : along;
+        return std::sqrt(std::max(0.0, trace - along) / squared) * 180 / WEFT_PI;
+    }
+
+    void write_place(int i)
+    {
+        double lamp[3];
+        mount_of(i).place(lamp_of(i), lamp);
+        weft_lamp_place *place = &output->place[i];
+        place->position_mm = weft_vec3_of(lamp[0] * unit_mm, lamp[1] * unit_mm, lamp[2] * unit_mm);
+        const double beam = input->flash ? mount_of(i).log_beam(lamp_of(i), shared.beam, 0, 0) : 0;
+        for (int c = 0; c < 3; c++)
+            place->level[c] = std::exp(own[(size_t)i].level[c] + beam) / input->target->paper_reflectance;
+    }
+
+    static double median(std::vector<double> &value)
+    {
+        if (value.empty())
+            return 0;
+        std::nth_element(value.begin(), value.begin() + (long)value.size() / 2, value.end());
+        return value[value.size() / 2];
+    }
+
+    /* How many standard errors balls and pin lie off, in the median. */
+    void find_misfits()
+    {
+        std::vector<double> balls, shadows;
+        double r[3];
+        for (const highlight_seen &seen : highlights)
+            balls.push_back((*seen.residual)(lamp_of(seen.photograph), shared.shift[seen.ball], r)
+                                ? std::hypot(r[0], r[1], r[2])
+                                : HUGE_VAL);
+        for (const auto &[residual, i] : pins)
+            shadows.push_back((*residual)(lamp_of(i), shared.pin_shift, r) ? std::hypot(r[0], r[1]) : HUGE_VAL);
+        output->ball_misfit = median(balls);
+        output->pin_misfit = median(shadows);
+    }
+
+    void write_shared()
+    {
+        std::copy_n(shared.tone, WEFT_TONE_TERMS, output->tone);
+        const double corner = input->corner_radius_squared;
+        output->vignetting[0] = shared.vignetting[0] / corner;
+        output->vignetting[1] = shared.vignetting[1] / (corner * corner);
+        output->vignetting[2] = 0;
+        output->ink = std::exp(shared.ink);
+        for (int ball = 0; ball < WEFT_TARGET_BALL_COUNT; ball++)
+            for (int axis = 0; axis < 2; axis++)
+                output->ball_shift_mm[ball][axis] = shared.shift[ball][axis] * unit_mm;
+        for (int axis = 0; axis < 3; axis++)
+            output->pin_shift_mm[axis] = shared.pin_shift[axis] * unit_mm;
+        for (int axis = 0; axis < 3; axis++)
+            output->flash.place_mm[axis] = shared.flash[axis] * unit_mm;
+        std::copy_n(shared.beam, WEFT_BEAM_TERMS, output->flash.beam);
+    }
+};
+
+} // namespace
+
+extern "C" weft_code weft_lamp_solve(const weft_lamp_problem *problem, weft_lamp_solution *solution, weft_error *error)
+try {
+    return lamp_search(problem, solution).solve(error);
+} catch (const std::bad_alloc &) {
+    return weft_fail_memory(error, "the search for lamps", 0);
+} catch (const std::exception &failure) {
+    return weft_fail(error, WEFT_SYSTEM, "the search for lamps: %s", failure.what());
+}

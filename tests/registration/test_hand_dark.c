@@ -1,0 +1,99 @@
+/* What is too dark to be read is not used: of the paper, and of the sample. */
+#include "btf/dataset/dataset.h"
+#include "registration/hand/certainty.h"
+#include "registration/lamp/paper.h"
+
+#include "tests/support/cmocka_all.h"
+#include "tests/support/expect_ok.h"
+#include "tests/support/scratch_folder.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { SIDE = 600 };
+
+/* A level sheet under even light, seen from above: every pixel holds `step` steps of 8 bits. */
+static void photograph_sheet(int step)
+{
+    weft_image image;
+    weft_error error = {0};
+    expect_ok(weft_image_create(SIDE, SIDE, &image, &error), &error);
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        image.pixels[i] = (float)step / 255;
+    expect_ok(weft_image_write("sheet.png", &image, NULL, &error), &error);
+    weft_image_free(&image);
+}
+
+static int places_seen(void)
+{
+    weft_target target = weft_target_printed(40);
+    weft_paper_places places;
+    weft_paper_samples samples;
+    weft_light_values values;
+    weft_exif exif;
+    weft_error error = {0};
+    weft_tone_curve tone = weft_tone_srgb();
+    weft_camera camera = {.width = SIDE, .height = SIDE, .fx = 1200, .fy = 1200, .cx = 299.5, .cy = 299.5};
+    weft_pose pose = weft_pose_of_view((weft_angles){0, 0}, 400);
+    weft_homography homography = weft_homography_of_pose(&camera, &pose);
+    expect_ok(weft_exif_read("sheet.png", &exif, &error), &error);
+    weft_file_range range = weft_file_range_of(&exif, 250.0 / 255);
+    expect_ok(weft_light_values_read("sheet.png", SIDE, SIDE, &tone, range, &values, &error), &error);
+    expect_ok(weft_paper_places_create(&target, &places, &error), &error);
+    expect_ok(weft_paper_sample_all(&places, &camera, &homography, &values, &samples, &error), &error);
+    int count = samples.count;
+    free(samples.sample);
+    weft_paper_places_free(&places);
+    weft_light_values_free(&values);
+    return count;
+}
+
+static void paper_below_five_steps_of_its_file_is_not_looked_at(void **state)
+{
+    (void)state;
+    photograph_sheet(6);
+    int seen = places_seen();
+    assert_true(seen > 100);
+    photograph_sheet(4);
+    assert_int_equal(places_seen(), 0);
+    photograph_sheet(120);
+    assert_int_equal(places_seen(), seen);
+}
+
+/* One step is a fifth of the value there, whatever the file. */
+static void the_limit_follows_the_bits_of_the_file(void **state)
+{
+    (void)state;
+    weft_exif eight = {.bits = 8}, sixteen = {.bits = 16}, half = {.bits = 16, .is_float = true};
+    assert_float_equal(weft_file_range_of(&eight, 0.98).dark_at, 5.0 / 255, 1e-7);
+    assert_float_equal(weft_file_range_of(&sixteen, 0.98).dark_at, 5.0 / 65535, 1e-9);
+    assert_float_equal(weft_file_range_of(&half, 0.98).dark_at, 5.0 / 65535, 1e-9);
+    assert_float_equal(weft_file_range_of(&eight, 0.98).clipped_at, 0.98, 1e-6);
+    assert_true(isinf(weft_file_range_of(&half, 0.98).clipped_at));
+}
+
+/* A texel is dark where all of its channels are. What is masked already keeps its reason, and clipped ones are counted.
+ */
+static void dark_texels_are_masked_one_by_one(void **state)
+{
+    (void)state;
+    enum { TEXELS = 6 };
+    const float texel[3 * TEXELS] = {9, 9, 9, 11, 2, 1, 1, 2, 11, 9, 9, 9, 500, 400, 300, 9.9f, 0, -1};
+    uint8_t mask[TEXELS] = {0, 0, 0, WEFT_MASK_MISSING, WEFT_MASK_SATURATED, 0};
+    const uint8_t expected[TEXELS] = {WEFT_MASK_DARK, 0, 0, WEFT_MASK_MISSING, WEFT_MASK_SATURATED, WEFT_MASK_DARK};
+    weft_hand_photograph photograph = {.dark_texels = 77, .clipped_texels = 77};
+    weft_hand_mask_dark(texel, 10, TEXELS, mask, &photograph);
+    assert_memory_equal(mask, expected, TEXELS);
+    assert_int_equal(photograph.dark_texels, 2);
+    assert_int_equal(photograph.clipped_texels, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(paper_below_five_steps_of_its_file_is_not_looked_at),
+        cmocka_unit_test(the_limit_follows_the_bits_of_the_file),
+        cmocka_unit_test(dark_texels_are_masked_one_by_one),
+    };
+    return cmocka_run_group_tests(tests, scratch_folder_enter, scratch_folder_leave);
+}

@@ -1,0 +1,233 @@
+/* Photographs of one view and one lamp that differ in exposure. The camera's curve is that of film on a screen, in
+ * whole numbers of 8 bits; the room under test bends sRGB by a polynomial. */
+#include "registration/lamp/exposure.h"
+#include "registration/lamp/lamp.h"
+
+#include "tests/registration/near.h"
+#include "tests/support/cmocka_all.h"
+
+#include "base/picture/colour.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { SCENES = 8, TWICE = 4, PHOTOGRAPHS = SCENES + TWICE, COLUMNS = 17, PLACES = COLUMNS * COLUMNS };
+
+static const double pitch_mm = 9, paper = 0.85, ink = 0.05;
+
+static const double lamp_mm[SCENES][3] = {{300, 200, 400}, {-250, 350, 450}, {-420, -60, 330}, {100, -400, 380},
+                                          {60, 90, 500},   {350, -260, 300}, {-90, 520, 420},  {-300, -330, 520}};
+
+typedef struct scene {
+    weft_target target;
+    double place[PLACES][2];
+    bool is_ink[PLACES];
+    weft_paper_places places;
+    weft_paper_sample sample[PHOTOGRAPHS][PLACES];
+    weft_lamp_evidence evidence[PHOTOGRAPHS];
+    weft_vec3 lamp[PHOTOGRAPHS];
+} scene;
+
+/* What the file holds of light, 0..1. */
+static double film(double light)
+{
+    return pow((1 - exp(-2.5 * light)) / (1 - exp(-2.5)), 1 / 2.0);
+}
+
+/* The mean of what a square of 25 pixels holds, decoded as sRGB; the sensor's noise blurs the rounding to 8 bits. */
+static float decoded(double light, int salt)
+{
+    double sum = 0;
+    for (int i = 0; i < 25; i++) {
+        double noise = sin(1.7 * i + 12.9 * salt) + sin(4.1 * i + 7.3 * salt);
+        sum += (double)weft_linear_of_srgb((float)(round(255 * film(light) + 0.5 * noise) / 255));
+    }
+    return (float)(sum / 25);
+}
+
+/* `exposure` as the camera writes it; its shutter is off by `error`. */
+static void photograph(scene *s, int i, weft_vec3 lamp, weft_pose pose, double exposure, double error)
+{
+    weft_lamp_evidence *e = &s->evidence[i];
+    *e = (weft_lamp_evidence){.pose = pose, .exposure = exposure, .paper = {PLACES, s->sample[i]}};
+    weft_vec3 eye = weft_pose_camera_position(&pose);
+    s->lamp[i] = lamp;
+    for (int k = 0; k < PLACES; k++) {
+        weft_vec3 at = weft_vec3_of(s->place[k][0], s->place[k][1], 0), to = weft_subtract(lamp, at);
+        weft_vec3 ray = weft_unit(weft_subtract(at, eye)), ahead = weft_unit(weft_scale(eye, -1));
+        double off_axis = weft_dot(ray, ahead), far = weft_length(to);
+        double value =
+            (s->is_ink[k] ? ink : paper) * lamp.z / (far * far * far) * exposure * (1 + error) * pow(off_axis, 4);
+        s->sample[i][k] = (weft_paper_sample){.place = k, .radius_squared = (float)(1 / (off_axis * off_axis) - 1)};
+        for (int c = 0; c < 3; c++)
+            s->sample[i][k].light[c] = decoded(value, 3 * (i * PLACES + k) + c);
+    }
+}
+
+/* The brightest paper comes to 0.6 of the range. */
+static double exposure_of(weft_vec3 lamp)
+{
+    double far = weft_length(lamp);
+    return 0.5 * far * far * far / lamp.z / paper;
+}
+
+static scene *draw_places(void)
+{
+    scene *s = calloc(1, sizeof *s);
+    assert_non_null(s);
+    s->target = weft_target_printed(40);
+    for (int k = 0; k < PLACES; k++) {
+        s->place[k][0] = pitch_mm * (k % COLUMNS - COLUMNS / 2);
+        s->place[k][1] = pitch_mm * (k / COLUMNS - COLUMNS / 2);
+        s->is_ink[k] = k % 4 == 3;
+    }
+    s->places = (weft_paper_places){PLACES, s->place, s->is_ink, 1};
+    return s;
+}
+
+static weft_vec3 lamp_of(int i)
+{
+    return weft_vec3_of(lamp_mm[i][0], lamp_mm[i][1], lamp_mm[i][2]);
+}
+
+/* Of the first TWICE scenes a second one, two stops darker; the hands have moved a little. */
+static scene *photograph_all(void)
+{
+    scene *s = draw_places();
+    for (int i = 0; i < SCENES; i++) {
+        weft_angles view = {weft_rad_of_deg(5 + 6 * i), 2.4 * i};
+        weft_pose pose = weft_pose_of_view(view, 400 + 20 * (i % 3));
+        double exposure = exposure_of(lamp_of(i));
+        photograph(s, i, lamp_of(i), pose, exposure, 0.004 * (i % 3 - 1));
+        if (i >= TWICE)
+            continue;
+        pose.translation.x += 0.5;
+        photograph(s, SCENES + i, weft_add(lamp_of(i), weft_vec3_of(1, -1, 1)), pose, exposure / 4, 0.005 * (i % 2));
+    }
+    return s;
+}
+
+static weft_lamp_problem problem_of(const scene *s, int count)
+{
+    return (weft_lamp_problem){.target = &s->target,
+                               .places = &s->places,
+                               .count = count,
+                               .evidence = s->evidence,
+                               .corner_radius_squared = 0.16,
+                               .tone_unknown = true};
+}
+
+/* Light of an encoded value under the curve found, but for a factor. */
+static double light_of(const weft_lamp_solution *found, double encoded)
+{
+    double power = 1, sum = log((double)weft_linear_of_srgb((float)encoded));
+    for (int k = 0; k < WEFT_TONE_TERMS; k++)
+        sum += found->tone[k] * (power *= 2 * encoded - 1);
+    return exp(sum);
+}
+
+static void exposures_tell_the_curve_and_so_the_lamps(void **state)
+{
+    (void)state;
+    scene *s = photograph_all();
+    weft_lamp_place place[PHOTOGRAPHS];
+    weft_exposure_pair pair[PHOTOGRAPHS];
+    weft_lamp_solution found = {.place = place};
+    weft_lamp_problem problem = problem_of(s, PHOTOGRAPHS);
+    weft_error error = {0};
+    assert_int_equal(weft_exposure_pairs_find(&problem, pair, &problem.pair_count, &error), WEFT_OK);
+    assert_int_equal(problem.pair_count, TWICE);
+    for (int i = 0; i < TWICE; i++) {
+        assert_int_equal(pair[i].bright, i);
+        assert_int_equal(pair[i].dark, SCENES + i);
+        assert_near(pair[i].log_ratio, log(4), 1e-9);
+    }
+    problem.pair = pair;
+    weft_lamp_guess(&problem, &found);
+    assert_int_equal(weft_lamp_solve(&problem, &found, &error), WEFT_OK);
+    for (int i = 0; i < 5; i++) {
+        double times = (double[]){2, 5, 10, 20, 40}[i];
+        double ratio = light_of(&found, film(0.45)) / light_of(&found, film(0.45 / times)) / times;
+        printf("1/%.0f of the light: %.3f\n", times, ratio);
+        assert_near(ratio, 1, i < 4 ? 0.03 : 0.05);
+    }
+    assert_true(found.dark_error > 0.002 && found.dark_error < 0.03);
+    for (int i = 0; i < PHOTOGRAPHS; i++) {
+        double off = weft_deg_of_rad(acos(weft_dot(weft_unit(place[i].position_mm), weft_unit(s->lamp[i]))));
+        printf("lamp %d: %.2f degrees off (%.2f)\n", i, off, place[i].uncertainty_deg);
+        assert_true(off < 1.5 && off < 3 * place[i].uncertainty_deg);
+    }
+    free(s);
+}
+
+/* A camera on a stand that exposes by itself: lamps that stand elsewhere, nearer, or a little aside are no series. */
+static void other_lamps_are_no_series(void **state)
+{
+    (void)state;
+    scene *s = draw_places();
+    weft_exposure_pair pair[PHOTOGRAPHS];
+    weft_pose pose = weft_pose_of_view((weft_angles){0.1, 0.3}, 420);
+    for (int i = 0; i < SCENES; i++)
+        photograph(s, i, lamp_of(i), pose, exposure_of(lamp_of(i)), 0);
+    weft_vec3 far = weft_scale(lamp_of(0), 1.5), aside = weft_add(lamp_of(0), weft_vec3_of(-90, 90, 0));
+    photograph(s, SCENES, far, pose, exposure_of(far), 0);
+    photograph(s, SCENES + 1, aside, pose, exposure_of(aside) / 2, 0);
+    photograph(s, SCENES + 2, lamp_of(1), pose, exposure_of(lamp_of(1)) / 1.2, 0); /* no darker to speak of */
+    photograph(s, SCENES + 3, lamp_of(2), pose, exposure_of(lamp_of(2)) / 2, 0);
+    s->evidence[SCENES + 3].exposure = 0; /* the camera wrote none */
+    weft_lamp_problem problem = problem_of(s, PHOTOGRAPHS);
+    int count = -1;
+    weft_error error = {0};
+    assert_int_equal(weft_exposure_pairs_find(&problem, pair, &count, &error), WEFT_OK);
+    for (int i = 0; i < count; i++)
+        printf("%d and %d\n", pair[i].bright, pair[i].dark);
+    assert_int_equal(count, 0);
+    /* The same lamp is one, from the same place alone. */
+    photograph(s, SCENES + 1, lamp_of(0), pose, exposure_of(lamp_of(0)) / 2, 0);
+    assert_int_equal(weft_exposure_pairs_find(&problem, pair, &count, &error), WEFT_OK);
+    assert_int_equal(count, 1);
+    assert_true(pair[0].bright == 0 && pair[0].dark == SCENES + 1);
+    photograph(s, SCENES + 1, lamp_of(0), weft_pose_of_view((weft_angles){0.14, 0.3}, 420), exposure_of(lamp_of(0)) / 2,
+               0);
+    assert_int_equal(weft_exposure_pairs_find(&problem, pair, &count, &error), WEFT_OK);
+    assert_int_equal(count, 0);
+    free(s);
+}
+
+/* Sixty is 64 to a camera, and 1/97 s is what a telephone means. */
+static void round_numbers_are_thirds_of_a_stop(void **state)
+{
+    (void)state;
+    const double written[][2] = {{1.0 / 60, 1.0 / 64},
+                                 {1.0 / 125, 1.0 / 128},
+                                 {1.0 / 15, 1.0 / 16},
+                                 {1.0 / 8000, 1.0 / 8192},
+                                 {1.0 / 100, 1 / 101.594},
+                                 {1.0 / 13, 1 / 12.699},
+                                 {0.4, 0.39685},
+                                 {2.5, 2.5198},
+                                 {30, 32},
+                                 {1.0 / 97, 1.0 / 97},
+                                 {1.0 / 300, 1.0 / 300},
+                                 {1.0 / 121, 1.0 / 121}};
+    for (size_t i = 0; i < sizeof written / sizeof *written; i++)
+        assert_near(weft_exposure_meant(written[i][0]) / written[i][1], 1, 1e-4);
+    /* Two stops, that the numbers make 4.17. */
+    weft_exif slow = {.exposure_s = 1.0 / 60, .iso = 125, .f_number = 5.6}, fast = slow;
+    fast.exposure_s = 1.0 / 250;
+    assert_near(weft_exif_exposure(&slow) / weft_exif_exposure(&fast), 4, 1e-9);
+    assert_near(weft_exif_exposure(&slow), 125.992 / 64 / (5.6 * 5.6), 1e-4);
+    slow.f_number = 0;
+    assert_near(weft_exif_exposure(&slow), 0, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exposures_tell_the_curve_and_so_the_lamps),
+        cmocka_unit_test(other_lamps_are_no_series),
+        cmocka_unit_test(round_numbers_are_thirds_of_a_stop),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
