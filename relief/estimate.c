@@ -1,5 +1,6 @@
 #include "relief/height_map.h"
 #include "relief/held_out.h"
+#include "relief/reach.h"
 #include "relief/relief.h"
 #include "relief/sweep.h"
 
@@ -16,8 +17,7 @@ enum {
     STEPS = 64,
     PLACES = 2,              /* along each side of a texel */
     PROBED_TEXELS = 1 << 10, /* for the plane */
-    JUDGED_TEXELS = 1 << 14,
-    REACH_TEXELS = 24
+    JUDGED_TEXELS = 1 << 14
 };
 
 /* Borders that differ less than this many times as much as neighbouring texels fit. */
@@ -109,15 +109,6 @@ static weft_code search(const estimate *e, int without, weft_height_map *map, we
     const weft_height_search request = {&e->features,      view, count, STEPS, PLACES, e->report->low_mm,
                                         e->report->high_mm};
     return weft_height_map_find(&request, map, error);
-}
-
-/* How far above and below the plane of the texels to look: a little more than a stitch is wide, or, where the material
- * is larger than that, as far as parallax is likely to be told. */
-static double reach_of(const weft_features *features)
-{
-    double side = fmin(features->width_mm, features->height_mm);
-    double texel = fmax(features->width_mm / features->width, features->height_mm / features->height);
-    return features->repeats ? 1.25 * side : fmin(0.25 * side, REACH_TEXELS * texel);
 }
 
 static weft_code find_range(estimate *e, weft_error *error)
@@ -292,8 +283,9 @@ static void name_views(estimate *e, const weft_relief_views *views)
 static weft_code find(estimate *e, const weft_relief_options *options, weft_error *error)
 {
     weft_relief_report *report = e->report;
-    double reach = reach_of(&e->features);
+    double reach;
     report_step(e, 0);
+    WEFT_TRY(weft_relief_reach(&e->features, &reach, error));
     WEFT_TRY(find_plane(e, -reach, reach, &report->plane_mm, error));
     report->low_mm = options->low_mm;
     report->high_mm = options->high_mm;

@@ -196,7 +196,8 @@ weft_code weft_height_map_halve(const weft_height_map *map, weft_height_map *hal
 
 /* ---- The range ---- */
 
-enum { WIDE_STEPS = 64, WIDE_TEXELS = 48 };
+/* A step of the wide search is two texels at most: further apart, thin yarns are missed. */
+enum { WIDE_STEPS = 64, WIDE_TEXELS_A_STEP = 2 };
 
 /* The range of the heights that are at least as confident as the median. */
 static weft_code confident_range(const weft_height_map *map, double *low, double *high, weft_error *error)
@@ -234,7 +235,8 @@ static weft_code search_wide(const weft_features *features, const int *view, int
 weft_code weft_height_range_find(const weft_features *features, const int *view, int view_count, double *low,
                                  double *high, weft_error *error)
 {
-    if (features->width <= WIDE_TEXELS && features->height <= WIDE_TEXELS)
+    double texel = fmax(features->width_mm / features->width, features->height_mm / features->height);
+    if (*high - *low <= WIDE_STEPS * WIDE_TEXELS_A_STEP * texel)
         return search_wide(features, view, view_count, low, high, error);
     weft_features half;
     WEFT_TRY(weft_features_halve(features, &half, error));

@@ -29,7 +29,7 @@ void weft_height_map_free(weft_height_map *map);
 weft_code weft_height_map_halve(const weft_height_map *map, weft_height_map *half, weft_error *error);
 
 /* Narrows low .. high to where the more confident half of a wide search lies, with a margin. The finest levels are left
- * out where the material is large. Errors: WEFT_SYSTEM. */
+ * out where the search is many texels deep. Errors: WEFT_SYSTEM. */
 weft_code weft_height_range_find(const weft_features *features, const int *view, int view_count, double *low,
                                  double *high, weft_error *error);
 

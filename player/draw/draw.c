@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-enum { HURRIED_LAYERS = 16, HURRIED_LIGHTS = 2 };
+enum { HURRIED_LAYERS = 16 };
 
 static const double golden_ratio = 0.6180339887498949;
 
@@ -29,8 +29,7 @@ static void set_lights(const weft_player *p, GLuint program, const weft_scene *s
     }
 }
 
-/* Successive frames start their choices a golden section apart: evenly spread, however many there are. */
-static double sequence_of(const weft_player *p, long frame)
+double weft_player_sequence(const weft_player *p, long frame)
 {
     return fmod((frame < 0 ? (double)p->frames_drawn : (double)frame) * golden_ratio, 1);
 }
@@ -52,7 +51,7 @@ void weft_player_set_point(const weft_player *p, GLuint program, const weft_scen
     set_lights(p, program, scene, pane->sampling.frame);
     /* A frame at rest takes longer and shows less of its choices. */
     weft_gl_set_int(program, "chosen_places", pane->sampling.frame < 0 ? 1 : 3);
-    weft_gl_set_float(program, "sequence", sequence_of(p, pane->sampling.frame));
+    weft_gl_set_float(program, "sequence", weft_player_sequence(p, pane->sampling.frame));
     weft_layer_bind(layer, program);
     if (!weft_scene_has_shadows(scene))
         return;
@@ -84,84 +83,6 @@ weft_code weft_player_check_mode(const weft_player *p, weft_mode mode, weft_erro
 }
 
 /* ---- Panes ---- */
-
-/* They take other texture units than lobes do. */
-static bool uses_layers(const weft_player *p, const weft_scene *scene)
-{
-    return scene->layers > 0 && p->material.layers.group_count > 0;
-}
-
-static int drawn_groups(const weft_player *p, const weft_scene *scene)
-{
-    int wanted = (scene->layers + WEFT_LAYERS_GROUP - 1) / WEFT_LAYERS_GROUP, most = p->material.layers.group_count;
-    return wanted < most ? wanted : most;
-}
-
-void weft_player_bind_mode(const weft_player *p, const weft_scene *scene, weft_mode mode, GLuint program)
-{
-    switch (mode) {
-    case WEFT_MODE_RAW:
-        weft_raw_texture_bind(&p->raw, program);
-        break;
-    case WEFT_MODE_COMPRESSED:
-        weft_material_texture_bind(&p->material, program, uses_layers(p, scene));
-        if (scene->show_extrapolation && p->material.seen.maps)
-            weft_seen_texture_bind(&p->material.seen, program, uses_layers(p, scene) ? 0 : 5);
-        glUniform1fv(glGetUniformLocation(program, "lobe_share"), WEFT_SCENE_MAX_LOBES,
-                     (const GLfloat[]){scene->lobe[0], scene->lobe[1], scene->lobe[2]});
-        weft_gl_set_float(program, "view_table_share", scene->view_table);
-        weft_gl_set_float(program, "light_table_share", scene->light_table);
-        weft_gl_set_float(program, "table_steps", (1 << scene->table_bits) - 1);
-        break;
-    default:
-        if (weft_player_has_threads(p))
-            weft_thread_texture_bind(&p->threads, program);
-        else
-            weft_weave_texture_bind(&p->weave, program, (unsigned)scene->noise_seed);
-        break;
-    }
-}
-
-/* All lights of an environment through all neighbours of every pixel would take seconds. */
-static bool is_stochastic(const weft_player *p, const weft_scene *scene, weft_sampling sampling)
-{
-    if (scene->filter == WEFT_FILTER_AUTO)
-        return sampling.hurry || (scene->environment && p->environment);
-    return scene->filter == WEFT_FILTER_STOCHASTIC;
-}
-
-weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene, const weft_pane *pane)
-{
-    weft_program_kind kind = {
-        .mode = pane->mode,
-        .stochastic = is_stochastic(p, scene, pane->sampling),
-        .shadows = weft_scene_has_shadows(scene),
-        .one_light = weft_lighting_count(scene, p->environment) == 1,
-    };
-    bool has_many = scene->environment && p->environment && p->environment->region_count > HURRIED_LIGHTS;
-    /* Where a light is tinted it has to be the same in neighbouring pixels. */
-    if (pane->sampling.hurry && has_many && !scene->show_extrapolation)
-        kind.chosen_lights = HURRIED_LIGHTS;
-    kind.threads = pane->mode == WEFT_MODE_ANALYTIC && weft_player_has_threads(p);
-    kind.noise = pane->mode == WEFT_MODE_ANALYTIC && scene->noise_seed != 0 && p->weave.has_noise;
-    if (pane->mode == WEFT_MODE_RAW) {
-        kind.opacity = !p->raw.opaque;
-        kind.relief = scene->relief && p->raw.relief.height;
-    }
-    if (pane->mode == WEFT_MODE_COMPRESSED) {
-        kind.lobe_count = p->material.lobe_count;
-        kind.view_table = p->material.table.count > 0;
-        kind.light_table = p->material.light_table.count > 0;
-        kind.fewer_bits = scene->table_bits < 8;
-        kind.pruned = scene->show_extrapolation && p->material.seen.maps;
-        kind.layer_groups = uses_layers(p, scene) ? p->material.layers.group_count : 0;
-        kind.drawn_groups = drawn_groups(p, scene);
-        kind.half_vector = p->material.layers.half_vector;
-        kind.opacity = kind.layer_groups > 0 && !p->material.opaque;
-        kind.relief = kind.layer_groups > 0 && scene->relief && p->material.relief.height;
-    }
-    return kind;
-}
 
 static void draw_screen(const weft_player *p)
 {
@@ -256,11 +177,6 @@ static weft_code shade_layer(weft_player *p, const weft_scene *scene, const weft
     return WEFT_OK;
 }
 
-static bool is_opaque(const weft_player *p, weft_mode mode)
-{
-    return mode == WEFT_MODE_ANALYTIC || (mode == WEFT_MODE_RAW ? p->raw.opaque : p->material.opaque);
-}
-
 /* Nothing of the background is drawn that opaque cloth hides. */
 static weft_code draw_opaque_pane(weft_player *p, const weft_scene *scene, const weft_pane *pane, GLuint target,
                                   weft_error *error)
@@ -293,8 +209,8 @@ static weft_code draw_pane_with_holes(weft_player *p, const weft_scene *scene, c
 static weft_code draw_pane(weft_player *p, const weft_scene *scene, const weft_pane *pane, GLuint target,
                            weft_error *error)
 {
-    return is_opaque(p, pane->mode) ? draw_opaque_pane(p, scene, pane, target, error)
-                                    : draw_pane_with_holes(p, scene, pane, target, error);
+    return weft_player_is_opaque(p, pane->mode) ? draw_opaque_pane(p, scene, pane, target, error)
+                                                : draw_pane_with_holes(p, scene, pane, target, error);
 }
 
 /* ---- Layouts ---- */
@@ -414,7 +330,7 @@ weft_code weft_player_draw(weft_player *p, const weft_scene *asked, int width, i
     WEFT_TRY(check_scene(p, scene, width, height, error));
     GLint target;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-    weft_player_draw_shadows(p, scene, sampling.frame);
+    WEFT_TRY(weft_player_draw_shadows(p, scene, sampling.frame, error));
     const weft_pane whole = {.width = width, .height = height, .sampling = sampling};
     WEFT_TRY(draw[scene->layout](p, scene, &whole, (GLuint)target, error));
     p->frames_drawn++;

@@ -93,7 +93,7 @@ static weft_code draw_surface(weft_player *p, const weft_scene *scene, const wef
                               weft_error *error)
 {
     GLuint program;
-    weft_player_draw_shadows(p, scene, pane->sampling.frame);
+    WEFT_TRY(weft_player_draw_shadows(p, scene, pane->sampling.frame, error));
     WEFT_TRY(weft_player_draw_layers(p, scene, pane, 1, error));
     WEFT_TRY(weft_programs_find_geometry(&p->programs, weft_scene_has_shadows(scene), &program, error));
     glBindFramebuffer(GL_FRAMEBUFFER, target);

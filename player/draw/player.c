@@ -115,6 +115,7 @@ weft_code weft_player_set_mesh(weft_player *p, const weft_mesh *mesh, weft_error
 static void has_now(weft_player *p, weft_mode mode, double width, double height)
 {
     p->has[mode] = true;
+    weft_shadow_map_forget(&p->shadow);
     p->texel_count[mode][0] = width;
     p->texel_count[mode][1] = height;
 }

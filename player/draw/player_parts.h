@@ -16,6 +16,13 @@
 
 enum { WEFT_LAYER_COUNT = 2 };
 
+/* Which holes let light through, and how close they lie. */
+typedef struct weft_shadow_holes {
+    bool any, relief;
+    weft_mode mode;
+    double repeat[2]; /* materials for a unit of the mesh's coordinates */
+} weft_shadow_holes;
+
 struct weft_player {
     /* Mesh */
     GLuint vertex_array, vertex_buffer, index_buffer;
@@ -36,6 +43,7 @@ struct weft_player {
     weft_environment *environment; /* or NULL */
     GLuint environment_map;
     weft_shadow_map shadow;
+    weft_shadow_holes shadow_holes; /* that it was drawn with */
     /* Programs */
     weft_programs programs;
     GLuint background, environment_background, copy;
@@ -72,8 +80,21 @@ void weft_player_shade(const weft_player *player, const weft_pane *pane, const w
 weft_program_kind weft_player_kind(const weft_player *player, const weft_scene *scene, const weft_pane *pane);
 void weft_player_bind_mode(const weft_player *player, const weft_scene *scene, weft_mode mode, GLuint program);
 
-/* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. */
-void weft_player_draw_shadows(weft_player *player, const weft_scene *scene, long frame);
+/* Whether the cloth of a mode has no holes. */
+bool weft_player_is_opaque(const weft_player *player, weft_mode mode);
+
+/* Which program draws the shadow of cloth of the mode, which has holes. Soft shadows are means over many frames: there
+ * a neighbour at random will do, without heights. */
+weft_program_kind weft_player_casting_kind(const weft_player *player, const weft_scene *scene, weft_mode mode,
+                                           bool is_soft);
+
+/* Where the random choices of a frame begin. Successive frames start a golden section apart: evenly spread, however
+ * many there are. */
+double weft_player_sequence(const weft_player *player, long frame);
+
+/* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. Light passes through the
+ * holes of the cloth, as the first mode that is shown and has holes knows them. Errors: WEFT_SYSTEM. */
+weft_code weft_player_draw_shadows(weft_player *player, const weft_scene *scene, long frame, weft_error *error);
 
 /* Shows `texture`, which is taken. last_ring_z: the smallest z of the views and of the lights. */
 void weft_player_take_raw(weft_player *player, weft_raw_texture *texture, const double last_ring_z[2]);

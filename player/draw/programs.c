@@ -11,9 +11,9 @@
 static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
 {
     return a->mode == b->mode && a->stochastic == b->stochastic && a->shadows == b->shadows &&
-           a->one_light == b->one_light && a->chosen_lights == b->chosen_lights && a->plot == b->plot &&
-           a->opacity == b->opacity && a->relief == b->relief && a->threads == b->threads && a->noise == b->noise &&
-           a->layer_groups == b->layer_groups && a->drawn_groups == b->drawn_groups &&
+           a->one_light == b->one_light && a->chosen_lights == b->chosen_lights && a->casts == b->casts &&
+           a->plot == b->plot && a->opacity == b->opacity && a->relief == b->relief && a->threads == b->threads &&
+           a->noise == b->noise && a->layer_groups == b->layer_groups && a->drawn_groups == b->drawn_groups &&
            a->half_vector == b->half_vector && a->lobe_count == b->lobe_count && a->view_table == b->view_table &&
            a->light_table == b->light_table && a->fewer_bits == b->fewer_bits && a->pruned == b->pruned;
 }
@@ -50,9 +50,18 @@ static weft_code build(const weft_program_kind *kind, GLuint *program, weft_erro
 {
     char constants[768];
     define(kind, constants, sizeof constants);
-    const char *const vertex[] = {weft_glsl_fullscreen_vert, NULL};
-    const char *const raw[] = {constants,        weft_glsl_rotation, weft_glsl_surface,    weft_glsl_directions,
-                               weft_glsl_relief, weft_glsl_raw,      weft_glsl_shade_frag, NULL};
+    const char *const vertex[] = {kind->casts ? weft_glsl_surface_vert : weft_glsl_fullscreen_vert, NULL};
+    const char *mesh = kind->casts ? weft_glsl_mesh_point : "";
+    const char *last = kind->casts ? weft_glsl_cast_frag : weft_glsl_shade_frag;
+    const char *const raw[] = {constants,
+                               weft_glsl_rotation,
+                               weft_glsl_surface,
+                               weft_glsl_directions,
+                               weft_glsl_relief,
+                               weft_glsl_raw,
+                               mesh,
+                               last,
+                               NULL};
     const char *const compressed[] = {constants,
                                       weft_glsl_rotation,
                                       weft_glsl_surface,
@@ -60,11 +69,20 @@ static weft_code build(const weft_program_kind *kind, GLuint *program, weft_erro
                                       weft_glsl_tables,
                                       weft_glsl_lafortune,
                                       weft_glsl_compressed,
-                                      weft_glsl_shade_frag,
+                                      mesh,
+                                      last,
                                       NULL};
-    const char *const layered[] = {
-        constants,        weft_glsl_rotation, weft_glsl_surface, weft_glsl_directions, weft_glsl_tables,
-        weft_glsl_layers, weft_glsl_relief,   weft_glsl_layered, weft_glsl_shade_frag, NULL};
+    const char *const layered[] = {constants,
+                                   weft_glsl_rotation,
+                                   weft_glsl_surface,
+                                   weft_glsl_directions,
+                                   weft_glsl_tables,
+                                   weft_glsl_layers,
+                                   weft_glsl_relief,
+                                   weft_glsl_layered,
+                                   mesh,
+                                   last,
+                                   NULL};
     const char *const analytic[] = {constants,
                                     weft_glsl_rotation,
                                     weft_glsl_surface,
@@ -133,7 +151,7 @@ weft_code weft_programs_find_surface(weft_programs *p, bool behind, GLuint *prog
         char constants[64];
         snprintf(constants, sizeof constants, "#define BEHIND %s\n", name_of(behind));
         const char *const vertex[] = {weft_glsl_surface_vert, NULL};
-        const char *const fragment[] = {constants, weft_glsl_surface_frag, NULL};
+        const char *const fragment[] = {constants, weft_glsl_mesh_point, weft_glsl_surface_frag, NULL};
         WEFT_TRY(weft_gl_program("surface", vertex, fragment, wanted, error));
     }
     *program = *wanted;

@@ -12,6 +12,7 @@ typedef struct weft_program_kind {
     weft_mode mode;
     bool stochastic, shadows, one_light;
     int chosen_lights; /* of the environment, by chance; 0: all of it */
+    bool casts;        /* draws the shadow of cloth with holes */
     int plot;          /* 0: of the picture; 1, 2: of lights, of views (player/draw/probe.h) */
     bool opacity;      /* raw and layers: some is below 1 */
     bool relief;       /* raw and layers: through the heights */

@@ -63,7 +63,7 @@ void weft_shadow_map_forget(weft_shadow_map *map)
 }
 
 bool weft_shadow_map_begin(weft_shadow_map *map, int layer, bool is_soft, weft_vec3 light, weft_vec3 centre,
-                           double radius)
+                           double radius, GLuint program)
 {
     int side = is_soft ? SIDE / 2 : SIDE;
     weft_vec3 change = weft_subtract(light, map->light[layer]);
@@ -87,8 +87,8 @@ bool weft_shadow_map_begin(weft_shadow_map *map, int layer, bool is_soft, weft_v
     /* Both sides of a thin cloth are lit: its depth is moved away from the light by its slope and a little more. */
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(2.5f, 16);
-    glUseProgram(map->program);
-    glUniformMatrix4fv(glGetUniformLocation(map->program, "clip_of_world"), 1, GL_FALSE, clip_of_world);
+    glUseProgram(program);
+    glUniformMatrix4fv(glGetUniformLocation(program, "clip_of_world"), 1, GL_FALSE, clip_of_world);
     return true;
 }
 

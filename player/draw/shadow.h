@@ -11,7 +11,8 @@
 enum { WEFT_SHADOW_LAYERS = 8 };
 
 typedef struct weft_shadow_map {
-    GLuint buffer, depth, program;
+    GLuint buffer, depth;
+    GLuint program;                         /* of cloth without holes */
     float of_world[WEFT_SHADOW_LAYERS][16]; /* column-major: to the map's texture coordinates and depth */
     weft_vec3 light[WEFT_SHADOW_LAYERS];    /* that it was drawn for; zero: none */
     float share[WEFT_SHADOW_LAYERS];        /* of its side that a layer uses: half for soft shadows */
@@ -23,10 +24,11 @@ weft_code weft_shadow_map_create(weft_shadow_map *map, weft_error *error);
 void weft_shadow_map_free(weft_shadow_map *map);
 
 /* Between the two, what is drawn casts shadows into a layer: distant light from `light` (unit) on a ball of `radius`
- * about `centre`. The framebuffer and viewport in use before are the caller's to restore. False where the layer holds
- * this light's shadows already and nothing is to be drawn; weft_shadow_map_forget makes it draw again. */
+ * about `centre`, by `program`, which is in use then and has its clip_of_world. The framebuffer and viewport in use
+ * before are the caller's to restore. False where the layer holds this light's shadows already and nothing is to be
+ * drawn; weft_shadow_map_forget makes it draw again. */
 bool weft_shadow_map_begin(weft_shadow_map *map, int layer, bool is_soft, weft_vec3 light, weft_vec3 centre,
-                           double radius);
+                           double radius, GLuint program);
 void weft_shadow_map_end(void);
 
 void weft_shadow_map_forget(weft_shadow_map *map);

@@ -43,17 +43,23 @@ static double proportion_of(const weft_player *p)
     return p->has[WEFT_MODE_RAW] || p->has[WEFT_MODE_COMPRESSED] ? texels[0] / texels[1] : 1;
 }
 
+/* What mesh_point.glsl needs. */
+static void set_material(const weft_player *p, GLuint program, const weft_scene *scene, weft_mode mode)
+{
+    weft_gl_set_vec2(program, "repeat", scene->repeat, scene->repeat * proportion_of(p));
+    weft_gl_set_vec2(program, "texel_count", p->texel_count[mode][0], p->texel_count[mode][1]);
+    weft_gl_set_float(program, "level_choice", level_uniform(scene));
+    weft_gl_set_int(program, "level_nearest", scene->level_choice == WEFT_LEVEL_NEAREST);
+}
+
 static void set_view(const weft_player *p, GLuint program, const weft_scene *scene, const weft_pane *pane)
 {
     float matrix[16];
     weft_orbit_clip_of_world(&scene->orbit, p->centre, p->radius, (double)pane->width / pane->height,
                              pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height, matrix);
     glUniformMatrix4fv(glGetUniformLocation(program, "clip_of_world"), 1, GL_FALSE, matrix);
-    weft_gl_set_vec2(program, "repeat", scene->repeat, scene->repeat * proportion_of(p));
-    weft_gl_set_vec2(program, "texel_count", p->texel_count[pane->mode][0], p->texel_count[pane->mode][1]);
-    weft_gl_set_float(program, "level_choice", level_uniform(scene));
     weft_gl_set_float(program, "level_bias", pane->sampling.level_bias);
-    weft_gl_set_int(program, "level_nearest", scene->level_choice == WEFT_LEVEL_NEAREST);
+    set_material(p, program, scene, pane->mode);
 }
 
 /* `front` is the layer that this one lies behind, or NULL. */
@@ -105,24 +111,75 @@ void weft_player_shade(const weft_player *p, const weft_pane *pane, const weft_l
     glDisable(GL_DEPTH_TEST);
 }
 
-/* Coarse triangles will do for soft ones. */
-static void draw_shadow(weft_player *p, int layer, weft_vec3 light, bool is_soft)
+/* ---- Shadows ---- */
+
+static weft_shadow_holes holes_of(const weft_player *p, const weft_scene *scene)
 {
-    if (weft_shadow_map_begin(&p->shadow, layer, is_soft, light, p->centre, p->radius)) {
-        draw_mesh(p, is_soft && p->coarse_count > 0);
-        weft_shadow_map_end();
+    weft_shadow_holes holes = {.relief = scene->relief, .repeat = {scene->repeat, scene->repeat * proportion_of(p)}};
+    for (int i = 0; i < weft_scene_panes(scene) && !holes.any; i++) {
+        holes.mode = scene->pane[i];
+        holes.any = !weft_player_is_opaque(p, holes.mode);
     }
+    return holes;
+}
+
+/* What was drawn with other holes is drawn again. */
+static void take_holes(weft_player *p, const weft_scene *scene)
+{
+    weft_shadow_holes now = holes_of(p, scene), *was = &p->shadow_holes;
+    bool same = now.any ? was->any && now.relief == was->relief && now.mode == was->mode &&
+                              now.repeat[0] == was->repeat[0] && now.repeat[1] == was->repeat[1]
+                        : !was->any;
+    if (!same)
+        weft_shadow_map_forget(&p->shadow);
+    *was = now;
+}
+
+static weft_code find_caster(weft_player *p, const weft_scene *scene, bool is_soft, GLuint *program, weft_error *error)
+{
+    *program = p->shadow.program;
+    if (!p->shadow_holes.any)
+        return WEFT_OK;
+    const weft_program_kind kind = weft_player_casting_kind(p, scene, p->shadow_holes.mode, is_soft);
+    return weft_programs_find(&p->programs, &kind, program, error);
+}
+
+static void set_holes(const weft_player *p, const weft_scene *scene, weft_vec3 light, double sequence, GLuint program)
+{
+    weft_mode mode = p->shadow_holes.mode;
+    weft_player_bind_mode(p, scene, mode, program);
+    set_material(p, program, scene, mode);
+    weft_gl_set_float(program, "level_bias", 0);
+    weft_gl_set_float(program, "sequence", sequence);
+    weft_gl_set_vec3(program, "toward_light", (double)light.x, (double)light.y, (double)light.z);
+}
+
+/* Coarse triangles will do for soft ones. */
+static weft_code draw_shadow(weft_player *p, const weft_scene *scene, int layer, weft_vec3 light, bool is_soft,
+                             long frame, weft_error *error)
+{
+    GLuint program;
+    WEFT_TRY(find_caster(p, scene, is_soft, &program, error));
+    if (!weft_shadow_map_begin(&p->shadow, layer, is_soft, light, p->centre, p->radius, program))
+        return WEFT_OK;
+    if (p->shadow_holes.any)
+        set_holes(p, scene, light, is_soft ? weft_player_sequence(p, frame) : 0, program);
+    draw_mesh(p, is_soft && p->coarse_count > 0);
+    weft_shadow_map_end();
+    return WEFT_OK;
 }
 
 _Static_assert(WEFT_KEY_PLACES + WEFT_FILL_DIRECTIONS <= WEFT_SHADOW_LAYERS, "every shadow of a frame has its layer");
 
-void weft_player_draw_shadows(weft_player *p, const weft_scene *scene, long frame)
+weft_code weft_player_draw_shadows(weft_player *p, const weft_scene *scene, long frame, weft_error *error)
 {
     if (!weft_scene_has_shadows(scene))
-        return;
+        return WEFT_OK;
+    take_holes(p, scene);
     weft_lighting lighting = weft_lighting_of(scene, p->environment, frame);
     for (int i = 0; i < lighting.key_count; i++)
-        draw_shadow(p, i, lighting.key[i], scene->key_size_rad > 0);
+        WEFT_TRY(draw_shadow(p, scene, i, lighting.key[i], scene->key_size_rad > 0, frame, error));
     for (int i = 0; i < lighting.fill_count; i++)
-        draw_shadow(p, WEFT_KEY_PLACES + i, lighting.fill[i], true);
+        WEFT_TRY(draw_shadow(p, scene, WEFT_KEY_PLACES + i, lighting.fill[i], true, frame, error));
+    return WEFT_OK;
 }

@@ -11,7 +11,7 @@ extern const char weft_glsl_text_vert[];
 extern const char weft_glsl_text_frag[];
 
 extern const char weft_glsl_surface_vert[];
-extern const char weft_glsl_surface_frag[];
+extern const char weft_glsl_mesh_point[], weft_glsl_surface_frag[];
 extern const char weft_glsl_rotation[];
 extern const char weft_glsl_surface[];
 extern const char weft_glsl_environment_frag[];
@@ -19,7 +19,7 @@ extern const char weft_glsl_directions[];
 extern const char weft_glsl_tables[], weft_glsl_compressed[], weft_glsl_layered[];
 extern const char weft_glsl_raw[];
 extern const char weft_glsl_analytic[], weft_glsl_threads[];
-extern const char weft_glsl_shade_frag[], weft_glsl_depth_frag[];
+extern const char weft_glsl_shade_frag[], weft_glsl_depth_frag[], weft_glsl_cast_frag[];
 extern const char weft_glsl_geometry_frag[];
 
 /* From reflectance/. */

@@ -44,6 +44,21 @@ static weft_program_kind kind_of(weft_mode mode, int plot, int choice)
                                .light_table = compressed && choice & 32};
 }
 
+/* A program that draws shadows of cloth with holes. */
+static weft_program_kind casting_kind(int choice)
+{
+    bool is_raw = choice & 1, layered = !is_raw && choice & 2;
+    return (weft_program_kind){.mode = is_raw ? WEFT_MODE_RAW : WEFT_MODE_COMPRESSED,
+                               .casts = true,
+                               .opacity = true,
+                               .one_light = true,
+                               .stochastic = choice & 4,
+                               .relief = (is_raw || layered) && choice & 8,
+                               .layer_groups = layered ? 4 : 0,
+                               .drawn_groups = layered,
+                               .view_table = true};
+}
+
 /* Programs are built when they are first used: all of them are asked for here. */
 static void build_every_program(void)
 {
@@ -56,6 +71,10 @@ static void build_every_program(void)
             const weft_program_kind kind = kind_of((weft_mode)mode, (choice + choice / 3) % 3, choice);
             expect_ok(weft_programs_find(&programs, &kind, &program, &error), &error);
         }
+    }
+    for (int choice = 0; choice < 16; choice++) {
+        const weft_program_kind kind = casting_kind(choice);
+        expect_ok(weft_programs_find(&programs, &kind, &program, &error), &error);
     }
     for (int i = 0; i < 2; i++) {
         expect_ok(weft_programs_find_surface(&programs, i, &program, &error), &error);

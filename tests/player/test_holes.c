@@ -2,15 +2,17 @@
 #include "stage.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIZE = 48, TEXELS = 8, VIEWS = 19 };
+enum { SIZE = 48, TEXELS = 8, FIELD = 2, VIEWS = 19 };
 
 static const double cloth = 0.6;
 
-/* Grey cloth and holes by turns at level 0, half of each from there on. The reflectance is that of the whole texel. */
-static void make_mesh_cloth(weft_material *material)
+/* Fields of grey cloth and holes by turns at level 0, half of each from there on. The reflectance is that of the whole
+ * texel. */
+static void make_mesh_cloth(int texels_a_field, weft_material *material)
 {
     weft_error error = {0};
     expect_ok(weft_material_create(TEXELS, TEXELS, 0, VIEWS, 0, true, material, &error), &error);
@@ -20,7 +22,7 @@ static void make_mesh_cloth(weft_material *material)
         weft_material_level *level = &material->level[k];
         int texels = level->width * level->height;
         for (int i = 0; i < texels; i++) {
-            bool hole = k == 0 && (i / level->width + i % level->width) % 2;
+            bool hole = k == 0 && (i / level->width / texels_a_field + i % level->width / texels_a_field) % 2;
             double value = k > 0 ? cloth / 2 : hole ? 0 : cloth;
             weft_frame frame = weft_frame_of_normal(weft_vec3_of(0, 0, 1), 0);
             weft_frame_encode(&frame, level->frame + 3 * i);
@@ -100,7 +102,7 @@ static void a_half_covered_level_shows_half_of_the_background(void **state)
 {
     weft_player *player = ((stage *)*state)->player;
     weft_material material;
-    make_mesh_cloth(&material);
+    make_mesh_cloth(1, &material);
     set_material(player, &material);
     weft_image background = draw_background(player);
     set_mesh(player, weft_mesh_plane);
@@ -134,7 +136,7 @@ static void holes_show_the_cloth_behind(void **state)
 {
     weft_player *player = ((stage *)*state)->player;
     weft_material material;
-    make_mesh_cloth(&material);
+    make_mesh_cloth(1, &material);
     set_material(player, &material);
     weft_image background = draw_background(player);
     set_mesh(player, make_two_planes);
@@ -148,11 +150,140 @@ static void holes_show_the_cloth_behind(void **state)
     weft_material_free(&material);
 }
 
+/* ---- Shadows ---- */
+
+/* The same, so that the cloth of the lower one lies below the holes of the upper one. */
+static weft_code make_crossed_planes(weft_mesh *mesh, weft_error *error)
+{
+    WEFT_TRY(make_two_planes(mesh, error));
+    for (int i = 4; i < 8; i++)
+        mesh->vertex[i].coordinate[0] += (float)FIELD / TEXELS;
+    return WEFT_OK;
+}
+
+/* Light from straight above falls on the lower cloth as far as the upper one is open, which pictures without shadows
+ * tell: `one` of one cloth, `two` of both, `nothing` of none. */
+static void the_lower_cloth_has_the_light_that_passes(weft_player *player, weft_mode mode, const weft_image *nothing)
+{
+    weft_scene scene = plane_scene(90);
+    scene.pane[0] = mode;
+    scene.level = 3; /* one texel */
+    set_mesh(player, weft_mesh_plane);
+    weft_image one = draw(player, &scene, 1);
+    set_mesh(player, make_two_planes);
+    weft_image two = draw(player, &scene, 1);
+    scene.shadows = true;
+    weft_image shadowed = draw(player, &scene, 4);
+    double background = mean_of_middle(nothing), upper = mean_of_middle(&one);
+    double open = (mean_of_middle(&two) - upper) / (upper - background), own = upper - open * background;
+    print_message("%s: %.3f open, two %.4f, in shadow %.4f\n", weft_mode_name(mode), open, mean_of_middle(&two),
+                  mean_of_middle(&shadowed));
+    assert_true(open > 0.2 && open < 0.9);
+    assert_float_equal(mean_of_middle(&shadowed), own + open * open * (own + background), 0.02 * own);
+    weft_image_free(&one);
+    weft_image_free(&two);
+    weft_image_free(&shadowed);
+}
+
+/* Holes and grey cloth by turns, photographed. */
+static void show_photographs_with_holes(weft_player *player, const char *path)
+{
+    enum { LIGHTS = 7, IMAGES = VIEWS * LIGHTS, PLACES = TEXELS * TEXELS };
+    static weft_half samples[3 * PLACES];
+    static float opacity[PLACES * VIEWS];
+    static uint8_t mask[PLACES];
+    weft_error error = {0};
+    weft_dataset_layout layout = {
+        .width = TEXELS, .height = TEXELS, .image_count = IMAGES, .view_count = VIEWS, .texel_pitch_mm = 0.5};
+    expect_ok(weft_dataset_layout_allocate(&layout, &error), &error);
+    weft_dataset_writer *writer;
+    for (int i = 0; i < IMAGES; i++) {
+        layout.view_of_image[i] = i / LIGHTS;
+        layout.light[i] = weft_direction_of_angles(weft_ubo81_angles(i % LIGHTS));
+        layout.view[i / LIGHTS] = weft_direction_of_angles(weft_ubo81_angles(i / LIGHTS));
+    }
+    for (int i = 0; i < PLACES; i++) {
+        bool hole = (i / TEXELS + i % TEXELS) % 2;
+        for (int v = 0; v < VIEWS; v++)
+            opacity[i * VIEWS + v] = !hole;
+        for (int c = 0; c < 3; c++)
+            samples[3 * i + c] = weft_half_of_float(hole ? 0 : (float)cloth);
+    }
+    expect_ok(weft_dataset_writer_create(path, &layout, &writer, &error), &error);
+    for (int i = 0; i < IMAGES; i++)
+        expect_ok(weft_dataset_writer_put_image(writer, i, samples, mask, &error), &error);
+    expect_ok(weft_dataset_writer_put_opacity(writer, opacity, &error), &error);
+    expect_ok(weft_dataset_writer_finish(writer, NULL, &error), &error);
+    weft_dataset_layout_free(&layout);
+    weft_dataset *dataset;
+    int skipped_levels;
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    expect_ok(weft_player_set_dataset(player, dataset, NULL, &skipped_levels, &error), &error);
+    weft_dataset_close(dataset);
+    remove(path);
+}
+
+static void light_passes_as_far_as_cloth_is_open(void **state)
+{
+    weft_player *player = ((stage *)*state)->player;
+    weft_material material;
+    make_mesh_cloth(1, &material);
+    set_material(player, &material);
+    weft_image nothing = draw_background(player);
+    the_lower_cloth_has_the_light_that_passes(player, WEFT_MODE_COMPRESSED, &nothing);
+    stage_layers(WEFT_LAYERS_OF_LIGHT, 4, &material);
+    stage_heights(true, 1, &material);
+    set_material(player, &material);
+    the_lower_cloth_has_the_light_that_passes(player, WEFT_MODE_COMPRESSED, &nothing);
+    show_photographs_with_holes(player, "holes.btf.h5");
+    the_lower_cloth_has_the_light_that_passes(player, WEFT_MODE_RAW, &nothing);
+    weft_image_free(&nothing);
+    weft_material_free(&material);
+}
+
+/* What shadows take from the picture, as a share of it. The light falls slantwise: what passes a hole of the upper
+ * cloth meets the lower one `aside` of it. */
+static double lost_to_shadows(weft_player *player, double repeat, double aside)
+{
+    weft_scene scene = plane_scene(90);
+    scene.repeat = repeat;
+    scene.level = 0;
+    scene.light[0].direction = (weft_angles){atan(aside / 0.2), 0};
+    weft_image lit = draw(player, &scene, 4);
+    scene.shadows = true;
+    weft_image shadowed = draw(player, &scene, 4);
+    double lost = 1 - mean_of_middle(&shadowed) / mean_of_middle(&lit);
+    weft_image_free(&lit);
+    weft_image_free(&shadowed);
+    return lost;
+}
+
+/* Light that comes through one hole and goes to the eye through the next meets cloth; half as slanted it meets the
+ * shadow of the cloth between the holes. */
+static void light_passes_the_holes_that_the_light_sees(void **state)
+{
+    weft_player *player = ((stage *)*state)->player;
+    weft_material material;
+    make_mesh_cloth(FIELD, &material);
+    set_material(player, &material);
+    set_mesh(player, make_crossed_planes);
+    double through = lost_to_shadows(player, 1, 2.0 * FIELD / TEXELS),
+           between = lost_to_shadows(player, 1, 1.0 * FIELD / TEXELS);
+    print_message("shadows take %.3f where holes line up, %.3f where they do not\n", through, between);
+    assert_true(between > 0.2 && through < between / 3);
+    /* The holes are three times as close, and line up under the same light under which they did not. */
+    double aside = 2.0 * FIELD / TEXELS / 3, wide = lost_to_shadows(player, 1, aside);
+    double close = lost_to_shadows(player, 3, aside);
+    print_message("and %.3f of wide holes, %.3f of close ones\n", wide, close);
+    assert_true(wide > 0.15 && close < wide / 2);
+    weft_material_free(&material);
+}
+
 static void levels_of_holes_have_one_mean(void **state)
 {
     weft_player *player = ((stage *)*state)->player;
     weft_material material;
-    make_mesh_cloth(&material);
+    make_mesh_cloth(1, &material);
     set_material(player, &material);
     set_mesh(player, weft_mesh_plane);
     weft_scene scene = plane_scene(90);
@@ -224,6 +355,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_half_covered_level_shows_half_of_the_background),
         cmocka_unit_test(holes_show_the_cloth_behind),
+        cmocka_unit_test(light_passes_as_far_as_cloth_is_open),
+        cmocka_unit_test(light_passes_the_holes_that_the_light_sees),
         cmocka_unit_test(levels_of_holes_have_one_mean),
         cmocka_unit_test(evaluator_and_shader_agree_where_there_are_holes),
     };

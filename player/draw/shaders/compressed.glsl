@@ -82,6 +82,16 @@ vec4 level_value(int level, SurfacePoint point, Entries views)
     return mix(top, bottom, share.y);
 }
 
+// The part of the cloth, as it is seen, that is no hole.
+float opacity(SurfacePoint point)
+{
+    if (!VIEW_TABLE)
+        return 1.0;
+    float level = clamp(point.level, 0.0, float(level_count - 1));
+    Entries views = table_entries(find_corners(0, point.view), table_columns);
+    return opacity_between(int(level), fract(level), point.coordinate, views);
+}
+
 vec4 radiance(SurfacePoint point)
 {
     Entries views;

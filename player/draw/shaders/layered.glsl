@@ -86,20 +86,6 @@ vec3 layers_value_of_view(vec4 coefficient[DRAWN_GROUPS], vec3 light, int number
     return HALF_VECTOR ? sum / max(dot(light, half_vector), 0.0625) : sum;
 }
 
-float opacity_of_level(int level, vec2 coordinate, Entries views)
-{
-    vec4 area = level_area[level];
-    vec2 position = fract(vec2(coordinate.x, -coordinate.y)) * area.zw - 0.5;
-    vec2 corner = floor(position), share = position - corner;
-    vec2 low = (area.xy + mod(corner, area.zw) + 0.5) * texel_step;
-    vec2 high = (area.xy + mod(corner + 1.0, area.zw) + 0.5) * texel_step;
-    float top = mix(table_value(material_table, low, views).a,
-                    table_value(material_table, vec2(high.x, low.y), views).a, share.x);
-    float bottom = mix(table_value(material_table, vec2(low.x, high.y), views).a,
-                       table_value(material_table, high, views).a, share.x);
-    return mix(top, bottom, share.y);
-}
-
 // Of `point` at a place: if `stored` as stored view `number` saw it from its direction `view`, else as seen from there.
 // Both are evaluated where pixels differ: software rasterisers run both sides of a branch anyway, and a loop of one round
 // or none in its place takes longer than both. Where `stored` is a constant, compilers drop the other.
@@ -126,10 +112,14 @@ vec4 radiance_at(SurfacePoint point, vec2 coordinate, bool stored, int number, v
     }
     if (!OPACITY)
         return vec4(sum, 1.0);
-    float opacity = opacity_of_level(fine, coordinate, views);
-    if (share > 0.0)
-        opacity = mix(opacity, opacity_of_level(fine + 1, coordinate, views), share);
-    return vec4(sum, opacity);
+    return vec4(sum, opacity_between(fine, share, coordinate, views));
+}
+
+// That of one stored view in the tables.
+Entries view_entries(int number)
+{
+    float label = texelFetch(layer_view, ivec2(number, 0), 0).w;
+    return table_entries(Corners(ivec3(int(label)), vec3(1.0, 0.0, 0.0)), table_columns);
 }
 
 vec4 radiance_of_tap(SurfacePoint point, int number, vec2 coordinate, int fine, float share)
@@ -137,7 +127,7 @@ vec4 radiance_of_tap(SurfacePoint point, int number, vec2 coordinate, int fine, 
     vec4 view = texelFetch(layer_view, ivec2(number, 0), 0);
     Entries views;
     if (OPACITY)
-        views = table_entries(Corners(ivec3(int(view.w)), vec3(1.0, 0.0, 0.0)), table_columns);
+        views = view_entries(number);
     return radiance_at(point, coordinate, true, number, view.xyz, views, fine, share);
 }
 
@@ -188,6 +178,26 @@ vec4 chosen_radiance(SurfacePoint point, float through, int fine)
     if (OPACITY)
         entries = table_entries(corners, table_columns);
     return radiance_at(point, coordinate, stored, number, view.xyz, entries, fine, 0.0);
+}
+
+// The part of the cloth, as it is seen, that is no hole.
+float opacity(SurfacePoint point)
+{
+    float level = clamp(point.level, 0.0, float(level_count - 1));
+    int fine = int(level);
+    float share = level - float(fine), through = RELIEF ? clamp(relief_levels - level, 0.0, 1.0) : 0.0;
+    Entries views = table_entries(find_corners(0, point.view), table_columns);
+    float sum = (1.0 - through) * opacity_between(fine, share, point.coordinate, views);
+    if (!RELIEF)
+        return sum;
+    Corners corners = find_corners(2, point.view);
+    ReliefTap tap[3];
+    relief_taps(1.0, point.coordinate, point.view, corners.label, corners.weight, tap);
+    for (int i = 0; i < 3; i++) {
+        Entries stored = view_entries(corners.label[i]);
+        sum += through * tap[i].weight * opacity_between(fine, share, tap[i].coordinate, stored);
+    }
+    return sum;
 }
 
 vec4 radiance(SurfacePoint point)

@@ -110,6 +110,18 @@ void find_taps(SurfacePoint point, float level, inout Corners views, out ReliefT
     views.weight = vec3(tap[0].weight, tap[1].weight, tap[2].weight);
 }
 
+// The part of the cloth, as it is seen, that is no hole.
+float opacity(SurfacePoint point)
+{
+    Corners views = find_corners(0, point.view);
+    float level = clamp(point.level, 0.0, float(level_count - 1));
+    int fine = int(level);
+    ReliefTap tap[3];
+    find_taps(point, level, views, tap);
+    return STOCHASTIC ? chosen_opacity(tap, views, fine, level - float(fine), point.chance)
+                      : trilinear_opacity(tap, views, fine, level - float(fine));
+}
+
 vec4 radiance(SurfacePoint point)
 {
     Corners views = find_corners(0, point.view);

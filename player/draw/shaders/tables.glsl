@@ -36,3 +36,24 @@ vec4 table_value(sampler2DArray table, vec2 texel, Entries entries)
     }
     return sum;
 }
+
+float opacity_of_level(int level, vec2 coordinate, Entries views)
+{
+    vec4 area = level_area[level];
+    vec2 position = fract(vec2(coordinate.x, -coordinate.y)) * area.zw - 0.5;
+    vec2 corner = floor(position), share = position - corner;
+    vec2 low = (area.xy + mod(corner, area.zw) + 0.5) * texel_step;
+    vec2 high = (area.xy + mod(corner + 1.0, area.zw) + 0.5) * texel_step;
+    float top = mix(table_value(material_table, low, views).a,
+                    table_value(material_table, vec2(high.x, low.y), views).a, share.x);
+    float bottom = mix(table_value(material_table, vec2(low.x, high.y), views).a,
+                       table_value(material_table, high, views).a, share.x);
+    return mix(top, bottom, share.y);
+}
+
+// Between that level and the next.
+float opacity_between(int level, float share, vec2 coordinate, Entries views)
+{
+    float opacity = opacity_of_level(level, coordinate, views);
+    return share > 0.0 ? mix(opacity, opacity_of_level(level + 1, coordinate, views), share) : opacity;
+}
