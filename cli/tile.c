@@ -162,12 +162,13 @@ const weft_command weft_command_tile = {
     .name = "tile",
     .summary = "average the repeats of a dataset into one tile, or make a material tile",
     .usage = "NAME.btf.h5 -o TILE.btf.h5\nNAME.weft --blend -o TILE.weft",
-    .documentation = "Example: weft tile denim.btf.h5 --weave denim.wv -o denim-tile.btf.h5\n\n"
-                     "Of a dataset: finds the tile that repeats over a material, to a fraction of a texel, and writes "
-                     "a dataset of one tile: the mean of all tiles, image by image. What differs from "
-                     "tile to tile, the irregularity of the yarns and noise, goes away.\n\n"
-                     "Of a material, with --blend: a tile without a visible seam, whatever it shows. Its ends are laid "
-                     "over each other and cut where they differ least.",
+    .documentation =
+        "Example: weft tile denim.btf.h5 --weave denim.wv -o denim-tile.btf.h5\n\n"
+        "Of a dataset: finds the tile that repeats over a material, to a fraction of a texel, and writes "
+        "a dataset of one tile: the mean of all tiles, image by image. What differs from "
+        "tile to tile, the irregularity of the yarns and noise, goes away.\n\n"
+        "Of a material, with --blend: a tile without a visible seam, whatever it shows. Its ends are laid "
+        "over each other and cut where they differ least, and what they still differ by is spread over the tile.",
     .options = option_table,
     .needs = "NAME.btf.h5 and -o TILE.btf.h5, or NAME.weft, --blend and -o TILE.weft",
     .surplus = "one dataset or material at a time",

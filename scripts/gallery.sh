@@ -26,11 +26,13 @@ done
 mkdir -p "$work" "$pictures"
 cd "$work"
 
-# draw FILE ARGUMENT...: one picture of a cloth.
+# draw FILE ARGUMENT...: one picture of a cloth. $exposure is then that of the picture.
 draw() {
     out=$1
     shift
-    "$weft" render "$@" --size 400x300 -q -o drawn.png >&2
+    "$weft" render "$@" --size 400x300 -o drawn.png >said 2>&1 || { cat said >&2 && return 1; }
+    exposure=$(sed -n 's/^exposure \([^ ]*\) .*/\1/p' said)
+    exposure=${exposure:-1}
     mkdir -p "$(dirname "$pictures/$out.jpg")"
     convert drawn.png -quality 88 "$pictures/$out.jpg"
     rm drawn.png
@@ -86,7 +88,7 @@ TEXT
         [ -s "$name.weft" ] || "$weft" compress "$name.btf.h5" -o "$name.weft" -q >&2
         compare "$name"
         draw "$name-raw" --raw "$name.btf.h5" --mesh drape --mesh-size 60
-        draw "$name" "$name.weft" --mesh drape --mesh-size 60
+        draw "$name" "$name.weft" --mesh drape --mesh-size 60 --exposure "$exposure"
         echo "| $(title "$file") | $(picture "$name-raw" raw) | $(picture "$name" compressed)" \
             "| $(kilobytes "$name.btf.h5") / $(kilobytes "$name.weft")" \
             "| $(of_scene "$name" compressed 3) / $(of_scene "$name" compressed 2)" \
@@ -123,8 +125,9 @@ TEXT
         name=$(basename "$file" .wv)
         photograph "$name"
         draw "photographed/$name-raw" --raw "$name.btf.h5" --mesh drape
-        draw "photographed/$name" "$name.weft" --mesh drape
-        draw "photographed/$name-analytic" "$name.weft" --weave "$file" --mode analytic --mesh drape
+        one=$exposure
+        draw "photographed/$name" "$name.weft" --mesh drape --exposure "$one"
+        draw "photographed/$name-analytic" "$name.weft" --weave "$file" --mode analytic --mesh drape --exposure "$one"
         echo "| $(title "$file") | $(picture "photographed/$name-raw" raw) | $(picture "photographed/$name" compressed)" \
             "| $(picture "photographed/$name-analytic" analytic)" \
             "| $(kilobytes "$name.btf.h5") / $(kilobytes "$name.weft") / $(kilobytes "$file")" \
@@ -218,6 +221,8 @@ section_of_page() {
 # Gallery
 
 Every cloth that comes with Weft, in the studio that a first picture begins in. `scripts/gallery.sh WEFT` draws this page.
+
+Raw, compressed and analytic pictures of one cloth stand under one exposure, that of the raw one.
 
 *Raw* is the dataset, interpolated. *Compressed* is the same as a material of 32 layers, the default. Where the cloth is deep,
 both are seen through the [heights](guide/relief.md) that were found in the views. Frames are those of `weft compare`: a drape

@@ -43,6 +43,10 @@ void weft_window_free(weft_window *window);
 /* Handles what the user did since the last call; waits up to `wait_s` for something to happen. False once the user
  * closed the window. */
 bool weft_window_poll(weft_window *window, double wait_s);
+
+/* Whether anything has happened to the window since the last call: also what calls none of `events`, as when another
+ * window goes away that lay over it. */
+bool weft_window_take_events(weft_window *window);
 void weft_window_close(weft_window *window);
 /* All of the screen that the window is on, or as large as before. */
 void weft_window_set_full_screen(weft_window *window, bool full);

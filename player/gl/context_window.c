@@ -11,6 +11,7 @@ struct weft_window {
     double x, y; /* of the pointer at the last event: glfwGetCursorPos would tell where it has come to since, and after
                     a slow frame that is far from where the button was pressed */
     int left, top, width, height; /* in the desktop, before it filled the screen */
+    bool has_events;              /* since they were asked for */
 };
 
 /* GLFW counts positions in screen coordinates, which differ from pixels on dense displays. */
@@ -23,15 +24,22 @@ static void pixel_position(GLFWwindow *handle, double *x, double *y)
     *y *= height > 0 ? (double)pixel_height / height : 1;
 }
 
-static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
+static weft_window *stirred(GLFWwindow *handle)
 {
     weft_window *window = glfwGetWindowUserPointer(handle);
+    window->has_events = true;
+    return window;
+}
+
+static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
+{
+    weft_window *window = stirred(handle);
     window->events.press(window->events.context, button, action == GLFW_PRESS, modifiers, window->x, window->y);
 }
 
 static void on_move(GLFWwindow *handle, double x, double y)
 {
-    weft_window *window = glfwGetWindowUserPointer(handle);
+    weft_window *window = stirred(handle);
     pixel_position(handle, &x, &y);
     window->x = x;
     window->y = y;
@@ -41,22 +49,61 @@ static void on_move(GLFWwindow *handle, double x, double y)
 static void on_scroll(GLFWwindow *handle, double x, double y)
 {
     (void)x;
-    weft_window *window = glfwGetWindowUserPointer(handle);
+    weft_window *window = stirred(handle);
     window->events.scroll(window->events.context, y);
 }
 
 static void on_key(GLFWwindow *handle, int key, int scancode, int action, int modifiers)
 {
     (void)scancode;
-    weft_window *window = glfwGetWindowUserPointer(handle);
+    weft_window *window = stirred(handle);
     window->events.key(window->events.context, key, action, modifiers);
 }
 
 static void on_drop(GLFWwindow *handle, int count, const char **path)
 {
-    weft_window *window = glfwGetWindowUserPointer(handle);
+    weft_window *window = stirred(handle);
     for (int i = 0; i < count; i++)
         window->events.drop(window->events.context, path[i]);
+}
+
+/* ---- What changes how the window looks, and nothing else ---- */
+
+static void on_refresh(GLFWwindow *handle)
+{
+    stirred(handle);
+}
+
+static void on_size(GLFWwindow *handle, int width, int height)
+{
+    (void)width, (void)height;
+    stirred(handle);
+}
+
+static void on_enter_or_focus(GLFWwindow *handle, int comes)
+{
+    (void)comes;
+    stirred(handle);
+}
+
+static void on_character(GLFWwindow *handle, unsigned character)
+{
+    (void)character;
+    stirred(handle);
+}
+
+static void listen(GLFWwindow *handle)
+{
+    glfwSetMouseButtonCallback(handle, on_button);
+    glfwSetCursorPosCallback(handle, on_move);
+    glfwSetScrollCallback(handle, on_scroll);
+    glfwSetKeyCallback(handle, on_key);
+    glfwSetDropCallback(handle, on_drop);
+    glfwSetWindowRefreshCallback(handle, on_refresh);
+    glfwSetFramebufferSizeCallback(handle, on_size);
+    glfwSetCursorEnterCallback(handle, on_enter_or_focus);
+    glfwSetWindowFocusCallback(handle, on_enter_or_focus);
+    glfwSetCharCallback(handle, on_character);
 }
 
 static weft_code fail_glfw(weft_error *error, const char *action)
@@ -92,11 +139,7 @@ weft_code weft_window_create(const char *title, int width, int height, const wef
     }
     *window = (weft_window){.handle = handle, .events = *events};
     glfwSetWindowUserPointer(handle, window);
-    glfwSetMouseButtonCallback(handle, on_button);
-    glfwSetCursorPosCallback(handle, on_move);
-    glfwSetScrollCallback(handle, on_scroll);
-    glfwSetKeyCallback(handle, on_key);
-    glfwSetDropCallback(handle, on_drop);
+    listen(handle);
     glfwMakeContextCurrent(handle);
     glfwSwapInterval(1);
     *result = window;
@@ -119,6 +162,13 @@ bool weft_window_poll(weft_window *window, double wait_s)
     else
         glfwPollEvents();
     return !glfwWindowShouldClose(window->handle);
+}
+
+bool weft_window_take_events(weft_window *window)
+{
+    bool had_events = window->has_events;
+    window->has_events = false;
+    return had_events;
 }
 
 void weft_window_close(weft_window *window)

@@ -1,13 +1,17 @@
 #include "player/settings/exposure.h"
 
-#include "base/numeric/statistics.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { WIDTH = 160, HEIGHT = 100 };
 
-static const double brightest_share = 0.98, white = 0.9, dimmest_white = 0.5, dimmest_mean = 0.1, brightest_mean = 0.17;
+/* The brightest of the mesh: from here to there of its pixels in ascending order. The very brightest are glints. */
+static const double brightest_from = 0.95, brightest_to = 0.99;
+
+static const double white = 1, dimmest_white = 0.7, dimmest_mean = 0.1, brightest_mean = 0.17;
+
+/* What is darker than this share of the brightest counts as so dark: it looks black either way. */
+static const double black = 0.01;
 
 /* What the request shows first, small, alone, and as bright as reflectance. */
 static weft_scene small_scene(const weft_scene *scene)
@@ -32,23 +36,42 @@ static void gather_bright(weft_image *image, const weft_surface_sample *surface,
     }
 }
 
-static double exposure_for(float *value, size_t count, bool has_ground)
+static int by_value(const void *a, const void *b)
 {
-    double sum = 0, positive = 0;
-    for (size_t i = 0; i < count; i++) {
-        if (value[i] > 0) {
-            sum += log((double)value[i]);
-            positive++;
-        }
-    }
-    double bright = (double)weft_quantile_of_floats(value, count, (float)brightest_share);
-    if (!(bright > 0) || (bright >= dimmest_white && bright <= 1))
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static double mean_of(const float *value, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += (double)value[i];
+    return sum / (double)count;
+}
+
+/* None of them counts as less than `least`. */
+static double geometric_mean(const float *value, size_t count, double least)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += log(fmax((double)value[i], least));
+    return exp(sum / (double)count);
+}
+
+double weft_exposure_for_picture(float *value, size_t count, bool has_ground)
+{
+    if (count == 0)
         return 1;
-    double mean = exp(sum / positive), exposure = white / bright;
-    if (bright > 1)
-        exposure = fmax(exposure, dimmest_mean / mean);
-    else if (has_ground)
-        exposure = fmin(exposure, brightest_mean / mean);
+    qsort(value, count, sizeof *value, by_value);
+    size_t from = (size_t)(brightest_from * (double)(count - 1)), to = (size_t)(brightest_to * (double)(count - 1));
+    double bright = mean_of(value + from, to - from + 1);
+    if (!(bright > 0))
+        return 1;
+    double mean = geometric_mean(value, count, black * bright);
+    double exposure = weft_clamp(1, dimmest_white / bright, white / bright);
+    double most = has_ground ? fmax(1, brightest_mean / mean) : exposure;
+    exposure = weft_clamp(exposure, fmin(1, dimmest_mean / mean), most);
     return weft_clamp(exposure, 1e-6, 1e6);
 }
 
@@ -66,7 +89,7 @@ weft_code weft_expose(const weft_scene_request *request, weft_player *player, we
     weft_code code = weft_player_read_surface(player, &small, small.pane[0], WIDTH, HEIGHT, &surface, error);
     if (code == WEFT_OK) {
         gather_bright(&image, surface, &count);
-        scene->exposure = exposure_for(image.pixels, count, scene->ground);
+        scene->exposure = weft_exposure_for_picture(image.pixels, count, scene->ground);
         *changed = scene->exposure != 1;
     }
     free(surface);

@@ -4,12 +4,21 @@
 
 #include "player/settings/scene_options.h"
 
+/* The exposure of a picture whose pixels are as bright as value [count], which it puts into ascending order. Two
+ * numbers decide: `bright`, the mean of the brightest 5 % without the brightest 1 %, which are glints, and the
+ * geometric mean.
+ *
+ * - It is 1, which shows reflectance, where `bright` is between 0.7 and 1. Otherwise it brings `bright` to the nearer
+ * of these.
+ * - It makes nothing darker than a geometric mean of 0.1.
+ * - It makes cloth before a ground, beside which cloth looks as dark as it is, not brighter than one of 0.17.
+ *
+ * It is continuous: pictures that differ by a small factor get exposures that differ by no more than that factor. So
+ * the same cloth by two models is about as bright. A picture without light gets 1. Thread-safe for different arrays. */
+double weft_exposure_for_picture(float *value, size_t count, bool has_ground);
+
 /* Exposes the scene by a small picture of its first mode, unless the request gave an exposure or began from another
- * picture. The exposure stays 1, which shows reflectance, where it leaves the brightest 2 % of the mesh between half of
- * white and white; otherwise it brings them to 0.9. A picture that glares all over is not made darker than a mean
- * (geometric) of 0.1, and cloth before a ground, beside which it looks as dark as it is, not brighter than
- * one of 0.17. *changed: the exposure is no
- * longer 1. Needs what weft_player_draw does. Errors: those of it. */
+ * picture. *changed: the exposure is no longer 1. Needs what weft_player_draw does. Errors: those of it. */
 weft_code weft_expose(const weft_scene_request *request, weft_player *player, weft_scene *scene, bool *changed,
                       weft_error *error);
 

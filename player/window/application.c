@@ -1,8 +1,6 @@
 #include "player/window/panel.h"
 
 #include "base/clock.h"
-#include "player/draw/moving.h"
-#include "player/settings/exposure.h"
 #include "player/window/keys.h"
 #include "player/window/ui_bridge.h"
 
@@ -12,9 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64, PLOT_SIZE = 142 };
+enum { PLOT_SIZE = 142 };
 
-static const double settle_s = 0.12; /* after the last change the mean of a picture at rest begins */
 static const double poll_s = 0.1;
 static const double turn_rad_per_s = 0.5;
 static const double short_note_s = 1.5;
@@ -142,143 +139,6 @@ void weft_application_free(weft_application *a)
     free(a);
 }
 
-void weft_application_speed(const weft_application *a, long *frames, double *frame_ms)
-{
-    *frames = a->frame_count;
-    *frame_ms = a->frame_count > 0 ? a->total_ms / (double)a->frame_count : 0;
-}
-
-/* ---- Frames ---- */
-
-/* A canvas as large as the picture, begun anew when that is out of date. */
-static weft_code prepare_canvas(weft_application *a, int width, int height, weft_error *error)
-{
-    weft_interaction *i = &a->interaction;
-    i->width = width;
-    i->height = height;
-    bool is_resized = width != a->canvas.width || height != a->canvas.height;
-    if (is_resized) {
-        weft_canvas_free(&a->canvas);
-        WEFT_TRY(weft_canvas_create(width, height, &a->canvas, error));
-    }
-    if (i->changed || is_resized) {
-        weft_canvas_clear(&a->canvas);
-        a->moved_s = weft_now_s();
-        a->rests = false;
-        a->errors[0] = a->unmeasured[0] = 0;
-    } else if (!a->rests && weft_now_s() - a->moved_s > settle_s) {
-        weft_canvas_clear(&a->canvas);
-        a->rests = true;
-    }
-    i->changed = false;
-    return WEFT_OK;
-}
-
-/* Radical inverses: any first few of these shifts spread evenly over the pixel. */
-static double radical_inverse(int index, int base)
-{
-    double result = 0, digit = 1;
-    for (; index > 0; index /= base) {
-        digit /= base;
-        result += digit * (index % base);
-    }
-    return result;
-}
-
-static weft_sampling resting_sampling(const weft_application *a)
-{
-    int index = a->canvas.frame_count;
-    return (weft_sampling){
-        .shift_x = index > 0 ? radical_inverse(index, 2) - 0.5 : 0,
-        .shift_y = index > 0 ? radical_inverse(index, 3) - 0.5 : 0,
-        .frame = index,
-    };
-}
-
-static weft_code draw_resting(weft_application *a, weft_error *error)
-{
-    weft_canvas *canvas = &a->canvas;
-    weft_sampling sampling = resting_sampling(a);
-    weft_canvas_begin_frame(canvas);
-    WEFT_TRY(weft_player_draw(a->player, &a->interaction.scene, canvas->width, canvas->height, sampling, error));
-    weft_canvas_end_frame(canvas);
-    return WEFT_OK;
-}
-
-static weft_code draw_frame(weft_application *a, weft_error *error)
-{
-    double start = weft_now_s();
-    a->drew_hurried = !a->rests && weft_pace_hurries(&a->pace);
-    WEFT_TRY(a->rests ? draw_resting(a, error)
-                      : weft_player_draw_moving(a->player, &a->interaction.scene, &a->pace, &a->canvas, error));
-    glFinish();
-    a->drawn_ms = 1000 * (weft_now_s() - start);
-    a->total_ms += a->drawn_ms;
-    a->frame_count++;
-    return WEFT_OK;
-}
-
-/* After it was brought to the screen. The first frame builds programs and is no measure of the others. */
-static void note_time(weft_application *a, double shown_ms)
-{
-    double whole_ms = a->drawn_ms + shown_ms;
-    if (a->drawn_ms > 0 && a->frame_count > 1) {
-        weft_pace_note(&a->pace, a->drew_hurried, a->drawn_ms, shown_ms);
-        a->frame_ms = a->frame_ms > 0 ? 0.8 * a->frame_ms + 0.2 * whole_ms : whole_ms;
-    }
-    a->drawn_ms = 0;
-}
-
-static int still_frames(const weft_application *a)
-{
-    bool many_lights = a->interaction.scene.environment && weft_player_has_environment(a->player);
-    return many_lights ? STILL_FRAMES_OF_ENVIRONMENT : STILL_FRAMES;
-}
-
-static bool is_finished(const weft_application *a)
-{
-    return a->rests && a->canvas.frame_count >= still_frames(a);
-}
-
-static void measure(weft_application *a)
-{
-    weft_error error = {0};
-    if (a->setup.measure(a->player, &a->interaction.scene, a->canvas.width, a->canvas.height, a->errors, &error) !=
-        WEFT_OK)
-        weft_application_tell(a, true, error.message);
-    if (weft_describe_unmeasured(a->setup.request, a->player, &a->interaction.scene, a->unmeasured, &error) != WEFT_OK)
-        weft_application_tell(a, true, error.message);
-}
-
-/* When all is there that the command line named; later the user's is the exposure. */
-static weft_code expose_once(weft_application *a, weft_error *error)
-{
-    weft_interaction *i = &a->interaction;
-    bool changed = false;
-    if (a->is_exposed || a->progress >= 0)
-        return WEFT_OK;
-    a->is_exposed = true;
-    if (i->scene.exposure == i->start.exposure)
-        WEFT_TRY(weft_expose(a->setup.request, a->player, &i->scene, &changed, error));
-    if (changed)
-        i->start.exposure = i->scene.exposure;
-    i->changed |= changed;
-    return WEFT_OK;
-}
-
-/* One frame more, unless the mean is finished or a moving picture stands. */
-static weft_code advance(weft_application *a, weft_error *error)
-{
-    if (a->setup.frame_limit > 0 && is_finished(a))
-        weft_canvas_clear(&a->canvas);
-    if (is_finished(a) || (!a->rests && a->canvas.frame_count > 0))
-        return WEFT_OK;
-    WEFT_TRY(draw_frame(a, error));
-    if (is_finished(a))
-        measure(a);
-    return WEFT_OK;
-}
-
 /* ---- Wishes ---- */
 
 static void take_back(weft_application *a)
@@ -404,7 +264,7 @@ static void show(weft_application *a, int width, int height)
     weft_ui_end();
     /* Before the screen is waited for. */
     glFinish();
-    note_time(a, 1000 * (weft_now_s() - start));
+    weft_application_note_time(a, 1000 * (weft_now_s() - start));
     weft_window_show(a->window);
 }
 
@@ -424,17 +284,31 @@ static void find_modes(weft_application *a)
     }
 }
 
-static bool has_something(const weft_application *a)
+static bool is_drawing(const weft_application *a)
 {
-    const bool *has = a->interaction.available;
-    bool has_model = has[WEFT_MODE_RAW] || has[WEFT_MODE_COMPRESSED] || has[WEFT_MODE_ANALYTIC];
-    return has_model && weft_player_has_mesh(a->player);
+    return (weft_application_has_something(a) && !weft_application_is_finished(a)) || a->interaction.changed ||
+           weft_ui_is_behind();
+}
+
+static bool is_waiting(const weft_application *a)
+{
+    return a->progress >= 0 || a->weave.is_pending;
 }
 
 static double wait_s(const weft_application *a)
 {
-    bool is_drawing = (has_something(a) && !is_finished(a)) || a->interaction.changed || weft_ui_is_behind();
-    return is_drawing ? 0 : a->progress >= 0 || a->weave.is_pending ? poll_of_loading_s : poll_s;
+    return is_drawing(a) ? 0 : is_waiting(a) ? poll_of_loading_s : poll_s;
+}
+
+/* What the screen shows is what it would show again. Where frames are timed, each is shown. */
+static bool is_at_rest(weft_application *a)
+{
+    double now_s = weft_now_s();
+    const weft_stir stir = {.has_events = weft_window_take_events(a->window),
+                            .is_busy =
+                                is_drawing(a) || is_waiting(a) || weft_ui_wants_keyboard() || a->setup.frame_limit > 0,
+                            .note_ends_s = a->note_ends_s};
+    return weft_repose_at(&a->repose, &stir, now_s);
 }
 
 static weft_code step(weft_application *a, weft_error *error)
@@ -444,18 +318,19 @@ static weft_code step(weft_application *a, weft_error *error)
     turn_by_itself(a);
     weft_application_poll_files(a);
     weft_panel_follow_weave(a);
+    if (is_at_rest(a))
+        return WEFT_OK;
     find_modes(a);
     /* A window that would stay empty closes, and says why. */
-    if (!has_something(a) && a->progress < 0 && a->failure.code != WEFT_OK)
+    if (!weft_application_has_something(a) && a->progress < 0 && a->failure.code != WEFT_OK)
         return weft_fail(error, a->failure.code, "%s", a->failure.message);
     weft_window_size(a->window, &width, &height);
     int left = weft_panel_width(a);
     if (width <= left || height == 0)
         return WEFT_OK;
-    WEFT_TRY(prepare_canvas(a, width - left, height, error));
-    if (has_something(a)) {
-        WEFT_TRY(expose_once(a, error));
-        WEFT_TRY(advance(a, error));
+    WEFT_TRY(weft_application_prepare_canvas(a, width - left, height, error));
+    if (weft_application_has_something(a)) {
+        WEFT_TRY(weft_application_draw(a, error));
         WEFT_TRY(probe(a, error));
     }
     show(a, width, height);

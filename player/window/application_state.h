@@ -10,6 +10,7 @@
 #include "player/window/history.h"
 #include "player/window/interaction.h"
 #include "player/window/recent_files.h"
+#include "player/window/repose.h"
 #include "player/window/scene_part.h"
 #include "player/window/space_mouse/space_mouse.h"
 #include "player/window/watch.h"
@@ -60,10 +61,29 @@ struct weft_application {
     char note[WEFT_NOTE_SIZE];          /* told to the user */
     bool note_is_error;
     double note_ends_s;
+    weft_repose repose;
 };
 
 /* Tells the user; `is_error` in red. */
 void weft_application_tell(weft_application *application, bool is_error, const char *text);
+
+/* ---- Frames ---- */
+
+/* Whether there is a mesh and something to draw it with. */
+bool weft_application_has_something(const weft_application *application);
+
+/* Whether the picture rests and has all frames of its mean. */
+bool weft_application_is_finished(const weft_application *application);
+
+/* Makes a canvas as large as the picture, begun anew when that is out of date. Errors: those of weft_canvas_create. */
+weft_code weft_application_prepare_canvas(weft_application *application, int width, int height, weft_error *error);
+
+/* Draws one frame more, unless the mean is finished or a moving picture stands; exposes the scene before, once all
+ * is there that the command line named. Errors: those of drawing. */
+weft_code weft_application_draw(weft_application *application, weft_error *error);
+
+/* Notes what the last frame took, after it was brought to the screen in `shown_ms`. */
+void weft_application_note_time(weft_application *application, double shown_ms);
 
 /* ---- Files and devices ---- */
 

@@ -4,6 +4,7 @@
 #include "btf/material/metadata.h"
 #include "study/blend/cut.h"
 #include "study/blend/seam.h"
+#include "study/blend/spread.h"
 
 #include <jansson.h>
 #include <stdlib.h>
@@ -111,7 +112,9 @@ static weft_code make_tile(const weft_material *material, const weft_texel_mix *
                            weft_blend_report *report, weft_error *error)
 {
     WEFT_TRY(weft_material_gather(material, report->width, report->height, mix, tile, error));
-    weft_code code = measure(material, mix, tile, report, error);
+    weft_code code = weft_blend_spread(material, mix, tile, error);
+    if (code == WEFT_OK)
+        code = measure(material, mix, tile, report, error);
     if (code == WEFT_OK)
         code = describe(report, tile, error);
     if (code != WEFT_OK)

@@ -1,6 +1,7 @@
 /* A material that tiles: its ends are laid over each other and cut where they differ least, as in image quilting (Efros
- * and Freeman 2001), in x and then in y. What is blended is the codes of the texels, under all lights and views at
- * once, so that any material may be blended, also one of near photographs. */
+ * and Freeman 2001), in x and then in y. What they still differ by is spread over the tile, as smoothly as can be
+ * (Perez, Gangnet and Blake 2003). What is blended is the codes of the texels, under all lights and views at once, so
+ * that any material may be blended, also one of near photographs. */
 #ifndef WEFT_STUDY_BLEND_BLEND_H
 #define WEFT_STUDY_BLEND_BLEND_H
 
@@ -23,10 +24,11 @@ typedef struct weft_blend_report {
 } weft_blend_report;
 
 /* Makes the tile: at least half as wide and high as the material, of a size at which its ends meet well. Layers are
- * blended over three texels beside the cut; lobes and tables are cut. Mip levels stay those that were fitted (see
- * btf/material/gather.h). The metadata of the result say what was done in "tile", by
- * which a comparison with the dataset knows that texels lie elsewhere. The caller frees *tile with weft_material_free.
- * Errors: WEFT_BAD_INPUT for a material of fewer than 16 texels a side, WEFT_SYSTEM. */
+ * blended over three texels beside the cut; lobes and tables are cut. Then layers, normals and the brightness of lobes
+ * and diffuse term become as alike on both sides of the seam as the material is beside it. Mip levels are those that
+ * were fitted (see btf/material/gather.h), changed by as much in the mean. The metadata of the result say what was done
+ * in "tile", by which a comparison with the dataset knows that texels lie elsewhere. The caller frees *tile with
+ * weft_material_free. Errors: WEFT_BAD_INPUT for a material of fewer than 16 texels a side, WEFT_SYSTEM. */
 weft_code weft_blend(const weft_material *material, weft_material *tile, weft_blend_report *report, weft_error *error);
 
 #endif

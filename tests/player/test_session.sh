@@ -136,6 +136,19 @@ for _ in $(seq 100); do
 done
 "$weft" info weft-001.wv | grep -q "^kind: weave" || fail "the weave was not saved"
 
+# At rest the window is not drawn: it wakes ten times a second to look at its files, and a frame wakes every thread that draws.
+wakes() { cat /proc/$player/task/*/status | awk '/^voluntary/ { sum += $2 } END { print sum }'; }
+wakes_for_files() {
+    before=$(wakes)
+    sleep 2
+    woken=$(($(wakes) - before))
+    [ "$woken" -lt 60 ]
+}
+for _ in $(seq 30); do
+    ! wakes_for_files || break
+done
+[ "$woken" -lt 60 ] || fail "a window at rest wakes $woken times in two seconds"
+
 xdotool windowsize "$window" 900 600
 shoot_when is_of_size 570x600
 last=$next
