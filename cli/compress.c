@@ -116,12 +116,14 @@ static const weft_option option_table[] = {
      .offset = offsetof(compress_command, options.max_exponent), .low = 1, .high = 60000},
     {"error", .argument = "PERCENT",
      .help = "Give each texel the smallest model whose relative RMSE is at most this: a diffuse term, lobes, T, S, as "
-             "few bits of them as will do; the whole model where none is (default: the whole model everywhere)",
+             "few bits of them as will do; the whole model where none is (default: the whole model everywhere). Says "
+             "before "
+             "the work, as --preset does, how large the file will be and how well it will predict what is not fitted",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(compress_command, options.target_error), .low = 0.001, .high = 100,
      .divisor = 100},
     {"budget", .argument = "MB",
      .help = "Choose the model of each texel so that the error is least and the file no larger; tables may have fewer "
-             "bits. Fits every model first, without a checkpoint",
+             "bits. Fits every model first, without a checkpoint. Predicts as --error does",
      .read = read_budget},
     {"preset", .argument = "small|balanced|best",
      .help =
@@ -153,13 +155,18 @@ static weft_preset_wish wish_of(const compress_command *command)
     return (weft_preset_wish){alone ? WEFT_PRESET_BEST : command->preset, command->least_fps, !command->common.quiet};
 }
 
+/* Whether each texel gets a model of its own. */
+static bool chooses_by_texel(const weft_compress_options *options)
+{
+    return options->target_error > 0 || options->budget_bytes > 0;
+}
+
 /* A preset chooses what these options say. */
 static weft_code check_preset(const compress_command *command, weft_error *error)
 {
     const weft_compress_options usual = weft_compress_default_options(), *o = &command->options;
     bool chosen = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || command->layers != NOT_GIVEN ||
-                  o->light_table || o->table_components > 0 || o->frames != usual.frames || o->target_error > 0 ||
-                  o->budget_bytes > 0;
+                  o->light_table || o->table_components > 0 || o->frames != usual.frames || chooses_by_texel(o);
     if (wish_of(command).preset == WEFT_PRESET_NONE || !chosen)
         return WEFT_OK;
     return weft_fail(
@@ -176,7 +183,7 @@ static weft_code check(void *values, weft_error *error)
     if (command->layers > 0 && command->layers % WEFT_LAYERS_GROUP != 0)
         return weft_fail(error, WEFT_BAD_USAGE, "--layers is a multiple of %d, not %d", WEFT_LAYERS_GROUP,
                          command->layers);
-    bool chooses = o->target_error > 0 || o->budget_bytes > 0;
+    bool chooses = chooses_by_texel(o);
     if (command->layers > 0 && chooses)
         return weft_fail(error, WEFT_BAD_USAGE,
                          "--error and --budget choose lobes and tables for each texel: leave out --layers");
@@ -239,18 +246,41 @@ static weft_code measure_hold_out(const compress_command *command, weft_dataset 
     return code;
 }
 
-/* What the preset chooses is told before the work. */
-static weft_code choose_preset(const compress_command *command, weft_dataset *dataset, weft_compress_options *options,
-                               const weft_progress *progress, weft_preset_prediction *prediction, weft_error *error)
+/* What is predicted is told before the work. Of what was asked for, nothing need be: where no image can be held out, or
+ * the fit fails, the user hears it, and the work says the rest. */
+static weft_code predict(const compress_command *command, weft_dataset *dataset, weft_compress_options *options,
+                         const weft_progress *progress, weft_prediction *prediction, weft_error *error)
 {
     char scratch_path[PATH_MAX];
+    weft_error own = {0};
     const weft_preset_wish wish = wish_of(command);
-    *prediction = (weft_preset_prediction){0};
-    if (wish.preset == WEFT_PRESET_NONE)
+    bool must = wish.preset != WEFT_PRESET_NONE;
+    *prediction = (weft_prediction){0};
+    if (!must && !chooses_by_texel(options))
         return WEFT_OK;
     snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
-    WEFT_TRY(weft_preset_predict(dataset, &wish, scratch_path, progress, options, prediction, error));
-    return weft_say_preset(&command->common, prediction, error);
+    weft_code code =
+        weft_preset_predict(dataset, &wish, scratch_path, progress, options, prediction, must ? error : &own);
+    if (code == WEFT_OK)
+        return weft_say_prediction(&command->common, prediction, error);
+    *prediction = (weft_prediction){0};
+    if (!must && (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT)) {
+        weft_command_say(&command->common, "size and error: not predicted: %s", own.message);
+        return WEFT_OK;
+    }
+    if (!must)
+        *error = own;
+    return code;
+}
+
+/* The budget leaves room for what is predicted. */
+static weft_code reserve(const weft_prediction *prediction, weft_compress_options *options, weft_error *error)
+{
+    uint64_t bytes = 0;
+    if (prediction->bytes > 0)
+        WEFT_TRY(weft_prediction_stored_bytes(prediction, &bytes, error));
+    options->added_bytes += bytes;
+    return WEFT_OK;
 }
 
 static weft_code compress_dataset(const compress_command *command, const char *partial_path, weft_error *error)
@@ -261,14 +291,16 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     weft_material material = {0};
     weft_compress_report report;
     weft_hold_out held_out;
-    weft_preset_prediction prediction = {0};
+    weft_prediction prediction = {0};
     weft_code code = weft_dataset_open(command->input, &dataset, error);
     if (code == WEFT_OK) {
         options = resolve(command, dataset);
-        code = choose_preset(command, dataset, &options, &progress, &prediction, error);
+        code = predict(command, dataset, &options, &progress, &prediction, error);
     }
     if (code == WEFT_OK)
         code = measure_hold_out(command, dataset, &options, &progress, &held_out, error);
+    if (code == WEFT_OK)
+        code = reserve(&prediction, &options, error);
     if (code == WEFT_OK) {
         options.checkpoint_path = partial_path;
         options.log = weft_command_log(&command->common);
@@ -276,8 +308,8 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     }
     if (code == WEFT_OK && held_out.split_count > 0)
         code = weft_hold_out_store(&held_out, &material, error);
-    if (code == WEFT_OK && prediction.wish.preset != WEFT_PRESET_NONE)
-        code = weft_material_put_metadata(&material, "predicted", weft_preset_to_json(&prediction), error);
+    if (code == WEFT_OK && prediction.bytes > 0)
+        code = weft_material_put_metadata(&material, "predicted", weft_prediction_to_json(&prediction), error);
     if (code == WEFT_OK)
         code = weft_material_write(command->output, &material, error);
     if (code == WEFT_OK && command->report)

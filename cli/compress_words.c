@@ -193,16 +193,18 @@ static void print_speed(double frame_ms, char text[64])
         snprintf(text, 64, "%.1f ms a frame (%.0f frames/s)", frame_ms, 1000 / frame_ms);
 }
 
-weft_code weft_say_preset(const weft_common_options *common, const weft_preset_prediction *prediction,
-                          weft_error *error)
+weft_code weft_say_prediction(const weft_common_options *common, const weft_prediction *prediction, weft_error *error)
 {
     char speed[64];
     print_speed(prediction->frame_ms, speed);
-    weft_command_say(common, "preset %s: %s (%s)", weft_preset_name(prediction->wish.preset), prediction->model,
-                     prediction->arguments);
+    if (prediction->preset != WEFT_PRESET_NONE)
+        weft_command_say(common, "preset %s: %s (%s)", weft_preset_name(prediction->preset), prediction->model,
+                         prediction->arguments);
+    else
+        weft_command_say(common, "%s (%s)", prediction->model, prediction->arguments);
     weft_command_say(common, "  predicted: %.3f MB, relative RMSE %.1f %% on directions that are not fitted%s%s",
                      prediction->bytes * 1e-6, 100 * prediction->error, speed[0] ? ", " : "", speed);
-    json_t *object = common->json ? weft_preset_to_event(prediction) : NULL;
+    json_t *object = common->json ? weft_prediction_to_event(prediction) : NULL;
     weft_code code = object ? weft_command_describe(common, "predicted", object, error) : WEFT_OK;
     json_decref(object);
     return code;
@@ -211,7 +213,7 @@ weft_code weft_say_preset(const weft_common_options *common, const weft_preset_p
 /* The file is written: where it cannot be drawn, there is only nothing to say of that. */
 static void say_speed(const weft_compressed *done)
 {
-    const weft_preset_prediction *prediction = done->prediction;
+    const weft_prediction *prediction = done->prediction;
     weft_frame_timer *timer;
     weft_error ignored;
     double frame_ms = 0;
@@ -230,10 +232,10 @@ static void say_speed(const weft_compressed *done)
 
 static void say_prediction(const weft_compressed *done)
 {
-    const weft_preset_prediction *prediction = done->prediction;
+    const weft_prediction *prediction = done->prediction;
     const weft_hold_out *held_out = done->held_out;
     double bytes = (double)weft_file_bytes(done->output);
-    if (prediction->wish.preset == WEFT_PRESET_NONE)
+    if (!(prediction->bytes > 0))
         return;
     weft_command_say(done->common, "predicted %.3f MB, is %.3f MB (%+.1f %%)", prediction->bytes * 1e-6, bytes * 1e-6,
                      100 * (bytes / prediction->bytes - 1));

@@ -1,4 +1,4 @@
-/* What `weft compress` says: what a preset chose, and what became of the dataset. */
+/* What `weft compress` says: what was predicted, and what became of the dataset. */
 #ifndef WEFT_CLI_COMPRESS_WORDS_H
 #define WEFT_CLI_COMPRESS_WORDS_H
 
@@ -15,13 +15,12 @@ typedef struct weft_compressed {
     const weft_dataset *dataset;
     const weft_material *material;
     const weft_compress_report *report;
-    const weft_hold_out *held_out;            /* without splits where nothing was held out */
-    const weft_preset_prediction *prediction; /* WEFT_PRESET_NONE where no preset was asked for */
+    const weft_hold_out *held_out;     /* without splits where nothing was held out */
+    const weft_prediction *prediction; /* of no bytes where nothing was predicted */
 } weft_compressed;
 
-/* What was chosen, and what is predicted of it; lines or an event. Errors: WEFT_SYSTEM for memory. */
-weft_code weft_say_preset(const weft_common_options *common, const weft_preset_prediction *prediction,
-                          weft_error *error);
+/* What was chosen or asked for, and what is predicted of it; lines or an event. Errors: WEFT_SYSTEM for memory. */
+weft_code weft_say_prediction(const weft_common_options *common, const weft_prediction *prediction, weft_error *error);
 
 /* Model, errors, sizes, and what was predicted against what is; lines, and events of levels and of what was held out.
  * Errors: WEFT_SYSTEM for memory. */

@@ -97,16 +97,20 @@ weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const 
 }
 
 weft_code weft_compress_share_budget(const weft_dataset_layout *whole, const weft_dataset_layout *part,
-                                     const weft_compress_options *options, uint64_t *bytes, weft_error *error)
+                                     bool part_has_levels, const weft_compress_options *options, uint64_t *bytes,
+                                     weft_error *error)
 {
+    const double with_levels = 4.0 / 3;
     uint64_t beside_whole, beside_part;
     *bytes = 0;
     if (options->budget_bytes == 0)
         return WEFT_OK;
     WEFT_TRY(weft_compress_metadata_bytes(whole, &beside_whole, error));
     WEFT_TRY(weft_compress_metadata_bytes(part, &beside_part, error));
-    double texels = (double)whole->width * whole->height * (options->levels ? 4.0 / 3 : 1);
-    double share = fmin(1, (double)part->width * part->height / texels);
+    beside_whole += options->added_bytes;
+    double texels = (double)whole->width * whole->height * (options->levels ? with_levels : 1),
+           own = (double)part->width * part->height * (part_has_levels ? with_levels : 1);
+    double share = fmin(1, own / texels);
     uint64_t left = options->budget_bytes > beside_whole ? options->budget_bytes - beside_whole : 0;
     *bytes = beside_part + (uint64_t)ceil(share * (double)left);
     return WEFT_OK;
@@ -299,6 +303,7 @@ static weft_code fit_sparse(fitting *work, weft_material *material, weft_compres
 static weft_code fit_layers(fitting *work, weft_material *material, weft_compress_report *report, weft_error *error)
 {
     weft_layers_options options = {.layer_count = work->options->layer_count,
+                                   .maps = work->options->layer_maps,
                                    .finer = work->options->finer,
                                    .held_out = work->options->held_out,
                                    .for_screen = work->options->weights == WEFT_WEIGHTS_SCREEN,
@@ -310,16 +315,15 @@ static weft_code fit_layers(fitting *work, weft_material *material, weft_compres
                : WEFT_OK;
 }
 
-/* Those of the dataset, for the layers. */
-static weft_code take_heights(fitting *work, weft_material *material, weft_error *error)
+weft_code weft_compress_take_heights(weft_dataset *dataset, weft_material *material, weft_error *error)
 {
     weft_dataset_heights surface;
     double size_mm[2];
-    if (!material->layers || !work->options->heights)
+    if (!material->layers)
         return WEFT_OK;
     weft_material_heights *heights = NULL;
-    WEFT_TRY(weft_dataset_read_surface(work->dataset, &surface, error));
-    weft_dataset_size_mm(weft_dataset_get_layout(work->dataset), size_mm);
+    WEFT_TRY(weft_dataset_read_surface(dataset, &surface, error));
+    weft_dataset_size_mm(weft_dataset_get_layout(dataset), size_mm);
     weft_code code = WEFT_OK;
     if (surface.value)
         code = weft_material_heights_create(surface.value, surface.width, surface.height, surface.level_count, size_mm,
@@ -342,7 +346,8 @@ static weft_code fit_material(fitting *work, weft_material *material, weft_compr
     if (work->counts.empty == work->counts.texels && !work->options->held_out)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(work->dataset));
     WEFT_TRY(fit_layers(work, material, report, error));
-    WEFT_TRY(take_heights(work, material, error));
+    if (work->options->heights)
+        WEFT_TRY(weft_compress_take_heights(work->dataset, material, error));
     report->texel_count = work->counts.texels;
     report->empty_texel_count = work->counts.empty;
     report->turned_frame_count = work->counts.turned;

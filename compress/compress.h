@@ -47,11 +47,16 @@ weft_compress_options weft_compress_settle(const weft_compress_options *options,
 weft_compress_model weft_compress_plan(const weft_dataset_layout *layout, const weft_compress_options *options,
                                        int *lobe_count);
 
-/* The budget for the finest level of `part`, some texels of `whole`: what the budget of the options leaves for texels,
- * in proportion to their number, and what a file has besides. 0 where the options have no budget. Errors: WEFT_SYSTEM
- * for memory. */
+/* The budget for `part`, some texels of `whole`, fitted with mip levels or without: what the budget of the options
+ * leaves for texels, in proportion to their number, and what a file has besides. 0 where the options have no budget.
+ * Errors: WEFT_SYSTEM for memory. */
 weft_code weft_compress_share_budget(const weft_dataset_layout *whole, const weft_dataset_layout *part,
-                                     const weft_compress_options *options, uint64_t *bytes, weft_error *error);
+                                     bool part_has_levels, const weft_compress_options *options, uint64_t *bytes,
+                                     weft_error *error);
+
+/* Gives the layers of a material the heights of the dataset; does nothing where either has none. Errors: those of
+ * reading; WEFT_SYSTEM for memory. */
+weft_code weft_compress_take_heights(weft_dataset *dataset, weft_material *material, weft_error *error);
 
 /* Fits `material`, which the caller frees with weft_material_free; errors by level are in it. `report` may be NULL. The
  * result depends neither on the number of threads (OpenMP) nor, but for layers, on the order of the images, the memory

@@ -77,6 +77,9 @@ static weft_code learn(fitting *work, weft_material *material, weft_layers_repor
     if (work->options->for_screen)
         weft_training_weigh_for_screen(&work->training, &work->images);
     WEFT_TRY(scattered ? learn_from_scattered(work, report, error) : learn_from_grid(work, report, error));
+    if (work->options->maps != WEFT_LAYER_MAPS_CHOSEN)
+        report->kind =
+            work->options->maps == WEFT_LAYER_MAPS_OF_LIGHT ? WEFT_LAYERS_OF_LIGHT : WEFT_LAYERS_OF_HALF_VECTOR;
     report->training_texels = work->training.texel_count;
     WEFT_TRY(weft_layer_model_create(scattered ? &work->completion.images : &work->images, &work->components,
                                      report->kind, layout->width, layout->height, material->level_count, &work->layers,

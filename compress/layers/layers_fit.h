@@ -7,13 +7,15 @@
 #include "btf/dataset/dataset.h"
 #include "btf/material/material.h"
 #include "compress/kriging/covariance.h"
+#include "compress/options/options.h"
 #include "compress/run/checkpoint.h"
 #include "compress/run/memory.h"
 
 #include <stdbool.h>
 
 typedef struct weft_layers_options {
-    int layer_count;         /* 4 .. 64, a multiple of 4 */
+    int layer_count; /* 4 .. 64, a multiple of 4 */
+    weft_layer_maps_choice maps;
     bool finer;              /* as many layers again (compress/options/options.h) */
     const uint8_t *held_out; /* [image_count] images that the fit must not see, or NULL */
     bool for_screen;         /* dim images count for more (compress/options/options.h) */

@@ -28,6 +28,13 @@ typedef enum weft_frame_choice {
 /* Layers instead of lobes, unless something is asked for that only lobes have (compress/compress.h). */
 enum { WEFT_LAYERS_AUTOMATIC = -1 };
 
+/* What the maps of layers are over. */
+typedef enum weft_layer_maps_choice {
+    WEFT_LAYER_MAPS_CHOSEN, /* what predicts images better that are held out to choose */
+    WEFT_LAYER_MAPS_OF_LIGHT,
+    WEFT_LAYER_MAPS_OF_HALF_VECTOR
+} weft_layer_maps_choice;
+
 typedef struct weft_compress_options {
     int lobe_count;              /* at most; 0..3 */
     bool table;                  /* T(v), where the samples can carry it */
@@ -40,10 +47,11 @@ typedef struct weft_compress_options {
     uint64_t budget_bytes; /* the models of the texels are chosen for the least error in a file of this size; 0: not */
     uint64_t added_bytes;  /* of a file in the budget: metadata that the caller adds to the material afterwards */
     int layer_count;       /* linear layers beside the lobes: 4..64, a multiple of 4; 0: none; WEFT_LAYERS_AUTOMATIC */
-    bool finer;            /* as many layers again, which hold what rounding to 8 bits leaves of the coefficients of the
-                              first, which have 15 bits then: it tells what rounding costs. At most 32 layers */
-    bool heights;          /* layers are seen through those of the dataset, where it has some (`weft relief`) */
-    int table_components;  /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
+    weft_layer_maps_choice layer_maps;
+    bool finer;           /* as many layers again, which hold what rounding to 8 bits leaves of the coefficients of the
+                             first, which have 15 bits then: it tells what rounding costs. At most 32 layers */
+    bool heights;         /* layers are seen through those of the dataset, where it has some (`weft relief`) */
+    int table_components; /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
     /* These change nothing in the result: */
     uint64_t memory_bytes;       /* that the process may take; 0: weft_memory_default, a quarter of what there is */

@@ -11,7 +11,9 @@ typedef enum weft_excerpt_kind {
     WEFT_EXCERPT_SCATTERED, /* one of every cell of a grid, each at another place in it, so that no repeat of the cloth
                                is hit again and again: for fits to which neighbours mean nothing, under far lights */
     WEFT_EXCERPT_REGULAR,   /* the same without moving them: near lights need texels at even distances */
-    WEFT_EXCERPT_BLOCK      /* neighbours, from the centre: for fits that borrow from them */
+    WEFT_EXCERPT_BLOCK,     /* neighbours, from the centre: for fits that borrow from them */
+    WEFT_EXCERPT_SQUARES    /* squares of 16 x 16 neighbours, one of every cell of a grid, where `side` is a multiple
+                               of 16: what neighbours have in common stays, and no part stands for all. For far lights */
 } weft_excerpt_kind;
 
 /* Freed with weft_excerpt_free. */

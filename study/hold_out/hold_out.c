@@ -431,8 +431,9 @@ static weft_code measure_splits(weft_dataset *dataset, measuring *work, const we
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     static const char step[] = "fitting without some images";
     WEFT_TRY(read_excerpt(dataset, work, error));
-    WEFT_TRY(weft_compress_share_budget(layout, &fitted_excerpt(work)->layout, work->given, &work->options.budget_bytes,
-                                        error));
+    WEFT_TRY(weft_compress_share_budget(layout, &fitted_excerpt(work)->layout, false, work->given,
+                                        &work->options.budget_bytes, error));
+    work->options.added_bytes = 0;
     work->asks_heights = work->given->heights && weft_excerpt_has_surface(&work->excerpt);
     describe(layout, work);
     work->whole_model = weft_compress_plan(layout, &work->options, &work->whole_lobes);

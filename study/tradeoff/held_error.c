@@ -20,6 +20,7 @@ static const size_t enough_residuals = 1 << 20;
 static const double certified = 0.95;
 
 struct weft_held_bench {
+    const weft_dataset *dataset;
     const char *scratch_path;
     char *material_path;
     weft_excerpt excerpt;
@@ -72,6 +73,7 @@ weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, 
     weft_held_bench *bench = calloc(1, sizeof *bench);
     if (!bench)
         return weft_fail_memory(error, "bench", sizeof *bench);
+    bench->dataset = dataset;
     bench->scratch_path = scratch_path;
     bench->has_pictures = kind == WEFT_EXCERPT_BLOCK;
     weft_code code = prepare(dataset, kind, side, split, bench, error);
@@ -165,8 +167,11 @@ static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *mode
     weft_dataset *others;
     weft_compress_report report;
     weft_compress_options options = model->options;
-    options.levels = bench->has_pictures; /* fewer texels come from there */
-    options.heights = false;              /* those of the whole dataset are given afterwards */
+    options.levels = bench->has_pictures && options.budget_bytes == 0; /* fewer texels come from there */
+    options.heights = false; /* those of the whole dataset are given afterwards */
+    WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(bench->dataset), &fitted_excerpt(bench, model)->layout,
+                                        false, &model->options, &options.budget_bytes, error));
+    options.added_bytes = 0;
     WEFT_TRY(weft_excerpt_write(fitted_excerpt(bench, model), unseen, bench->scratch_path, &others, error));
     weft_code code = weft_compress(others, &options, NULL, material, &report, error);
     weft_dataset_close(others);

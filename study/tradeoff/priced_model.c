@@ -11,7 +11,7 @@
 
 /* BARD is offered where so many views were photographed under the light along the normal: then none of these lights is
  * held out (study/hold_out/split.h). */
-enum { FEWEST_VIEWS_OF_BARD = 10, FEWEST_LAYERS = 4, LEAST_RANK = 2 };
+enum { FEWEST_VIEWS_OF_BARD = 10, FEWEST_LAYERS = 4, LEAST_RANK = 2, MAPS_COMPARED = 16 };
 
 /* Of the images this share at least is left where a tenth of the views and a tenth of the lights are held out. */
 static const double least_share = 0.8;
@@ -165,6 +165,20 @@ static void add_least_rank(model_list *list, const weft_compress_options *option
         model->first_layers = LEAST_RANK;
 }
 
+/* The two kinds of tables that layers choose between, of a grid. */
+static void add_kinds_of_maps(model_list *list, int layers)
+{
+    static const char *const over[] = {"the light", "the half vector"};
+    weft_compress_options options = layers_alone(list, layers);
+    options.heights = false;
+    for (int kind = 0; kind < 2 && !weft_images_are_scattered(list->layout, NULL); kind++) {
+        char name[WEFT_PRICED_NAME];
+        options.layer_maps = kind == 0 ? WEFT_LAYER_MAPS_OF_LIGHT : WEFT_LAYER_MAPS_OF_HALF_VECTOR;
+        snprintf(name, sizeof name, "%d layers over %s", layers, over[kind]);
+        add(list, WEFT_PRICED_LAYERS, &options, 5, name, "");
+    }
+}
+
 static void add_layers(model_list *list)
 {
     for (int layers = FEWEST_LAYERS; layers <= WEFT_LAYERS_MAX; layers *= 2) {
@@ -177,6 +191,7 @@ static void add_layers(model_list *list)
         if (added && layers == 32)
             add_coarser(list, &options, name);
     }
+    add_kinds_of_maps(list, MAPS_COMPARED);
 }
 
 static void add_subset(model_list *list, weft_photographs_taken taken, const char *what)
@@ -270,7 +285,7 @@ bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_pri
     return weft_priced_model_is_fit(model) && weft_priced_model_is_fit(other) && a->lobe_count == b->lobe_count &&
            a->table == b->table && a->light_table == b->light_table && a->frames == b->frames &&
            a->layer_count == b->layer_count && a->table_components == b->table_components &&
-           model->photographs == other->photographs;
+           a->layer_maps == b->layer_maps && model->photographs == other->photographs;
 }
 
 /* ---- Fewer photographs ---- */

@@ -260,6 +260,42 @@ static void scattered_texels_are_one_of_every_cell(void **state)
     unlink(path);
 }
 
+/* Two by two squares of 16 x 16 neighbours, each somewhere in its quarter of the dataset, and not all at the same
+ * place.
+ */
+static void squares_are_one_of_every_cell(void **state)
+{
+    (void)state;
+    enum { SIDE = 32, SQUARE = 16 };
+    fixture_far_dataset(path, 56, 60, 2, by_place, FIXTURE_MASK_NONE);
+    weft_excerpt excerpt = read_excerpt(WEFT_EXCERPT_SQUARES, SIDE);
+    int first_x[4], first_y[4];
+    assert_int_equal(excerpt.layout.width, SIDE);
+    assert_int_equal(excerpt.layout.height, SIDE);
+    for (int texel = 0; texel < SIDE * SIDE; texel++) {
+        int i = texel % SIDE, j = texel / SIDE, square = 2 * (j / SQUARE) + i / SQUARE, x, y;
+        place_of(&excerpt, texel, &x, &y);
+        if (i % SQUARE == 0 && j % SQUARE == 0) {
+            first_x[square] = x;
+            first_y[square] = y;
+            assert_in_range(x, 28 * (square % 2), 28 * (square % 2) + 28 - SQUARE);
+            assert_in_range(y, 30 * (square / 2), 30 * (square / 2) + 30 - SQUARE);
+        }
+        assert_int_equal(x, first_x[square] + i % SQUARE);
+        assert_int_equal(y, first_y[square] + j % SQUARE);
+    }
+    assert_true(first_x[1] - first_x[0] != 28 || first_x[3] - first_x[2] != 28);
+    weft_excerpt_free(&excerpt);
+    excerpt = read_excerpt(WEFT_EXCERPT_SQUARES, 64);
+    for (int texel = 0; texel < 56 * 60; texel++) {
+        int x, y;
+        place_of(&excerpt, texel, &x, &y);
+        assert_int_equal(x + 56 * y, texel);
+    }
+    weft_excerpt_free(&excerpt);
+    unlink(path);
+}
+
 static weft_rgb by_directions(int x, int y, weft_vec3 light, weft_vec3 view)
 {
     return (weft_rgb){0.01 * x, 0.01 * y, 0.3 + 0.3 * view.x + 0.3 * light.y};
@@ -521,6 +557,7 @@ int main(void)
         cmocka_unit_test(of_one_view_lights_are_held_out),
         cmocka_unit_test(a_handful_is_left_out_one_by_one),
         cmocka_unit_test(scattered_texels_are_one_of_every_cell),
+        cmocka_unit_test(squares_are_one_of_every_cell),
         cmocka_unit_test(texels_of_a_near_dataset_keep_their_directions),
         cmocka_unit_test(what_is_written_lacks_what_is_held_out),
         cmocka_unit_test(what_is_held_out_does_not_leak),

@@ -353,7 +353,7 @@ static void heights_are_chosen_where_compress_keeps_them(void **state)
     assert_true(weft_priced_heights_are_kept(0.4, 0.37));
     assert_false(weft_priced_heights_are_kept(0.4, 0.39));
     weft_dataset *dataset;
-    weft_preset_prediction prediction;
+    weft_prediction prediction;
     weft_compress_options options = weft_compress_default_options();
     weft_error error = {0};
     width = 13;

@@ -87,6 +87,12 @@ static void nothing_is_chosen_of_nothing(void **state)
 
 static const weft_priced_dataset flat = {0};
 
+static weft_rgb smooth(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    double gloss = pow(fmax(0, light.z * view.z - 0.5 * (light.x * view.x + light.y * view.y)), 4);
+    return (weft_rgb){0.1 + 0.02 * x + 0.3 * gloss, 0.1 + 0.02 * y + 0.3 * gloss, 0.2};
+}
+
 static weft_dataset_layout grid_layout(int directions)
 {
     weft_dataset_layout layout = {
@@ -123,6 +129,8 @@ static void the_list_has_what_the_photographs_carry(void **state)
                                          "2 lobes, T in 4 bits",
                                          "2 lobes, T, S",
                                          "64 layers",
+                                         "16 layers over the light",
+                                         "16 layers over the half vector",
                                          "32 layers, 21 views",
                                          "the photographs, interpolated"};
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
@@ -141,6 +149,34 @@ static void the_list_has_what_the_photographs_carry(void **state)
     assert_null(find(model, count, "32 layers, 21 views"));
     weft_dataset_layout_free(&full);
     weft_dataset_layout_free(&few);
+}
+
+/* A row of either kind is of that kind, whichever predicts better, and neither is the fit of the other. */
+static void maps_are_of_the_kind_asked_for(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        weft_layers_kind kind;
+    } row[] = {{"16 layers over the light", WEFT_LAYERS_OF_LIGHT},
+               {"16 layers over the half vector", WEFT_LAYERS_OF_HALF_VECTOR}};
+    weft_priced_model model[WEFT_PRICED_MOST];
+    weft_dataset *dataset;
+    weft_error error = {0};
+    fixture_far_dataset(path, 4, 4, 4, smooth, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model);
+    for (int i = 0; i < 2; i++) {
+        weft_material material;
+        const weft_priced_model *asked = find(model, count, row[i].name);
+        expect_ok(weft_compress(dataset, &asked->options, NULL, &material, NULL, &error), &error);
+        assert_int_equal(material.layers->kind, row[i].kind);
+        assert_string_equal(asked->arguments, "");
+        weft_material_free(&material);
+    }
+    assert_false(weft_priced_models_share_fit(find(model, count, row[0].name), find(model, count, row[1].name)));
+    weft_dataset_close(dataset);
+    unlink(path);
 }
 
 static int views_left(const weft_dataset_layout *layout, const uint8_t *left_out)
@@ -405,7 +441,7 @@ static weft_rgb noisy(int x, int y, weft_vec3 light, weft_vec3 view)
 
 /* The file that weft compress would write, with what it was measured to be. */
 static double compress_as_chosen(weft_dataset *dataset, const weft_compress_options *options,
-                                 const weft_preset_prediction *prediction, weft_hold_out *held_out)
+                                 const weft_prediction *prediction, weft_hold_out *held_out)
 {
     weft_material material;
     weft_error error = {0};
@@ -413,7 +449,7 @@ static double compress_as_chosen(weft_dataset *dataset, const weft_compress_opti
     expect_ok(weft_hold_out_measure(dataset, options, 1, scratch, NULL, held_out, &error), &error);
     expect_ok(weft_compress(dataset, options, NULL, &material, NULL, &error), &error);
     expect_ok(weft_hold_out_store(held_out, &material, &error), &error);
-    expect_ok(weft_material_put_metadata(&material, "predicted", weft_preset_to_json(prediction), &error), &error);
+    expect_ok(weft_material_put_metadata(&material, "predicted", weft_prediction_to_json(prediction), &error), &error);
     expect_ok(weft_material_size(&material, &bytes, &error), &error);
     weft_material_free(&material);
     return (double)bytes;
@@ -423,14 +459,14 @@ static double compress_as_chosen(weft_dataset *dataset, const weft_compress_opti
 static void events_say_how_long_a_frame_takes(void **state)
 {
     (void)state;
-    weft_preset_prediction prediction = {.wish.preset = WEFT_PRESET_SMALL, .bytes = 1, .error = 1, .frame_ms = 12.5};
-    json_t *kept = weft_preset_to_json(&prediction), *event = weft_preset_to_event(&prediction);
+    weft_prediction prediction = {.preset = WEFT_PRESET_SMALL, .bytes = 1, .error = 1, .frame_ms = 12.5};
+    json_t *kept = weft_prediction_to_json(&prediction), *event = weft_prediction_to_event(&prediction);
     assert_null(json_object_get(kept, "frame_ms"));
     assert_float_equal(json_real_value(json_object_get(event, "frame_ms")), 12.5, 0);
     json_decref(kept);
     json_decref(event);
     prediction.frame_ms = 0;
-    event = weft_preset_to_event(&prediction);
+    event = weft_prediction_to_event(&prediction);
     assert_null(json_object_get(event, "frame_ms"));
     json_decref(event);
 }
@@ -465,10 +501,10 @@ static void page_names_a_chosen_model_once(void **state)
 }
 
 /* It is written where it was wished for. */
-static void expect_speed(weft_preset_prediction prediction)
+static void expect_speed(weft_prediction prediction)
 {
-    prediction.wish.least_fps = 10;
-    json_t *object = weft_preset_to_json(&prediction);
+    prediction.least_fps = 10;
+    json_t *object = weft_prediction_to_json(&prediction);
     assert_float_equal(json_real_value(json_object_get(object, "frame_ms")), prediction.frame_ms, 0);
     assert_float_equal(json_real_value(json_object_get(object, "least_fps")), 10, 0);
     json_decref(object);
@@ -487,7 +523,7 @@ static void a_preset_predicts_size_and_error(void **state)
     fixture_far_dataset(path, 10, 9, 4, noisy, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     weft_compress_options options = weft_compress_default_options();
-    weft_preset_prediction prediction;
+    weft_prediction prediction;
     weft_hold_out held_out;
     options.weights = WEFT_WEIGHTS_SCREEN;
     const weft_preset_wish wish = {.preset = WEFT_PRESET_SMALL, .times_frames = true};
@@ -503,6 +539,79 @@ static void a_preset_predicts_size_and_error(void **state)
     weft_dataset_close(dataset);
     unlink(path);
     assert_int_not_equal(access(scratch, F_OK), 0);
+}
+
+/* ---- What is asked for ---- */
+
+/* The middle is even, and the rest is not: a block of the middle alone weighs a third of what its share is. */
+static weft_rgb even_in_the_middle(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    bool is_middle = abs(x - 48) < 32 && abs(y - 40) < 32;
+    double share = is_middle ? 0.5 : fmod(0.618 * (x + 1) * (y + 3), 1), gloss = pow(fmax(light.z * view.z, 0), 6);
+    return (weft_rgb){0.1 + share * gloss, 0.1 + 0.5 * share * gloss, 0.2};
+}
+
+static void size_is_that_of_all_texels(void **state)
+{
+    (void)state;
+    weft_dataset *dataset;
+    weft_error error = {0};
+    fixture_far_dataset(path, 96, 80, 2, even_in_the_middle, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    weft_compress_options options = weft_compress_default_options();
+    weft_prediction prediction = {.model = "1 lobe", .arguments = "--lobes 1", .error = 0.123456789};
+    weft_hold_out held_out;
+    options.layer_count = 0;
+    options.lobe_count = 1;
+    options.table = false;
+    expect_ok(weft_prediction_find_costs(dataset, &options, scratch, NULL, &prediction, &error), &error);
+    double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
+    print_message("predicted %.0f bytes, is %.0f\n", prediction.bytes, bytes);
+    assert_float_equal(prediction.bytes, bytes, 0.05 * bytes);
+    weft_dataset_close(dataset);
+    unlink(path);
+    assert_int_not_equal(access(scratch, F_OK), 0);
+}
+
+/* All texels are in the prediction, too: it holds to the length of the metadata. */
+static void what_is_asked_for_is_predicted(void **state)
+{
+    (void)state;
+    static const struct {
+        double target;
+        uint64_t budget;
+        const char *arguments;
+    } row[] = {{0.2, 0, "--error 20"}, {0, 26000, "--budget 0.026"}};
+    weft_dataset *dataset;
+    weft_error error = {0};
+    fixture_far_dataset(path, 16, 12, 4, noisy, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    for (int i = 0; i < 2; i++) {
+        weft_compress_options options = weft_compress_default_options();
+        weft_prediction prediction;
+        weft_hold_out held_out;
+        uint64_t own;
+        options.target_error = row[i].target;
+        options.budget_bytes = row[i].budget;
+        options.layer_count = 0;
+        const weft_preset_wish wish = {.preset = WEFT_PRESET_NONE};
+        expect_ok(weft_preset_predict(dataset, &wish, scratch, NULL, &options, &prediction, &error), &error);
+        assert_string_equal(prediction.arguments, row[i].arguments);
+        expect_ok(weft_prediction_added_bytes(dataset, &options, &prediction, &own, &error), &error);
+        options.added_bytes = own;
+        double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
+        double measured = held_out.material.all.relative_rmse;
+        print_message("%s: predicted %.0f bytes, is %.0f; error %.4f, is %.4f\n", row[i].arguments, prediction.bytes,
+                      bytes, prediction.error, measured);
+        assert_float_equal(prediction.bytes, bytes, 0.02 * bytes);
+        assert_float_equal(prediction.error, measured, 0.1 * measured);
+        assert_true(row[i].budget == 0 || bytes <= (double)row[i].budget);
+        json_t *kept = weft_prediction_to_json(&prediction);
+        assert_null(json_object_get(kept, "preset"));
+        json_decref(kept);
+    }
+    weft_dataset_close(dataset);
+    unlink(path);
 }
 
 /* Nobody knows the time of what is not asked for. */
@@ -591,12 +700,15 @@ int main(void)
         cmocka_unit_test(a_hundredth_is_not_worth_any_bytes),
         cmocka_unit_test(nothing_is_chosen_of_nothing),
         cmocka_unit_test(the_list_has_what_the_photographs_carry),
+        cmocka_unit_test(maps_are_of_the_kind_asked_for),
         cmocka_unit_test(fewer_photographs_are_spread),
         cmocka_unit_test(errors_are_told_apart_where_eyes_look),
         cmocka_unit_test(variants_are_made_of_the_same_fit),
         cmocka_unit_test(two_layers_are_the_first_of_four),
         cmocka_unit_test(bytes_are_those_of_the_file),
         cmocka_unit_test(a_preset_predicts_size_and_error),
+        cmocka_unit_test(size_is_that_of_all_texels),
+        cmocka_unit_test(what_is_asked_for_is_predicted),
         cmocka_unit_test(frames_that_are_too_slow_are_not_chosen),
         cmocka_unit_test(points_lie_on_logarithmic_axes),
     };
