@@ -12,8 +12,7 @@ static const weft_fit_lobe broad_start = {.c = {-0.1, -0.15, 1}, .log_exponent =
 enum {
     RACE_PASSES = 3,
     START_PASSES = 6,
-    SCREENED = 4,      /* lobes that are followed of those that the screen ranks, */
-    SCREENED_MORE = 2, /* and beside other lobes */
+    SCREENED = 4, /* lobes that are followed of those that the screen ranks */
     INCUMBENT = 2,
     CHALLENGER /* places among the trials of a workspace */
 };
@@ -123,9 +122,8 @@ static void grow(search *own)
     weft_fit_workspace *workspace = own->workspace;
     const weft_fit base = workspace->trial[INCUMBENT].fit;
     weft_fit_lobe lobe[SCREENED];
-    int most = base.lobe_count > 0 ? SCREENED_MORE : SCREENED;
     int found = weft_screen_run(own->bundle, own->samples, own->channel, &own->options, workspace,
-                                &workspace->trial[INCUMBENT], most, lobe);
+                                &workspace->trial[INCUMBENT], SCREENED, lobe);
     own->has_incumbent = own->has_challenger = false;
     own->options.lobe_count = base.lobe_count + 1;
     if (own->options.lobe_count <= 2) {

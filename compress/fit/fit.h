@@ -33,7 +33,7 @@ typedef struct weft_fit_options {
     bool coarse;          /* look at the coarse lights of each view only */
     double max_exponent;  /* N <= this; cloth stays below 512, retro-reflective tape wants thousands */
     double max_amplitude; /* rho and each A <= this, in the scaled units of weft_samples */
-    double tolerance;     /* stop when a step lowers the residual by less than this fraction */
+    double tolerance;     /* stop when the next step promises to lower the residual by less than half this fraction */
     int max_passes;
     double wanted; /* stop when the next step promises too little to leave less than this; 0: do not */
 } weft_fit_options;

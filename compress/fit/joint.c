@@ -133,27 +133,32 @@ static bool is_hopeless(const weft_fit_options *options, double left, double gai
     return options->wanted > 0 && left - FURTHER * gain >= options->wanted;
 }
 
+/* Whether the next step promises next to nothing. What the last one brought says less: a damped step is short, and the
+ * one after it may reach far. */
+static bool has_converged(const weft_fit_options *options, double left, double gain)
+{
+    return gain < 0.5 * options->tolerance * left;
+}
+
 void weft_workspace_refine(const weft_bundle *bundle, const weft_samples *samples, int channel,
                            const weft_fit_options *options, weft_fit_workspace *workspace, double damping)
 {
     weft_trial *now = &workspace->trial[0], *next = &workspace->trial[1];
     double enough = 1e-10 * samples->energy[channel];
-    bool converged = false;
-    while (!converged && now->residual > enough) {
+    while (now->residual > enough) {
         weft_normal normal;
         weft_normal_of_trial(bundle, options->table, options->fit_frame, now, &normal);
         bool accepted = false;
         while (!accepted) {
-            double least_gain = options->tolerance * now->residual, gain = 0;
+            double gain = 0;
             if (now->fit.passes >= options->max_passes || !(damping < 1e5))
                 return;
             next->fit = now->fit;
             if (make_step(&normal, damping, options, &next->fit, &gain)) {
-                if (gain < 0.5 * least_gain || is_hopeless(options, now->residual, gain))
+                if (has_converged(options, now->residual, gain) || is_hopeless(options, now->residual, gain))
                     return;
                 weft_workspace_begin_warm(bundle, samples, channel, options, now->table, next);
                 accepted = next->residual < now->residual;
-                converged = accepted && now->residual - next->residual < least_gain;
             }
             now->fit.passes = next->fit.passes;
             damping = fmax(1e-6, damping * (accepted ? ease((now->residual - next->residual) / gain) : 30));

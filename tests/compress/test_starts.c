@@ -12,7 +12,7 @@
 
 #define NOISE 0.01 /* relative */
 
-enum { VIEWS = 40, LIGHTS = 60, TEXELS = 60, STARTS = 25, LOBES = 3 };
+enum { VIEWS = 40, LIGHTS = 60, TEXELS = 60, STARTS = 25, MANY_STARTS = 60, LOBES = 3 };
 
 static int setup(void **state)
 {
@@ -34,25 +34,29 @@ static int setup(void **state)
     return 0;
 }
 
-/* How many of the texels end more than 2 % above the best of random starts, and above what noise leaves: a model with
- * more lobes than the truth has follows the noise wherever it happens to look. */
-static int count_above(texel_fixture *fixture, int lobes)
+/* Whether a texel ends more than 2 % above the best of random starts, and above a relative error of `noise`. */
+static bool is_above(texel_fixture *fixture, uint64_t texel, int lobes, int starts, double noise)
 {
     weft_fit_options options = weft_fit_default_options();
-    int above = 0;
+    weft_fit fit, best;
     options.lobe_count = lobes;
-    for (uint64_t texel = 0; texel < TEXELS; texel++) {
-        weft_fit fit, best;
-        random_truth_samples(&fixture->layout, texel, NOISE, fixture->sum);
-        texel_fixture_gather(fixture);
-        weft_fit_cold(&fixture->bundle, &fixture->samples, 0, &options, fixture->workspace, &fixture->frame, &fit,
-                      fixture->table);
-        double left = weft_fit_residual(&fixture->bundle, &fixture->samples, 0, &fit, fixture->table);
-        double least = random_starts_best(&fixture->bundle, &fixture->samples, 0, &options, fixture->workspace,
-                                          &fixture->frame, texel, STARTS, &best, fixture->table);
-        double noise = NOISE * NOISE * fixture->samples.energy[0];
-        above += left > 1.02 * 1.02 * fmax(least, noise);
-    }
+    random_truth_samples(&fixture->layout, texel, NOISE, fixture->sum);
+    texel_fixture_gather(fixture);
+    weft_fit_cold(&fixture->bundle, &fixture->samples, 0, &options, fixture->workspace, &fixture->frame, &fit,
+                  fixture->table);
+    double left = weft_fit_residual(&fixture->bundle, &fixture->samples, 0, &fit, fixture->table);
+    double least = random_starts_best(&fixture->bundle, &fixture->samples, 0, &options, fixture->workspace,
+                                      &fixture->frame, texel, starts, &best, fixture->table);
+    return left > 1.02 * 1.02 * fmax(least, noise * noise * fixture->samples.energy[0]);
+}
+
+/* A model with more lobes than the truth has follows the noise wherever it happens to look: what lies within the noise
+ * is not counted. */
+static int count_above(texel_fixture *fixture, int lobes)
+{
+    int above = 0;
+    for (uint64_t texel = 0; texel < TEXELS; texel++)
+        above += is_above(fixture, texel, lobes, STARTS, NOISE);
     print_message("%d lobes: %d of %d above\n", lobes, above, TEXELS);
     return above;
 }
@@ -64,9 +68,43 @@ static void few_texels_end_above_random_starts(void **state)
         assert_true(count_above(*state, lobes) <= most[lobes - 1]);
 }
 
+/* A truth, and the number of lobes of its fit. */
+typedef struct hard_fit {
+    int texel, lobes;
+} hard_fit;
+
+/* Some fits are let off: which they are depends on the last bits of a pass. */
+static void assert_most_are_found(texel_fixture *fixture, const hard_fit *fit, int count, int let_off)
+{
+    int above = 0;
+    for (int i = 0; i < count; i++)
+        above += is_above(fixture, (uint64_t)fit[i].texel, fit[i].lobes, MANY_STARTS, 0);
+    print_message("%d of %d above\n", above, count);
+    assert_true(above <= let_off);
+}
+
+/* All of these ended above where two lobes of the screen were followed beside others. */
+static void the_third_lobe_of_the_screen_is_followed(void **state)
+{
+    static const hard_fit fit[] = {{910, 2},   {10012, 2}, {12678, 2}, {20740, 2}, {29907, 2},
+                                   {40195, 2}, {48061, 2}, {55408, 2}, {60219, 2}, {66266, 2},
+                                   {41365, 3}, {50272, 3}, {50662, 3}, {54693, 3}, {58399, 3}};
+    assert_most_are_found(*state, fit, (int)(sizeof fit / sizeof fit[0]), 5);
+}
+
+/* All of these ended above where a fit stopped at the first step that brought little. */
+static void a_short_step_is_not_the_last(void **state)
+{
+    static const hard_fit fit[] = {{780, 2},   {27956, 2}, {61520, 2}, {24901, 3}, {27956, 3},
+                                   {44291, 3}, {49687, 3}, {63275, 3}, {64576, 3}};
+    assert_most_are_found(*state, fit, (int)(sizeof fit / sizeof fit[0]), 3);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(few_texels_end_above_random_starts)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(few_texels_end_above_random_starts),
+                                       cmocka_unit_test(the_third_lobe_of_the_screen_is_followed),
+                                       cmocka_unit_test(a_short_step_is_not_the_last)};
     unsigned denormals = weft_denormals_off();
     int failed = cmocka_run_group_tests(tests, setup, texel_fixture_teardown);
     weft_denormals_restore(denormals);
