@@ -1,6 +1,6 @@
 #!/bin/sh
 # Checks what a reviewer would check. Every part runs, whatever the others found; the last lines say which failed.
-# Usage: check.sh [PART...]    all parts, or some of: format includes docs benches sanitizers threads tidy tidy-changed
+# Usage: check.sh [PART...]    all parts, or some of: format includes docs faults benches sanitizers threads tidy tidy-changed
 set -u
 cd "$(dirname "$0")/.."
 jobs=$(nproc)
@@ -15,6 +15,15 @@ includes() {
 
 docs() {
     scripts/check-docs.sh
+}
+
+# Every fault of `make mutants` still finds its place.
+faults() {
+    lost=0
+    for fault in tests/mutants/*/*.patch; do
+        git apply --check --unidiff-zero "$fault" || lost=1
+    done
+    return $lost
 }
 
 # The benches, which no test builds.
@@ -55,7 +64,7 @@ tidy_changed() {
 }
 
 failed=""
-for part in "${@:-format includes docs benches sanitizers threads tidy}"; do
+for part in "${@:-format includes docs faults benches sanitizers threads tidy}"; do
     for name in $part; do
         printf '\n== %s\n' "$name"
         $(printf %s "$name" | tr - _) || failed="$failed $name"
