@@ -250,7 +250,7 @@ static weft_code pack_evidence(const work *w, int used, weft_lamp_evidence **evi
 {
     int next = 0;
     *evidence = malloc((size_t)used * sizeof **evidence);
-    *index = malloc((size_t)used * sizeof **index);
+    *index = calloc((size_t)used, sizeof **index);
     if (!*evidence || !*index)
         return weft_fail_memory(error, "lamps", (size_t)used * sizeof **evidence);
     for (int i = 0; i < w->hand->count; i++) {
