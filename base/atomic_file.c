@@ -110,10 +110,29 @@ static char *final_name(const char *path)
     return target ? target : strdup(path);
 }
 
+/* Permissions do not say it all: the kernel lets root write into /proc, but no file can be made there. */
+static weft_code try_folder(const char *folder, weft_error *error)
+{
+    char *path = NULL;
+    if (asprintf(&path, "%s/.weft-XXXXXX", folder) < 0)
+        return weft_fail_memory(error, "file name", strlen(folder));
+    int descriptor = mkostemp(path, O_CLOEXEC);
+    weft_code code = descriptor >= 0 ? WEFT_OK : weft_fail_errno(error, "write into folder", folder);
+    if (descriptor >= 0) {
+        close(descriptor);
+        unlink(path);
+    }
+    free(path);
+    return code;
+}
+
 weft_code weft_output_check(const char *path, weft_error *error)
 {
+    char folder[PATH_MAX];
     WEFT_TRY(check_name(path, error));
-    return check_folder(path, error);
+    WEFT_TRY(check_folder(path, error));
+    folder_of(path, folder);
+    return try_folder(folder, error);
 }
 
 weft_code weft_atomic_file_begin(const char *path, weft_atomic_file *file, weft_error *error)
@@ -296,7 +315,7 @@ weft_code weft_output_folder_check(const char *path, weft_error *error)
     }
     if (!S_ISDIR(status.st_mode))
         return weft_fail(error, WEFT_SYSTEM, "cannot create folder '%s': '%s' is a file", path, there);
-    return access(there, W_OK | X_OK) == 0 ? WEFT_OK : weft_fail_errno(error, "write into folder", there);
+    return try_folder(there, error);
 }
 
 weft_code weft_make_folder(const char *path, weft_error *error)

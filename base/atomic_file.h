@@ -23,7 +23,7 @@ typedef struct weft_atomic_file {
  * a folder, device or pipe; WEFT_SYSTEM for memory, or where its folder does not exist or is not writable. */
 weft_code weft_atomic_file_begin(const char *path, weft_atomic_file *file, weft_error *error);
 
-/* Whether a file could be begun there. Errors: as above. */
+/* Whether a file could be begun there: one is, and goes away again. Errors: as above. */
 weft_code weft_output_check(const char *path, weft_error *error);
 
 /* Syncs the temporary file to disk, renames it to its final name and syncs the folder. On failure the
@@ -66,7 +66,7 @@ uint64_t weft_file_bytes(const char *path);
 /* Whether both paths lead to one and the same file that exists. */
 bool weft_is_same_file(const char *a, const char *b);
 
-/* Whether a folder could be made there, or written into. Errors: WEFT_SYSTEM. */
+/* Whether a folder could be made there, or written into: a file is, and goes away again. Errors: WEFT_SYSTEM. */
 weft_code weft_output_folder_check(const char *path, weft_error *error);
 
 /* Creates a folder and its parents; an existing folder is fine. */

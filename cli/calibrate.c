@@ -193,12 +193,6 @@ static json_t *pack_joint(const weft_poses_file *file, int k)
                      e->point_mm);
 }
 
-/* JSON has no infinity. */
-static json_t *pack_expected(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_report *report, const night *n)
 {
     const weft_poses_file *file = &report->file;
@@ -212,9 +206,9 @@ static json_t *pack_poses(const weft_axes_sightings *sightings, const weft_axes_
                      sightings->count, "used", report->used, "held_out_rms_px", file->held_out_rms_px, "rms_px",
                      file->rms_px, "point_px", file->point_px, "scatter_deg", weft_deg_of_rad(file->scatter_rad),
                      "scatter_mm", file->scatter_mm, "joints", joints, "not_told", not_told, "poses", e->poses,
-                     "unreachable", n->unreachable, "expected_median_texels", pack_expected(e->median_texels),
-                     "expected_worst_texels", pack_expected(e->worst.texels), "expected_direction_deg",
-                     pack_expected(weft_deg_of_rad(e->direction_rad)), "allowed_texels", n->allowed_texels,
+                     "unreachable", n->unreachable, "expected_median_texels", weft_json_number(e->median_texels),
+                     "expected_worst_texels", weft_json_number(e->worst.texels), "expected_direction_deg",
+                     weft_json_number(weft_deg_of_rad(e->direction_rad)), "allowed_texels", n->allowed_texels,
                      "good_enough", n->good_enough);
 }
 

@@ -3,7 +3,6 @@
 #include "cli/command/describe.h"
 #include "study/bard/predict.h"
 
-#include <math.h>
 #include <stdio.h>
 
 typedef struct compare_command {
@@ -79,12 +78,12 @@ static void say_truth_error(const weft_common_options *common, const weft_truth_
     weft_command_say(common, "%s, %s light, %s against truth: relative RMSE %.2f %%, PSNR %.2f dB, of blocks %.2f %%",
                      scene->caption, name[light], what, 100 * e->error.relative_rmse, e->error.psnr_db,
                      100 * e->block_relative_rmse);
-    char event[384];
+    char event[384], psnr[WEFT_NUMBER_SIZE];
     snprintf(event, sizeof event,
              "{\"event\":\"truth\",\"scene\":\"%s\",\"light\":\"%s\",\"model\":\"%s\",\"relative_rmse\":%.6g,"
-             "\"psnr_db\":%.6g,\"block_relative_rmse\":%.6g}",
-             scene->caption, name[light], what, e->error.relative_rmse,
-             isfinite(e->error.psnr_db) ? e->error.psnr_db : 0, e->block_relative_rmse);
+             "\"psnr_db\":%s,\"block_relative_rmse\":%.6g}",
+             scene->caption, name[light], what, e->error.relative_rmse, weft_command_number(e->error.psnr_db, psnr),
+             e->block_relative_rmse);
     weft_command_event(common, event);
 }
 
@@ -146,11 +145,11 @@ static void say_scene(const weft_common_options *common, const weft_scenes *scen
         weft_command_say(common, "%s, %s beside raw: PSNR %.2f dB, relative RMSE %.2f %%; %.1f ms a frame, raw %.1f ms",
                          scene->caption, weft_scenes_model_name(model), e->psnr_db, 100 * e->relative_rmse, frame_ms,
                          raw_ms);
-        char event[384];
+        char event[384], psnr[WEFT_NUMBER_SIZE];
         snprintf(event, sizeof event,
                  "{\"event\":\"scene\",\"scene\":\"%s\",\"model\":\"%s\",\"relative_rmse\":%.6g,"
-                 "\"psnr_db\":%.6g,\"frame_ms\":%.6g,\"raw_frame_ms\":%.6g}",
-                 scene->caption, weft_scenes_model_name(model), e->relative_rmse, isfinite(e->psnr_db) ? e->psnr_db : 0,
+                 "\"psnr_db\":%s,\"frame_ms\":%.6g,\"raw_frame_ms\":%.6g}",
+                 scene->caption, weft_scenes_model_name(model), e->relative_rmse, weft_command_number(e->psnr_db, psnr),
                  frame_ms, raw_ms);
         weft_command_event(common, event);
     }

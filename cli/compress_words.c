@@ -123,12 +123,12 @@ static void say_errors(const weft_common_options *common, const weft_material *m
         weft_command_say(common, "%5d  %5d x %-5d  %7.2f %%  %9.2f %%  %7.2f %%  %7.2f  %9.3e", k, level->width,
                          level->height, 100 * error->relative_rmse, 100 * error->median_relative,
                          100 * error->percentile80_relative, error->psnr_db, error->rmse);
-        char event[320];
+        char event[320], psnr[WEFT_NUMBER_SIZE];
         snprintf(event, sizeof event,
                  "{\"event\":\"level\",\"level\":%d,\"width\":%d,\"height\":%d,\"median_relative\":%.6g,"
-                 "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%.6g%s}",
+                 "\"percentile80_relative\":%.6g,\"rmse\":%.6g,\"relative_rmse\":%.6g,\"psnr_db\":%s%s}",
                  k, level->width, level->height, error->median_relative, error->percentile80_relative, error->rmse,
-                 error->relative_rmse, isfinite(error->psnr_db) ? error->psnr_db : 0, errors_of);
+                 error->relative_rmse, weft_command_number(error->psnr_db, psnr), errors_of);
         weft_command_event(common, event);
     }
 }

@@ -3,7 +3,6 @@
 #include "base/text/json_text.h"
 #include "btf/dataset/measured.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,11 +51,11 @@ static json_t *describe_layers(const weft_compress_options *options, const weft_
     static const char *const kind[] = {"light", "half vector"};
     const weft_error_summary *fitted = &report->fitted;
     json_t *layers =
-        json_pack("{s:i, s:s, s:[f,f], s:i, s:{s:f, s:f, s:f, s:f, s:f}}", "count", options->layer_count, "maps_over",
+        json_pack("{s:i, s:s, s:[f,f], s:i, s:{s:f, s:f, s:f, s:f, s:o}}", "count", options->layer_count, "maps_over",
                   kind[report->kind], "trial_relative_rmse", report->trial_error[0], report->trial_error[1],
                   "learned_from_texels", report->training_texels, "fitted", "median_relative", fitted->median_relative,
                   "percentile80_relative", fitted->percentile80_relative, "rmse", fitted->rmse, "relative_rmse",
-                  fitted->relative_rmse, "psnr_db", isfinite(fitted->psnr_db) ? fitted->psnr_db : 0);
+                  fitted->relative_rmse, "psnr_db", weft_json_number(fitted->psnr_db));
     if (report->scattered)
         weft_json_put(&layers, "kriging", describe_kriging(report));
     return layers;

@@ -77,7 +77,8 @@ stitches() {
     cat <<'TEXT'
 ## Stitches: yarns in space, simulated, compressed
 
-`weft simulate` traces light through yarns. 32 x 32 texels, 64 views x 64 lights; a napkin of 60 mm.
+`weft simulate` traces light through yarns. 32 x 32 texels, 64 views x 64 lights; a napkin of 60 mm. Both
+pictures of a stitch stand under the exposure of the raw one.
 
 | stitch | raw | compressed | bytes, raw / compressed | ms a frame | error, raw interpolated / compressed | drape |
 | --- | --- | --- | --- | --- | --- | --- |
@@ -116,7 +117,8 @@ photographed() {
 The virtual rig photographs weaves under 81 views x 81 lights, magnified; `weft register` makes 64 x 64 texels of that. The
 analytic cloth is the very one that was photographed, but without its noise, which is a throw of dice: nobody knows where its bright
 flecks lie. Its error is over all samples. It is [mostly of those flecks](notes/photographed-weaves.md) where there are any (denim, twill,
-charmeuse), otherwise of slant views, whose pixels span two texels. A cloth of 300 mm.
+charmeuse), otherwise of slant views, whose pixels span two texels. A cloth of 300 mm, its three
+pictures under the exposure of the raw one.
 
 | weave | raw | compressed | analytic | bytes, raw / compressed / analytic | ms a frame, the same | error, raw interpolated / compressed / analytic | error of the mean BRDF, compressed / analytic | drape, compressed / analytic |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -221,8 +223,6 @@ section_of_page() {
 # Gallery
 
 Every cloth that comes with Weft, in the studio that a first picture begins in. `scripts/gallery.sh WEFT` draws this page.
-
-Raw, compressed and analytic pictures of one cloth stand under one exposure, that of the raw one.
 
 *Raw* is the dataset, interpolated. *Compressed* is the same as a material of 32 layers, the default. Where the cloth is deep,
 both are seen through the [heights](guide/relief.md) that were found in the views. Frames are those of `weft compare`: a drape

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,6 +50,11 @@ void weft_json_put(json_t **object, const char *name, json_t *value)
 void weft_json_append(json_t **list, json_t *value)
 {
     drop_incomplete(list, json_array_append_new(*list, value));
+}
+
+json_t *weft_json_number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
 }
 
 weft_code weft_json_read(const char *path, size_t limit, json_t **root, weft_error *error)

@@ -26,6 +26,9 @@ weft_code weft_json_parse(const char *text, size_t size, size_t flags, const cha
 void weft_json_put(json_t **object, const char *name, json_t *value);
 void weft_json_append(json_t **list, json_t *value);
 
+/* A number; null where it is not finite, because JSON has no infinity. NULL where memory is short. */
+json_t *weft_json_number(double value);
+
 /* Reads a JSON file; an object that names a key twice is refused. The caller owns *root. Errors: WEFT_BAD_INPUT where
  * the file is missing, larger than `limit` bytes, or no JSON, with line and column. */
 weft_code weft_json_read(const char *path, size_t limit, json_t **root, weft_error *error);

@@ -2,6 +2,7 @@
 #include "base/clock.h"
 #include "base/text/json_text.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,6 +29,12 @@ void weft_command_event(const weft_common_options *common, const char *json_obje
         puts(json_object);
         fflush(stdout);
     }
+}
+
+const char *weft_command_number(double value, char text[WEFT_NUMBER_SIZE])
+{
+    snprintf(text, WEFT_NUMBER_SIZE, isfinite(value) ? "%.6g" : "null", value);
+    return text;
 }
 
 static void show_event(const char *stage, long done, long total)

@@ -57,6 +57,12 @@ void weft_command_say_page(const weft_common_options *common, const char *name, 
 /* One machine-readable event with --json, nothing otherwise. `json_object` is the text of a JSON object. */
 void weft_command_event(const weft_common_options *common, const char *json_object);
 
+enum { WEFT_NUMBER_SIZE = 24 };
+
+/* A number of such an event, to six digits; "null" where it is not finite, because JSON has no infinity. Returns text.
+ */
+const char *weft_command_number(double value, char text[WEFT_NUMBER_SIZE]);
+
 /* Prints "weft COMMAND: MESSAGE" on stderr when code is not WEFT_OK, and returns it as the exit code. */
 int weft_command_exit(const char *command, const weft_common_options *common, weft_code code, const weft_error *error);
 

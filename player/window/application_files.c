@@ -43,6 +43,7 @@ void weft_application_close_files(weft_application *a)
     weft_space_mouse_free(a->mouse);
     weft_watch_free(a->watch);
     weft_recent_files_free(&a->recent);
+    weft_folder_files_free(&a->folder);
 }
 
 /* ---- Files ---- */
@@ -52,6 +53,19 @@ const char *weft_application_file(const weft_application *a, weft_mode mode)
     const weft_settings *s = &a->setup.request->settings;
     const char *const path[WEFT_MODE_COUNT] = {s->dataset, s->material, s->weave};
     return path[mode];
+}
+
+void weft_application_list(weft_application *a, const char *folder)
+{
+    char shown[PATH_MAX] = ".";
+    weft_error error = {0};
+    const weft_settings *s = &a->setup.request->settings;
+    const char *path = s->material ? s->material : s->dataset ? s->dataset : s->weave;
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    if (slash)
+        snprintf(shown, sizeof shown, "%.*s", slash > path ? (int)(slash - path) : 1, path);
+    if (weft_folder_files_read(&a->folder, folder ? folder : shown, &error) != WEFT_OK)
+        weft_application_tell(a, true, error.message);
 }
 
 static weft_code watch_files(weft_application *a, weft_error *error)

@@ -7,6 +7,7 @@
 #include "player/draw/probe.h"
 #include "player/gl/context.h"
 #include "player/window/application.h"
+#include "player/window/folder_files.h"
 #include "player/window/history.h"
 #include "player/window/interaction.h"
 #include "player/window/recent_files.h"
@@ -26,6 +27,7 @@ struct weft_application {
     weft_space_mouse *mouse;
     weft_watch *watch; /* NULL where the system has none */
     weft_recent_files recent;
+    weft_folder_files folder;                   /* that one can choose from; read when its list is looked at */
     char remembered[WEFT_SLOT_COUNT][PATH_MAX]; /* of each slot, the file that came last */
     double polled_s;
     char mouse_message[WEFT_MESSAGE_SIZE]; /* told last */
@@ -96,6 +98,9 @@ const char *weft_application_file(const weft_application *application, weft_mode
 
 /* Begins to read a file, or all again (NULL), and tells the outcome. */
 void weft_application_open(weft_application *application, const char *path);
+
+/* Lists a folder; NULL: that of the file that is shown. Tells where memory is short. */
+void weft_application_list(weft_application *application, const char *folder);
 
 /* Begins to read the mesh that was wished for. */
 void weft_application_change_mesh(weft_application *application);

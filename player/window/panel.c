@@ -305,18 +305,6 @@ static void picture_section(weft_application *a)
     i->changed |= weft_ui_toggle("Tint extrapolation", &scene->show_extrapolation);
 }
 
-/* ---- Files ---- */
-
-static void recent_section(weft_application *a)
-{
-    for (int i = 0; i < a->recent.count; i++) {
-        const char *path = a->recent.path[i];
-        if (weft_ui_entry_chosen(strrchr(path, '/') + 1, path))
-            a->interaction.wants_file = path;
-    }
-    weft_ui_dim_text("Or drop a file on the window.");
-}
-
 /* ---- Facts ---- */
 
 static void size_rows(const weft_application *a)
@@ -384,8 +372,7 @@ void weft_panel_show(weft_application *a, int width, int height)
             picture_section(a);
         if (weft_ui_section("Size and error", true))
             facts_section(a);
-        if (weft_ui_section("Recent files", false))
-            recent_section(a);
+        weft_panel_show_files(a);
         weft_ui_gap();
         weft_ui_dim_text("H: mouse and keys");
         weft_ui_panel_end();

@@ -350,7 +350,7 @@ static weft_code spread_brightness(const weft_material *from, plane *p, weft_mat
 {
     size_t texels = (size_t)p->from_width * (size_t)p->from_height,
            count = 3 * (texels + (size_t)p->added.width * (size_t)p->added.height);
-    float *room = malloc(count * sizeof *room);
+    float *room = calloc(count, sizeof *room);
     if (!room)
         return weft_fail_memory(error, "brightness of the tile", count * sizeof *room);
     float *const value[2] = {room, room + 3 * texels};

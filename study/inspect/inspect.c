@@ -14,10 +14,12 @@
 #include "study/hold_out/record.h"
 #include "study/inspect/verify.h"
 
-#include <math.h>
+#include <limits.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const size_t longest_list = 16;
 
@@ -82,9 +84,9 @@ static json_t *describe_level(const weft_material *material, int k)
     const weft_material_level *level = &material->level[k];
     const weft_error_summary *e = &level->error;
     json_t *described =
-        json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:f}", "texels", level->width, level->height, "median_relative_error",
+        json_pack("{s:[ii], s:f, s:f, s:f, s:f, s:o}", "texels", level->width, level->height, "median_relative_error",
                   e->median_relative, "percentile80_relative_error", e->percentile80_relative, "rmse", e->rmse,
-                  "relative_rmse", e->relative_rmse, "psnr_db", isfinite(e->psnr_db) ? e->psnr_db : 0);
+                  "relative_rmse", e->relative_rmse, "psnr_db", weft_json_number(e->psnr_db));
     put_basis(&described, "components_of_T", level->table_basis);
     put_basis(&described, "components_of_S", level->light_table_basis);
     if (material->layers)
@@ -277,6 +279,12 @@ static weft_code inspect_cameras(const char *path, const weft_camera_list *list,
     return code;
 }
 
+static bool holds_session(const char *folder)
+{
+    char path[PATH_MAX];
+    return snprintf(path, sizeof path, "%s/session.json", folder) < (int)sizeof path && access(path, F_OK) == 0;
+}
+
 static weft_code inspect_session(const char *path, const weft_progress *progress, bool all, json_t **result,
                                  weft_error *error)
 {
@@ -285,6 +293,11 @@ static weft_code inspect_session(const char *path, const weft_progress *progress
     WEFT_TRY(weft_camera_list_read(path, &list, error));
     if (list.count > 0)
         return inspect_cameras(path, &list, progress, all, result, error);
+    if (!holds_session(path))
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' is a folder, but no session: it holds no session.json (of a folder of photographs "
+                         "weft photographs or weft import makes a dataset)",
+                         path);
     WEFT_TRY(weft_session_open(path, &session, error));
     *result = describe_session(&session);
     weft_code code = all ? weft_verify_session(&session, progress, *result, error) : WEFT_OK;

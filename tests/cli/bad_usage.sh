@@ -78,6 +78,7 @@ done <<'TABLE'
 1|'good.weft' is a material|tradeoff good.weft -o out
 1|'good.btf.h5' is a dataset: SESSION belongs|register good.btf.h5 -o out
 1|'folder' is no session|register folder -o out
+1|'folder' is a folder, but no session|info folder
 1|'folder' is no session|calibrate folder -o out
 1|left/cameras.json|register left -o out
 2|WxH|register good --size 5 -o out
@@ -130,6 +131,9 @@ for command in "register good" "photographs good" "compress good.btf.h5 --error 
     expect_one_line 3 "'good.weft' is a file" $command -o out --report good.weft
     expect_no_file out
 done
+expect_one_line 3 "folder '/proc'" compress good.btf.h5 -o /proc/out.weft
+expect_one_line 3 "folder '/proc'" compare good.btf.h5 good.weft -o /proc/report
+[ -z "$(find . -name '.weft-*')" ] || fail "what was tried is left"
 if [ "$(id -u)" != 0 ]; then
     mkdir locked
     chmod 555 locked

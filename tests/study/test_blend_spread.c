@@ -171,7 +171,7 @@ static void layers_meet_under_every_light(void **state)
 /* Fine grain: all texels of a square are nearly as bright as its ceiling. */
 static double grain(int x, int y)
 {
-    uint64_t seed = (uint64_t)(1000 * y + x);
+    uint64_t seed = 1000 * (uint64_t)y + (uint64_t)x;
     return 1 + 0.1 * uniform(&seed);
 }
 

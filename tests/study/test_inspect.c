@@ -108,6 +108,28 @@ static void a_material_with_a_flipped_bit_is_refused(void **state)
     unlink("inspect.weft");
 }
 
+/* JSON has no infinity, and 0 dB would be a bad match. */
+static void a_perfect_match_has_no_psnr_in_json(void **state)
+{
+    (void)state;
+    json_t *description;
+    weft_material material;
+    weft_error error = {0};
+    const double measured[] = {INFINITY, 40};
+    for (int i = 0; i < 2; i++) {
+        fixture_diffuse_material("inspect.weft", 6, 5, dark);
+        expect_ok(weft_material_read("inspect.weft", &material, &error), &error);
+        material.level[0].error.psnr_db = measured[i];
+        expect_ok(weft_material_write("inspect.weft", &material, &error), &error);
+        weft_material_free(&material);
+        expect_ok(weft_inspect("inspect.weft", &description, &error), &error);
+        const json_t *psnr = json_object_get(json_array_get(json_object_get(description, "levels"), 0), "psnr_db");
+        assert_true(i == 0 ? json_is_null(psnr) : json_real_value(psnr) == 40);
+        json_decref(description);
+    }
+    unlink("inspect.weft");
+}
+
 static void a_material_with_infinite_light_is_refused(void **state)
 {
     (void)state;
@@ -139,6 +161,7 @@ int main(void)
         cmocka_unit_test(a_mask_of_others_is_taken),
         cmocka_unit_test(a_cut_dataset_is_refused),
         cmocka_unit_test(a_material_with_a_flipped_bit_is_refused),
+        cmocka_unit_test(a_perfect_match_has_no_psnr_in_json),
         cmocka_unit_test(a_material_with_infinite_light_is_refused),
         cmocka_unit_test(a_missing_file_and_a_strange_name_are_refused),
     };
