@@ -13,6 +13,6 @@ cd "$work"
 "$weft" tile hand.weft --blend -o tile.weft
 for cloth in "hand 4" "tile 6"; do
     set -- $cloth
-    "$weft" render "$1.weft" --mesh plane --repeat "$2" --size 480x360 -o "$1.png"
+    "$weft" render "$1.weft" --mesh plane --environment none --repeat "$2" --size 480x360 -o "$1.png"
 done
 convert hand.png tile.png -bordercolor white -border 3 +append +dither -colors 255 "$out"
