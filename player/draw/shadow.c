@@ -67,7 +67,7 @@ bool weft_shadow_map_begin(weft_shadow_map *map, int layer, bool is_soft, weft_v
 {
     int side = is_soft ? SIDE / 2 : SIDE;
     weft_vec3 change = weft_subtract(light, map->light[layer]);
-    if (weft_dot(change, change) == 0 && map->share[layer] == (float)side / SIDE)
+    if (weft_dot(change, change) == 0 && map->share[layer] >= (float)side / SIDE)
         return false;
     map->light[layer] = light;
     map->share[layer] = (float)side / SIDE;

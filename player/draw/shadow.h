@@ -25,8 +25,8 @@ void weft_shadow_map_free(weft_shadow_map *map);
 
 /* Between the two, what is drawn casts shadows into a layer: distant light from `light` (unit) on a ball of `radius`
  * about `centre`, by `program`, which is in use then and has its clip_of_world. The framebuffer and viewport in use
- * before are the caller's to restore. False where the layer holds this light's shadows already and nothing is to be
- * drawn; weft_shadow_map_forget makes it draw again. */
+ * before are the caller's to restore. False where the layer holds this light's shadows already, as finely at least, and
+ * nothing is to be drawn; weft_shadow_map_forget makes it draw again. */
 bool weft_shadow_map_begin(weft_shadow_map *map, int layer, bool is_soft, weft_vec3 light, weft_vec3 centre,
                            double radius, GLuint program);
 void weft_shadow_map_end(void);

@@ -177,8 +177,10 @@ weft_code weft_player_draw_shadows(weft_player *p, const weft_scene *scene, long
         return WEFT_OK;
     take_holes(p, scene);
     weft_lighting lighting = weft_lighting_of(scene, p->environment, frame);
+    /* Light that moves over cloth with holes has no time for more. */
+    bool is_soft = scene->key_size_rad > 0 || (frame < 0 && p->shadow_holes.any);
     for (int i = 0; i < lighting.key_count; i++)
-        WEFT_TRY(draw_shadow(p, scene, i, lighting.key[i], scene->key_size_rad > 0, frame, error));
+        WEFT_TRY(draw_shadow(p, scene, i, lighting.key[i], is_soft, frame, error));
     for (int i = 0; i < lighting.fill_count; i++)
         WEFT_TRY(draw_shadow(p, scene, WEFT_KEY_PLACES + i, lighting.fill[i], true, frame, error));
     return WEFT_OK;
