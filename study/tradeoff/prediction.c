@@ -1,8 +1,10 @@
 #include "study/tradeoff/prediction.h"
 
+#include "base/integers.h"
 #include "base/text/json_text.h"
 #include "btf/material/metadata.h"
 #include "compress/compress.h"
+#include "compress/run/memory.h"
 #include "study/hold_out/excerpt.h"
 #include "study/hold_out/record.h"
 #include "study/tradeoff/expected_record.h"
@@ -11,9 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 64, LEAST_SIDE = 32 };
+enum { SIDE = 64, LEAST_SIDE = 32, SQUARE_SIDE = 16 /* of WEFT_EXCERPT_SQUARES */ };
 
-static const long most_samples_of_block = 1 << 19;
+static const long most_samples_of_squares = 1L << 25, most_samples_of_block = 1L << 19;
 
 /* One prediction at work. */
 typedef struct predicting {
@@ -119,12 +121,32 @@ static int side_of_block(int image_count)
     return side;
 }
 
+static int side_of_squares(int image_count)
+{
+    int side = SIDE;
+    while (side > SQUARE_SIDE && (long)side * side * image_count > most_samples_of_squares)
+        side -= SQUARE_SIDE;
+    return side;
+}
+
+/* That the samples are within the memory that is allowed. */
+static weft_code require_memory(const predicting *work, int side, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    uint64_t width = (uint64_t)weft_smaller(side, layout->width), height = (uint64_t)weft_smaller(side, layout->height);
+    weft_memory_budget budget = weft_memory_budget_begin(work->options->memory_bytes);
+    return weft_memory_budget_require(
+        &budget, (3 * sizeof(weft_half) + 1) * width * height * (uint64_t)layout->image_count,
+        weft_dataset_path(work->dataset), "the texels by which its size is predicted", error);
+}
+
 static weft_code read_excerpt(const predicting *work, weft_excerpt *excerpt, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
-    return layout->distance == WEFT_NEAR ? weft_excerpt_read(work->dataset, WEFT_EXCERPT_BLOCK,
-                                                             side_of_block(layout->image_count), excerpt, error)
-                                         : weft_excerpt_read(work->dataset, WEFT_EXCERPT_SQUARES, SIDE, excerpt, error);
+    bool is_near = layout->distance == WEFT_NEAR;
+    int side = is_near ? side_of_block(layout->image_count) : side_of_squares(layout->image_count);
+    WEFT_TRY(require_memory(work, side, error));
+    return weft_excerpt_read(work->dataset, is_near ? WEFT_EXCERPT_BLOCK : WEFT_EXCERPT_SQUARES, side, excerpt, error);
 }
 
 weft_code weft_prediction_find_costs(weft_dataset *dataset, const weft_compress_options *options,

@@ -19,12 +19,12 @@ typedef struct weft_prediction {
 } weft_prediction;
 
 /* Finds bytes and, where `timer` is not NULL, frame_ms; the other members are set. Fits the model to some texels with
- * all images: at most 64 x 64 in squares of 16 x 16 that lie spread over the dataset; of near images a block of
- * neighbours, half a million samples at most or 32 x 32 texels. Weighs these with the metadata that the file will have,
- * as far as their length can be known. A budget is shared among the texels. Heights are those of the whole dataset, and
- * are weighed as they are. Where nothing can be drawn frame_ms is 0 unless least_fps is asked for. Writes to the folder
- * of `scratch_path`; nothing is left there. Errors: those of weft_compress, of reading, writing and drawing;
- * WEFT_BAD_USAGE for a dataset of one image; WEFT_SYSTEM. */
+ * all images: at most 64 x 64 in squares of 16 x 16 that lie spread over the dataset, fewer of more than 8192
+ * images; of near images a block of neighbours, half a million samples at most or 32 x 32 texels. Weighs these with the
+ * metadata that the file will have, as far as their length can be known. A budget is shared among the texels. Heights
+ * are those of the whole dataset, and are weighed as they are. Where nothing can be drawn frame_ms is 0 unless
+ * least_fps is asked for. Writes to the folder of `scratch_path`; nothing is left there. Errors: those of
+ * weft_compress, of reading, writing and drawing; WEFT_BAD_USAGE for a dataset of one image; WEFT_SYSTEM. */
 weft_code weft_prediction_find_costs(weft_dataset *dataset, const weft_compress_options *options,
                                      const char *scratch_path, weft_frame_timer *timer, weft_prediction *prediction,
                                      weft_error *error);
