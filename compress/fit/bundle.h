@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-enum { WEFT_STRIP_LANES = 16, WEFT_COARSE_SAMPLES = 1640 /* a quarter of 81 x 81 */ };
+enum { WEFT_STRIP_LANES = 16, WEFT_COARSE_SAMPLES = 2460 /* 3/8 of 81 x 81 */ };
 
 /* Samples that are looked at together, sixteen at a time. Slot s of lane i is sample first + 16 s + i. */
 typedef struct weft_strip {
