@@ -7,6 +7,7 @@
 #include "registration/hand/material.h"
 #include "registration/hand/pose.h"
 #include "registration/hand/thumbnail.h"
+#include "registration/hand/twin.h"
 #include "registration/lamp/exposure.h"
 
 #include <math.h>
@@ -372,6 +373,7 @@ static weft_code run(work *w, const char *output, weft_error *error)
     WEFT_TRY(check_enough(w, "can be used", what_helps, error));
     WEFT_TRY(find_lamps(w, error));
     leave_out_underexposed(hand);
+    weft_hand_leave_out_twins(hand);
     WEFT_TRY(weft_hand_note(hand, error));
     if (w->settings->lights)
         WEFT_TRY(weft_listed_compare(w->settings->lights, hand->photograph, hand->count, &hand->notes, error));

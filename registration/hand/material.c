@@ -4,6 +4,7 @@
 #include "btf/dataset/dataset.h"
 #include "registration/hand/certainty.h"
 #include "registration/hand/thumbnail.h"
+#include "registration/hand/twin.h"
 #include "registration/lamp/read.h"
 #include "registration/resample/resample.h"
 
@@ -105,10 +106,34 @@ static void normalise(const weft_hand_settings *settings, const weft_flash *flas
     }
 }
 
-static weft_code resample(const work *w, int image, const weft_light_values *values, float *texel, weft_half *half,
-                          uint8_t *mask, weft_error *error)
+/* The texels of a photograph, [height][width]. */
+typedef struct texels {
+    size_t count;
+    float *light;     /* [3] */
+    weft_half *value; /* [3] */
+    uint8_t *mask;
+} texels;
+
+static void texels_free(texels *t)
 {
-    weft_hand_photograph *p = &w->hand->photograph[w->photograph[image]];
+    free(t->light);
+    free(t->value);
+    free(t->mask);
+}
+
+static weft_code texels_allocate(const weft_hand_settings *settings, const char *name, texels *t, weft_error *error)
+{
+    size_t count = (size_t)settings->width * (size_t)settings->height;
+    *t = (texels){count, malloc(count * 3 * sizeof *t->light), malloc(count * 3 * sizeof *t->value), calloc(count, 1)};
+    if (t->light && t->value && t->mask)
+        return WEFT_OK;
+    texels_free(t);
+    return weft_fail_memory(error, name, count * 19);
+}
+
+static weft_code resample(const work *w, weft_hand_photograph *p, const weft_light_values *values, texels *t,
+                          weft_error *error)
+{
     weft_resampler resampler;
     weft_resampling resampling = {.camera = &w->hand->lens.camera,
                                   .inverse_vignetting = w->inverse_vignetting,
@@ -117,38 +142,66 @@ static weft_code resample(const work *w, int image, const weft_light_values *val
                                   .point_spread_px = 2 * sqrt(fmax(0, p->point_spread.constant)),
                                   .fill = true};
     WEFT_TRY(weft_resampler_create(&resampling, w->settings->width, w->settings->height, &resampler, error));
-    weft_resampler_apply(&resampler, values->samples, 0, WEFT_HAND_FULL_SCALE, texel, mask);
+    weft_resampler_apply(&resampler, values->samples, 0, WEFT_HAND_FULL_SCALE, t->light, t->mask);
     weft_resampler_free(&resampler);
-    size_t texels = (size_t)w->settings->width * (size_t)w->settings->height;
-    weft_hand_mask_dark(texel, values->dark * WEFT_HAND_FULL_SCALE, texels, mask, p);
-    normalise(w->settings, &w->hand->lamps.flash, p, texel, half, mask);
-    p->contrast = weft_hand_contrast(half, mask, texels);
-    WEFT_TRY(weft_thumbnail_of_texels(half, w->settings->width, w->settings->height, &p->rectified, error));
-    return weft_dataset_writer_put_image(w->writer, image, half, mask, error);
+    weft_hand_mask_dark(t->light, values->dark * WEFT_HAND_FULL_SCALE, t->count, t->mask, p);
+    normalise(w->settings, &w->hand->lamps.flash, p, t->light, t->value, t->mask);
+    return WEFT_OK;
+}
+
+static weft_code read_texels(const work *w, weft_hand_photograph *p, texels *t, weft_error *error)
+{
+    weft_light_values values = {0};
+    char *path = NULL;
+    if (asprintf(&path, "%s/%s", w->folder, p->name) < 0)
+        return weft_fail_memory(error, p->name, 0);
+    weft_code code = weft_light_values_read(path, p->exif.width, p->exif.height, &w->hand->tone,
+                                            weft_file_range_of(&p->exif, w->settings->clipped_at), &values, error);
+    if (code == WEFT_OK)
+        code = resample(w, p, &values, t, error);
+    weft_light_values_free(&values);
+    free(path);
+    return code;
+}
+
+/* What photograph number `bright` has clipped is taken from its darker twins. */
+static weft_code fill_from_twins(const work *w, int bright, texels *t, weft_error *error)
+{
+    weft_hand *hand = w->hand;
+    texels dark;
+    weft_code code = WEFT_OK;
+    int twin = weft_hand_darker_twin(hand, bright);
+    if (twin < 0)
+        return WEFT_OK;
+    WEFT_TRY(texels_allocate(w->settings, hand->photograph[twin].name, &dark, error));
+    for (; twin >= 0 && code == WEFT_OK; twin = weft_hand_darker_twin(hand, twin)) {
+        weft_hand_photograph as_taken = hand->photograph[twin];
+        memset(dark.mask, 0, dark.count);
+        code = read_texels(w, &as_taken, &dark, error);
+        if (code == WEFT_OK)
+            hand->photograph[bright].clipped_texels -=
+                weft_hand_fill_saturated(dark.value, dark.mask, dark.count, t->value, t->mask);
+    }
+    texels_free(&dark);
+    return code;
 }
 
 static weft_code put_image(const work *w, int image, weft_error *error)
 {
-    const weft_hand_photograph *p = &w->hand->photograph[w->photograph[image]];
-    size_t texels = (size_t)w->settings->width * (size_t)w->settings->height;
-    float *texel = malloc(texels * 3 * sizeof *texel);
-    weft_half *half = malloc(texels * 3 * sizeof *half);
-    uint8_t *mask = calloc(texels, 1);
-    char *path = NULL;
-    weft_light_values values = {0};
-    weft_code code = WEFT_OK;
-    if (!texel || !half || !mask || asprintf(&path, "%s/%s", w->folder, p->name) < 0)
-        code = weft_fail_memory(error, p->name, texels * 19);
+    int index = w->photograph[image];
+    weft_hand_photograph *p = &w->hand->photograph[index];
+    texels t;
+    WEFT_TRY(texels_allocate(w->settings, p->name, &t, error));
+    weft_code code = read_texels(w, p, &t, error);
     if (code == WEFT_OK)
-        code = weft_light_values_read(path, p->exif.width, p->exif.height, &w->hand->tone,
-                                      weft_file_range_of(&p->exif, w->settings->clipped_at), &values, error);
+        code = fill_from_twins(w, index, &t, error);
+    if (code == WEFT_OK) {
+        p->contrast = weft_hand_contrast(t.value, t.mask, t.count);
+        code = weft_thumbnail_of_texels(t.value, w->settings->width, w->settings->height, &p->rectified, error);
+    }
     if (code == WEFT_OK)
-        code = resample(w, image, &values, texel, half, mask, error);
-    weft_light_values_free(&values);
-    free(path);
-    free(texel);
-    free(half);
-    free(mask);
+        code = weft_dataset_writer_put_image(w->writer, image, t.value, t.mask, error);
+    texels_free(&t);
     return code;
 }
 

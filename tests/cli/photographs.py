@@ -55,6 +55,7 @@ if name == "series":
     true_pairs = sorted([a["name"], b["name"]] for a, b in zip(shots, shots[1:])
                         if np.linalg.norm(np.array(a["lamp"]["at_mm"]) - b["lamp"]["at_mm"]) < 20)
     good &= check("pairs of exposures that are others", sorted(told["tone_curve"]["exposure_pairs"]) != true_pairs, 0)
+    good &= check("darker twins that are images of their own", len({b for a, b in true_pairs} & {p["file"] for p in used}), 0)
     good &= check("standard error of a tenth of the light", told["tone_curve"]["standard_error_of_a_tenth"], 0.05)
 if name in ("free", "linear", "series"):
     good &= check("focal length, relative error", abs(told["lens"]["fx"] / focal - 1), 0.004)

@@ -1,5 +1,6 @@
 /* Photographs of one view and one lamp that differ in exposure. The camera's curve is that of film on a screen, in
  * whole numbers of 8 bits; the room under test bends sRGB by a polynomial. */
+#include "registration/hand/twin.h"
 #include "registration/lamp/exposure.h"
 #include "registration/lamp/lamp.h"
 
@@ -11,6 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { SCENES = 8, TWICE = 4, PHOTOGRAPHS = SCENES + TWICE, COLUMNS = 17, PLACES = COLUMNS * COLUMNS };
 
@@ -222,12 +224,47 @@ static void round_numbers_are_thirds_of_a_stop(void **state)
     assert_near(weft_exif_exposure(&slow), 0, 0);
 }
 
+/* Four photographs: a series of three and one that is blurred, whose darker twin is sharp. */
+static void the_darker_of_a_pair_is_no_image(void **state)
+{
+    (void)state;
+    weft_hand_photograph photograph[5] = {
+        {.name = "a"}, {.name = "b"}, {.name = "c"}, {.name = "d", .remark = "blurred"}, {.name = "e"}};
+    weft_exposure_pair pair[] = {{2, 0, 1}, {0, 4, 1}, {3, 1, 1}};
+    weft_hand hand = {.count = 5, .photograph = photograph, .pair_count = 3, .pair = pair};
+    weft_hand_leave_out_twins(&hand);
+    const bool used[] = {false, true, true, false, false};
+    for (int i = 0; i < 5; i++)
+        assert_int_equal(weft_hand_used(&photograph[i]), used[i]);
+    assert_non_null(strstr(photograph[4].remark, "it is 'a', darker"));
+    assert_int_equal(weft_hand_darker_twin(&hand, 2), 0);
+    assert_int_equal(weft_hand_darker_twin(&hand, 0), 4);
+    assert_int_equal(weft_hand_darker_twin(&hand, 4), -1);
+}
+
+static void the_darker_of_a_pair_tells_what_is_clipped(void **state)
+{
+    (void)state;
+    enum { CLIPPED = WEFT_MASK_SATURATED, DARK = WEFT_MASK_DARK, BOTH = CLIPPED | WEFT_MASK_MISSING };
+    const uint8_t darker_mask[] = {0, 0, CLIPPED, 0, 0};
+    uint8_t mask[] = {0, CLIPPED, CLIPPED, DARK, BOTH};
+    const weft_half darker[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    weft_half texel[15] = {0};
+    assert_int_equal(weft_hand_fill_saturated(darker, darker_mask, 5, texel, mask), 1);
+    const uint8_t mask_after[] = {0, 0, CLIPPED, DARK, BOTH};
+    const weft_half after[15] = {0, 0, 0, 4, 5, 6};
+    assert_memory_equal(mask, mask_after, sizeof mask);
+    assert_memory_equal(texel, after, sizeof texel);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exposures_tell_the_curve_and_so_the_lamps),
         cmocka_unit_test(other_lamps_are_no_series),
         cmocka_unit_test(round_numbers_are_thirds_of_a_stop),
+        cmocka_unit_test(the_darker_of_a_pair_is_no_image),
+        cmocka_unit_test(the_darker_of_a_pair_tells_what_is_clipped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
