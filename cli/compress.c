@@ -148,11 +148,13 @@ static const weft_option option_table[] = {
     {0},
 };
 
-/* Without a preset, fast frames are to be as good as they can be. */
+/* Without a preset, fast frames are to be as good as they can be. What draws them keeps memory that the fit may need. */
 static weft_preset_wish wish_of(const compress_command *command)
 {
     bool alone = command->preset == WEFT_PRESET_NONE && command->least_fps > 0;
-    return (weft_preset_wish){alone ? WEFT_PRESET_BEST : command->preset, command->least_fps, !command->common.quiet};
+    return (weft_preset_wish){.preset = alone ? WEFT_PRESET_BEST : command->preset,
+                              .least_fps = command->least_fps,
+                              .times_frames = !command->common.quiet && command->options.memory_bytes == 0};
 }
 
 /* Whether each texel gets a model of its own. */
@@ -258,6 +260,10 @@ static weft_code predict(const compress_command *command, weft_dataset *dataset,
     *prediction = (weft_prediction){0};
     if (!must && !chooses_by_texel(options))
         return WEFT_OK;
+    if (!must && options->memory_bytes > 0) {
+        weft_command_say(&command->common, "size and error: not predicted: it might take more than --memory allows");
+        return WEFT_OK;
+    }
     snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
     weft_code code =
         weft_preset_predict(dataset, &wish, scratch_path, progress, options, prediction, must ? error : &own);

@@ -4,6 +4,7 @@
 #include "study/tradeoff/frame_timer.h"
 #include "study/tradeoff/held_error.h"
 
+#include <malloc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -214,5 +215,6 @@ weft_code weft_preset_predict(weft_dataset *dataset, const weft_preset_wish *wis
     weft_code code = work_through(work, options, prediction, error);
     weft_frame_timer_close(work->timer);
     free(work);
+    malloc_trim(0); /* what is kept would count against the memory that the fit may take */
     return code;
 }

@@ -251,10 +251,10 @@ static void threads_change_no_byte(void **state)
 /* How much of the libraries is resident differs from run to run: by 4 MB beside other work. */
 enum { RESIDENT_NOISE_MB = 8 };
 
-/* Without a limit, with one that is too small, and with what that says it needs. */
+/* With much memory, with too little, and with what that says it needs. */
 static void expect_little_memory_suffices(const char *option, const char *value)
 {
-    const char *const whole[4] = {option, value, "-t", "2"};
+    const char *const whole[4] = {option, value, "--memory", "100000"};
     disturbed got = compress_dataset(dataset_path, "large-free.weft", no_limit, whole);
     expect_says(&got, 0, "fitted in");
     got = compress_dataset(dataset_path, path, no_limit, (const char *const[4]){option, value, "--memory", "1"});
