@@ -171,6 +171,21 @@ static void layers_are_seen_through_the_heights_that_are_there(void **state)
     unlink(path);
 }
 
+/* They are fitted to the middle alone. A table of views tells what each sees, under every light. */
+static void lobes_are_asked_where_they_are_fitted(void **state)
+{
+    (void)state;
+    weft_compress_options options = weft_compress_default_options();
+    options.lobe_count = 1;
+    options.table = true;
+    options.layer_count = 0;
+    write_dataset(true, 1);
+    weft_hold_out lobes = measure(&options);
+    assert_true(lobes.material.light.relative_rmse < 0.05);
+    assert_true(lobes.fitted.relative_rmse < 0.05);
+    unlink(path);
+}
+
 static void what_does_not_fit_into_memory_is_not_read(void **state)
 {
     (void)state;
@@ -372,6 +387,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_are_seen_through_the_heights_that_are_there),
+        cmocka_unit_test(lobes_are_asked_where_they_are_fitted),
         cmocka_unit_test(what_does_not_fit_into_memory_is_not_read),
         cmocka_unit_test(heights_that_are_not_there_are_refused),
         cmocka_unit_test(a_material_has_the_heights_of_its_dataset),
