@@ -148,7 +148,8 @@ static const weft_option option_table[] = {
     {0},
 };
 
-/* Without a preset, fast frames are to be as good as they can be. What draws them keeps memory that the fit may need. */
+/* Without a preset, fast frames are to be as good as they can be. What draws them keeps memory that the fit may need.
+ */
 static weft_preset_wish wish_of(const compress_command *command)
 {
     bool alone = command->preset == WEFT_PRESET_NONE && command->least_fps > 0;
