@@ -176,6 +176,8 @@ static weft_code fill_from_twins(const work *w, int bright, texels *t, weft_erro
     WEFT_TRY(texels_allocate(w->settings, hand->photograph[twin].name, &dark, error));
     for (; twin >= 0 && code == WEFT_OK; twin = weft_hand_darker_twin(hand, twin)) {
         weft_hand_photograph as_taken = hand->photograph[twin];
+        if (!as_taken.is_twin)
+            continue; /* it has another fault */
         memset(dark.mask, 0, dark.count);
         code = read_texels(w, &as_taken, &dark, error);
         if (code == WEFT_OK)

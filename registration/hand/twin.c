@@ -20,10 +20,12 @@ static void leave_out_twin_of(weft_hand *hand, int bright)
         return;
     leave_out_twin_of(hand, dark);
     weft_hand_photograph *twin = &hand->photograph[dark];
-    if (weft_hand_used(twin))
-        snprintf(twin->remark, sizeof twin->remark,
-                 "it is '%.100s', darker: it tells the tone curve, and what is clipped there",
-                 hand->photograph[bright].name);
+    if (!weft_hand_used(twin))
+        return;
+    twin->is_twin = true;
+    snprintf(twin->remark, sizeof twin->remark,
+             "it is '%.100s', darker: it tells the tone curve, and what is clipped there",
+             hand->photograph[bright].name);
 }
 
 void weft_hand_leave_out_twins(weft_hand *hand)

@@ -34,6 +34,7 @@ typedef struct weft_hand_photograph {
     char *name; /* of the file, in its folder */
     weft_exif exif;
     char remark[192]; /* why it is left out; empty where it is used */
+    bool is_twin;     /* left out as the darker one of a pair, and sound otherwise */
 
     int marker_count, corner_count;
     double plate[WEFT_PLATE_CORNERS][2], seen[WEFT_PLATE_CORNERS][2]; /* corners: mm, and pixels */

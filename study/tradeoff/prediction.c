@@ -129,14 +129,14 @@ static int side_of_squares(int image_count)
     return side;
 }
 
-/* That the samples are within the memory that is allowed. */
+/* That the samples are within the memory that is allowed, once as they are read and once as they are written. */
 static weft_code require_memory(const predicting *work, int side, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
     uint64_t width = (uint64_t)weft_smaller(side, layout->width), height = (uint64_t)weft_smaller(side, layout->height);
     weft_memory_budget budget = weft_memory_budget_begin(work->options->memory_bytes);
     return weft_memory_budget_require(
-        &budget, (3 * sizeof(weft_half) + 1) * width * height * (uint64_t)layout->image_count,
+        &budget, 2 * (3 * sizeof(weft_half) + 1) * width * height * (uint64_t)layout->image_count,
         weft_dataset_path(work->dataset), "the texels by which its size is predicted", error);
 }
 

@@ -224,7 +224,7 @@ static void round_numbers_are_thirds_of_a_stop(void **state)
     assert_near(weft_exif_exposure(&slow), 0, 0);
 }
 
-/* Four photographs: a series of three and one that is blurred, whose darker twin is sharp. */
+/* A series of three, and one that is blurred, whose darker twin is sharp. */
 static void the_darker_of_a_pair_is_no_image(void **state)
 {
     (void)state;
@@ -236,6 +236,7 @@ static void the_darker_of_a_pair_is_no_image(void **state)
     const bool used[] = {false, true, true, false, false};
     for (int i = 0; i < 5; i++)
         assert_int_equal(weft_hand_used(&photograph[i]), used[i]);
+    assert_true(photograph[0].is_twin && photograph[4].is_twin && !photograph[3].is_twin && !photograph[1].is_twin);
     assert_non_null(strstr(photograph[4].remark, "it is 'a', darker"));
     assert_int_equal(weft_hand_darker_twin(&hand, 2), 0);
     assert_int_equal(weft_hand_darker_twin(&hand, 0), 4);
