@@ -10,8 +10,8 @@
 
 /* Higher levels gain under 1 % on half floats and cost several times as long. */
 static const int zstd_level = 6;
-/* Of what was pruned, and rounded, they gain a fifth. */
-static const int pruned_level = 19;
+/* Of what is rounded they gain a fifth. */
+static const int rounded_level = 19;
 
 /* The file as it grows in memory. */
 typedef struct file_image {
@@ -213,7 +213,10 @@ static weft_code add_layers(file_image *file, const weft_material *material, wef
         return weft_fail_memory(error, "layers", size);
     weft_layers_coding coding = choose_coding(file, material->layers, bytes, size);
     weft_layers_header_write(material->layers, coding, bytes);
+    int level = file->level;
+    file->level = weft_layers_have_differences(material->layers) ? rounded_level : level;
     weft_code code = add_section(file, WEFT_SECTION_LAYR, 0, bytes, size, error);
+    file->level = level;
     if (code == WEFT_OK && coding == WEFT_LAYERS_BY_DIFFERENCES)
         file->section[file->section_count - 1].codec = WEFT_CODEC_DIFFERENCES;
     free(bytes);
@@ -306,7 +309,7 @@ static size_t largest_file(const weft_material *material)
 
 static weft_code fill(file_image *file, const weft_material *material, weft_error *error)
 {
-    file->level = material->seen ? pruned_level : zstd_level;
+    file->level = material->seen ? rounded_level : zstd_level;
     file->capacity = largest_file(material);
     file->bytes = calloc(1, file->capacity);
     if (!file->bytes)

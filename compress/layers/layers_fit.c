@@ -1,10 +1,15 @@
 #include "compress/layers/layers_fit.h"
 
+#include "btf/material/layer_rounding.h"
 #include "compress/layers/completion.h"
 #include "compress/layers/levels.h"
 #include "compress/layers/model.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+/* What rounding may add to the mean square of what the layers leave. */
+static const double rounding_share = 0.01;
 
 enum { ALIGNMENT = 64, MOST_COMPARED = 2000000, LEAST_LIGHTS = 12, LEAST_VIEWS = 4 };
 
@@ -110,6 +115,19 @@ static weft_code make_projector(fitting *work, weft_projector *projector, weft_e
     return weft_projector_create(&prior, work->factor, work->images.image_count, projector, error);
 }
 
+/* Values and coefficients of each layer are rounded to steps that change a sample alike: an error that spreads evenly
+ * over a step has a twelfth of its square. Steps are powers of the root of 2, so that the last digits of the noise
+ * decide none. */
+static void round_numbers(const weft_components *components, weft_layers *layers)
+{
+    double square = 12 * rounding_share * components->noise / (2 * layers->layer_count);
+    if (!(square > 0))
+        return;
+    double step = exp2(floor(log2(square)) / 2);
+    weft_layers_round_values(step, layers);
+    weft_layers_round_coefficients(step, layers);
+}
+
 static weft_code project(fitting *work, weft_layers_report *report, weft_error *error)
 {
     weft_projector projector = {0};
@@ -129,6 +147,8 @@ static weft_code project(fitting *work, weft_layers_report *report, weft_error *
         code = weft_layer_model_double(&work->layers, error);
     if (code == WEFT_OK)
         weft_layers_fill_levels(&work->projection, work->layers);
+    if (code == WEFT_OK && !work->options->finer)
+        round_numbers(&work->components, work->layers);
     return code;
 }
 

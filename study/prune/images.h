@@ -16,8 +16,4 @@ void weft_prune_fill_images(const bool *kept, weft_layers *layers);
 /* A copy with the first `count` layers alone, a multiple of 4. The caller frees it. Errors: WEFT_SYSTEM. */
 weft_code weft_prune_copy_layers(const weft_layers *from, int count, weft_layers **copy, weft_error *error);
 
-/* Rounds the values of each layer to steps that change reflectance times cosine by `step`, RMS over the texels of the
- * finest level; and coefficients to steps that change it by as much, RMS over the images. */
-void weft_prune_round_values(double step, weft_layers *layers);
-
 #endif

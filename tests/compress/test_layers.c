@@ -195,7 +195,28 @@ static void layers_follow_samples_and_what_lies_between_them(void **state)
     assert_true(at < 0.009);
     assert_true(off < 0.023);
     assert_float_equal(report.layers.fitted.relative_rmse, at, 0.006);
+    assert_true(weft_layers_have_differences(material.layers)); /* rounded, though next to nothing is left over */
     weft_material_free(&material);
+}
+
+/* A hundredth of what the layers leave may go, in squares, and half of that does. */
+static void what_is_rounded_does_not_show(void **state)
+{
+    (void)state;
+    weft_material exact, rounded;
+    weft_compress_report of_exact, of_rounded;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_widths, WEFT_FAR);
+    fit(&options, &rounded, &of_rounded);
+    options.finer = true; /* nothing is rounded then */
+    fit(&options, &exact, &of_exact);
+    double ratio = of_rounded.layers.fitted.relative_rmse / of_exact.layers.fitted.relative_rmse;
+    print_message("%.5f of the error without rounding\n", ratio);
+    assert_false(weft_layers_have_differences(exact.layers));
+    assert_true(weft_layers_have_differences(rounded.layers));
+    assert_true(ratio > 1.001 && ratio < 1.007);
+    weft_material_free(&exact);
+    weft_material_free(&rounded);
 }
 
 /* Masked samples neither pull the fit nor count as black. */
@@ -464,6 +485,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_follow_samples_and_what_lies_between_them),
+        cmocka_unit_test(what_is_rounded_does_not_show),
         cmocka_unit_test(masked_samples_leave_no_trace),
         cmocka_unit_test(what_is_held_out_is_not_seen),
         cmocka_unit_test(images_of_small_weight_do_no_harm),

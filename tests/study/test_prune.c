@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "btf/direction/direction.h"
 #include "btf/direction/square_map.h"
+#include "btf/material/layer_rounding.h"
 #include "fixture.h"
 #include "player/draw/player.h"
 #include "player/gl/context.h"
@@ -362,7 +363,8 @@ static void rounding_changes_reflectance_by_its_step(void **state)
     weft_layers *whole = make_layers(), *layers = make_layers();
     double squares = 0;
     int most = 0;
-    weft_prune_round_values(step, layers);
+    weft_layers_round_values(step, layers);
+    weft_layers_round_coefficients(step, layers);
     for (int texel = 0; texel < SIDE * SIDE; texel++)
         for (int i = 0; i < 3 * SHOTS; i++) {
             double difference = value_of(layers, texel, i) - value_of(whole, texel, i);

@@ -1,0 +1,91 @@
+#include "btf/material/layer_rounding.h"
+
+#include <math.h>
+
+enum { LARGEST_EXACT = 2048 };
+
+static int8_t *coefficients_of(const weft_layers *layers, int k, int layer, size_t *texels)
+{
+    const weft_layers_level *level = &layers->level[k];
+    *texels = (size_t)level->width * (size_t)level->height;
+    return level->coefficient + (size_t)(layer / WEFT_LAYERS_GROUP) * WEFT_LAYERS_GROUP * *texels +
+           layer % WEFT_LAYERS_GROUP;
+}
+
+static weft_half *values_of(const weft_layers *layers, int layer, size_t i)
+{
+    return &layers->value[3 * ((size_t)layers->layer_count * (i / 3) + (size_t)layer) + i % 3];
+}
+
+/* Of a layer over the texels of the finest level. */
+static double coefficient_rms(const weft_layers *layers, int layer)
+{
+    size_t texels;
+    const int8_t *c = coefficients_of(layers, 0, layer, &texels);
+    double sum = 0;
+    for (size_t i = 0; i < texels; i++)
+        sum += (double)(c[WEFT_LAYERS_GROUP * i] * c[WEFT_LAYERS_GROUP * i]);
+    return sqrt(sum / (double)texels);
+}
+
+/* Of a layer over images and channels, of a coefficient of 1. */
+static double value_rms(const weft_layers *layers, int layer)
+{
+    size_t count = 3 * (size_t)layers->image_count;
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        double value = (double)weft_float_of_half(*values_of(layers, layer, i));
+        sum += value * value;
+    }
+    return (double)layers->scale[layer] * sqrt(sum / (double)count);
+}
+
+static double largest_value(const weft_layers *layers, int layer)
+{
+    double most = 0;
+    for (size_t i = 0; i < 3 * (size_t)layers->image_count; i++)
+        most = fmax(most, fabs((double)weft_float_of_half(*values_of(layers, layer, i))));
+    return most;
+}
+
+/* The values become whole numbers, whose half floats end in zeros, and the scale the grid: no finer than half floats
+ * hold whole numbers exactly. */
+static void round_layer(weft_layers *layers, int layer, double asked)
+{
+    double grid = fmax(asked, largest_value(layers, layer) / LARGEST_EXACT);
+    for (size_t i = 0; i < 3 * (size_t)layers->image_count; i++) {
+        weft_half *value = values_of(layers, layer, i);
+        *value = weft_half_of_float((float)round((double)weft_float_of_half(*value) / grid));
+    }
+    layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
+}
+
+/* The coefficients become fewer whole numbers, and the scale grows by as much. */
+static void round_coefficients(weft_layers *layers, int layer, double grid)
+{
+    for (int k = 0; k < layers->level_count; k++) {
+        size_t texels;
+        int8_t *c = coefficients_of(layers, k, layer, &texels);
+        for (size_t i = 0; i < texels; i++)
+            c[WEFT_LAYERS_GROUP * i] = (int8_t)lround((double)c[WEFT_LAYERS_GROUP * i] / grid);
+    }
+    layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
+}
+
+void weft_layers_round_values(double step, weft_layers *layers)
+{
+    for (int layer = 0; layer < layers->layer_count; layer++) {
+        double of_value = (double)layers->scale[layer] * coefficient_rms(layers, layer);
+        if (of_value > 0)
+            round_layer(layers, layer, step / of_value);
+    }
+}
+
+void weft_layers_round_coefficients(double step, weft_layers *layers)
+{
+    for (int layer = 0; layer < layers->layer_count; layer++) {
+        double of_coefficient = value_rms(layers, layer);
+        if (of_coefficient > 0 && step / of_coefficient > 1)
+            round_coefficients(layers, layer, fmin(step / of_coefficient, WEFT_LAYERS_LARGEST_CODE));
+    }
+}
