@@ -136,7 +136,8 @@ static void say_errors(const weft_common_options *common, const weft_material *m
 static void say_layers(const weft_common_options *common, const weft_compress_options *options,
                        const weft_compress_report *report)
 {
-    static const char *const kind[] = {"the light", "the half vector"};
+    static const char *const kind[] = {"the light", "the half vector", "the half vector, squared incidence"};
+    char square[64] = "";
     const weft_layers_report *layers = &report->layers;
     if (options->layer_count == 0)
         return;
@@ -149,12 +150,14 @@ static void say_layers(const weft_common_options *common, const weft_compress_op
             "photographs that are no grid: completed by kriging; relative RMSE %.2f %% where each of %d is "
             "predicted by the others of these",
             100 * layers->left_out_error, layers->left_out_count);
+    if (!layers->scattered)
+        snprintf(square, sizeof square, ", %.2f %% with its squared incidence", 100 * layers->trial_error[2]);
     weft_command_say(common,
                      "%d layers over %s, learned from %d texels; on images %s to choose: %.2f %% over the light, "
-                     "%.2f %% over the half vector (relative RMSE)",
+                     "%.2f %% over the half vector%s (relative RMSE)",
                      options->layer_count, kind[layers->kind], layers->training_texels,
                      layers->scattered ? "fitted" : "held out", 100 * layers->trial_error[0],
-                     100 * layers->trial_error[1]);
+                     100 * layers->trial_error[1], square);
     weft_command_say(
         common,
         "layers at those texels, fitted samples: rel. RMSE %.2f %%, median rel. %.2f %%, 80 %% rel. %.2f %%, "

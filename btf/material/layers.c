@@ -48,7 +48,7 @@ static weft_code allocate_levels(weft_layers *layers, int width, int height, wef
 
 static const char *fault_of_shape(const weft_layers *shape)
 {
-    if (shape->kind != WEFT_LAYERS_OF_LIGHT && shape->kind != WEFT_LAYERS_OF_HALF_VECTOR)
+    if (shape->kind < 0 || shape->kind >= WEFT_LAYERS_KINDS)
         return "holds layers of an unknown kind";
     if (shape->layer_count < WEFT_LAYERS_GROUP || shape->layer_count > WEFT_LAYERS_MAX ||
         shape->layer_count % WEFT_LAYERS_GROUP != 0)
@@ -235,7 +235,7 @@ static weft_layers shape_of(const uint8_t *bytes)
     float real[4];
     memcpy(whole, bytes, sizeof whole);
     memcpy(real, bytes + sizeof whole, sizeof real);
-    return (weft_layers){.kind = whole[0] < 2 ? (weft_layers_kind)whole[0] : (weft_layers_kind)2,
+    return (weft_layers){.kind = whole[0] < WEFT_LAYERS_KINDS ? (weft_layers_kind)whole[0] : WEFT_LAYERS_KINDS,
                          .layer_count = limited_int(whole[1]),
                          .view_count = limited_int(whole[2]),
                          .image_count = limited_int(whole[3]),

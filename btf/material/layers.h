@@ -12,9 +12,11 @@
  *
  *     WEFT_LAYERS_OF_LIGHT: at a node of the view map, a paraboloid map of l holds B_k
  *     WEFT_LAYERS_OF_HALF_VECTOR: a concentric map of h = (l + v) / |l + v| holds B_k (l . h)
+ *     WEFT_LAYERS_OF_HALF_VECTOR_SQUARED: the same map holds B_k (l . h)^2
  *
- * A highlight of a mirror stays at one half vector whatever the view, so that the second kind interpolates it between
- * lights and views that are far apart. All maps are 0 where the light is at the horizon.
+ * A highlight of a mirror stays at one half vector whatever the view, so that the other two interpolate it between
+ * lights and views that are far apart; how it grows towards the horizon tells them apart. All maps are 0 where the
+ * light is at the horizon.
  *
  * Interpolation is linear in the coefficients: texels and mip levels are filtered before anything is evaluated. */
 #ifndef WEFT_BTF_MATERIAL_LAYERS_H
@@ -28,7 +30,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum weft_layers_kind { WEFT_LAYERS_OF_LIGHT, WEFT_LAYERS_OF_HALF_VECTOR } weft_layers_kind;
+typedef enum weft_layers_kind {
+    WEFT_LAYERS_OF_LIGHT,
+    WEFT_LAYERS_OF_HALF_VECTOR,
+    WEFT_LAYERS_OF_HALF_VECTOR_SQUARED,
+    WEFT_LAYERS_KINDS
+} weft_layers_kind;
 
 enum {
     WEFT_LAYERS_MAX = 64,

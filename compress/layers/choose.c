@@ -172,29 +172,29 @@ static weft_code try_kind(const trial *t, weft_layers_kind kind, double *error_o
     return code;
 }
 
-static weft_code try_both(trial *t, double error_of[2], weft_error *error)
+static weft_code try_all(trial *t, double error_of[WEFT_LAYERS_KINDS], weft_error *error)
 {
     size_t factors = (size_t)t->components->count * t->part->length;
     t->factor = aligned_alloc(ALIGNMENT, factors * sizeof *t->factor);
     t->coefficient = calloc((size_t)t->part->texel_count * (size_t)t->components->count, sizeof *t->coefficient);
     weft_code code = t->factor && t->coefficient
-                         ? try_kind(t, WEFT_LAYERS_OF_LIGHT, &error_of[0], error)
+                         ? WEFT_OK
                          : weft_fail_memory(error, "factors of layers", factors * sizeof *t->factor);
-    if (code == WEFT_OK)
-        code = try_kind(t, WEFT_LAYERS_OF_HALF_VECTOR, &error_of[1], error);
+    for (int kind = 0; kind < WEFT_LAYERS_KINDS && code == WEFT_OK; kind++)
+        code = try_kind(t, (weft_layers_kind)kind, &error_of[kind], error);
     free(t->factor);
     free(t->coefficient);
     return code;
 }
 
 weft_code weft_layer_model_choose(const weft_layer_images *images, const weft_training *training, int layer_count,
-                                  weft_layers_kind *kind, double error_of[2], weft_error *error)
+                                  weft_layers_kind *kind, double error_of[WEFT_LAYERS_KINDS], weft_error *error)
 {
     split s;
     weft_training part = {0};
     weft_components components = {0};
     *kind = WEFT_LAYERS_OF_LIGHT;
-    error_of[0] = error_of[1] = 0;
+    memset(error_of, 0, WEFT_LAYERS_KINDS * sizeof *error_of);
     WEFT_TRY(split_create(images, &s, error));
     weft_code code = WEFT_OK;
     if (s.held_count > 0 && s.fitted.image_count > 0) {
@@ -203,8 +203,9 @@ weft_code weft_layer_model_choose(const weft_layer_images *images, const weft_tr
             code = weft_components_find(&part, layer_count, &components, error);
         trial t = {.images = images, .whole = training, .part = &part, .components = &components, .split = &s};
         if (code == WEFT_OK)
-            code = try_both(&t, error_of, error);
-        *kind = error_of[1] < error_of[0] ? WEFT_LAYERS_OF_HALF_VECTOR : WEFT_LAYERS_OF_LIGHT;
+            code = try_all(&t, error_of, error);
+        for (int tried = 1; tried < WEFT_LAYERS_KINDS; tried++)
+            *kind = error_of[tried] < error_of[*kind] ? (weft_layers_kind)tried : *kind;
     }
     weft_components_free(&components);
     weft_training_free(&part);

@@ -67,6 +67,14 @@ static weft_code learn_from_scattered(fitting *work, weft_layers_report *report,
                                              &work->components, &report->kind, report->trial_error, error);
 }
 
+/* Scattered images have not tried the square. */
+static weft_layers_kind better_of_half_vectors(const double trial_error[WEFT_LAYERS_KINDS])
+{
+    double square = trial_error[WEFT_LAYERS_OF_HALF_VECTOR_SQUARED];
+    return square > 0 && square < trial_error[WEFT_LAYERS_OF_HALF_VECTOR] ? WEFT_LAYERS_OF_HALF_VECTOR_SQUARED
+                                                                          : WEFT_LAYERS_OF_HALF_VECTOR;
+}
+
 static weft_code learn(fitting *work, weft_material *material, weft_layers_report *report, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
@@ -82,9 +90,10 @@ static weft_code learn(fitting *work, weft_material *material, weft_layers_repor
     if (work->options->for_screen)
         weft_training_weigh_for_screen(&work->training, &work->images);
     WEFT_TRY(scattered ? learn_from_scattered(work, report, error) : learn_from_grid(work, report, error));
-    if (work->options->maps != WEFT_LAYER_MAPS_CHOSEN)
-        report->kind =
-            work->options->maps == WEFT_LAYER_MAPS_OF_LIGHT ? WEFT_LAYERS_OF_LIGHT : WEFT_LAYERS_OF_HALF_VECTOR;
+    if (work->options->maps == WEFT_LAYER_MAPS_OF_LIGHT)
+        report->kind = WEFT_LAYERS_OF_LIGHT;
+    else if (work->options->maps == WEFT_LAYER_MAPS_OF_HALF_VECTOR)
+        report->kind = better_of_half_vectors(report->trial_error);
     report->training_texels = work->training.texel_count;
     WEFT_TRY(weft_layer_model_create(scattered ? &work->completion.images : &work->images, &work->components,
                                      report->kind, layout->width, layout->height, material->level_count, &work->layers,

@@ -27,8 +27,9 @@ typedef struct weft_layers_options {
 
 typedef struct weft_layers_report {
     weft_layers_kind kind;
-    double trial_error[2]; /* relative RMSE of each kind, by which it was chosen: on images held out, 0 where none was;
-                              of scattered images on the images themselves */
+    double trial_error[WEFT_LAYERS_KINDS]; /* relative RMSE of each kind, by which it was chosen: on images held out, 0
+                                              where none was; of scattered images, whose last kind is not tried, on the
+                                              images themselves */
     bool scattered;
     weft_covariance covariance; /* of scattered images, chosen by leaving out each of some images ... */
     int left_out_count;         /* ... how many these are in a texel ... */

@@ -11,6 +11,7 @@ static const struct {
 } usual[] = {
     [WEFT_LAYERS_OF_LIGHT] = {16, 16, 1e-2f, 3e-3f, 10},
     [WEFT_LAYERS_OF_HALF_VECTOR] = {16, 10, 1e-3f, 3e-3f, 10},
+    [WEFT_LAYERS_OF_HALF_VECTOR_SQUARED] = {16, 10, 1e-3f, 3e-3f, 10},
 };
 
 static void put_direction(weft_vec3 direction, float *xyz)

@@ -23,14 +23,14 @@ void weft_layer_model_factors(const weft_layer_maps *maps, const weft_layer_imag
 void weft_layer_model_factors_alone(const weft_layer_maps *maps, const weft_layer_images *images, float *factor);
 
 /* Which kind of maps predicts images better that it has not seen: a tenth of the views and of the lights are held out
- * of `training`, both kinds are fitted to the rest, and error [2] receives the relative RMSE of each on what was held
- * out. Both 0, and light, where there is too little to hold out. Errors: WEFT_SYSTEM. */
+ * of `training`, all kinds are fitted to the rest, and error_of receives the relative RMSE of each on what was held
+ * out. All 0, and light, where there is too little to hold out. Errors: WEFT_SYSTEM. */
 weft_code weft_layer_model_choose(const weft_layer_images *images, const weft_training *training, int layer_count,
-                                  weft_layers_kind *kind, double error_of[2], weft_error *error);
+                                  weft_layers_kind *kind, double error_of[WEFT_LAYERS_KINDS], weft_error *error);
 
 /* Which kind of maps says more of the images themselves, where the components belong to other directions `places`
- * (compress/layers/completion.h): both kinds are fitted to the training texels. `layout` is that of the dataset.
- * Errors: WEFT_SYSTEM. */
+ * (compress/layers/completion.h): the first two kinds are fitted to the training texels. `layout` is that of the
+ * dataset. Errors: WEFT_SYSTEM. */
 weft_code weft_layer_model_choose_scattered(const weft_dataset_layout *layout, const weft_layer_images *images,
                                             const weft_training *training, const weft_layer_images *places,
                                             const weft_components *components, weft_layers_kind *kind,

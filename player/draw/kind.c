@@ -76,7 +76,7 @@ weft_program_kind weft_player_kind(const weft_player *p, const weft_scene *scene
         kind.pruned = scene->show_extrapolation && p->material.seen.maps;
         kind.layer_groups = uses_layers(p, scene) ? p->material.layers.group_count : 0;
         kind.drawn_groups = drawn_groups(p, scene);
-        kind.half_vector = p->material.layers.half_vector;
+        kind.incidence_power = p->material.layers.incidence_power;
         kind.opacity = kind.layer_groups > 0 && !p->material.opaque;
         kind.relief = kind.layer_groups > 0 && scene->relief && p->material.relief.height;
     }

@@ -14,8 +14,9 @@ static bool same_kind(const weft_program_kind *a, const weft_program_kind *b)
            a->one_light == b->one_light && a->chosen_lights == b->chosen_lights && a->casts == b->casts &&
            a->plot == b->plot && a->opacity == b->opacity && a->relief == b->relief && a->threads == b->threads &&
            a->noise == b->noise && a->layer_groups == b->layer_groups && a->drawn_groups == b->drawn_groups &&
-           a->half_vector == b->half_vector && a->lobe_count == b->lobe_count && a->view_table == b->view_table &&
-           a->light_table == b->light_table && a->fewer_bits == b->fewer_bits && a->pruned == b->pruned;
+           a->incidence_power == b->incidence_power && a->lobe_count == b->lobe_count &&
+           a->view_table == b->view_table && a->light_table == b->light_table && a->fewer_bits == b->fewer_bits &&
+           a->pruned == b->pruned;
 }
 
 static const char *name_of(bool value)
@@ -37,13 +38,14 @@ static void define(const weft_program_kind *kind, char *text, size_t size)
         "ONE_LIGHT %s\n#define CHOSEN_LIGHTS %d\n"
         "#define STOCHASTIC %s\n#define SHADOWS %s\n#define PLOT %d\n#define OPACITY %s\n"
         "#define LOBES %d\n#define VIEW_TABLE %s\n#define LIGHT_TABLE %s\n#define FEWER_BITS %s\n#define NOISE %s\n"
-        "#define LAYER_GROUPS %d\n#define DRAWN_GROUPS %d\n#define HALF_VECTOR %s\n#define RELIEF %s\n#define PRUNED "
+        "#define LAYER_GROUPS %d\n#define DRAWN_GROUPS %d\n#define INCIDENCE_POWER %d\n#define RELIEF %s\n#define "
+        "PRUNED "
         "%d\n",
         WEFT_MAX_LIGHTS, WEFT_SHADOW_LAYERS, WEFT_KEY_PLACES, WEFT_LEVEL_COLOURS, light_count_of(kind),
         name_of(kind->one_light), kind->chosen_lights, name_of(kind->stochastic), name_of(kind->shadows), kind->plot,
         name_of(kind->opacity), kind->lobe_count, name_of(kind->view_table), name_of(kind->light_table),
-        name_of(kind->fewer_bits), name_of(kind->noise), kind->layer_groups, kind->drawn_groups,
-        name_of(kind->half_vector), name_of(kind->relief), kind->pruned);
+        name_of(kind->fewer_bits), name_of(kind->noise), kind->layer_groups, kind->drawn_groups, kind->incidence_power,
+        name_of(kind->relief), kind->pruned);
 }
 
 static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)

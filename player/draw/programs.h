@@ -19,9 +19,9 @@ typedef struct weft_program_kind {
     bool threads;      /* analytic: microcylinders, else a weave */
     bool noise;        /* analytic: that of the weave */
     /* Of the compressed material: */
-    int layer_groups; /* four layers each, in the place of lobes; 0: lobes */
-    int drawn_groups; /* the first of them, which are evaluated */
-    bool half_vector; /* the maps of the layers are over it */
+    int layer_groups;    /* four layers each, in the place of lobes; 0: lobes */
+    int drawn_groups;    /* the first of them, which are evaluated */
+    int incidence_power; /* of the maps of the layers (player/texture/layer_texture.h) */
     int lobe_count;
     bool view_table, light_table;
     bool fewer_bits; /* of T and S than they have */

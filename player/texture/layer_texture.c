@@ -200,7 +200,7 @@ weft_code weft_layer_texture_upload(const weft_layers *layers, const int *entry_
                               .group_count = layers->layer_count / WEFT_LAYERS_GROUP,
                               .light_side = layers->light_side,
                               .view_side = layers->view_side,
-                              .half_vector = layers->kind == WEFT_LAYERS_OF_HALF_VECTOR,
+                              .incidence_power = layers->kind - WEFT_LAYERS_OF_LIGHT,
                               .least_cosine = layers->least_cosine};
     WEFT_TRY(upload_coefficients(layers, t, error));
     WEFT_TRY(upload_bounds(layers, t, error));

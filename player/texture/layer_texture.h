@@ -17,7 +17,7 @@ typedef struct weft_layer_texture {
     int view_count;
     weft_mip_layout layout, bounds_layout;
     int group_count, light_side, view_side;
-    bool half_vector;
+    int incidence_power; /* of l . h in maps over half vectors: 1 or 2; 0: the maps are over the light */
     float least_cosine;
 } weft_layer_texture;
 

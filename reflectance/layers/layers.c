@@ -15,12 +15,12 @@ static weft_square_cell light_cell(const weft_layers *layers, weft_vec3 light, w
     return weft_square_cell_at(place, layers->light_side);
 }
 
-/* A map over half vectors holds B_k (l . h). */
-static weft_real divisor_of(const weft_layers *layers, weft_vec3 light, weft_vec3 half_vector)
+weft_real weft_layers_divisor(weft_layers_kind kind, weft_vec3 light, weft_vec3 half_vector)
 {
-    if (layers->kind == WEFT_LAYERS_OF_LIGHT)
+    if (kind == WEFT_LAYERS_OF_LIGHT)
         return 1;
-    return fmax(weft_dot(light, half_vector), (weft_real)WEFT_LEAST_INCIDENCE);
+    weft_real incidence = fmax(weft_dot(light, half_vector), (weft_real)WEFT_LEAST_INCIDENCE);
+    return kind == WEFT_LAYERS_OF_HALF_VECTOR ? incidence : incidence * incidence;
 }
 
 void weft_layer_factors(const weft_layer_maps *maps, weft_vec3 light, weft_vec3 view, float *factor)
@@ -33,7 +33,7 @@ void weft_layer_factors(const weft_layer_maps *maps, weft_vec3 light, weft_vec3 
     weft_vec3 half_vector = weft_half_vector(light, view);
     weft_square_cell outer = weft_square_cell_at(weft_place_of_direction(view), layers->view_side),
                      inner = light_cell(layers, light, half_vector);
-    weft_real divisor = divisor_of(layers, light, half_vector);
+    weft_real divisor = weft_layers_divisor(layers->kind, light, half_vector);
     size_t light_nodes = (size_t)layers->light_side * (size_t)layers->light_side;
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) {
@@ -54,7 +54,7 @@ void weft_layer_factors_of_view(const weft_layer_maps *maps, weft_vec3 light, in
     const float *xyz = layers->view + 3 * (size_t)view;
     weft_vec3 half_vector = weft_half_vector(light, weft_vec3_of(xyz[0], xyz[1], xyz[2]));
     weft_square_cell inner = light_cell(layers, light, half_vector);
-    weft_real divisor = divisor_of(layers, light, half_vector);
+    weft_real divisor = weft_layers_divisor(layers->kind, light, half_vector);
     for (int j = 0; j < 4; j++) {
         const float *node = maps->node_of_view + ((size_t)view * nodes + (size_t)inner.index[j]) * series;
         float weight = (float)(inner.weight[j] / divisor);

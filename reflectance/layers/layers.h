@@ -10,7 +10,7 @@
  * may evaluate. */
 typedef struct weft_layer_maps {
     const weft_layers *layers;
-    float *node;         /* [view node][light node][layer][3] B_k, or B_k (l . h), times the scale of the layer */
+    float *node; /* [view node][light node][layer][3] B_k, or B_k (l . h)^1 or 2, times the scale of the layer */
     float *node_of_view; /* [stored view][light node][layer][3] the same for each stored view by itself; NULL unless
                             weft_layer_maps_keep_views */
 } weft_layer_maps;
@@ -18,6 +18,9 @@ typedef struct weft_layer_maps {
 /* l . h is taken as at least this where a map is divided by it: below, light and view both graze from opposite sides.
  */
 #define WEFT_LEAST_INCIDENCE 0.0625
+
+/* What a map is divided by where its kind is that of half vectors: (l . h) or (l . h)^2; 1 of the others. Pure. */
+weft_real weft_layers_divisor(weft_layers_kind kind, weft_vec3 light, weft_vec3 half_vector);
 
 /* Computes the maps. The caller frees them with weft_layer_maps_free. Errors: WEFT_SYSTEM for memory. */
 weft_code weft_layer_maps_create(const weft_layers *layers, weft_layer_maps *maps, weft_error *error);

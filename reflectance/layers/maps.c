@@ -38,7 +38,7 @@ static void gather_view(const weft_layers *layers, int view, weft_place *place, 
     for (uint32_t image = layers->first[view]; image < layers->first[view + 1]; image++) {
         weft_vec3 light = direction_at(layers->light, image);
         *place++ = place_of(layers, light, v);
-        weft_real weight = layers->kind == WEFT_LAYERS_OF_LIGHT ? 1 : weft_dot(light, weft_half_vector(light, v));
+        weft_real weight = weft_layers_divisor(layers->kind, light, weft_half_vector(light, v));
         for (size_t i = 0; i < series; i++)
             *value++ =
                 (float)weight * layers->scale[i / 3] * weft_float_of_half(layers->value[(size_t)image * series + i]);

@@ -142,9 +142,9 @@ static json_t *describe_heights(const weft_material_heights *heights)
 
 static json_t *describe_layers(const weft_layers *layers)
 {
-    return json_pack("{s:i, s:s, s:i, s:i}", "count", layers->layer_count, "maps_over",
-                     layers->kind == WEFT_LAYERS_OF_LIGHT ? "light" : "half vector", "views", layers->view_count,
-                     "images", layers->image_count);
+    static const char *const kind[] = {"light", "half vector", "half vector, squared incidence"};
+    return json_pack("{s:i, s:s, s:i, s:i}", "count", layers->layer_count, "maps_over", kind[layers->kind], "views",
+                     layers->view_count, "images", layers->image_count);
 }
 
 static json_t *describe_material(const char *path, const weft_material *material, const weft_hold_out *held_out)

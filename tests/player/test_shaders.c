@@ -227,6 +227,7 @@ static void layers_equal_c(void **state)
     compare_layers(state, "16 layers over the half vector", WEFT_LAYERS_OF_HALF_VECTOR, 16, 0, scene);
     scene.light[0].direction = (weft_angles){weft_rad_of_deg(80), weft_rad_of_deg(100)};
     compare_layers(state, "4 layers under grazing light", WEFT_LAYERS_OF_HALF_VECTOR, 4, 0, scene);
+    compare_layers(state, "4 layers, squared incidence", WEFT_LAYERS_OF_HALF_VECTOR_SQUARED, 4, 0, scene);
 }
 
 static void layers_equal_c_between_levels(void **state)

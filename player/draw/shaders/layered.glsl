@@ -1,7 +1,7 @@
 // The compressed material: linear layers. Coefficients are interpolated by the hardware between texels, the maps of the
 // factors between directions, and both are multiplied once a pixel and light. C twin: weft_layers_sample_through.
 // Constants defined by player/draw/programs.c: LAYER_GROUPS, four layers each; DRAWN_GROUPS, the first of them, which are
-// evaluated; HALF_VECTOR, whether the maps are over it;
+// evaluated; INCIDENCE_POWER, of l . h in maps over half vectors, 0 of those over the light;
 // OPACITY, whether there is any below 1; RELIEF, whether it is all seen through heights (reflectance/relief/relief.glsl):
 // then from the stored views around, each at a place of its own.
 uniform sampler2DArray layer_coefficient; // of a group in each layer, all levels side by side; -1 .. 1
@@ -40,8 +40,15 @@ vec4 bounds_at(int level, vec2 coordinate)
 // Where a light is in the maps, in nodes.
 vec2 inner_node(vec3 light, vec3 half_vector)
 {
-    vec2 place = HALF_VECTOR ? place_of_half_vector(half_vector) : place_of_direction(light);
+    vec2 place = INCIDENCE_POWER > 0 ? place_of_half_vector(half_vector) : place_of_direction(light);
     return place * (layer_sides.x - 1.0) + 0.5;
+}
+
+// Twin of weft_layers_divisor.
+float map_divisor(vec3 light, vec3 half_vector)
+{
+    float incidence = max(dot(light, half_vector), 0.0625);
+    return INCIDENCE_POWER == 0 ? 1.0 : INCIDENCE_POWER == 1 ? incidence : incidence * incidence;
 }
 
 vec2 map_place(vec2 inner, int group, int colour)
@@ -71,7 +78,7 @@ vec3 layers_value(vec4 coefficient[DRAWN_GROUPS], vec3 light, vec3 view, inout f
             sum[c] += dot(coefficient[i], factor);
         }
     }
-    return HALF_VECTOR ? sum / max(dot(light, half_vector), 0.0625) : sum;
+    return sum / map_divisor(light, half_vector);
 }
 
 // The same as stored view `number` has it.
@@ -83,7 +90,7 @@ vec3 layers_value_of_view(vec4 coefficient[DRAWN_GROUPS], vec3 light, int number
         for (int c = 0; c < 3; c++)
             sum[c] += dot(coefficient[i], textureLod(layer_map_of_view, vec3(map_place(inner, i, c), float(number)), 0.0));
     }
-    return HALF_VECTOR ? sum / max(dot(light, half_vector), 0.0625) : sum;
+    return sum / map_divisor(light, half_vector);
 }
 
 // Of `point` at a place: if `stored` as stored view `number` saw it from its direction `view`, else as seen from there.
