@@ -107,6 +107,10 @@ static const weft_option option_table[] = {
      .help = "With layers: see them through the heights that `weft relief` found, where held-out photographs say that "
              "this helps (default: on)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.heights)},
+    {"rounding", .argument = "on|off",
+     .help = "With layers: round their numbers where what they leave of the photographs hides it. The file is a third "
+             "to two thirds as large; Weft of before November 2026 does not read it (default: off)",
+     .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.rounded)},
     {"frames", .argument = "on|off|given",
      .help = "Turn the frame of each texel where that helps, from that of the surface and from the one that the "
              "dataset gives; given: as the dataset says; off: the frame of the surface everywhere, fastest (default: "
@@ -169,13 +173,25 @@ static weft_code check_preset(const compress_command *command, weft_error *error
 {
     const weft_compress_options usual = weft_compress_default_options(), *o = &command->options;
     bool chosen = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || command->layers != NOT_GIVEN ||
-                  o->light_table || o->table_components > 0 || o->frames != usual.frames || chooses_by_texel(o);
+                  o->light_table || o->table_components > 0 || o->rounded || o->frames != usual.frames ||
+                  chooses_by_texel(o);
     if (wish_of(command).preset == WEFT_PRESET_NONE || !chosen)
         return WEFT_OK;
     return weft_fail(
         error, WEFT_BAD_USAGE,
         "--preset and --fps choose the model: leave out --lobes, --table, --light-table, --tables, --layers, "
-        "--frames, --error and --budget");
+        "--rounding, --frames, --error and --budget");
+}
+
+/* Where layers are chosen by the number of photographs, weft_compress says it. */
+static weft_code check_rounding(const compress_command *command, weft_error *error)
+{
+    const weft_compress_options *o = &command->options;
+    bool of_lobes = command->lobes != NOT_GIVEN || command->table != NOT_GIVEN || o->light_table ||
+                    o->table_components > 0 || chooses_by_texel(o);
+    if (!o->rounded || command->layers > 0 || (command->layers == NOT_GIVEN && !of_lobes))
+        return WEFT_OK;
+    return weft_fail(error, WEFT_BAD_USAGE, "--rounding is for layers: ask for some with --layers");
 }
 
 static weft_code check(void *values, weft_error *error)
@@ -183,6 +199,7 @@ static weft_code check(void *values, weft_error *error)
     const compress_command *command = values;
     const weft_compress_options *o = &command->options;
     WEFT_TRY(check_preset(command, error));
+    WEFT_TRY(check_rounding(command, error));
     if (command->layers > 0 && command->layers % WEFT_LAYERS_GROUP != 0)
         return weft_fail(error, WEFT_BAD_USAGE, "--layers is a multiple of %d, not %d", WEFT_LAYERS_GROUP,
                          command->layers);

@@ -305,6 +305,7 @@ static weft_code fit_layers(fitting *work, weft_material *material, weft_compres
     weft_layers_options options = {.layer_count = work->options->layer_count,
                                    .maps = work->options->layer_maps,
                                    .finer = work->options->finer,
+                                   .rounded = work->options->rounded,
                                    .held_out = work->options->held_out,
                                    .for_screen = work->options->weights == WEFT_WEIGHTS_SCREEN,
                                    .budget = work->budget,

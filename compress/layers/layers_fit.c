@@ -156,7 +156,7 @@ static weft_code project(fitting *work, weft_layers_report *report, weft_error *
         code = weft_layer_model_double(&work->layers, error);
     if (code == WEFT_OK)
         weft_layers_fill_levels(&work->projection, work->layers);
-    if (code == WEFT_OK && !work->options->finer)
+    if (code == WEFT_OK && work->options->rounded)
         round_numbers(&work->components, work->layers);
     return code;
 }

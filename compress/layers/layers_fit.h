@@ -18,6 +18,7 @@ typedef struct weft_layers_options {
     weft_layer_maps_choice maps;
     bool finer;              /* as many layers again (compress/options/options.h) */
     const uint8_t *held_out; /* [image_count] images that the fit must not see, or NULL */
+    bool rounded;            /* values and coefficients, where what is left hides it */
     bool for_screen;         /* dim images count for more (compress/options/options.h) */
     /* These change nothing in the result: */
     weft_memory_budget budget;

@@ -50,6 +50,7 @@ typedef struct weft_compress_options {
     weft_layer_maps_choice layer_maps;
     bool finer;           /* as many layers again, which hold what rounding to 8 bits leaves of the coefficients of the
                              first, which have 15 bits then: it tells what rounding costs. At most 32 layers */
+    bool rounded;         /* layers are rounded where what they leave hides it (btf/material/layer_rounding.h) */
     bool heights;         /* layers are seen through those of the dataset, where it has some (`weft relief`) */
     int table_components; /* of T and S by principal components across the texels of a level; 0: by 8 bits each */
     const uint8_t *held_out; /* [image_count] images that the fit must not see (non-zero), or NULL */
