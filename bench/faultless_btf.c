@@ -133,7 +133,7 @@ static bool follow(const btf *b, weft_vec3 direction, uint64_t key, uint32_t ind
 
 static void draw_pixel(const btf *b, int x, int y, int paths, const weft_image *background, weft_image *image)
 {
-    uint64_t key = weft_sequence_key(77, (uint64_t)(y * image->width + x));
+    uint64_t key = weft_sequence_key(77, (uint64_t)y * (uint64_t)image->width + (uint64_t)x);
     double sum[3] = {0};
     size_t pixel = 3 * ((size_t)y * (size_t)image->width + (size_t)x);
     for (uint32_t i = 0; i < (uint32_t)paths; i++) {
