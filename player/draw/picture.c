@@ -16,6 +16,20 @@ static long least_frames(const weft_scene *scene)
                                                       : 1;
 }
 
+/* One place in each cell of a grid, and no two in a row or column of one that is as fine again: across a long pixel,
+ * too, places are as close as frames are many. */
+static weft_sampling sampling_of(long frame, int samples)
+{
+    long column = frame % samples, row = frame / samples % samples;
+    return (weft_sampling){
+        .shift_x = (column + (row + 0.5) / samples) / samples - 0.5,
+        .shift_y = (row + (column + 0.5) / samples) / samples - 0.5,
+        .level_bias = -log2((double)samples),
+        .longest_pixel = samples,
+        .frame = frame,
+    };
+}
+
 static weft_code add_frames(weft_player *p, const weft_scene *scene, int samples, const weft_progress *progress,
                             weft_canvas *canvas, weft_error *error)
 {
@@ -23,12 +37,7 @@ static weft_code add_frames(weft_player *p, const weft_scene *scene, int samples
     while (total < least_frames(scene))
         total += places;
     for (long i = 0; i < total; i++) {
-        weft_sampling sampling = {
-            .shift_x = (double)(i % samples + 0.5) / samples - 0.5,
-            .shift_y = (double)(i % places / samples + 0.5) / samples - 0.5,
-            .level_bias = -log2((double)samples),
-            .frame = i,
-        };
+        const weft_sampling sampling = sampling_of(i, samples);
         weft_canvas_begin_frame(canvas);
         WEFT_TRY(weft_player_draw(p, scene, canvas->width, canvas->height, sampling, error));
         weft_canvas_end_frame(canvas);

@@ -78,7 +78,10 @@ bool weft_player_has_environment(const weft_player *player);
 typedef struct weft_sampling {
     double shift_x, shift_y; /* of the picture, pixels */
     double level_bias;       /* added to the level of detail */
-    long frame;              /* number of the frame in a mean; -1: a picture that moves, to be good by itself */
+    /* A pixel that is so many times as long as wide on the material, or less, has the level of its width: frames of a
+     * mean see places all along it. Below 1 as 1: the level of its length. */
+    double longest_pixel;
+    long frame; /* number of the frame in a mean; -1: a picture that moves, to be good by itself */
     /* WEFT_FILTER_AUTO is then stochastic, of linear layers the first 16 are drawn, and of an environment two lights a
      * pixel, by chance. */
     bool hurry;

@@ -59,6 +59,7 @@ static void set_view(const weft_player *p, GLuint program, const weft_scene *sce
                              pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height, matrix);
     glUniformMatrix4fv(glGetUniformLocation(program, "clip_of_world"), 1, GL_FALSE, matrix);
     weft_gl_set_float(program, "level_bias", pane->sampling.level_bias);
+    weft_gl_set_float(program, "longest_pixel", fmax(pane->sampling.longest_pixel, 1));
     set_material(p, program, scene, pane->mode);
 }
 
@@ -150,6 +151,7 @@ static void set_holes(const weft_player *p, const weft_scene *scene, weft_vec3 l
     weft_player_bind_mode(p, scene, mode, program);
     set_material(p, program, scene, mode);
     weft_gl_set_float(program, "level_bias", 0);
+    weft_gl_set_float(program, "longest_pixel", 1);
     weft_gl_set_float(program, "sequence", sequence);
     weft_gl_set_vec3(program, "toward_light", (double)light.x, (double)light.y, (double)light.z);
 }

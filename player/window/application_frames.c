@@ -6,7 +6,8 @@
 
 #include <epoxy/gl.h>
 
-enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64 };
+/* LONGEST_PIXEL: any four frames in a row lie well apart along a pixel. */
+enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64, LONGEST_PIXEL = 4 };
 
 static const double settle_s = 0.12; /* after the last change the mean of a picture at rest begins */
 
@@ -65,6 +66,7 @@ static weft_sampling resting_sampling(const weft_application *a)
     return (weft_sampling){
         .shift_x = index > 0 ? radical_inverse(index, 2) - 0.5 : 0,
         .shift_y = index > 0 ? radical_inverse(index, 3) - 0.5 : 0,
+        .longest_pixel = LONGEST_PIXEL,
         .frame = index,
     };
 }

@@ -29,6 +29,7 @@ static weft_code add_frames(weft_player *player, const weft_reach_scene *s, cons
         const weft_sampling sampling = {.shift_x = (i % side + 0.5) / side - 0.5,
                                         .shift_y = ((int)(i / side) + 0.5) / side - 0.5,
                                         .level_bias = -log2(s->samples),
+                                        .longest_pixel = s->samples,
                                         .frame = i};
         weft_canvas_begin_frame(canvas);
         WEFT_TRY(weft_player_draw(player, scene, s->width, s->height, sampling, error));

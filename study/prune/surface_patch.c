@@ -167,8 +167,9 @@ static void depths_of(const patch_ball *ball, const weft_camera_span *span, doub
 
 /* The vector on the plane from where the ray of one pixel meets it to where that of its neighbour does is at least as
  * long as the way from the first point to the second ray, and at most that way over the sine between ray and plane. The
- * longer of the two, across and up, counts, and one of them is nearly across the ray. From pixel to pixel the depth
- * grows by the sine, too, hence its square. */
+ * longer of the two, across and up, counts at most, and one of them is nearly across the ray; where frames see the rest
+ * of a long pixel, its width counts, and no pixel is narrower than that way. From pixel to pixel the depth grows by the
+ * sine, too, hence its square. */
 static void find_levels(const weft_patch *p, const patch_ball *ball, const weft_camera_span *span,
                         weft_patch_bounds *bounds)
 {

@@ -279,6 +279,92 @@ static void light_passes_the_holes_that_the_light_sees(void **state)
     weft_material_free(&material);
 }
 
+/* ---- Shadows while the light moves ---- */
+
+/* The mean of frames between which the light turns by a thousandth of a degree: each has a rough map of its own. */
+static weft_image draw_under_moving_light(weft_player *player, const weft_scene *scene, int frames)
+{
+    weft_error error = {0};
+    weft_canvas canvas;
+    weft_image image;
+    weft_scene moved = *scene;
+    expect_ok(weft_canvas_create(SIZE, SIZE, &canvas, &error), &error);
+    for (int i = 0; i < frames; i++) {
+        moved.light[0].direction.theta_rad = scene->light[0].direction.theta_rad + (i % 2 ? 0 : weft_rad_of_deg(1e-3));
+        weft_canvas_begin_frame(&canvas);
+        expect_ok(weft_player_draw(player, &moved, SIZE, SIZE, (weft_sampling){.frame = -1}, &error), &error);
+        weft_canvas_end_frame(&canvas);
+    }
+    expect_ok(weft_canvas_read(&canvas, &image, &error), &error);
+    weft_canvas_free(&canvas);
+    return image;
+}
+
+/* How much of the light that passes the upper cloth a picture lacks against one at rest. */
+static double lacks(weft_player *player, const weft_scene *scene)
+{
+    weft_image moving = draw_under_moving_light(player, scene, 16), resting = draw(player, scene, 4);
+    double share = 1 - mean_of_middle(&moving) / mean_of_middle(&resting);
+    weft_image_free(&moving);
+    weft_image_free(&resting);
+    return share;
+}
+
+/* Rough maps are half as fine. Half open cloth lets half of the light pass; through fields of holes it passes where the
+ * light sees them, one direction after the other. */
+static void moving_light_passes_the_same_holes(void **state)
+{
+    weft_player *player = ((stage *)*state)->player;
+    weft_material material;
+    make_mesh_cloth(FIELD, &material);
+    set_material(player, &material);
+    set_mesh(player, make_crossed_planes);
+    weft_scene scene = plane_scene(90);
+    scene.shadows = true;
+    for (int aside = 0; aside < 4; aside++) {
+        scene.light[0].direction = (weft_angles){atan(0.5 * aside * FIELD / TEXELS / 0.2), 0};
+        scene.level = 0;
+        double fields = lacks(player, &scene);
+        scene.level = 3; /* one texel */
+        double half = lacks(player, &scene);
+        print_message("light aside by %d halves of a field: %.4f through fields, %.4f through half open cloth\n", aside,
+                      fields, half);
+        assert_true(fabs(fields) < 0.04 && fabs(half) < 0.02);
+    }
+    weft_material_free(&material);
+}
+
+static void a_picture_at_rest_has_nothing_of_the_rough_shadows_before(void **state)
+{
+    weft_player *player = ((stage *)*state)->player;
+    weft_material material;
+    make_mesh_cloth(FIELD, &material);
+    set_material(player, &material);
+    set_mesh(player, make_crossed_planes);
+    weft_scene scene = plane_scene(90);
+    scene.shadows = true;
+    scene.light[0].direction = (weft_angles){atan(1.3 * FIELD / TEXELS / 0.2), 0};
+    scene.level = 0;
+    weft_image at_once = draw(player, &scene, 1), again;
+    weft_scene other = scene;
+    other.light[0].direction.phi_rad = 1;
+    weft_image before = draw_under_moving_light(player, &other, 1);
+    weft_image_free(&before);
+    /* The last rough map is of the very light that then rests. */
+    before = draw_under_moving_light(player, &scene, 2);
+    again = draw(player, &scene, 1);
+    double differs = 0;
+    for (int i = 0; i < 3 * SIZE * SIZE; i++) {
+        assert_float_equal(again.pixels[i], at_once.pixels[i], 0);
+        differs = fmax(differs, fabs((double)(before.pixels[i] - again.pixels[i])));
+    }
+    assert_true(differs > 0.01);
+    weft_image_free(&at_once);
+    weft_image_free(&before);
+    weft_image_free(&again);
+    weft_material_free(&material);
+}
+
 static void levels_of_holes_have_one_mean(void **state)
 {
     weft_player *player = ((stage *)*state)->player;
@@ -357,6 +443,8 @@ int main(void)
         cmocka_unit_test(holes_show_the_cloth_behind),
         cmocka_unit_test(light_passes_as_far_as_cloth_is_open),
         cmocka_unit_test(light_passes_the_holes_that_the_light_sees),
+        cmocka_unit_test(moving_light_passes_the_same_holes),
+        cmocka_unit_test(a_picture_at_rest_has_nothing_of_the_rough_shadows_before),
         cmocka_unit_test(levels_of_holes_have_one_mean),
         cmocka_unit_test(evaluator_and_shader_agree_where_there_are_holes),
     };

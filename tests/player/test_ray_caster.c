@@ -202,13 +202,16 @@ static weft_material make_patchwork(int width, int height)
 
 /* ---- Mip levels ---- */
 
-/* log2 of the longer side of the pixel in texels of a square material. */
-static double footprint_level(const caster *c, const laying *lay, int x, int y, double texels)
+/* log2 of the longer side of the pixel in texels of a square material; of so many frames on each side, how wide it is
+ * beside that, or the longer side over their number. */
+static double footprint_level(const caster *c, const laying *lay, int x, int y, double texels, int frames)
 {
     meeting left = cast(c, lay, x - 0.5, y), right = cast(c, lay, x + 0.5, y);
     meeting above = cast(c, lay, x, y - 0.5), below = cast(c, lay, x, y + 0.5);
-    double across = hypot(right.u - left.u, right.v - left.v), down = hypot(below.u - above.u, below.v - above.v);
-    return log2(texels * fmax(across, down));
+    double across[2] = {right.u - left.u, right.v - left.v}, down[2] = {below.u - above.u, below.v - above.v};
+    double longer = fmax(hypot(across[0], across[1]), hypot(down[0], down[1]));
+    double width = fabs(across[0] * down[1] - across[1] * down[0]) / longer;
+    return log2(texels * fmax(width, longer / frames));
 }
 
 /* Whether `seen` is what the level of a pixel of this footprint may be. `frames` x `frames` in a pixel make it that
@@ -238,7 +241,7 @@ static void expect_levels(stage *s, view_point from, const laying *lay, weft_sce
         if (!all_around(&c, x, y, true))
             continue;
         meeting m = cast(&c, lay, x, y);
-        double footprint = footprint_level(&c, lay, x, y, SIZE * scene.repeat);
+        double footprint = footprint_level(&c, lay, x, y, SIZE * scene.repeat, frames);
         double seen = 16 * (double)image.pixels[3 * i] / irradiance(&scene, &m, 0, 0) - 1;
         wrong += !is_level(&scene, footprint, frames, LAST, seen);
         lowest = fmin(lowest, seen);
@@ -287,8 +290,67 @@ static void levels_are_rounded_fixed_or_left_out_as_asked(void **state)
         scene.level = 2.25;
         expect_levels(s, from, &lays[0], scene, 1, &span);
     }
-    scene.level_choice = WEFT_LEVEL_TRILINEAR;
-    expect_levels(s, from, &lays[0], scene, 4, &span);
+    weft_material_free(&material);
+}
+
+/* 4.8 times as long as wide at 12 degrees: longer than three frames on a side see, and shorter than six do. */
+static void frames_see_the_length_of_a_pixel_and_levels_its_width(void **state)
+{
+    stage *s = *state;
+    weft_material material = make_staircase(64);
+    const view_point from[] = {{-90, 90, 2}, {-90, 20, 1.6}, {30, 12, 2.5}};
+    int span;
+    show(s, &material);
+    for (int i = 0; i < 3; i++) {
+        weft_scene scene = scene_from(from[i]);
+        scene.repeat = 12;
+        spread(s, &lays[i]);
+        expect_levels(s, from[i], &lays[i], scene, 3, &span);
+        expect_levels(s, from[i], &lays[i], scene, 6, &span);
+    }
+    weft_material_free(&material);
+}
+
+/* ---- Frames in a pixel ---- */
+
+/* Stripes of black and white, one of each across the material. */
+static weft_material make_stripes(void)
+{
+    weft_material material = make_material(2, 2, 0, 0);
+    for (int i = 0; i < 4; i++)
+        paint(&material.level[0], i, i % 2, i % 2, i % 2);
+    return material;
+}
+
+/* Three of them in a pixel: frames in three rows and columns would all see the same place of a stripe, another in each
+ * pixel. */
+static void no_two_frames_of_a_picture_lie_in_a_row(void **state)
+{
+    stage *s = *state;
+    enum { FRAMES = 3, AS_IT_IS = 0, EXCHANGED = 3 };
+    const view_point from = {-90, 90, 2};
+    caster c = caster_of(from, WIDTH, HEIGHT);
+    meeting at = cast(&c, &lays[AS_IT_IS], 80, 60), beside = cast(&c, &lays[AS_IT_IS], 81, 60);
+    weft_scene scene = scene_from(from);
+    weft_material material = make_stripes();
+    scene.level_choice = WEFT_LEVEL_NONE;
+    scene.repeat = (FRAMES + 0.04) / fabs(beside.u - at.u);
+    show(s, &material);
+    for (int i = AS_IT_IS; i <= EXCHANGED; i += EXCHANGED - AS_IT_IS) {
+        double largest = 0;
+        spread(s, &lays[i]);
+        weft_image image = draw(s, &scene, FRAMES);
+        for (int k = 0; k < WIDTH * HEIGHT; k++) {
+            if (!all_around(&c, k % WIDTH, k / WIDTH, true))
+                continue;
+            meeting m = cast(&c, &lays[i], k % WIDTH, k / WIDTH);
+            double grey = (double)image.pixels[3 * k] / irradiance(&scene, &m, 0, 0);
+            largest = fmax(largest, fabs(grey - 0.5));
+        }
+        print_message("%s: %.3f from grey at most\n", lays[i].name, largest);
+        assert_true(largest < 0.1);
+        weft_image_free(&image);
+    }
     weft_material_free(&material);
 }
 
@@ -621,6 +683,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_level_is_log2_of_the_longer_side_of_the_pixel),
         cmocka_unit_test(levels_are_rounded_fixed_or_left_out_as_asked),
+        cmocka_unit_test(frames_see_the_length_of_a_pixel_and_levels_its_width),
+        cmocka_unit_test(no_two_frames_of_a_picture_lie_in_a_row),
         cmocka_unit_test(texels_lie_where_u_and_v_say_on_both_sides),
         cmocka_unit_test(axes_follow_u_and_v_whichever_hand_they_make),
         cmocka_unit_test(panes_and_wipes_show_each_mode_in_its_place),

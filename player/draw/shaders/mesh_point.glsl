@@ -8,6 +8,7 @@ uniform vec2 repeat;        // materials for a unit of the mesh's coordinates
 uniform vec2 texel_count;   // texels (cells of a weave) of the material
 uniform float level_choice; // automatic below -999
 uniform float level_bias;
+uniform float longest_pixel; // what a pixel that is longer than wide counts as at most; the rest is left to other frames
 uniform bool level_nearest;
 
 struct MeshPoint {
@@ -23,10 +24,13 @@ vec4 footprint_of(vec2 coordinate)
     return vec4(dFdx(coordinate) * texel_count, dFdy(coordinate) * texel_count);
 }
 
-// The larger of the two, as OpenGL chooses its mip level.
+// The longer of the two, as OpenGL chooses its mip level; or, where other frames see the rest of its length, how wide the
+// pixel is beside it.
 float footprint_level(vec4 footprint)
 {
-    return 0.5 * log2(max(max(dot(footprint.xy, footprint.xy), dot(footprint.zw, footprint.zw)), 1e-20)) + level_bias;
+    float longer = sqrt(max(max(dot(footprint.xy, footprint.xy), dot(footprint.zw, footprint.zw)), 1e-20));
+    float width = abs(footprint.x * footprint.w - footprint.y * footprint.z) / longer;
+    return log2(max(width, longer / longest_pixel)) + level_bias;
 }
 
 MeshPoint mesh_point()
