@@ -26,6 +26,10 @@ typedef struct weft_environment {
     weft_distant_light part[WEFT_ENVIRONMENT_PARTS][WEFT_ENVIRONMENT_REGIONS];
 } weft_environment;
 
+/* The frame that takes a part of each region. Numbers of parts that follow each other lie beside each other, those of
+ * frames far apart. */
+int weft_environment_frame_of(int part);
+
 /* `image` holds radiance on the sphere by longitude and latitude: the top row is the world's +z, the middle column +y,
  * and x = +1 lies a quarter to the right of it. Negative and non-finite values count as 0, those above 1e30 as that.
  * region_count: WEFT_ENVIRONMENT_REGIONS, or fewer for a map without small bright lights.
