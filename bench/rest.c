@@ -1,6 +1,6 @@
-/* What a picture that has just come to rest lacks, part by part: 365 x 200 in the studio, the frames that a window draws
- * at rest, against many. FLIP and RMSE of what the screen shows, and processor time of a frame.
- * Usage: bench_rest NAME.weft|CLOTH.wv [FRAMES] */
+/* What a picture that has just come to rest lacks, part by part: 365 x 200 in the studio, the frames that a window
+ * draws at rest, against many. FLIP and RMSE of what the screen shows, and processor time of a frame. Usage: bench_rest
+ * NAME.weft|CLOTH.wv [FRAMES] */
 #include "bench/measure.h"
 #include "player/draw/resting.h"
 #include "player/gl/context.h"

@@ -42,8 +42,8 @@ static double brightness(const weft_distant_light *light)
                                           : 0;
 }
 
-/* The i-th light that shadows may come from: a region, or at rest a part of one. Those that follow each other lie beside
- * each other. */
+/* The i-th light that shadows may come from: a region, or at rest a part of one. Those that follow each other lie
+ * beside each other. */
 static const weft_distant_light *fill_light(const weft_environment *environment, bool rests, int i)
 {
     return rests ? &environment->part[weft_environment_frame_of(i % WEFT_ENVIRONMENT_PARTS)][i / WEFT_ENVIRONMENT_PARTS]
@@ -90,9 +90,9 @@ static void choose_fill(weft_lighting *l, const weft_scene *scene, const weft_en
         l->fill[i] = turned(l->fill[i], scene->environment_turn_rad);
 }
 
-/* The part of its regions that a frame lights pixels of one kind from. Each kind takes all of them in turn. Of the bits of
- * a part the low ones tell the coarse place within the region, the high ones the fine one: kinds differ in both, so that
- * neighbours complete each other in one frame, and in the mean of sixteen. */
+/* The part of its regions that a frame lights pixels of one kind from. Each kind takes all of them in turn. Of the bits
+ * of a part the low ones tell the coarse place within the region, the high ones the fine one: kinds differ in both, so
+ * that neighbours complete each other in one frame, and in the mean of sixteen. */
 static int part_of(long frame, int kind)
 {
     return (int)((frame ^ kind ^ (long)kind << 4) % WEFT_ENVIRONMENT_PARTS);

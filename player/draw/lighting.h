@@ -6,9 +6,9 @@
 #include "player/scene/environment.h"
 #include "player/scene/scene.h"
 
-/* Places in the key light, and directions of the environment, from which a frame at rest sees their shadows; a pixel sees
- * every other of these directions, its neighbours the others. A moving frame takes the middle of the key light, and two
- * directions. */
+/* Places in the key light, and directions of the environment, from which a frame at rest sees their shadows; a pixel
+ * sees every other of these directions, its neighbours the others. A moving frame takes the middle of the key light,
+ * and two directions. */
 enum { WEFT_KEY_PLACES = 4, WEFT_FILL_DIRECTIONS = 8, WEFT_FILL_STEP = 2, WEFT_FILL_MOVING = 2 };
 
 /* Neighbouring pixels at rest are lit from other parts of the environment, so that what a few frames lack is fine grain
@@ -19,7 +19,7 @@ typedef struct weft_lighting {
     int count;                           /* that one pixel is lit by */
     float direction[WEFT_MAX_LIGHTS][3]; /* of the world, unit, toward the light */
     float irradiance[WEFT_MAX_LIGHTS][3];
-    int scene_count;                /* the first of them, which are the scene's */
+    int scene_count; /* the first of them, which are the scene's */
     /* The others follow, set_count of each: the i-th of a pixel of kind k (pixel_kind of surface.glsl) is
      * scene_count + (i - scene_count) x set_count + k. */
     int set_count;

@@ -4,7 +4,8 @@
 
 #include "player/draw/player.h"
 
-/* Of the frame-th of them, from 0: the first lies on the middles of the pixels, any first few spread evenly over them. */
+/* Of the frame-th of them, from 0: the first lies on the middles of the pixels, any first few spread evenly over them.
+ */
 weft_sampling weft_sampling_at_rest(int frame);
 
 #endif
