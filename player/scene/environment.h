@@ -3,8 +3,8 @@
  * The sphere is cut into 48 regions, each time the one whose light spreads most: the largest power times variance of
  * direction (Viriyothai and Debevec, Variance Minimization Light Probe Sampling, 2009), at the median of its longer
  * side (Debevec, A Median Cut Algorithm for Light Probe Sampling, 2005). A light from the centroid of each is what a
- * moving picture is lit with. Each region is cut on into 128 parts of equal power: at rest, frame i takes the i-th part
- * of every region, so that the mean of 128 frames is lit by all 6144. Pure: no OpenGL. */
+ * moving picture is lit with. Each region is cut on into 128 parts of equal power: at rest, a frame takes one part
+ * of every region (player/draw/lighting.h), so that the mean of 128 frames is lit by all 6144. Pure: no OpenGL. */
 #ifndef WEFT_PLAYER_SCENE_ENVIRONMENT_H
 #define WEFT_PLAYER_SCENE_ENVIRONMENT_H
 
