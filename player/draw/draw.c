@@ -14,11 +14,14 @@ static void set_lights(const weft_player *p, GLuint program, const weft_scene *s
 {
     weft_lighting lighting = weft_lighting_of(scene, p->environment, frame);
     weft_gl_set_int(program, "light_count", lighting.count);
-    glUniform3fv(glGetUniformLocation(program, "light_direction"), lighting.count, lighting.direction[0]);
-    glUniform3fv(glGetUniformLocation(program, "light_irradiance"), lighting.count, lighting.irradiance[0]);
+    int held = weft_lighting_held(&lighting);
+    glUniform3fv(glGetUniformLocation(program, "light_direction"), held, lighting.direction[0]);
+    glUniform3fv(glGetUniformLocation(program, "light_irradiance"), held, lighting.irradiance[0]);
     weft_gl_set_int(program, "scene_count", lighting.scene_count);
+    weft_gl_set_int(program, "set_count", lighting.set_count);
     weft_gl_set_int(program, "key_count", lighting.key_count);
     weft_gl_set_int(program, "fill_count", lighting.fill_count);
+    weft_gl_set_int(program, "fill_step", lighting.fill_step);
     /* What moves under many lights has no time for more. */
     weft_gl_set_int(program, "shadow_taps", frame < 0 && lighting.fill_count > 0 ? 1 : 4);
     for (int i = 0; i < lighting.fill_count; i++) {
@@ -121,9 +124,10 @@ static void set_ground_light(const weft_player *p, GLuint program, const weft_sc
 {
     weft_lighting l = weft_lighting_of(scene, p->environment, frame);
     double sum[2][3] = {{0}};
-    for (int i = 0; i < l.count; i++)
+    for (int i = 0; i < weft_lighting_held(&l); i++)
         for (int c = 0; c < 3; c++)
-            sum[i > 0 || l.scene_count == 0][c] += (double)(l.irradiance[i][c] * fmaxf(l.direction[i][2], 0));
+            sum[i > 0 || l.scene_count == 0][c] +=
+                (double)(l.irradiance[i][c] * fmaxf(l.direction[i][2], 0)) / (i < l.scene_count ? 1 : l.set_count);
     weft_gl_set_vec3(program, "ground_key", sum[0][0], sum[0][1], sum[0][2]);
     weft_gl_set_vec3(program, "ground_fill", sum[1][0], sum[1][1], sum[1][2]);
 }

@@ -1,13 +1,17 @@
 #include "player/draw/lighting.h"
 
-static void add(weft_lighting *lighting, weft_vec3 direction, const double irradiance[3])
+static void set(weft_lighting *lighting, int at, weft_vec3 direction, const double irradiance[3])
 {
     const double axis[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
     for (int i = 0; i < 3; i++) {
-        lighting->direction[lighting->count][i] = (float)axis[i];
-        lighting->irradiance[lighting->count][i] = (float)irradiance[i];
+        lighting->direction[at][i] = (float)axis[i];
+        lighting->irradiance[at][i] = (float)irradiance[i];
     }
-    lighting->count++;
+}
+
+static void add(weft_lighting *lighting, weft_vec3 direction, const double irradiance[3])
+{
+    set(lighting, lighting->count++, direction, irradiance);
 }
 
 static weft_vec3 turned(weft_vec3 direction, double angle_rad)
@@ -32,23 +36,36 @@ static weft_vec3 place_in_key(const weft_scene *scene, long number)
     return weft_unit(weft_add(middle, shift));
 }
 
-static double brightness(const weft_lighting *l, int light)
+static double brightness(const weft_distant_light *light)
 {
-    const float *irradiance = l->irradiance[light];
-    return l->direction[light][2] > 0 ? (double)(irradiance[0] + irradiance[1] + irradiance[2]) : 0;
+    return (double)light->direction.z > 0 ? (double)(light->irradiance[0] + light->irradiance[1] + light->irradiance[2])
+                                          : 0;
 }
 
-/* The light above the horizon that the share `at` of all their brightness falls into. */
-static weft_vec3 fill_at(const weft_lighting *l, double at)
+/* The i-th light that shadows may come from: a region, or at rest a part of one. Those that follow each other lie
+ * beside each other. */
+static const weft_distant_light *fill_light(const weft_environment *environment, bool rests, int i)
 {
-    double total = 0;
-    int light = l->scene_count;
-    for (int i = l->scene_count; i < l->count; i++)
-        total += brightness(l, i);
-    for (double rest = at * total; light < l->count - 1 && rest >= brightness(l, light); light++)
-        rest -= brightness(l, light);
-    const float *d = l->direction[light];
-    return d[2] > 0 ? weft_vec3_of((weft_real)d[0], (weft_real)d[1], (weft_real)d[2]) : weft_vec3_of(0, 0, 1);
+    return rests ? &environment->part[weft_environment_frame_of(i % WEFT_ENVIRONMENT_PARTS)][i / WEFT_ENVIRONMENT_PARTS]
+                 : &environment->region[i];
+}
+
+/* Those above the horizon that the shares at[count], which increase, of all their brightness fall into. */
+static void find_fill(const weft_environment *environment, bool rests, const double *at, int count, weft_vec3 *fill)
+{
+    int light_count = environment->region_count * (rests ? WEFT_ENVIRONMENT_PARTS : 1);
+    double total = 0, passed = 0;
+    for (int i = 0; i < light_count; i++)
+        total += brightness(fill_light(environment, rests, i));
+    int found = 0;
+    for (int i = 0; i < light_count && found < count; i++) {
+        const weft_distant_light *light = fill_light(environment, rests, i);
+        passed += brightness(light);
+        for (; found < count && at[found] * total < passed; found++)
+            fill[found] = light->direction;
+    }
+    for (; found < count; found++)
+        fill[found] = weft_vec3_of(0, 0, 1);
 }
 
 /* One shadow a frame would leave bands in the penumbra of a picture that has just come to rest. */
@@ -60,36 +77,66 @@ static void choose_key(weft_lighting *l, const weft_scene *scene, long frame)
         l->key[i] = place_in_key(scene, is_one ? frame : frame * WEFT_KEY_PLACES + i);
 }
 
-/* All of them move on a frame. */
-static void choose_fill(weft_lighting *l, long frame)
+/* All of them move on a frame. Lights lie along a curve that fills the sphere, and places on it are even in time. */
+static void choose_fill(weft_lighting *l, const weft_scene *scene, const weft_environment *environment, long frame)
 {
-    int wanted = frame < 0 ? WEFT_FILL_DIRECTIONS / 2 : WEFT_FILL_DIRECTIONS;
-    double place = fmod(0.5 + (double)(frame < 0 ? 0 : frame) * 0.6180339887498949, 1);
-    l->fill_count = l->count > l->scene_count ? wanted : 0;
+    double place = fmod(0.5 + (double)(frame < 0 ? 0 : frame) * 0.6180339887498949, 1), at[WEFT_FILL_DIRECTIONS];
+    l->fill_count = frame < 0 ? WEFT_FILL_MOVING : WEFT_FILL_DIRECTIONS;
+    l->fill_step = frame < 0 ? 1 : WEFT_FILL_STEP;
     for (int i = 0; i < l->fill_count; i++)
-        l->fill[i] = fill_at(l, (i + place) / l->fill_count);
+        at[i] = (i + place) / l->fill_count;
+    find_fill(environment, frame >= 0, at, l->fill_count, l->fill);
+    for (int i = 0; i < l->fill_count; i++)
+        l->fill[i] = turned(l->fill[i], scene->environment_turn_rad);
+}
+
+/* The part of its regions that a frame lights pixels of one kind from. Each kind takes all of them in turn. Of the bits
+ * of a part the low ones tell the coarse place within the region, the high ones the fine one: kinds differ in both, so
+ * that neighbours complete each other in one frame, and in the mean of sixteen. */
+static int part_of(long frame, int kind)
+{
+    return (int)((frame ^ kind ^ (long)kind << 4) % WEFT_ENVIRONMENT_PARTS);
+}
+
+static void add_environment(weft_lighting *l, const weft_scene *scene, const weft_environment *environment, long frame)
+{
+    int room = (WEFT_MAX_LIGHTS - l->scene_count) / environment->region_count;
+    /* Where a light is tinted it has to be the same in neighbouring pixels. */
+    l->set_count = frame < 0 || scene->show_extrapolation ? 1 : room < WEFT_LIGHT_SETS ? room : WEFT_LIGHT_SETS;
+    for (int i = 0; i < environment->region_count; i++) {
+        for (int kind = 0; kind < l->set_count; kind++) {
+            const weft_distant_light *light =
+                frame < 0 ? &environment->region[i] : &environment->part[part_of(frame, kind)][i];
+            double irradiance[3];
+            for (int c = 0; c < 3; c++)
+                irradiance[c] = scene->environment_strength * (double)light->irradiance[c];
+            set(l, l->scene_count + i * l->set_count + kind, turned(light->direction, scene->environment_turn_rad),
+                irradiance);
+        }
+        l->count++;
+    }
 }
 
 weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame)
 {
-    weft_lighting lighting = {0};
+    weft_lighting lighting = {.set_count = 1, .fill_step = 1};
     for (int i = 0; i < scene->light_count; i++)
         add(&lighting, i == 0 ? place_in_key(scene, frame) : weft_direction_of_angles(scene->light[i].direction),
             scene->light[i].irradiance);
     lighting.scene_count = lighting.count;
     choose_key(&lighting, scene, frame);
-    for (int i = 0; environment && scene->environment && i < environment->region_count; i++) {
-        const weft_distant_light *light =
-            frame < 0 ? &environment->region[i] : &environment->part[frame % WEFT_ENVIRONMENT_PARTS][i];
-        double irradiance[3];
-        for (int c = 0; c < 3; c++)
-            irradiance[c] = scene->environment_strength * (double)light->irradiance[c];
-        add(&lighting, turned(light->direction, scene->environment_turn_rad), irradiance);
+    if (environment && scene->environment) {
+        add_environment(&lighting, scene, environment, frame);
+        choose_fill(&lighting, scene, environment, frame);
     }
-    choose_fill(&lighting, frame);
     if (lighting.count == 0)
         add(&lighting, weft_vec3_of(0, 0, 1), (const double[3]){0, 0, 0});
     return lighting;
+}
+
+int weft_lighting_held(const weft_lighting *lighting)
+{
+    return lighting->scene_count + (lighting->count - lighting->scene_count) * lighting->set_count;
 }
 
 int weft_lighting_count(const weft_scene *scene, const weft_environment *environment)

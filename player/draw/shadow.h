@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 /* Those of the key light, then those of the environment (player/draw/lighting.h). */
-enum { WEFT_SHADOW_LAYERS = 8 };
+enum { WEFT_SHADOW_LAYERS = 12 };
 
 typedef struct weft_shadow_map {
     GLuint buffer, depth;

@@ -161,10 +161,10 @@ static weft_distant_light light_of(const double sum[SUMS], double scale)
     return light;
 }
 
-/* The frame that takes a part. Reversed bits: neighbours become far apart in time. Without more, the first frames would
+/* Reversed bits: neighbours become far apart in time. Without more, the first frames would
  * all take a corner of the region and of each of its quarters; so two cuts in four, which are one across and one
  * upright, count from their other end: the part then lies a third from the edges. */
-static int frame_of(int part)
+int weft_environment_frame_of(int part)
 {
     const int other_end = 0x19;
     int frame = 0;
@@ -183,7 +183,7 @@ typedef struct filling {
 
 static void finish_part(filling *f)
 {
-    f->environment->part[frame_of(f->part)][f->region] = light_of(f->sum, WEFT_ENVIRONMENT_PARTS);
+    f->environment->part[weft_environment_frame_of(f->part)][f->region] = light_of(f->sum, WEFT_ENVIRONMENT_PARTS);
     memset(f->sum, 0, sizeof f->sum);
     f->part++;
 }

@@ -3,8 +3,8 @@
  * The sphere is cut into 48 regions, each time the one whose light spreads most: the largest power times variance of
  * direction (Viriyothai and Debevec, Variance Minimization Light Probe Sampling, 2009), at the median of its longer
  * side (Debevec, A Median Cut Algorithm for Light Probe Sampling, 2005). A light from the centroid of each is what a
- * moving picture is lit with. Each region is cut on into 128 parts of equal power: at rest, frame i takes the i-th part
- * of every region, so that the mean of 128 frames is lit by all 6144. Pure: no OpenGL. */
+ * moving picture is lit with. Each region is cut on into 128 parts of equal power: at rest, a frame takes one part
+ * of every region (player/draw/lighting.h), so that the mean of 128 frames is lit by all 6144. Pure: no OpenGL. */
 #ifndef WEFT_PLAYER_SCENE_ENVIRONMENT_H
 #define WEFT_PLAYER_SCENE_ENVIRONMENT_H
 
@@ -25,6 +25,10 @@ typedef struct weft_environment {
      * whole region: it stands for all of it in its frame. */
     weft_distant_light part[WEFT_ENVIRONMENT_PARTS][WEFT_ENVIRONMENT_REGIONS];
 } weft_environment;
+
+/* The frame that takes a part of each region. Numbers of parts that follow each other lie beside each other, those of
+ * frames far apart. */
+int weft_environment_frame_of(int part);
 
 /* `image` holds radiance on the sphere by longitude and latitude: the top row is the world's +z, the middle column +y,
  * and x = +1 lies a quarter to the right of it. Negative and non-finite values count as 0, those above 1e30 as that.

@@ -2,12 +2,12 @@
 
 #include "base/clock.h"
 #include "player/draw/moving.h"
+#include "player/draw/resting.h"
 #include "player/settings/exposure.h"
 
 #include <epoxy/gl.h>
 
-/* LONGEST_PIXEL: any four frames in a row lie well apart along a pixel. */
-enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64, LONGEST_PIXEL = 4 };
+enum { STILL_FRAMES = 16, STILL_FRAMES_OF_ENVIRONMENT = 64 };
 
 static const double settle_s = 0.12; /* after the last change the mean of a picture at rest begins */
 
@@ -49,32 +49,10 @@ weft_code weft_application_prepare_canvas(weft_application *a, int width, int he
     return WEFT_OK;
 }
 
-/* Radical inverses: any first few of these shifts spread evenly over the pixel. */
-static double radical_inverse(int index, int base)
-{
-    double result = 0, digit = 1;
-    for (; index > 0; index /= base) {
-        digit /= base;
-        result += digit * (index % base);
-    }
-    return result;
-}
-
-static weft_sampling resting_sampling(const weft_application *a)
-{
-    int index = a->canvas.frame_count;
-    return (weft_sampling){
-        .shift_x = index > 0 ? radical_inverse(index, 2) - 0.5 : 0,
-        .shift_y = index > 0 ? radical_inverse(index, 3) - 0.5 : 0,
-        .longest_pixel = LONGEST_PIXEL,
-        .frame = index,
-    };
-}
-
 static weft_code draw_resting(weft_application *a, weft_error *error)
 {
     weft_canvas *canvas = &a->canvas;
-    weft_sampling sampling = resting_sampling(a);
+    weft_sampling sampling = weft_sampling_at_rest(canvas->frame_count);
     weft_canvas_begin_frame(canvas);
     WEFT_TRY(weft_player_draw(a->player, &a->interaction.scene, canvas->width, canvas->height, sampling, error));
     weft_canvas_end_frame(canvas);

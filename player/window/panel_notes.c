@@ -15,6 +15,7 @@ static void show_progress(const weft_application *a, double middle, double botto
 {
     char text[64];
     snprintf(text, sizeof text, "Reading %.0f %%", 100 * a->progress);
+    weft_ui_room_for("Reading 100 %");
     weft_ui_note_begin("progress", middle, bottom, 0.5, 1);
     weft_ui_text(text);
     weft_ui_panel_end();

@@ -9,6 +9,7 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cstdio>
 #include <deque>
 
@@ -279,6 +280,12 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
     ImGui::Begin(name, nullptr,
                  fixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoInputs);
+}
+
+void weft_ui_room_for(const char *text)
+{
+    const float width = ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().WindowPadding.x;
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(FLT_MAX, FLT_MAX));
 }
 
 void weft_ui_wrap_within(double width)

@@ -37,7 +37,7 @@ static weft_program_kind kind_of(weft_mode mode, int plot, int choice)
                                .threads = mode == WEFT_MODE_ANALYTIC && choice & 8,
                                .layer_groups = layered ? 4 : 0,
                                .drawn_groups = layered ? 2 : 0,
-                               .incidence_power = layered ? choice >> 3 & 3 : 0,
+                               .incidence_power = layered && choice & 8 ? 1 + (choice >> 1 & 1) : 0,
                                .opacity = layered && choice & 4,
                                .lobe_count = compressed && choice & 8 ? 3 : 0,
                                .view_table = compressed && choice & 16,

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { WIDTH = 128, HEIGHT = WIDTH / 2 };
 
@@ -146,36 +147,126 @@ static void the_first_frames_lean_to_no_corner_of_a_region(void **state)
     free(environment);
 }
 
-/* The region that a direction of the environment's shadows lies in. */
-static int region_of(const weft_lighting *lighting, int fill)
-{
-    int region = lighting->scene_count;
-    while (region < lighting->count - 1 &&
-           weft_dot(lighting->fill[fill], weft_vec3_of(lighting->direction[region][0], lighting->direction[region][1],
-                                                       lighting->direction[region][2])) < 1 - 1e-6)
-        region++;
-    return region;
-}
-
-static void the_shadows_of_a_frame_come_from_other_regions_than_those_before(void **state)
+static void the_shadows_of_a_frame_come_from_elsewhere_than_those_before(void **state)
 {
     (void)state;
     enum { FRAMES = 32 };
-    weft_image image = map_of(1);
-    weft_environment *environment = environment_of(&image);
+    weft_environment *environment = studio();
     weft_scene scene = weft_scene_default();
     int stays = 0;
     scene.environment = true;
     for (int frame = 1; frame <= FRAMES; frame++) {
         weft_lighting before = weft_lighting_of(&scene, environment, frame - 1),
                       now = weft_lighting_of(&scene, environment, frame);
+        assert_int_equal(now.fill_count, WEFT_FILL_DIRECTIONS);
         for (int i = 0; i < now.fill_count; i++)
-            stays += region_of(&before, i) == region_of(&now, i);
+            stays += weft_dot(before.fill[i], now.fill[i]) > cos(weft_rad_of_deg(3));
     }
-    printf("%d of %d directions stay in their region\n", stays, FRAMES * WEFT_FILL_DIRECTIONS);
+    printf("%d of %d directions stay where they are\n", stays, FRAMES * WEFT_FILL_DIRECTIONS);
     assert_true(stays < FRAMES * WEFT_FILL_DIRECTIONS / 4);
     free(environment);
-    weft_image_free(&image);
+}
+
+/* Of all directions of the environment's shadows in the first frames: how far the nearest other one lies, in the mean.
+ */
+static double gap_deg(const weft_environment *environment, int frames)
+{
+    enum { MOST = 16 * WEFT_FILL_DIRECTIONS };
+    weft_vec3 at[MOST];
+    weft_scene scene = weft_scene_default();
+    int count = frames * WEFT_FILL_DIRECTIONS;
+    double sum = 0;
+    scene.environment = true;
+    for (int frame = 0; frame < frames; frame++) {
+        weft_lighting now = weft_lighting_of(&scene, environment, frame);
+        memcpy(at + frame * WEFT_FILL_DIRECTIONS, now.fill, sizeof now.fill);
+    }
+    for (int i = 0; i < count; i++) {
+        double nearest = -1;
+        for (int k = 0; k < count; k++)
+            nearest = k == i ? nearest : fmax(nearest, (double)weft_dot(at[i], at[k]));
+        sum += weft_deg_of_rad(acos(fmin(nearest, 1))) / count;
+    }
+    return sum;
+}
+
+/* 6.0 degrees where each region is gone through in the order of its frames. */
+static void the_shadows_of_sixteen_frames_leave_no_gap(void **state)
+{
+    (void)state;
+    weft_environment *environment = studio();
+    double gap = gap_deg(environment, 16);
+    printf("the next shadow lies %.2f degrees away\n", gap);
+    assert_true(gap > 6.4);
+    free(environment);
+}
+
+static weft_vec3 light_of_kind(const weft_lighting *l, int region, int kind)
+{
+    const float *d = l->direction[l->scene_count + region * l->set_count + kind];
+    return weft_vec3_of((weft_real)d[0], (weft_real)d[1], (weft_real)d[2]);
+}
+
+/* How far the mean of lights of a region is from that of all its parts. */
+static double off_centre(const weft_environment *environment, int region, weft_vec3 mean)
+{
+    weft_vec3 all = weft_vec3_of(0, 0, 0);
+    for (int part = 0; part < WEFT_ENVIRONMENT_PARTS; part++)
+        all = weft_add(all, weft_scale(environment->part[part][region].direction, 1.0 / WEFT_ENVIRONMENT_PARTS));
+    return (double)weft_length(weft_subtract(mean, all));
+}
+
+/* Of lights of one kind of pixels, or of all where it is -1, in the first frames; largest over the regions. */
+static double off_after(const weft_environment *environment, int frames, int kind)
+{
+    weft_scene scene = weft_scene_default();
+    double largest = 0;
+    scene.environment = true;
+    for (int region = 0; region < environment->region_count; region++) {
+        weft_vec3 sum = weft_vec3_of(0, 0, 0);
+        int count = 0;
+        for (int frame = 0; frame < frames; frame++) {
+            weft_lighting l = weft_lighting_of(&scene, environment, frame);
+            assert_int_equal(l.set_count, WEFT_LIGHT_SETS);
+            for (int k = 0; k < l.set_count; k++) {
+                if (kind < 0 || k == kind) {
+                    sum = weft_add(sum, light_of_kind(&l, region, k));
+                    count++;
+                }
+            }
+        }
+        largest = fmax(largest, off_centre(environment, region, weft_scale(sum, (weft_real)(1.0 / count))));
+    }
+    return largest;
+}
+
+/* Sixteen frames of neighbours hold every part once, and each pixel sees every part in 128. */
+static void neighbouring_pixels_complete_each_other(void **state)
+{
+    (void)state;
+    weft_environment *environment = studio();
+    assert_true(off_after(environment, 16, -1) < 1e-5);
+    for (int kind = 0; kind < WEFT_LIGHT_SETS; kind++) {
+        assert_true(off_after(environment, WEFT_ENVIRONMENT_PARTS, kind) < 1e-5);
+        assert_true(off_after(environment, 16, kind) > 1e-4);
+    }
+    /* In one frame already. */
+    double one = off_after(environment, 1, -1), alone = off_after(environment, 1, 0);
+    printf("one frame is %.3f off, one pixel of it %.3f\n", one, alone);
+    assert_true(one < 0.3 * alone);
+    free(environment);
+}
+
+static void a_tinted_light_is_that_of_its_neighbours(void **state)
+{
+    (void)state;
+    weft_environment *environment = studio();
+    weft_scene scene = weft_scene_default();
+    scene.environment = scene.show_extrapolation = true;
+    assert_int_equal(weft_lighting_of(&scene, environment, 3).set_count, 1);
+    scene.show_extrapolation = false;
+    assert_int_equal(weft_lighting_of(&scene, environment, -1).set_count, 1);
+    free(environment);
 }
 
 static void expect_refused(const weft_image *image)
@@ -260,7 +351,10 @@ int main(void)
         cmocka_unit_test(the_parts_of_a_region_carry_its_power_in_equal_shares),
         cmocka_unit_test(a_bright_pixel_becomes_a_light_where_the_map_has_it),
         cmocka_unit_test(the_first_frames_lean_to_no_corner_of_a_region),
-        cmocka_unit_test(the_shadows_of_a_frame_come_from_other_regions_than_those_before),
+        cmocka_unit_test(the_shadows_of_a_frame_come_from_elsewhere_than_those_before),
+        cmocka_unit_test(the_shadows_of_sixteen_frames_leave_no_gap),
+        cmocka_unit_test(neighbouring_pixels_complete_each_other),
+        cmocka_unit_test(a_tinted_light_is_that_of_its_neighbours),
         cmocka_unit_test(black_and_square_maps_are_refused_and_spoilt_pixels_are_black),
         cmocka_unit_test(maps_of_two_pixels_and_of_enormous_values_give_finite_lights),
         cmocka_unit_test(the_scene_lists_its_lights_before_those_of_the_map),

@@ -75,7 +75,7 @@ bool is_lit(SurfacePoint point)
 {
     float largest = 0.0;
     for (int i = 0; i < (ONE_LIGHT ? 1 : light_count); i++)
-        largest = max(largest, dot(light_direction[i], point.axes[2]));
+        largest = max(largest, dot(light_direction[CHOSEN_LIGHTS > 0 ? i : light_at(point, i)], point.axes[2]));
     return largest > 0.0;
 }
 

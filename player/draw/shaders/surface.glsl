@@ -17,7 +17,9 @@ uniform vec3 fill_direction[SHADOW_LAYERS - KEY_PLACES];
 uniform int shadow_taps; // 1 or 4
 uniform int key_count;   // places in the first light from which shadows fall: 0, 1 or KEY_PLACES
 uniform int scene_count; // the first of them; the others are the environment
+uniform int set_count;   // of which each kind of pixels has others
 uniform int fill_count;  // 0: the environment casts no shadows
+uniform int fill_step;   // of its directions a pixel sees one in so many, its neighbours others
 uniform int light_count;
 uniform vec3 light_direction[MAX_LIGHTS];  // world, unit, toward the light
 uniform vec3 light_irradiance[MAX_LIGHTS]; // on a surface that faces it, over pi
@@ -36,6 +38,7 @@ struct SurfacePoint {
     float key_share; // of the first light that is not in shadow
     float env_share; // of the environment's light, about
     float chance;    // in [0, 1)
+    int kind;        // of pixel: which set of the environment's lights it is lit by
     ivec2 chosen;       // where CHOSEN_LIGHTS: lights of the environment,
     vec2 chosen_weight; // and what each of them counts
 };
@@ -77,6 +80,7 @@ SurfacePoint plotted_point()
     point.sides = vec4(0.0);
     point.key_share = point.env_share = 1.0;
     point.chance = 0.0;
+    point.kind = 0;
     return point;
 }
 
@@ -128,7 +132,8 @@ float key_share_of(vec3 position, vec3 normal)
 float fill_share(vec3 position, vec3 normal)
 {
     float seen = 1e-3, all_of_it = 1e-3;
-    for (int i = 0; i < fill_count; i++) {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    for (int i = (pixel.x + pixel.y) % fill_step; i < fill_count; i += fill_step) {
         float cosine = max(dot(fill_direction[i], normal), 0.0);
         all_of_it += cosine;
         seen += cosine * unshadowed_share(position, normal, KEY_PLACES + i, 1);
@@ -179,6 +184,13 @@ void choose_lights(inout SurfacePoint point)
     }
 }
 
+// Of 4 x 2 kinds, each next to the one that it completes most (player/draw/lighting.h).
+int pixel_kind()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    return (pixel.x & 1) * 4 + ((pixel.x >> 1 ^ pixel.y) & 1) * 2 + (pixel.y & 1);
+}
+
 SurfacePoint surface_point()
 {
     if (PLOT != 0)
@@ -196,6 +208,7 @@ SurfacePoint surface_point()
     point.sides = textureLod(surface_sides, pixel, 0.0);
     find_shadows(eye + abs(place.w) * ray, point);
     point.chance = STOCHASTIC ? pixel_chance() : 0.0;
+    point.kind = set_count > 1 ? pixel_kind() % set_count : 0;
     if (CHOSEN_LIGHTS > 0)
         choose_lights(point);
     return point;
@@ -204,7 +217,9 @@ SurfacePoint surface_point()
 // The number of the one that is evaluated as the `i`-th.
 int light_at(SurfacePoint point, int i)
 {
-    return CHOSEN_LIGHTS == 0 || i < scene_count ? i : i == scene_count ? point.chosen.x : point.chosen.y;
+    if (CHOSEN_LIGHTS > 0)
+        return i < scene_count ? i : i == scene_count ? point.chosen.x : point.chosen.y;
+    return i < scene_count ? i : scene_count + (i - scene_count) * set_count + point.kind;
 }
 
 float weight_at(SurfacePoint point, int i)
