@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Layers learn from 512 texels, which are to be there. */
-enum { SIDE = 12, LAYERS_SIDE = 24, SURFACE_SIDE = 64, ASKED_SIDE = 48, BLOCK_SIDE = 64 };
+enum { SIDE = 20, LAYERS_SIDE = 24, SURFACE_SIDE = 64, ASKED_SIDE = 48, BLOCK_SIDE = 64, SQUARE_SIDE = 4 };
 
 /* Of the excerpt, at most; of one with a surface, whose texels see each other, and of those of its texels that are
  * asked for. */
@@ -368,8 +368,9 @@ static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error
         return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &work->excerpt, error);
     if (weft_dataset_has_surface(dataset))
         return read_with_surface(dataset, work, error);
-    weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
+    weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SMALL_SQUARES;
     int side = side_of(work->options.layer_count > 0 ? LAYERS_SIDE : SIDE, most_samples, layout->image_count);
+    side -= side > SQUARE_SIDE ? side % SQUARE_SIDE : 0;
     WEFT_TRY(weft_excerpt_read(dataset, kind, side, &work->excerpt, error));
     work->spacing = sqrt((double)layout->width * layout->height /
                          ((double)work->excerpt.layout.width * work->excerpt.layout.height));
@@ -392,8 +393,8 @@ static weft_code certify(weft_dataset *dataset, measuring *work, weft_error *err
     weft_hold_out *result = work->result;
     bool is_flat = result->heights.asked && !result->heights.used;
     const held_and_fitted *by = is_flat ? &work->flat_residuals : &work->residuals;
-    WEFT_TRY(weft_certify(&by->held, &by->fitted, certified, work->spacing, &result->certificate,
-                          &result->has_certificate, error));
+    WEFT_TRY(weft_certify(&by->held, &by->fitted, certified, work->spacing, work->excerpt.neighbours,
+                          &result->certificate, &result->has_certificate, error));
     result->certificate.direction_count = held_directions(work);
     return result->has_certificate ? weft_certify_registration(dataset, &result->certificate, error) : WEFT_OK;
 }

@@ -261,7 +261,7 @@ static weft_code find_interval(const weft_held_bench *bench, const weft_asked_sa
     *width = 0;
     weft_code code = weft_residuals_add(&residuals, &bench->excerpt, held, NULL, 0, enough_residuals, error);
     if (code == WEFT_OK)
-        code = weft_certify(&residuals, &none, certified, 1, &certificate, &found, error);
+        code = weft_certify(&residuals, &none, certified, 1, 1, &certificate, &found, error);
     if (code == WEFT_OK && found)
         code = cover(&certificate, &residuals, width, error);
     weft_residuals_free(&residuals);
