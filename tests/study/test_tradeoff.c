@@ -277,6 +277,15 @@ static long count_held(bool grazing)
     return count;
 }
 
+static long count_held_twice_at_grazing(void)
+{
+    long count = 0;
+    for (int i = 0; i < IMAGES; i++)
+        count +=
+            splits.held[i] == (WEFT_HELD_VIEW | WEFT_HELD_LIGHT) && grazes(grid.light[i], grid.view[i / DIRECTIONS]);
+    return count;
+}
+
 static weft_held_bench *open_bench(weft_dataset **dataset)
 {
     weft_held_bench *bench;
@@ -315,7 +324,13 @@ static void errors_are_told_apart_where_eyes_look(void **state)
     assert_true(m.held[WEFT_SAMPLES_ALL].relative_rmse < 0.499);
     for (int kind = 0; kind < WEFT_SAMPLE_KINDS; kind++)
         assert_true(m.fitted[kind].relative_rmse < 0.01);
-    assert_int_equal(m.picture_count, 8);
+    assert_int_equal(m.picture_count, 64);
+    assert_int_equal(m.picture_pixels[WEFT_SAMPLES_ALL], 4 * 64);
+    assert_int_equal(m.picture_pixels[WEFT_SAMPLES_GRAZING], 4 * count_held_twice_at_grazing());
+    assert_true(m.quality[WEFT_SAMPLES_GRAZING].psnr_db < 20 && m.quality[WEFT_SAMPLES_HIGHLIGHTS].psnr_db < 20);
+    assert_true(m.quality[WEFT_SAMPLES_SHADOWS].psnr_db > 40 && m.quality[WEFT_SAMPLES_SHADOWS].flip < 0.01);
+    assert_true(m.quality[WEFT_SAMPLES_GRAZING].flip > 0.1 && m.quality[WEFT_SAMPLES_HIGHLIGHTS].flip > 0.1);
+    assert_true(m.quality[WEFT_SAMPLES_GRAZING].flip > 1.1 * m.quality[WEFT_SAMPLES_ALL].flip);
     assert_int_equal(m.sample.width, 2);
     weft_held_error_free(&m);
     weft_held_bench_free(bench);
