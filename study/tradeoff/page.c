@@ -254,8 +254,8 @@ static void put_picture_table(weft_page *page, const weft_tradeoff *tradeoff)
     if (pictures == 0)
         return;
     fputs("<h2 id=\"looks\">How alike pictures look</h2>\n<table class=\"long\">\n", page->html);
-    weft_page_columns(page, "|:model|PSNR dB|grazing|highlights|shadows|SSIM|grazing|highlights|shadows|FLIP|grazing|"
-                            "highlights|shadows");
+    weft_page_columns(page, "|:model|PSNR dB|PSNR, grazing|PSNR, highlights|PSNR, shadows|SSIM|SSIM, grazing|"
+                            "SSIM, highlights|SSIM, shadows|FLIP|FLIP, grazing|FLIP, highlights|FLIP, shadows");
     for (int i = 0; i < tradeoff->row_count; i++)
         put_qualities(page, &tradeoff->row[i], i + 1);
     fprintf(page->html,
