@@ -1,7 +1,7 @@
 /* Whether the certificate of a material covers what it says, on directions that neither the fit nor the certificate
- * has seen: `bench_certificate NAME.btf.h5 lobes|layers`. A further split of the dataset is left out of both; of fewer
- * than 24 images each in turn. Layers are seen through the heights of the dataset where weft compress keeps them.
- * Prints one row of comma-separated values a level. */
+ * has seen: `bench_certificate NAME.btf.h5 lobes|layers [SIDE]`, of at most SIDE x SIDE texels of the middle (32). A
+ * further split of the dataset is left out of both; of fewer than 24 images each in turn. Layers are seen through the
+ * heights of the dataset where weft compress keeps them. Prints one row of comma-separated values a level. */
 #include "study/error/coverage.h"
 #include "study/hold_out/hold_out.h"
 #include "study/hold_out/residuals.h"
@@ -11,10 +11,11 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SIDE = 32, TEST_SPLIT = 2, SHOWN_LEVELS = 3 };
+enum { SIDE = 32, TEST_SPLIT = 2, SHOWN_LEVELS = 6 };
 
 typedef struct testing {
     const char *name, *model;
+    int side;
     weft_compress_options options;
     weft_excerpt excerpt;
     weft_splits splits;
@@ -121,7 +122,7 @@ static weft_code test(testing *t, weft_error *error)
     WEFT_TRY(weft_dataset_open(t->name, &dataset, error));
     weft_code code = weft_splits_create(weft_dataset_get_layout(dataset), 0, TEST_SPLIT + 1, &t->splits, error);
     if (code == WEFT_OK)
-        code = weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, SIDE, &t->excerpt, error);
+        code = weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, t->side, &t->excerpt, error);
     weft_dataset_close(dataset);
     bool each = t->splits.kind == WEFT_SPLIT_EACH;
     int first = each ? 0 : TEST_SPLIT;
@@ -132,12 +133,13 @@ static weft_code test(testing *t, weft_error *error)
 
 int main(int argc, char **argv)
 {
-    bool is_layers = argc == 3 && strcmp(argv[2], "layers") == 0;
-    if (argc != 3 || (!is_layers && strcmp(argv[2], "lobes") != 0)) {
-        fprintf(stderr, "usage: bench_certificate NAME.btf.h5 lobes|layers\n");
+    bool has_model = argc == 3 || argc == 4, is_layers = has_model && strcmp(argv[2], "layers") == 0;
+    int side = argc == 4 ? atoi(argv[3]) : SIDE;
+    if (!has_model || side < 1 || (!is_layers && strcmp(argv[2], "lobes") != 0)) {
+        fprintf(stderr, "usage: bench_certificate NAME.btf.h5 lobes|layers [SIDE]\n");
         return 2;
     }
-    testing t = {.name = argv[1], .model = argv[2], .options = weft_compress_default_options()};
+    testing t = {.name = argv[1], .model = argv[2], .side = side, .options = weft_compress_default_options()};
     weft_error error = {0};
     t.options.layer_count = is_layers ? 16 : 0;
     if (is_layers) {

@@ -25,6 +25,13 @@ typedef struct weft_picture_quality {
 weft_code weft_picture_quality_measure(const weft_image *reference, const weft_image *test,
                                        weft_picture_quality *result, weft_error *error);
 
+/* The same by regions of the picture: `regions` [height][width] has bit k where a pixel lies in region k, and pixels[k]
+ * counts these. PSNR, and the means of SSIM and FLIP, are of the pixels of a region; their windows reach beyond it. A
+ * region without a pixel has 0 of all. Errors: as above. */
+weft_code weft_picture_quality_by_region(const weft_image *reference, const weft_image *test, const uint8_t *regions,
+                                         int region_count, weft_picture_quality *result, long *pixels,
+                                         weft_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -8,6 +8,7 @@
 #include <exception>
 #include <limits>
 #include <new>
+#include <vector>
 
 namespace
 {
@@ -22,10 +23,21 @@ Mat mat_of(const weft_image *image)
     return copy;
 }
 
-double psnr_of(const Mat &reference, const Mat &test)
+/* The maps of all measures have one number a pixel. */
+Mat map_like(const Mat &picture)
 {
-    double square = cv::norm(reference, test, cv::NORM_L2SQR) / static_cast<double>(3 * reference.total());
-    return square > 0 ? -10 * std::log10(square) : std::numeric_limits<double>::infinity();
+    return Mat(picture.rows, picture.cols, CV_64F);
+}
+
+/* Of the three channels. */
+Mat mean_squares(const Mat &reference, const Mat &test)
+{
+    Mat map = map_like(reference);
+    map.forEach<double>([&](double &square, const int *at) {
+        Vec3d apart = reference.at<Vec3d>(at[0], at[1]) - test.at<Vec3d>(at[0], at[1]);
+        square = apart.dot(apart) / 3;
+    });
+    return map;
 }
 
 /* ---- SSIM ---- */
@@ -39,21 +51,22 @@ Mat local_mean(const Mat &values)
     return mean;
 }
 
-double ssim_of(const Mat &x, const Mat &y)
+Mat ssim_map(const Mat &x, const Mat &y)
 {
     constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
     Mat mx = local_mean(x), my = local_mean(y);
     Mat xx = local_mean(x.mul(x)) - mx.mul(mx), yy = local_mean(y.mul(y)) - my.mul(my),
         xy = local_mean(x.mul(y)) - mx.mul(my);
-    double sum = 0;
+    Mat map = Mat::zeros(x.rows, x.cols, CV_64F);
     for (int row = 0; row < x.rows; row++) {
         for (int i = 0; i < 3 * x.cols; i++) {
             double a = mx.ptr<double>(row)[i], b = my.ptr<double>(row)[i];
             double covariance = xy.ptr<double>(row)[i], variances = xx.ptr<double>(row)[i] + yy.ptr<double>(row)[i];
-            sum += (2 * a * b + c1) * (2 * covariance + c2) / ((a * a + b * b + c1) * (variances + c2));
+            map.at<double>(row, i / 3) +=
+                (2 * a * b + c1) * (2 * covariance + c2) / ((a * a + b * b + c1) * (variances + c2)) / 3;
         }
     }
-    return sum / static_cast<double>(3 * x.total());
+    return map;
 }
 
 /* ---- FLIP: colours ---- */
@@ -196,32 +209,64 @@ seen_picture seen(const Mat &encoded)
     return result;
 }
 
-double flip_of(const Mat &reference, const Mat &test)
+Mat flip_map(const Mat &reference, const Mat &test)
 {
     seen_picture a = seen(reference), b = seen(test);
-    double sum = 0;
+    Mat map = map_like(reference);
     for (int y = 0; y < reference.rows; y++) {
         for (int x = 0; x < reference.cols; x++) {
             double colour = colour_difference(a.colour.at<Vec3d>(y, x), b.colour.at<Vec3d>(y, x));
             double feature = std::max(std::fabs(a.edges.at<double>(y, x) - b.edges.at<double>(y, x)),
                                       std::fabs(a.points.at<double>(y, x) - b.points.at<double>(y, x)));
-            sum += std::pow(colour, 1 - std::pow(feature / std::sqrt(2.0), feature_exponent));
+            map.at<double>(y, x) = std::pow(colour, 1 - std::pow(feature / std::sqrt(2.0), feature_exponent));
         }
     }
-    return sum / static_cast<double>(reference.total());
+    return map;
+}
+
+/* ---- Regions ---- */
+
+struct quality_maps {
+    Mat squares, ssim, flip;
+};
+
+weft_picture_quality quality_of(const quality_maps &maps, const Mat &regions, int bit, long *pixels)
+{
+    double squares = 0, ssim = 0, flip = 0;
+    long count = 0;
+    for (int y = 0; y < regions.rows; y++) {
+        for (int x = 0; x < regions.cols; x++) {
+            if (!(regions.at<uint8_t>(y, x) >> bit & 1))
+                continue;
+            squares += maps.squares.at<double>(y, x);
+            ssim += maps.ssim.at<double>(y, x);
+            flip += maps.flip.at<double>(y, x);
+            count++;
+        }
+    }
+    *pixels = count;
+    if (count == 0)
+        return weft_picture_quality{0, 0, 0};
+    auto of = static_cast<double>(count);
+    double psnr_db = squares > 0 ? -10 * std::log10(squares / of) : std::numeric_limits<double>::infinity();
+    return weft_picture_quality{psnr_db, ssim / of, flip / of};
 }
 
 } // namespace
 
-extern "C" weft_code weft_picture_quality_measure(const weft_image *reference, const weft_image *test,
-                                                  weft_picture_quality *result, weft_error *error)
+extern "C" weft_code weft_picture_quality_by_region(const weft_image *reference, const weft_image *test,
+                                                    const uint8_t *regions, int region_count,
+                                                    weft_picture_quality *result, long *pixels, weft_error *error)
 {
     if (reference->width != test->width || reference->height != test->height)
         return weft_fail(error, WEFT_BAD_USAGE, "pictures of %d x %d and %d x %d cannot be compared", reference->width,
                          reference->height, test->width, test->height);
     try {
-        Mat a = mat_of(reference), b = mat_of(test);
-        *result = weft_picture_quality{psnr_of(a, b), ssim_of(a, b), flip_of(a, b)};
+        Mat a = mat_of(reference), b = mat_of(test),
+            marked(reference->height, reference->width, CV_8U, const_cast<uint8_t *>(regions));
+        quality_maps maps{mean_squares(a, b), ssim_map(a, b), flip_map(a, b)};
+        for (int k = 0; k < region_count; k++)
+            result[k] = quality_of(maps, marked, k, &pixels[k]);
         return WEFT_OK;
     } catch (const std::bad_alloc &) {
         return weft_fail_memory(error, "pictures", 0);
@@ -229,5 +274,18 @@ extern "C" weft_code weft_picture_quality_measure(const weft_image *reference, c
         return weft_fail(error, WEFT_SYSTEM, "comparing pictures failed: %s", failure.what());
     } catch (...) {
         return weft_fail(error, WEFT_SYSTEM, "comparing pictures failed");
+    }
+}
+
+extern "C" weft_code weft_picture_quality_measure(const weft_image *reference, const weft_image *test,
+                                                  weft_picture_quality *result, weft_error *error)
+{
+    long pixels;
+    try {
+        const std::vector<uint8_t> whole(static_cast<size_t>(reference->width) * static_cast<size_t>(reference->height),
+                                         1);
+        return weft_picture_quality_by_region(reference, test, whole.data(), 1, result, &pixels, error);
+    } catch (const std::bad_alloc &) {
+        return weft_fail_memory(error, "pictures", 0);
     }
 }

@@ -200,24 +200,42 @@ static weft_code certify_level(const weft_residuals *held, const weft_residuals 
     return WEFT_OK;
 }
 
-/* Levels of the material, of which several finest ones may be one of the excerpt. */
-static weft_code certify_levels(const weft_residuals *held, const weft_residuals *fitted, double spacing,
+/* Which levels of an excerpt a material's are taken from. */
+typedef struct level_source {
+    int beside; /* up to this one they are of texels that lie beside each other */
+    int apart;  /* later ones of texels so many levels further from each other */
+    int last;
+} level_source;
+
+static level_source source_of_levels(const weft_residuals *held, double spacing, int neighbours)
+{
+    return (level_source){(int)floor(log2(neighbours)), (int)ceil(log2(fmax(1, spacing)) - 1e-6),
+                          held->level_count - 1};
+}
+
+static int level_of_excerpt(const level_source *source, int level)
+{
+    int beside = weft_smaller(level, source->beside);
+    return weft_smaller(weft_larger(beside, level - source->apart), source->last);
+}
+
+/* Levels of the material, of which several may be one of the excerpt. */
+static weft_code certify_levels(const weft_residuals *held, const weft_residuals *fitted, const level_source *source,
                                 float *scratch, weft_certificate *c, weft_error *error)
 {
-    int apart = (int)ceil(log2(fmax(1, spacing)) - 1e-6);
-    c->level_count = weft_smaller(held->level_count + apart, WEFT_MATERIAL_MAX_LEVELS);
+    c->level_count = weft_smaller(held->level_count + source->apart, WEFT_MATERIAL_MAX_LEVELS);
     for (int k = 0; k < c->level_count; k++) {
-        int of_excerpt = weft_larger(0, k - apart);
-        if (k > 0 && of_excerpt == 0)
-            c->level[k] = c->level[0];
+        int of_excerpt = level_of_excerpt(source, k);
+        if (k > 0 && of_excerpt == level_of_excerpt(source, k - 1))
+            c->level[k] = c->level[k - 1];
         else
             WEFT_TRY(certify_level(held, fitted, of_excerpt, scratch, c, &c->level[k], error));
     }
     return WEFT_OK;
 }
 
-static weft_code certify(const weft_residuals *held, const weft_residuals *fitted, double spacing, float *scratch,
-                         weft_certificate *c, weft_error *error)
+static weft_code certify(const weft_residuals *held, const weft_residuals *fitted, const level_source *source,
+                         float *scratch, weft_certificate *c, weft_error *error)
 {
     WEFT_TRY(count_images(held, c, error));
     find_spread(held, scratch, c);
@@ -228,13 +246,13 @@ static weft_code certify(const weft_residuals *held, const weft_residuals *fitte
         find_factors(held, OF_LIGHT, c->probability, scratch, c);
     }
     weft_certificate_round(c);
-    WEFT_TRY(certify_levels(held, fitted, spacing, scratch, c, error));
+    WEFT_TRY(certify_levels(held, fitted, source, scratch, c, error));
     weft_certificate_round(c);
     return WEFT_OK;
 }
 
 weft_code weft_certify(const weft_residuals *held, const weft_residuals *fitted, double probability, double spacing,
-                       weft_certificate *c, bool *found, weft_error *error)
+                       int neighbours, weft_certificate *c, bool *found, weft_error *error)
 {
     *c = (weft_certificate){
         .probability = probability, .over_images = true, .mean = (double)(float)mean_prediction(held)};
@@ -245,7 +263,8 @@ weft_code weft_certify(const weft_residuals *held, const weft_residuals *fitted,
     float *scratch = malloc(most * sizeof *scratch);
     if (!scratch)
         return weft_fail_memory(error, "residuals", most * sizeof *scratch);
-    weft_code code = certify(held, fitted, spacing, scratch, c, error);
+    const level_source source = source_of_levels(held, spacing, neighbours);
+    weft_code code = certify(held, fitted, &source, scratch, c, error);
     free(scratch);
     return code;
 }

@@ -8,12 +8,11 @@
 
 /* ---- Which texels ---- */
 
-enum { SQUARE_SIDE = 16 };
-
 /* Columns and rows of the excerpt lie `stride` apart from the first one on; a scattered texel is moved inside its cell
  * of width / columns by height / rows, and so is a square. */
 typedef struct texel_choice {
     weft_excerpt_kind kind;
+    int square_side;   /* of neighbours; 0 where there are no squares */
     int width, height; /* of the dataset */
     int columns, rows, stride, first_x, first_y;
 } texel_choice;
@@ -26,6 +25,8 @@ static texel_choice choose_texels(const weft_dataset_layout *layout, weft_excerp
                            .columns = weft_smaller(side, layout->width),
                            .rows = weft_smaller(side, layout->height),
                            .stride = 1};
+    if (kind == WEFT_EXCERPT_SQUARES || kind == WEFT_EXCERPT_SMALL_SQUARES)
+        choice.square_side = kind == WEFT_EXCERPT_SQUARES ? 16 : 4;
     if (kind == WEFT_EXCERPT_REGULAR)
         choice.stride = weft_smaller(layout->width / choice.columns, layout->height / choice.rows);
     choice.first_x = (layout->width - (choice.columns - 1) * choice.stride - 1) / 2;
@@ -48,31 +49,42 @@ static double additive_sequence(int axis, double number)
     return fmod(step[axis] * number, 1);
 }
 
-/* Column or row of the dataset for the `index`-th of `count`, where squares lie `at` from 0 to below 1 in their cells.
- */
-static int place_in_square(int index, int count, int texels, double at)
+/* Column or row of the dataset for the `index`-th of `count`, where squares of so many texels along a `side` lie `at`
+ * from 0 to below 1 in their cells. */
+static int place_in_square(int index, int count, int texels, int side, double at)
 {
-    int squares = (count + SQUARE_SIDE - 1) / SQUARE_SIDE, square = index / SQUARE_SIDE;
+    int squares = (count + side - 1) / side, square = index / side;
     int from = (int)((long)texels * square / squares), to = (int)((long)texels * (square + 1) / squares);
-    return count == texels ? index : from + (int)(at * (to - from - SQUARE_SIDE + 1)) + index % SQUARE_SIDE;
+    return count == texels ? index : from + (int)(at * (to - from - side + 1)) + index % side;
+}
+
+static void place_of_square(const texel_choice *choice, int i, int j, int *x, int *y)
+{
+    int side = choice->square_side, across = (choice->columns + side - 1) / side;
+    double number = (double)(j / side) * across + i / side + 1;
+    *x = place_in_square(i, choice->columns, choice->width, side, additive_sequence(0, number));
+    *y = place_in_square(j, choice->rows, choice->height, side, additive_sequence(1, number));
 }
 
 /* Place in the dataset of texel (i, j) of the excerpt. */
 static void place_of_texel(const texel_choice *choice, int i, int j, int *x, int *y)
 {
-    int across = (choice->columns + SQUARE_SIDE - 1) / SQUARE_SIDE;
-    double number = (double)j * choice->columns + i + 1,
-           square = (double)(j / SQUARE_SIDE) * across + i / SQUARE_SIDE + 1;
+    double number = (double)j * choice->columns + i + 1;
     *x = choice->first_x + i * choice->stride;
     *y = choice->first_y + j * choice->stride;
     if (choice->kind == WEFT_EXCERPT_SCATTERED) {
         *x = place_in_cell(i, choice->columns, choice->width, additive_sequence(0, number));
         *y = place_in_cell(j, choice->rows, choice->height, additive_sequence(1, number));
     }
-    if (choice->kind == WEFT_EXCERPT_SQUARES) {
-        *x = place_in_square(i, choice->columns, choice->width, additive_sequence(0, square));
-        *y = place_in_square(j, choice->rows, choice->height, additive_sequence(1, square));
-    }
+    if (choice->square_side > 0)
+        place_of_square(choice, i, j, x, y);
+}
+
+static int neighbours_of(const texel_choice *choice)
+{
+    if (choice->kind == WEFT_EXCERPT_BLOCK)
+        return weft_larger(choice->columns, choice->rows);
+    return weft_larger(choice->square_side, 1);
 }
 
 /* ---- Layouts ---- */
@@ -167,7 +179,8 @@ weft_code weft_excerpt_read(weft_dataset *dataset, weft_excerpt_kind kind, int s
 {
     const weft_dataset_layout *source = weft_dataset_get_layout(dataset);
     texel_choice choice = choose_texels(source, kind, side);
-    *excerpt = (weft_excerpt){.window = {choice.first_x, choice.first_y, source->width, source->height}};
+    *excerpt = (weft_excerpt){.window = {choice.first_x, choice.first_y, source->width, source->height},
+                              .neighbours = neighbours_of(&choice)};
     weft_dataset_size_mm(source, excerpt->whole_mm);
     weft_code code = make_layout(source, &choice, &excerpt->layout, error);
     if (code == WEFT_OK)
@@ -250,7 +263,7 @@ static weft_code crop(const weft_excerpt *excerpt, const weft_texel_block *block
 weft_code weft_excerpt_crop(const weft_excerpt *excerpt, const weft_texel_block *block, weft_excerpt *result,
                             weft_error *error)
 {
-    *result = (weft_excerpt){.window = excerpt->window};
+    *result = (weft_excerpt){.window = excerpt->window, .neighbours = excerpt->neighbours};
     result->window.x += block->x;
     result->window.y += block->y;
     weft_code code = crop(excerpt, block, result, error);

@@ -12,8 +12,9 @@ typedef enum weft_excerpt_kind {
                                is hit again and again: for fits to which neighbours mean nothing, under far lights */
     WEFT_EXCERPT_REGULAR,   /* the same without moving them: near lights need texels at even distances */
     WEFT_EXCERPT_BLOCK,     /* neighbours, from the centre: for fits that borrow from them */
-    WEFT_EXCERPT_SQUARES    /* squares of 16 x 16 neighbours, one of every cell of a grid, where `side` is a multiple
+    WEFT_EXCERPT_SQUARES,   /* squares of 16 x 16 neighbours, one of every cell of a grid, where `side` is a multiple
                                of 16: what neighbours have in common stays, and no part stands for all. For far lights */
+    WEFT_EXCERPT_SMALL_SQUARES /* the same of 4 x 4, where `side` is a multiple of 4 */
 } weft_excerpt_kind;
 
 /* Freed with weft_excerpt_free. */
@@ -23,10 +24,11 @@ typedef struct weft_excerpt {
     weft_predicted_window window; /* of a block: where it lies in the dataset */
     weft_dataset_heights surface; /* of a block: that of the whole dataset (weft_dataset_read_surface); else none */
     double whole_mm[2];           /* width and height of the dataset */
-    weft_half *samples;           /* [height][width][image_count][3] */
-    uint8_t *mask;                /* [height][width][image_count] */
-    float *opacity;               /* [height][width][view_count]; NULL where the dataset has none */
-    float *frames;                /* [height][width][2][3]; NULL where the dataset has none */
+    int neighbours;     /* of squares: the texels along their sides; of a block: along its longer side; else 1 */
+    weft_half *samples; /* [height][width][image_count][3] */
+    uint8_t *mask;      /* [height][width][image_count] */
+    float *opacity;     /* [height][width][view_count]; NULL where the dataset has none */
+    float *frames;      /* [height][width][2][3]; NULL where the dataset has none */
 } weft_excerpt;
 
 /* A rectangle of texels. */

@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Layers learn from 512 texels, which are to be there. */
-enum { SIDE = 12, LAYERS_SIDE = 24, SURFACE_SIDE = 64, ASKED_SIDE = 48, BLOCK_SIDE = 64 };
+enum { SIDE = 12, LAYERS_SIDE = 24, SURFACE_SIDE = 64, ASKED_SIDE = 48, BLOCK_SIDE = 64, SQUARE_SIDE = 4 };
 
 /* Of the excerpt, at most; of one with a surface, whose texels see each other, and of those of its texels that are
  * asked for. */
@@ -167,10 +167,7 @@ static weft_code ask(const measuring *work, const weft_trial *trial, weft_materi
         WEFT_TRY(weft_excerpt_give_heights(&work->excerpt, material, error));
     }
     WEFT_TRY(ask_material(work, trial, material, &said->material, &said->fitted, error));
-    WEFT_TRY(ask_moved(work, trial, material, said, error));
-    if (weft_excerpt_has_surface(&work->excerpt))
-        WEFT_TRY(weft_trial_ask_photographs(trial, false, &said->photographs_flat, error));
-    return weft_trial_ask_photographs(trial, weft_excerpt_has_surface(&work->excerpt), &said->photographs, error);
+    return ask_moved(work, trial, material, said, error);
 }
 
 /* Relative RMSE with and without heights where both are known. Samples ascend in both; masks may leave either without
@@ -226,18 +223,11 @@ static void decide_on_heights(measuring *work)
 
 static weft_code take_answers(measuring *work, const answers *said, weft_error *error)
 {
-    weft_hold_out_error material, photographs;
+    weft_hold_out_error material;
     weft_error_summary fitted;
     WEFT_TRY(summarise(&said->material, &material, error));
-    WEFT_TRY(summarise(&said->photographs, &photographs, error));
     WEFT_TRY(weft_error_summary_of(said->fitted.value, said->fitted.count, &fitted, error));
     take_errors(&material, &work->material_taken, &work->result->material);
-    take_errors(&photographs, &work->photographs_taken, &work->result->photographs);
-    if (said->photographs_flat.value) {
-        double error_of[2];
-        compare_with_flat(&said->photographs, &said->photographs_flat, error_of);
-        work->result->photographs_flat += error_of[1] / work->measured_count;
-    }
     take_into_mean(&fitted, &work->fitted_taken, &work->result->fitted);
     return take_flat(work, said, error);
 }
@@ -266,6 +256,34 @@ static weft_code take_residuals(measuring *work, int split, const answers *said,
     return add_residuals(work, split, &said->flat, &said->flat_moved, &said->flat_fitted, &work->flat_residuals, error);
 }
 
+static weft_code take_photographs(measuring *work, const answers *said, weft_error *error)
+{
+    weft_hold_out_error photographs;
+    double error_of[2];
+    WEFT_TRY(summarise(&said->photographs, &photographs, error));
+    take_errors(&photographs, &work->photographs_taken, &work->result->photographs);
+    if (!said->photographs_flat.value)
+        return WEFT_OK;
+    compare_with_flat(&said->photographs, &said->photographs_flat, error_of);
+    work->result->photographs_flat += error_of[1] / work->measured_count;
+    return WEFT_OK;
+}
+
+/* Before the material is asked, so that what they say is not in memory beside what it says. */
+static weft_code ask_photographs(measuring *work, const weft_trial *trial, weft_error *error)
+{
+    answers said = {0};
+    bool has_surface = weft_excerpt_has_surface(&work->excerpt);
+    weft_code code = has_surface ? weft_trial_ask_photographs(trial, false, &said.photographs_flat, error) : WEFT_OK;
+    if (code == WEFT_OK)
+        code = weft_trial_ask_photographs(trial, has_surface, &said.photographs, error);
+    if (code == WEFT_OK)
+        code = take_photographs(work, &said, error);
+    free_answers(&said);
+    malloc_trim(0);
+    return code;
+}
+
 static weft_code ask_split(measuring *work, int split, answers *said, weft_error *error)
 {
     const uint8_t *held = weft_splits_held(&work->splits, split);
@@ -280,6 +298,8 @@ static weft_code ask_split(measuring *work, int split, answers *said, weft_error
         trial.asked = work->asked;
     trial.predicts_asked = work->alone.samples != NULL;
     if (code == WEFT_OK)
+        code = ask_photographs(work, &trial, error);
+    if (code == WEFT_OK)
         code = ask(work, &trial, &material, said, error);
     weft_trial_free(&trial);
     weft_material_free(&material);
@@ -293,9 +313,6 @@ static weft_code measure_split(measuring *work, int split, weft_error *error)
     weft_code code = ask_split(work, split, &said, error);
     if (code == WEFT_OK)
         code = take_answers(work, &said, error);
-    weft_asked_samples_free(&said.photographs);
-    weft_asked_samples_free(&said.photographs_flat);
-    malloc_trim(0);
     if (code == WEFT_OK)
         code = take_residuals(work, split, &said, error);
     free_answers(&said);
@@ -368,8 +385,9 @@ static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error
         return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &work->excerpt, error);
     if (weft_dataset_has_surface(dataset))
         return read_with_surface(dataset, work, error);
-    weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SCATTERED;
+    weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SMALL_SQUARES;
     int side = side_of(work->options.layer_count > 0 ? LAYERS_SIDE : SIDE, most_samples, layout->image_count);
+    side -= side > SQUARE_SIDE ? side % SQUARE_SIDE : 0;
     WEFT_TRY(weft_excerpt_read(dataset, kind, side, &work->excerpt, error));
     work->spacing = sqrt((double)layout->width * layout->height /
                          ((double)work->excerpt.layout.width * work->excerpt.layout.height));
@@ -392,8 +410,8 @@ static weft_code certify(weft_dataset *dataset, measuring *work, weft_error *err
     weft_hold_out *result = work->result;
     bool is_flat = result->heights.asked && !result->heights.used;
     const held_and_fitted *by = is_flat ? &work->flat_residuals : &work->residuals;
-    WEFT_TRY(weft_certify(&by->held, &by->fitted, certified, work->spacing, &result->certificate,
-                          &result->has_certificate, error));
+    WEFT_TRY(weft_certify(&by->held, &by->fitted, certified, work->spacing, work->excerpt.neighbours,
+                          &result->certificate, &result->has_certificate, error));
     result->certificate.direction_count = held_directions(work);
     return result->has_certificate ? weft_certify_registration(dataset, &result->certificate, error) : WEFT_OK;
 }

@@ -144,14 +144,21 @@ static uint8_t ring_of(weft_vec3 direction)
     return (uint8_t)weft_ubo81_ring(weft_angles_of_direction(direction).theta_rad);
 }
 
-/* Those of one texel of a level, seen from its centre. */
+/* The first image of a texel, below `stride`: a sequence that fills it evenly, without a period. */
+static int first_of_texel(size_t texel, int stride)
+{
+    static const double section = 0.6180339887498949;
+    return (int)(stride * fmod(section * (double)texel, 1));
+}
+
+/* Those of one texel of a level, seen from its centre, in every `stride`-th image. */
 static void add_texel(weft_residuals *residuals, const weft_excerpt *excerpt, const asked_images *images,
-                      const answers *a, int x, int y, uint32_t first_image)
+                      const answers *a, size_t texel, int stride, uint32_t first_image)
 {
     const weft_dataset_layout *layout = &excerpt->layout;
-    size_t texel = (size_t)y * (size_t)a->width + (size_t)x;
+    int x = (int)(texel % (size_t)a->width), y = (int)(texel / (size_t)a->width);
     int centre_x = (x << a->level) + (1 << a->level) / 2, centre_y = (y << a->level) + (1 << a->level) / 2;
-    for (int i = 0; i < images->count; i++) {
+    for (int i = first_of_texel(texel, stride); i < images->count; i += stride) {
         int image = images->image[i];
         weft_residual residual = {
             .image = first_image + (uint32_t)i,
@@ -187,11 +194,11 @@ static weft_code make_room(weft_residuals *residuals, int level, size_t more, we
 static weft_code add_level(weft_residuals *residuals, const weft_excerpt *excerpt, const asked_images *images,
                            const answers *a, uint32_t first_image, size_t most, weft_error *error)
 {
-    size_t count = values_of(a, images), stride = (count + most - 1) / most;
-    int texels = a->width * a->height;
-    WEFT_TRY(make_room(residuals, a->level, count / (stride > 0 ? stride : 1) + 3 * (size_t)images->count, error));
-    for (int texel = 0; texel<texels; texel += stride> 0 ? (int)stride : 1)
-        add_texel(residuals, excerpt, images, a, texel % a->width, texel / a->width, first_image);
+    size_t count = values_of(a, images), texels = (size_t)a->width * (size_t)a->height;
+    int stride = weft_larger(1, (int)((count + most - 1) / most));
+    WEFT_TRY(make_room(residuals, a->level, count / (size_t)stride + 3 * texels, error));
+    for (size_t texel = 0; texel < texels; texel++)
+        add_texel(residuals, excerpt, images, a, texel, stride, first_image);
     residuals->level_count = a->level + 1 > residuals->level_count ? a->level + 1 : residuals->level_count;
     return WEFT_OK;
 }

@@ -25,8 +25,9 @@ typedef struct weft_residuals {
 void weft_residuals_free(weft_residuals *residuals);
 
 /* Adds the residuals of what is said of some images of an excerpt. `moved` are the same samples as a material says them
- * whose stored numbers were moved by a step each (study/hold_out/rounding.h), or NULL. Of the texels of a level every
- * n-th is taken, so that at most `most` residuals are added to it. Images are numbered from `first_image` on. Errors:
+ * whose stored numbers were moved by a step each (study/hold_out/rounding.h), or NULL. Of every texel of a level
+ * every n-th image is taken, beginning with another one at each, so that about `most` residuals are added to it: texels
+ * differ more than images do, and none is left out. Images are numbered from `first_image` on. Errors:
  * WEFT_SYSTEM for memory. */
 weft_code weft_residuals_add(weft_residuals *residuals, const weft_excerpt *excerpt, const weft_asked_samples *asked,
                              const weft_asked_samples *moved, uint32_t first_image, size_t most, weft_error *error);

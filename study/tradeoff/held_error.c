@@ -261,7 +261,7 @@ static weft_code find_interval(const weft_held_bench *bench, const weft_asked_sa
     *width = 0;
     weft_code code = weft_residuals_add(&residuals, &bench->excerpt, held, NULL, 0, enough_residuals, error);
     if (code == WEFT_OK)
-        code = weft_certify(&residuals, &none, certified, 1, &certificate, &found, error);
+        code = weft_certify(&residuals, &none, certified, 1, 1, &certificate, &found, error);
     if (code == WEFT_OK && found)
         code = cover(&certificate, &residuals, width, error);
     weft_residuals_free(&residuals);
@@ -415,8 +415,9 @@ static weft_code take_answer(const weft_held_bench *bench, int split, const weft
 {
     WEFT_TRY(append(&all->held, &answer->held, error));
     WEFT_TRY(append(&all->fitted, &answer->fitted, error));
-    return bench->has_pictures && split == 0 ? weft_held_pictures_compare(trial, &answer->held, measured, error)
-                                             : WEFT_OK;
+    return bench->has_pictures && split == 0
+               ? weft_held_pictures_compare(trial, &answer->held, bench->kinds, measured, error)
+               : WEFT_OK;
 }
 
 static weft_code measure_split(weft_held_bench *bench, const weft_priced_model *model, int split, said *all,

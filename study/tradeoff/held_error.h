@@ -12,10 +12,12 @@
 
 typedef struct weft_held_error {
     weft_error_summary held[WEFT_SAMPLE_KINDS], fitted[WEFT_SAMPLE_KINDS];
-    double interval_width;        /* mean width of the interval of 95 % (study/hold_out/certify.h) that these samples
-                                     give, in units of the mean sample; 0 where all is black */
-    int picture_count;            /* of held-out images whose texels are neighbours */
-    weft_picture_quality quality; /* the mean over these, each shown as its photograph needs */
+    double interval_width; /* mean width of the interval of 95 % (study/hold_out/certify.h) that these samples
+                              give, in units of the mean sample; 0 where all is black */
+    int picture_count;     /* of held-out images whose texels are neighbours */
+    weft_picture_quality quality[WEFT_SAMPLE_KINDS]; /* means over the pixels of these, each shown as its photograph
+                                                        needs; PSNR: of the pictures' decibels, weighted by pixels */
+    long picture_pixels[WEFT_SAMPLE_KINDS];          /* of these; 0: nothing is known of the kind */
     double fit_s;
     weft_weight weight;           /* of the fit without what is held out */
     int worst_image;              /* the picture with the largest relative RMSE */

@@ -5,9 +5,10 @@
 #include "study/tradeoff/held_error.h"
 
 /* Compares some images that a trial holds out, of those with the most reasons to be, with what is said of them, under
- * the exposure that the photograph needs; masked texels are black in both. Sets the pictures and their quality in
- * `measured`. Errors: WEFT_SYSTEM. */
-weft_code weft_held_pictures_compare(const weft_trial *trial, const weft_asked_samples *said, weft_held_error *measured,
-                                     weft_error *error);
+ * the exposure that the photograph needs. Masked texels are black in both and do not count. `kinds` are those of the
+ * samples of the excerpt (study/tradeoff/sample_kind.h). Sets the pictures and their quality in `measured`. Errors:
+ * WEFT_SYSTEM. */
+weft_code weft_held_pictures_compare(const weft_trial *trial, const weft_asked_samples *said, const uint8_t *kinds,
+                                     weft_held_error *measured, weft_error *error);
 
 #endif

@@ -68,7 +68,7 @@ static weft_certificate certify(const weft_residuals *held, const weft_residuals
     weft_certificate c;
     weft_error error = {0};
     bool found;
-    expect_ok(weft_certify(held, fitted, 0.95, 1, &c, &found, &error), &error);
+    expect_ok(weft_certify(held, fitted, 0.95, 1, 1, &c, &found, &error), &error);
     assert_true(found);
     return c;
 }
@@ -168,6 +168,20 @@ static void rings_without_images_have_their_neighbours_factor(void **state)
 
 /* ---- Means over squares ---- */
 
+/* Where fewer are wanted, every texel and every image gives some. */
+static void expect_third_of_everything(const weft_excerpt *excerpt, const weft_asked_samples *asked)
+{
+    weft_residuals some = {0};
+    size_t of_image[3] = {0}, most = asked->count / 3;
+    assert_int_equal(weft_residuals_add(&some, excerpt, asked, NULL, 0, most, NULL), WEFT_OK);
+    assert_int_equal(some.count[0], most);
+    for (size_t i = 0; i < most; i++)
+        of_image[some.value[0][i].image]++;
+    for (int image = 0; image < 3; image++)
+        assert_in_range(of_image[image], most / 4, most / 2);
+    weft_residuals_free(&some);
+}
+
 /* What is said is 1 everywhere; samples are 1 + error, in columns of +0.2 and -0.2 and rows of 0.1 by pairs: means over
  * 2 x 2 texels keep the latter alone. */
 static void coarser_levels_are_of_means(void **state)
@@ -207,7 +221,81 @@ static void coarser_levels_are_of_means(void **state)
         assert_true(r->moved == 0);
     }
     weft_residuals_free(&residuals);
+    expect_third_of_everything(&excerpt, &asked);
     weft_dataset_layout_free(&excerpt.layout);
+}
+
+/* Errors of 8, 4, 2 and 1 at the levels of an excerpt whose texels lie 8 apart. */
+static weft_certificate certify_levels(int neighbours)
+{
+    weft_residuals residuals = {.level_count = 4};
+    for (int level = 0; level < 4; level++) {
+        weft_residuals one = make_residuals(60, 1);
+        residuals.value[level] = one.value[0];
+        residuals.count[level] = one.count[0];
+        for (size_t i = 0; i < one.count[0]; i++)
+            residuals.value[level][i].error = (float)(8 >> level);
+    }
+    weft_certificate c;
+    weft_error error = {0};
+    bool found;
+    expect_ok(weft_certify(&residuals, &residuals, 0.95, 8, neighbours, &c, &found, &error), &error);
+    weft_residuals_free(&residuals);
+    return c;
+}
+
+/* Of squares of 4 x 4 neighbours levels 1 and 2 are what they are; the next ones have the last of them until the texels
+ * of a level hold a whole square of such squares. Of single texels all of the first ones have the error of level 0. */
+static void levels_are_measured_where_texels_lie_beside_each_other(void **state)
+{
+    (void)state;
+    static const int of_squares[] = {0, 1, 2, 2, 2, 2, 3}, of_texels[] = {0, 0, 0, 0, 1, 2, 3};
+    weft_certificate squares = certify_levels(4), texels = certify_levels(1);
+    assert_int_equal(squares.level_count, 7);
+    assert_int_equal(texels.level_count, 7);
+    for (int k = 0; k < 7; k++) {
+        assert_float_equal(squares.level[k].quantile / squares.level[0].quantile, 1.0 / (1 << of_squares[k]), 0.02);
+        assert_float_equal(texels.level[k].quantile / texels.level[0].quantile, 1.0 / (1 << of_texels[k]), 0.02);
+    }
+}
+
+static double of_bits(double x)
+{
+    double y = sin(x) * 43758.5453;
+    return y - floor(y);
+}
+
+/* Another error at every texel and in every image, evenly distributed: 95 % lie within 0.95 sqrt(3) = 1.645 standard
+ * deviations. Means over n of them are nearly normal: 95 % lie within 1.96 / sqrt(n). */
+static weft_rgb speckled(int x, int y, weft_vec3 light, weft_vec3 view)
+{
+    double noise =
+        of_bits(12.9898 * x + 78.233 * y + 37.719 * light.x + 53.123 * light.y + 71.31 * view.x + 9.17 * view.y);
+    double value = 0.5 + 0.1 * (noise - 0.5);
+    return (weft_rgb){value, value, value};
+}
+
+/* Of 40 x 40 texels some are read, 3.3 times as far from each other; means over four neighbours are known all the
+ * same. */
+static void coarser_levels_of_a_material_are_as_narrow_as_they_are(void **state)
+{
+    (void)state;
+    static const char *const path = "speckled.btf.h5";
+    weft_dataset *dataset;
+    weft_hold_out result;
+    weft_error error = {0};
+    weft_compress_options options = weft_compress_default_options();
+    options.layer_count = options.lobe_count = 0;
+    options.table = false;
+    fixture_far_dataset(path, 40, 40, 3, speckled, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    expect_ok(weft_hold_out_measure(dataset, &options, 1, "speckled-split.btf.h5", NULL, &result, &error), &error);
+    weft_dataset_close(dataset);
+    const weft_certificate_level *level = result.certificate.level;
+    print_message("quantiles %.3f, %.3f, %.3f\n", level[0].quantile, level[1].quantile, level[2].quantile);
+    assert_int_equal(result.texel_count, 144);
+    assert_float_equal(level[1].quantile / level[0].quantile, 1.96 / 2 / 1.645, 0.08);
+    assert_float_equal(level[2].quantile / level[0].quantile, 1.96 / 4 / 1.645, 0.08);
 }
 
 /* ---- Storage ---- */
@@ -391,6 +479,8 @@ int main(void)
         cmocka_unit_test(parts_are_shares_of_the_half_width),
         cmocka_unit_test(rings_without_images_have_their_neighbours_factor),
         cmocka_unit_test(coarser_levels_are_of_means),
+        cmocka_unit_test(levels_are_measured_where_texels_lie_beside_each_other),
+        cmocka_unit_test(coarser_levels_of_a_material_are_as_narrow_as_they_are),
         cmocka_unit_test(a_step_is_the_root_of_twelve_times_rounding),
         cmocka_unit_test(a_displacement_costs_the_slope),
         cmocka_unit_test(flash_photographs_of_a_card_are_covered),

@@ -240,6 +240,27 @@ static void place_of(const weft_excerpt *excerpt, int texel, int *x, int *y)
     *y = (int)lround(100 * (double)weft_float_of_half(half[1]));
 }
 
+/* Squares of 4 x 4, three by three of them in a dataset whose sides are no multiple of them. */
+static void small_squares_are_one_of_every_cell(void **state)
+{
+    (void)state;
+    enum { SIDE = 12, SQUARE = 4 };
+    fixture_far_dataset(path, 31, 26, 2, by_place, FIXTURE_MASK_NONE);
+    weft_excerpt excerpt = read_excerpt(WEFT_EXCERPT_SMALL_SQUARES, SIDE);
+    assert_int_equal(excerpt.neighbours, SQUARE);
+    for (int texel = 0; texel < SIDE * SIDE; texel++) {
+        int i = texel % SIDE, j = texel / SIDE, x, y, first_x, first_y;
+        place_of(&excerpt, texel, &x, &y);
+        place_of(&excerpt, (j - j % SQUARE) * SIDE + i - i % SQUARE, &first_x, &first_y);
+        assert_int_equal(x - first_x, i % SQUARE);
+        assert_int_equal(y - first_y, j % SQUARE);
+        assert_in_range(first_x, 31 * (i / SQUARE) / 3, 31 * (i / SQUARE + 1) / 3 - SQUARE);
+        assert_in_range(first_y, 26 * (j / SQUARE) / 3, 26 * (j / SQUARE + 1) / 3 - SQUARE);
+    }
+    weft_excerpt_free(&excerpt);
+    unlink(path);
+}
+
 static void scattered_texels_are_one_of_every_cell(void **state)
 {
     (void)state;
@@ -556,6 +577,7 @@ int main(void)
         cmocka_unit_test(every_image_of_a_list_is_held_out_once),
         cmocka_unit_test(of_one_view_lights_are_held_out),
         cmocka_unit_test(a_handful_is_left_out_one_by_one),
+        cmocka_unit_test(small_squares_are_one_of_every_cell),
         cmocka_unit_test(scattered_texels_are_one_of_every_cell),
         cmocka_unit_test(squares_are_one_of_every_cell),
         cmocka_unit_test(texels_of_a_near_dataset_keep_their_directions),

@@ -81,6 +81,39 @@ static void greys_differ_by_their_lightness(void **state)
     assert_float_equal(quality.ssim, (2 * 0.3 + 1e-4) / (0.25 + 0.36 + 1e-4), 1e-6);
 }
 
+/* The left half is as it was, the right one a tenth brighter; far from the line between them SSIM knows no better. */
+static void regions_are_told_apart(void **state)
+{
+    (void)state;
+    weft_image a = uniform(0.5f, 0.5f, 0.5f), b = uniform(0.5f, 0.5f, 0.5f);
+    uint8_t regions[WIDTH * HEIGHT];
+    weft_picture_quality quality[4], whole;
+    weft_error error = {0};
+    long pixels[4];
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        int x = i % WIDTH;
+        for (int c = 0; x >= WIDTH / 2 && c < 3; c++)
+            b.pixels[3 * i + c] = 0.6f;
+        regions[i] = (uint8_t)(1 | (x < WIDTH / 2) << 1 | (x >= WIDTH - 4) << 2);
+    }
+    expect_ok(weft_picture_quality_by_region(&a, &b, regions, 4, quality, pixels, &error), &error);
+    expect_ok(weft_picture_quality_measure(&a, &b, &whole, &error), &error);
+    const long expected[] = {WIDTH * HEIGHT, WIDTH * HEIGHT / 2, 4 * HEIGHT, 0};
+    for (int k = 0; k < 4; k++)
+        assert_int_equal(pixels[k], expected[k]);
+    assert_float_equal(quality[0].psnr_db, whole.psnr_db, 1e-9);
+    assert_float_equal(quality[0].ssim, whole.ssim, 1e-9);
+    assert_float_equal(quality[0].flip, whole.flip, 1e-9);
+    assert_float_equal(whole.psnr_db, 20 + 10 * log10(2), 1e-4);
+    assert_true(isinf(quality[1].psnr_db));
+    assert_float_equal(quality[2].psnr_db, 20, 1e-4);
+    assert_float_equal(quality[2].ssim, (2 * 0.3 + 1e-4) / (0.25 + 0.36 + 1e-4), 1e-6);
+    assert_true(quality[1].flip < 0.5 * quality[2].flip);
+    assert_float_equal(quality[3].flip + quality[3].ssim + quality[3].psnr_db, 0, 1e-12);
+    weft_image_free(&a);
+    weft_image_free(&b);
+}
+
 static void pictures_of_different_sizes_are_refused(void **state)
 {
     (void)state;
@@ -99,6 +132,7 @@ int main(void)
         cmocka_unit_test(equal_pictures_do_not_differ),
         cmocka_unit_test(green_and_blue_differ_most),
         cmocka_unit_test(greys_differ_by_their_lightness),
+        cmocka_unit_test(regions_are_told_apart),
         cmocka_unit_test(pictures_of_different_sizes_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,6 +5,7 @@
 #include "btf/direction/direction.h"
 #include "btf/material/metadata.h"
 #include "compress/compress.h"
+#include "compress/run/memory.h"
 #include "study/hold_out/record.h"
 #include "study/tradeoff/frame_timer.h"
 #include "study/tradeoff/plot.h"
@@ -276,6 +277,15 @@ static long count_held(bool grazing)
     return count;
 }
 
+static long count_held_twice_at_grazing(void)
+{
+    long count = 0;
+    for (int i = 0; i < IMAGES; i++)
+        count +=
+            splits.held[i] == (WEFT_HELD_VIEW | WEFT_HELD_LIGHT) && grazes(grid.light[i], grid.view[i / DIRECTIONS]);
+    return count;
+}
+
 static weft_held_bench *open_bench(weft_dataset **dataset)
 {
     weft_held_bench *bench;
@@ -314,7 +324,13 @@ static void errors_are_told_apart_where_eyes_look(void **state)
     assert_true(m.held[WEFT_SAMPLES_ALL].relative_rmse < 0.499);
     for (int kind = 0; kind < WEFT_SAMPLE_KINDS; kind++)
         assert_true(m.fitted[kind].relative_rmse < 0.01);
-    assert_int_equal(m.picture_count, 8);
+    assert_int_equal(m.picture_count, 64);
+    assert_int_equal(m.picture_pixels[WEFT_SAMPLES_ALL], 4 * 64);
+    assert_int_equal(m.picture_pixels[WEFT_SAMPLES_GRAZING], 4 * count_held_twice_at_grazing());
+    assert_true(m.quality[WEFT_SAMPLES_GRAZING].psnr_db < 20 && m.quality[WEFT_SAMPLES_HIGHLIGHTS].psnr_db < 20);
+    assert_true(m.quality[WEFT_SAMPLES_SHADOWS].psnr_db > 40 && m.quality[WEFT_SAMPLES_SHADOWS].flip < 0.01);
+    assert_true(m.quality[WEFT_SAMPLES_GRAZING].flip > 0.1 && m.quality[WEFT_SAMPLES_HIGHLIGHTS].flip > 0.1);
+    assert_true(m.quality[WEFT_SAMPLES_GRAZING].flip > 1.1 * m.quality[WEFT_SAMPLES_ALL].flip);
     assert_int_equal(m.sample.width, 2);
     weft_held_error_free(&m);
     weft_held_bench_free(bench);
@@ -514,6 +530,32 @@ static void expect_speed(weft_prediction prediction)
 }
 
 /* All texels are measured both times, but other directions. */
+/* The texels by which a size is predicted are held twice, as they are read and as they are written: memory for one and
+ * a half of them does not do. */
+static void a_prediction_keeps_to_the_memory_that_is_allowed(void **state)
+{
+    (void)state;
+    enum { SIDE = 32 };
+    weft_dataset *dataset;
+    weft_error error = {0};
+    fixture_far_dataset(path, SIDE, SIDE, 4, noisy, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    uint64_t once = 7ull * SIDE * SIDE * (uint64_t)weft_dataset_get_layout(dataset)->image_count;
+    weft_memory_budget now = weft_memory_budget_begin(0);
+    weft_compress_options options = weft_compress_default_options();
+    weft_prediction prediction = {.model = "diffuse", .error = 0.5};
+    options.layer_count = options.lobe_count = 0;
+    options.table = false;
+    options.memory_bytes = weft_memory_budget_taken(&now) + once + once / 2;
+    assert_int_equal(weft_prediction_find_costs(dataset, &options, scratch, NULL, &prediction, &error), WEFT_BAD_USAGE);
+    assert_non_null(strstr(error.message, "the texels by which its size is predicted"));
+    assert_int_not_equal(access(scratch, F_OK), 0);
+    options.memory_bytes += 256ull << 20;
+    expect_ok(weft_prediction_find_costs(dataset, &options, scratch, NULL, &prediction, &error), &error);
+    weft_dataset_close(dataset);
+    unlink(path);
+}
+
 static void a_preset_predicts_size_and_error(void **state)
 {
     (void)state;
@@ -705,6 +747,7 @@ int main(void)
         cmocka_unit_test(variants_are_made_of_the_same_fit),
         cmocka_unit_test(two_layers_are_the_first_of_four),
         cmocka_unit_test(bytes_are_those_of_the_file),
+        cmocka_unit_test(a_prediction_keeps_to_the_memory_that_is_allowed),
         cmocka_unit_test(a_preset_predicts_size_and_error),
         cmocka_unit_test(size_is_that_of_all_texels),
         cmocka_unit_test(what_is_asked_for_is_predicted),

@@ -124,7 +124,7 @@ static void expect_nothing_leaks(weft_held_bench *bench, const char *name, doubl
     assert_true(measured.fitted[WEFT_SAMPLES_ALL].count > 0);
     assert_true(measured.fitted[WEFT_SAMPLES_ALL].relative_rmse < tolerance);
     assert_float_equal(measured.held[WEFT_SAMPLES_GRAZING].relative_rmse, 0.5, tolerance);
-    assert_int_equal(measured.picture_count, 8);
+    assert_int_equal(measured.picture_count, 64);
     weft_held_error_free(&measured);
 }
 
