@@ -293,7 +293,8 @@ static void every_field_is_checked(void **state)
 {
     (void)state;
     const size_t views = 64, lights = views + 3 * 12, first = lights + 7 * 12, scale = first + 16, value = scale + 32;
-    expect_fault(with_word(0, 2), "unknown kind");
+    expect_fault(with_word(0, 3), "unknown kind");
+    expect_fault(with_word(0, UINT32_MAX), "unknown kind");
     expect_fault(with_word(1, 6), "multiple of 4");
     expect_fault(with_word(1, 68), "multiple of 4");
     expect_fault(with_word(2, 0), "too few or too many");
