@@ -10,7 +10,7 @@ enum { ring_count = 8, azimuth_count = 24 };
 static const double distances_mm[] = {300, 500, 900, 1600};
 static const double first_ring_deg = 4, ring_step_deg = 10;
 
-static const double typical_mm = 700;
+static const double typical_mm = 700, clearance_mm = 10;
 
 /* A listed lamp may leave this much more of the paper unexplained than the best of the search: its distance is a guess.
  */
@@ -80,6 +80,12 @@ static bool guess_from_pin(const weft_lamp_problem *problem, const weft_lamp_evi
     return true;
 }
 
+/* A lamp that is told by a highlight alone may come out too low for the shadow of the pin, and for light on paper. */
+static bool is_above(const weft_lamp_problem *problem, const weft_lamp_evidence *evidence, weft_vec3 place)
+{
+    return place.z > (evidence->pin.found ? problem->pin_height_mm : 0) + clearance_mm;
+}
+
 static double log_irradiance(weft_vec3 lamp, const double place[2])
 {
     weft_vec3 to = weft_vec3_of(lamp.x - place[0], lamp.y - place[1], lamp.z);
@@ -142,7 +148,8 @@ void weft_lamp_guess(const weft_lamp_problem *problem, weft_lamp_solution *solut
         if (problem->flash) {
             place->source = WEFT_LAMP_FLASH;
             place->position_mm = weft_pose_camera_position(&evidence->pose);
-        } else if (guess_from_balls(problem, evidence, &place->position_mm))
+        } else if (guess_from_balls(problem, evidence, &place->position_mm) &&
+                   is_above(problem, evidence, place->position_mm))
             place->source = WEFT_LAMP_BALLS;
         else if (guess_from_pin(problem, evidence, &place->position_mm))
             place->source = WEFT_LAMP_PIN;

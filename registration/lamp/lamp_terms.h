@@ -173,6 +173,9 @@ class lamp_terms
             {ux / length, uy / length},
             seen.along_mm / unit_mm,
             seen.across_mm / unit_mm};
+        double vanishing[2];
+        if (!residual(lamp_of(i), shared.pin_shift, vanishing))
+            return;
         pins.emplace_back(terms.add<2, 3, 3>(residual, terms.cauchy(3), lamp_of(i), shared.pin_shift), i);
     }
 

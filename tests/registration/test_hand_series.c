@@ -129,6 +129,55 @@ static double light_of(const weft_lamp_solution *found, double encoded)
     return exp(sum);
 }
 
+/* Where a highlight on the first ball lies that throws the ray of the camera back at just above the sheet. */
+static weft_vec3 low_highlight(const weft_lamp_problem *problem, weft_vec3 eye)
+{
+    double foot[2], radius = problem->ball_diameter_mm / 2;
+    weft_target_ball(problem->target, 0, foot);
+    double azimuth = atan2(foot[1], foot[0]);
+    for (double slope = 0.1; slope < 1.5; slope += 0.001) {
+        weft_vec3 normal = weft_vec3_of(sin(slope) * cos(azimuth), sin(slope) * sin(azimuth), cos(slope));
+        weft_vec3 point = weft_add(weft_vec3_of(foot[0], foot[1], radius), weft_scale(normal, radius));
+        weft_vec3 ray = weft_unit(weft_subtract(point, eye));
+        if (ray.z - 2 * weft_dot(ray, normal) * normal.z < 0.06)
+            return ray;
+    }
+    fail_msg("the ball throws no ray that low");
+    return eye;
+}
+
+/* A hand on the sheet shines in a ball: the highlight says that the lamp is lower than the pin, whose shadow is there.
+ */
+static void a_highlight_too_low_for_the_pin_stops_nothing(void **state)
+{
+    (void)state;
+    scene *s = photograph_all();
+    weft_lamp_place place[PHOTOGRAPHS];
+    weft_lamp_solution found = {.place = place};
+    weft_lamp_problem problem = problem_of(s, PHOTOGRAPHS);
+    weft_error error = {0};
+    problem.tone_unknown = true;
+    problem.ball_diameter_mm = 20;
+    problem.pin_height_mm = 80;
+    weft_lamp_evidence *seen = &s->evidence[0];
+    double foot[2];
+    weft_target_pin(problem.target, foot);
+    weft_vec3 lamp = lamp_of(0), head = weft_vec3_of(foot[0], foot[1], problem.pin_height_mm - weft_pin_head_radius_mm);
+    weft_vec3 down = weft_subtract(head, lamp);
+    seen->pin = (weft_pin_shadow){.found = true, .along_mm = 1, .across_mm = 0.5};
+    seen->pin.place[0] = head.x - down.x / down.z * head.z;
+    seen->pin.place[1] = head.y - down.y / down.z * head.z;
+    seen->highlight[0] = (weft_highlight){.found = true, .deviation_rad = 0.01};
+    seen->highlight[0].ray = low_highlight(&problem, weft_pose_camera_position(&seen->pose));
+    weft_lamp_guess(&problem, &found);
+    assert_int_equal(place[0].source, WEFT_LAMP_PIN);
+    assert_int_equal(weft_lamp_solve(&problem, &found, &error), WEFT_OK);
+    double off = acos(weft_dot(weft_unit(place[0].position_mm), weft_unit(lamp)));
+    print_message("the lamp is off by %.2f degrees\n", weft_deg_of_rad(off));
+    assert_true(off < weft_rad_of_deg(3));
+    free(s);
+}
+
 static void exposures_tell_the_curve_and_so_the_lamps(void **state)
 {
     (void)state;
@@ -262,6 +311,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exposures_tell_the_curve_and_so_the_lamps),
+        cmocka_unit_test(a_highlight_too_low_for_the_pin_stops_nothing),
         cmocka_unit_test(other_lamps_are_no_series),
         cmocka_unit_test(round_numbers_are_thirds_of_a_stop),
         cmocka_unit_test(the_darker_of_a_pair_is_no_image),
