@@ -1,7 +1,7 @@
 /* What bounds a BTF on the drape, by pictures of the geometry of a stitch (docs/notes/traced-truth.md): the noise of
  * the truth itself, as another seed tells; a BTF without fault, which is asked of the flat stitch for every place,
  * light and view by itself; and what the player makes of a dataset with more samples a pixel or on the finest level
- * alone. Usage: bench_drape_bound STITCH DATASET.btf.h5 [PATHS [SIDE]] */
+ * alone. Usage: bench_drape_bound STITCH DATASET.btf.h5 PICTURES/ [PATHS [SIDE]] */
 #include "bench/faultless_btf.h"
 #include "geometry/drape/draped_cloth.h"
 #include "player/draw/player.h"

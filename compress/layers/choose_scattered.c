@@ -1,5 +1,5 @@
-/* Which kind of map scattered images have: what both kinds say of the images that they are fitted to. None of these
- * lies where the maps have their values, so that this is a question of interpolation. */
+/* Which kind of map scattered images have: what the first two kinds say of the images that they are fitted to. None of
+ * these lies where the maps have their values, so that this is a question of interpolation. */
 #include "compress/layers/model.h"
 
 #include <math.h>

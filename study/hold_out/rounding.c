@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+enum { LARGEST_WHOLE = 2048 }; /* that a half float holds exactly, with all below it */
+
 /* +1 or -1. */
 static int next_sign(uint64_t *state)
 {
@@ -24,6 +26,15 @@ static void move_halves(weft_half *half, size_t count, uint64_t *state)
     }
 }
 
+/* Of values that are rounded to whole numbers. */
+static void move_whole_numbers(weft_half *half, size_t count, uint64_t *state)
+{
+    for (size_t i = 0; i < count; i++) {
+        int value = (int)weft_float_of_half(half[i]);
+        half[i] = weft_half_of_float((float)held(value + next_sign(state), -LARGEST_WHOLE, LARGEST_WHOLE));
+    }
+}
+
 static void move_bytes(uint8_t *code, size_t count, uint64_t *state)
 {
     for (size_t i = 0; i < count; i++)
@@ -43,7 +54,10 @@ static void move_layers(weft_layers *layers, size_t texels, uint64_t *state)
     for (size_t i = 0; i < texels * series; i++)
         coefficient[i] =
             (int8_t)held(coefficient[i] + next_sign(state), -WEFT_LAYERS_LARGEST_CODE, WEFT_LAYERS_LARGEST_CODE);
-    move_halves(layers->value, 3 * (size_t)layers->image_count * series, state);
+    if (weft_layers_have_differences(layers))
+        move_whole_numbers(layers->value, 3 * (size_t)layers->image_count * series, state);
+    else
+        move_halves(layers->value, 3 * (size_t)layers->image_count * series, state);
 }
 
 void weft_material_move_by_steps(weft_material *material)

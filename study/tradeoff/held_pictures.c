@@ -34,7 +34,7 @@ static int choose_images(const weft_trial *trial, int image[MOST_PICTURES])
     for (int i = 0, seen = 0; i < trial->held_count; i++) {
         if (trial->flags[i] != most)
             continue;
-        if (count < wanted && seen++ == candidate_of(count, wanted, candidates))
+        if (count < wanted && seen++ >= candidate_of(count, wanted, candidates)) /* two may fall on the same */
             image[count++] = trial->image[i];
     }
     return count;

@@ -529,7 +529,6 @@ static void expect_speed(weft_prediction prediction)
     weft_frame_timer_close(timer);
 }
 
-/* All texels are measured both times, but other directions. */
 /* The texels by which a size is predicted are held twice, as they are read and as they are written: memory for one and
  * a half of them does not do. */
 static void a_prediction_keeps_to_the_memory_that_is_allowed(void **state)
@@ -556,6 +555,7 @@ static void a_prediction_keeps_to_the_memory_that_is_allowed(void **state)
     unlink(path);
 }
 
+/* All texels are measured both times, but other directions. */
 static void a_preset_predicts_size_and_error(void **state)
 {
     (void)state;
