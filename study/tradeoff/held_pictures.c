@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PICTURES = 64 };
-
 /* Of pictures that are equal, in a mean. */
 static const double largest_psnr_db = 99;
 
@@ -22,15 +20,14 @@ static long candidate_of(int count, int wanted, int candidates)
     return (long)((count + fmod(section * count, 1)) * candidates / wanted);
 }
 
-/* Of the images with the most reasons to be held out so many, evenly. */
-static int choose_images(const weft_trial *trial, int image[MOST_PICTURES])
+int weft_held_pictures_choose(const weft_trial *trial, int image[WEFT_HELD_PICTURES])
 {
     int most = 0, candidates = 0, count = 0;
     for (int i = 0; i < trial->held_count; i++)
         most = trial->flags[i] > most ? trial->flags[i] : most;
     for (int i = 0; i < trial->held_count; i++)
         candidates += trial->flags[i] == most;
-    int wanted = candidates < MOST_PICTURES ? candidates : MOST_PICTURES;
+    int wanted = candidates < WEFT_HELD_PICTURES ? candidates : WEFT_HELD_PICTURES;
     for (int i = 0, seen = 0; i < trial->held_count; i++) {
         if (trial->flags[i] != most)
             continue;
@@ -154,7 +151,7 @@ static weft_code compare_image(const weft_trial *trial, const weft_asked_samples
 weft_code weft_held_pictures_compare(const weft_trial *trial, const weft_asked_samples *said, const uint8_t *kinds,
                                      weft_held_error *measured, weft_error *error)
 {
-    int image[MOST_PICTURES], count = choose_images(trial, image);
+    int image[WEFT_HELD_PICTURES], count = weft_held_pictures_choose(trial, image);
     double worst = -1;
     for (int i = 0; i < count; i++)
         WEFT_TRY(compare_image(trial, said, kinds, image[i], &worst, measured, error));

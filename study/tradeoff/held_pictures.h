@@ -4,6 +4,12 @@
 
 #include "study/tradeoff/held_error.h"
 
+enum { WEFT_HELD_PICTURES = 64 };
+
+/* Of the images with the most reasons to be held out all, or WEFT_HELD_PICTURES of them, evenly, in their order: sets
+ * image and returns how many. Reads the held-out images of the trial and their flags alone. Pure. */
+int weft_held_pictures_choose(const weft_trial *trial, int image[WEFT_HELD_PICTURES]);
+
 /* Compares some images that a trial holds out, of those with the most reasons to be, with what is said of them, under
  * the exposure that the photograph needs. Masked texels are black in both and do not count. `kinds` are those of the
  * samples of the excerpt (study/tradeoff/sample_kind.h). Sets the pictures and their quality in `measured`. Errors:

@@ -260,6 +260,8 @@ static void layers_through_heights_equal_c(void **state)
     scene.level_choice = WEFT_LEVEL_NONE;
     expect_alike("layers through hills", difference_of_layers(state, WEFT_LAYERS_OF_LIGHT, 8, 0, HILLS, scene));
     expect_alike("layers through a plane", difference_of_layers(state, WEFT_LAYERS_OF_HALF_VECTOR, 8, 0, PLANE, scene));
+    expect_alike("layers through hills, squared incidence",
+                 difference_of_layers(state, WEFT_LAYERS_OF_HALF_VECTOR_SQUARED, 4, 0, HILLS, scene));
     expect_alike("layers with opacity through hills",
                  difference_of_layers(state, WEFT_LAYERS_OF_HALF_VECTOR, 4, 37, HILLS, scene));
 }

@@ -6,6 +6,7 @@
 #include "study/tradeoff/choice.h"
 #include "study/tradeoff/cloth.h"
 #include "study/tradeoff/held_error.h"
+#include "study/tradeoff/held_pictures.h"
 #include "study/tradeoff/strobing.h"
 
 #include <math.h>
@@ -329,9 +330,33 @@ static void nothing_beats_a_preset_in_bytes_time_and_error(void **state)
     }
 }
 
+/* Each once, from one end to the other, however many there are. */
+static void so_many_pictures_are_chosen(void **state)
+{
+    (void)state;
+    enum { MOST = 1100 };
+    uint8_t flags[MOST];
+    int all[MOST], image[WEFT_HELD_PICTURES];
+    for (int i = 0; i < MOST; i++) {
+        flags[i] = 1 + i % 2;
+        all[i] = i;
+    }
+    for (int held = 2; held <= MOST; held += 2) {
+        const weft_trial trial = {.image = all, .flags = flags, .held_count = held};
+        int candidates = held / 2, count = weft_held_pictures_choose(&trial, image);
+        assert_int_equal(count, candidates < WEFT_HELD_PICTURES ? candidates : WEFT_HELD_PICTURES);
+        for (int i = 0; i < count; i++) {
+            assert_int_equal(image[i] % 2, 1);
+            assert_true(i == 0 || image[i] > image[i - 1]);
+        }
+        assert_true(image[count - 1] >= held - 2 * (held / WEFT_HELD_PICTURES + 2));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(so_many_pictures_are_chosen),
         cmocka_unit_test(the_list_ends_with_what_is_no_fit),
         cmocka_unit_test(third_rings_are_those_of_0_and_45_degrees),
         cmocka_unit_test(bard_and_cloth_do_not_see_what_is_held_out),
