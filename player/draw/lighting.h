@@ -9,7 +9,7 @@
 /* Places in the key light, and directions of the environment, from which a frame at rest sees their shadows; a pixel
  * sees every other of these directions, its neighbours the others. A moving frame takes the middle of the key light,
  * and two directions. */
-enum { WEFT_KEY_PLACES = 4, WEFT_FILL_DIRECTIONS = 8, WEFT_FILL_STEP = 2, WEFT_FILL_MOVING = 2 };
+enum { WEFT_KEY_PLACES = 4, WEFT_FILL_DIRECTIONS = 8, WEFT_FILL_STEP = 1, WEFT_FILL_MOVING = 2 };
 
 /* Neighbouring pixels at rest are lit from other parts of the environment, so that what a few frames lack is fine grain
  * instead of a lean of the whole picture. As many kinds of pixels at most, 4 x 2 that repeat. */
