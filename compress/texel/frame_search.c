@@ -43,7 +43,6 @@ static weft_grey_fit choose_frame(const weft_finalist *from, bool turn)
 void weft_frame_search_forget(weft_frame_search *search)
 {
     search->starts[0].found = search->starts[1].found = false;
-    search->lobes_vanished = false;
 }
 
 /* A diffuse term has no use for a frame. */
@@ -98,7 +97,6 @@ static void try_bare_starts(weft_frame_search *search, const weft_bundle *bundle
     bool turn = may_turn(request);
     bare.options.table = false;
     bare.options.tolerance = options.tolerance = GREY_TOLERANCE;
-    search->lobes_vanished = true;
     const weft_starts *starts = find_starts(search, bundle, samples, workspace, &bare);
     weft_fit_refine_starts(bundle, samples, WEFT_GREY, &bare.options, turn, workspace, starts, WEFT_FINALISTS,
                            search->bare);

@@ -27,7 +27,6 @@ typedef struct weft_frame_search {
     weft_finalist bare[WEFT_FINALISTS];                           /* begun from shapes that were found without T */
     weft_grey_fit best, other;                                    /* what is to be begun from, and another minimum */
     bool has_other;
-    bool lobes_vanished; /* beside T, in a search for this texel */
 } weft_frame_search;
 
 /* Errors: WEFT_SYSTEM. The caller frees, also after a failure. */

@@ -193,14 +193,14 @@ static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options
 
 /* ---- The best model ---- */
 
-/* A fit may end in a lesser minimum than that of a smaller model, rounding may spoil it, and it may have been held. Not
- * so, as far as was ever seen, where there are so many samples, the grey fit leaves so much less than that of the
- * smaller model, and rounding cost next to nothing. */
+/* A fit may end in a lesser minimum than that of a smaller model, rounding may spoil it, and it may have been held.
+ * Hardly ever where there are so many samples, the grey fit leaves so much less than that of the smaller model, and
+ * rounding cost next to nothing. */
 enum { MANY_SAMPLES = 2000 };
 #define CLEARLY_LESS 0.97
-#define CLEARLY_LESS_LIT 0.7 /* where S is to be fitted, of which the grey fit knows nothing */
+#define CLEARLY_LESS_BARE 0.9 /* without T more often ends in a lesser minimum that another start mends */
+#define CLEARLY_LESS_LIT 0.7  /* where S is to be fitted, of which the grey fit knows nothing */
 #define BARELY_MORE 1.01
-#define SPOILT 1.03
 
 static void swap_results(weft_texel_fitter *fitter)
 {
@@ -212,14 +212,14 @@ static void swap_results(weft_texel_fitter *fitter)
 /* A model of the texel and what the last ones of its kind left. */
 typedef struct contest {
     double least;      /* squared error of the best, as it will be read */
-    double promised;   /* the least that a model left before it was rounded and held */
     double grey;       /* of the grey fit that the whole model began from */
     bool is_sure;      /* that only a grey fit which leaves about as much needs a look */
     bool stepped_down; /* the best is not the whole model */
 } contest;
 
-/* Fits a model from one start, and keeps the better one; returns whether it was spoilt: held, or by rounding. A model
- * that leaves too much before it is rounded and held leaves more afterwards. */
+/* Fits a model from one start, and keeps the better one; returns whether another start may do better: it was held,
+ * spoilt by rounding, or left too much. A model that leaves too much before it is rounded and held leaves more
+ * afterwards. */
 static bool try_start(weft_texel_fitter *fitter, const weft_fit_options *options, bool light,
                       const weft_grey_fit *start, contest *state)
 {
@@ -228,8 +228,7 @@ static bool try_start(weft_texel_fitter *fitter, const weft_fit_options *options
     if (!is_beaten)
         hold(fitter, options);
     double own = is_beaten ? INFINITY : weft_texel_weighted_error(fitter);
-    state->promised = fmin(state->promised, fitter->now.residual);
-    bool spoilt = !is_beaten && (fitter->now.held || own >= BARELY_MORE * fitter->now.residual);
+    bool spoilt = is_beaten || fitter->now.held || own >= BARELY_MORE * fitter->now.residual;
     if (own < state->least)
         state->least = own;
     else
@@ -237,8 +236,7 @@ static bool try_start(weft_texel_fitter *fitter, const weft_fit_options *options
     return spoilt;
 }
 
-/* The same from the start that leaves least and, where the result is spoilt, from another; returns whether the result
- * of the first was spoilt. */
+/* The same from the start that leaves least and, where that says so, from another; returns whether it did. */
 static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options, bool light, const weft_frame *given,
                       contest *state)
 {
@@ -254,30 +252,24 @@ static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options
 static bool may_serve(weft_texel_fitter *fitter, const weft_fit_options *options, const weft_frame *given,
                       const contest *state)
 {
-    double clear = fitter->light_count > 0 ? CLEARLY_LESS_LIT : CLEARLY_LESS;
+    double clear = fitter->light_count > 0 ? CLEARLY_LESS_LIT : options->table ? CLEARLY_LESS : CLEARLY_LESS_BARE;
     double left = find_start(fitter, options, given)->fit.residual;
     return !(state->is_sure && state->grey < clear * left);
-}
-
-/* With many samples models without T or S serve only where T left the lobes nothing to explain, or where those with
- * them ended far above what they promised, since they were held from glaring. */
-static bool needs_more(const weft_texel_fitter *fitter, const contest *state)
-{
-    return fitter->frames.lobes_vanished || state->least > SPOILT * state->promised;
 }
 
 /* Without S, without T and with fewer lobes. */
 static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given,
                             contest *state)
 {
-    bool light = fitter->light_count > 0, is_few = fitter->samples.valid_count <= MANY_SAMPLES;
+    bool light = fitter->light_count > 0;
     weft_fit_options options = *whole;
     for (options.lobe_count = whole->lobe_count; options.lobe_count >= 0; options.lobe_count--) {
         for (int with_table = whole->table; with_table >= 0; with_table--) {
             for (int with_light = light; with_light >= 0; with_light--) {
-                bool is_part = with_table != whole->table || with_light != light;
+                bool is_whole =
+                    options.lobe_count == whole->lobe_count && with_table == whole->table && with_light == light;
                 options.table = with_table;
-                if (is_part ? !is_few && !needs_more(fitter, state) : options.lobe_count == whole->lobe_count)
+                if (is_whole)
                     continue;
                 double before = state->least;
                 if (may_serve(fitter, &options, given, state))
@@ -292,7 +284,7 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
  * whole one. */
 static bool fit_best(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_frame *given)
 {
-    contest state = {.least = INFINITY, .promised = INFINITY, .grey = find_start(fitter, whole, given)->fit.residual};
+    contest state = {.least = INFINITY, .grey = find_start(fitter, whole, given)->fit.residual};
     bool spoilt = try_model(fitter, whole, fitter->light_count > 0, given, &state);
     state.is_sure = !spoilt && fitter->samples.valid_count > MANY_SAMPLES;
     try_all_smaller(fitter, whole, given, &state);
