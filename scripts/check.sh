@@ -17,20 +17,8 @@ docs() {
     scripts/check-docs.sh
 }
 
-# Every fault of `make mutants` still finds its place, and the test and the targets that it names exist.
 faults() {
-    lost=0
-    cmake --preset release -Wno-dev --log-level=WARNING >/dev/null || return 1
-    names=$(ctest --preset release -N | sed -n 's/^ *Test *#[0-9]*: //p' && ninja -C build/release -t targets all | sed 's/: .*//')
-    for fault in tests/mutants/*/*.patch; do
-        git apply --check --unidiff-zero "$fault" || lost=1
-        caught_by=$(sed -n '/^--- /q; s/^Caught by: *//p' "$fault")
-        builds=$(sed -n '/^--- /q; s/^Builds: *//p' "$fault")
-        for name in $caught_by ${builds:-test_$caught_by}; do
-            printf '%s\n' "$names" | grep -qx "$name" || { echo "$fault: there is no test or target '$name'" >&2; lost=1; }
-        done
-    done
-    return $lost
+    scripts/check-faults.sh
 }
 
 # The benches, which no test builds.

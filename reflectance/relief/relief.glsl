@@ -17,6 +17,12 @@ struct ReliefTap {
     float weight;
 };
 
+// How much of a value at `level` is seen through the heights.
+float relief_share(float level)
+{
+    return clamp(relief_levels - level, 0.0, 1.0);
+}
+
 vec2 relief_slope_of(vec3 view)
 {
     return view.xy / (max(view.z, RELIEF_LEAST_COSINE) * relief_size);

@@ -192,7 +192,7 @@ float opacity(SurfacePoint point)
 {
     float level = clamp(point.level, 0.0, float(level_count - 1));
     int fine = int(level);
-    float share = level - float(fine), through = RELIEF ? clamp(relief_levels - level, 0.0, 1.0) : 0.0;
+    float share = level - float(fine), through = RELIEF ? relief_share(level) : 0.0;
     Entries views = table_entries(find_corners(0, point.view), table_columns);
     float sum = (1.0 - through) * opacity_between(fine, share, point.coordinate, views);
     if (!RELIEF)
@@ -211,7 +211,7 @@ vec4 radiance(SurfacePoint point)
 {
     float level = clamp(point.level, 0.0, float(level_count - 1));
     int fine = int(level);
-    float share = level - float(fine), through = RELIEF ? clamp(relief_levels - level, 0.0, 1.0) : 0.0;
+    float share = level - float(fine), through = RELIEF ? relief_share(level) : 0.0;
     if (STOCHASTIC) {
         fine = happens(point.chance, share) ? fine + 1 : fine;
         share = 0.0;

@@ -103,7 +103,7 @@ void find_taps(SurfacePoint point, float level, inout Corners views, out ReliefT
 {
     for (int i = 0; i < 3; i++)
         tap[i] = ReliefTap(point.coordinate, views.weight[i]);
-    float share = RELIEF ? clamp(relief_levels - level, 0.0, 1.0) : 0.0;
+    float share = RELIEF ? relief_share(level) : 0.0;
     if (share == 0.0)
         return;
     relief_taps(share, point.coordinate, point.view, views.label - 1, views.weight, tap);
