@@ -70,7 +70,7 @@ static void say_model(const weft_compressed *done)
         weft_command_say(common, "held to %d times their brightest sample: %ld of %ld texels", WEFT_BRIGHTEST_MULTIPLE,
                          report->held_texel_count, report->texel_count);
     if (report->stepped_down_count > 0)
-        weft_command_say(common, "served better by fewer lobes: %ld of %ld texels", report->stepped_down_count,
+        weft_command_say(common, "served better by a smaller model: %ld of %ld texels", report->stepped_down_count,
                          report->texel_count);
 }
 

@@ -26,7 +26,7 @@ typedef struct weft_compress_report {
     long second_start_count;   /* texels whose fit began with a lobe thrown back to the light rather than mirrored */
     long missed_texel_count;   /* that no model brings to the target error */
     long held_texel_count;     /* that would have exceeded WEFT_BRIGHTEST_MULTIPLE */
-    long stepped_down_count;   /* that fewer lobes serve better than all */
+    long stepped_down_count;   /* that a smaller model serves better than the whole */
     weft_layers_report layers; /* where there are any */
     double seconds;
     long block_count;         /* of a dense model */

@@ -81,7 +81,7 @@ static json_t *describe_fit(const weft_compress_options *options, const weft_com
         (json_int_t)report->empty_texel_count, "turned_frames", (double)report->turned_frame_count / texels,
         "retro_reflective_starts", (double)report->second_start_count / texels);
     weft_json_put(&fit, "held_texels", json_integer((json_int_t)report->held_texel_count));
-    weft_json_put(&fit, "texels_with_fewer_lobes", json_integer((json_int_t)report->stepped_down_count));
+    weft_json_put(&fit, "texels_with_smaller_model", json_integer((json_int_t)report->stepped_down_count));
     if (options->weights == WEFT_WEIGHTS_SCREEN && report->model != WEFT_COMPRESS_SPARSE)
         weft_json_put(&fit, "weights", json_string("screen"));
     if (options->target_error > 0) {

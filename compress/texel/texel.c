@@ -198,7 +198,7 @@ static void fit_model(weft_texel_fitter *fitter, const weft_fit_options *options
  * rounding cost next to nothing. */
 enum { MANY_SAMPLES = 2000 };
 #define CLEARLY_LESS 0.97
-#define CLEARLY_LESS_BARE 0.9 /* without T more often ends in a lesser minimum that another start mends */
+#define CLEARLY_LESS_BARE 0.9 /* without T beside a whole that has it: often a second start mends such a fit */
 #define CLEARLY_LESS_LIT 0.7  /* where S is to be fitted, of which the grey fit knows nothing */
 #define BARELY_MORE 1.01
 
@@ -249,10 +249,11 @@ static bool try_model(weft_texel_fitter *fitter, const weft_fit_options *options
 
 /* Whether the grey fit of a smaller model leaves so little that the model needs a look. All its starts are refined: the
  * first alone may leave far more than the model does in the end. */
-static bool may_serve(weft_texel_fitter *fitter, const weft_fit_options *options, const weft_frame *given,
-                      const contest *state)
+static bool may_serve(weft_texel_fitter *fitter, const weft_fit_options *whole, const weft_fit_options *options,
+                      const weft_frame *given, const contest *state)
 {
-    double clear = fitter->light_count > 0 ? CLEARLY_LESS_LIT : options->table ? CLEARLY_LESS : CLEARLY_LESS_BARE;
+    bool is_bare = whole->table && !options->table;
+    double clear = fitter->light_count > 0 ? CLEARLY_LESS_LIT : is_bare ? CLEARLY_LESS_BARE : CLEARLY_LESS;
     double left = find_start(fitter, options, given)->fit.residual;
     return !(state->is_sure && state->grey < clear * left);
 }
@@ -272,7 +273,7 @@ static void try_all_smaller(weft_texel_fitter *fitter, const weft_fit_options *w
                 if (is_whole)
                     continue;
                 double before = state->least;
-                if (may_serve(fitter, &options, given, state))
+                if (may_serve(fitter, whole, &options, given, state))
                     try_model(fitter, &options, with_light, given, state);
                 state->stepped_down |= state->least < before;
             }

@@ -35,7 +35,7 @@ typedef struct weft_texel_counts {
     long texels, empty, turned, second_start;
     long missed;       /* texels that no model brings to the target */
     long held;         /* texels that were held to WEFT_BRIGHTEST_MULTIPLE */
-    long stepped_down; /* texels that fewer lobes serve better */
+    long stepped_down; /* texels that a smaller model serves better */
     weft_error_sums sums;
 } weft_texel_counts;
 

@@ -1,4 +1,5 @@
-/* No texel of cloth is served better by a model that leaves something out of what it was allowed. */
+/* No texel is served better by a model that leaves out something of what it was allowed, however many samples it has.
+ */
 #include "texel_fixture.h"
 
 #include "compress/texel/texel.h"
@@ -92,7 +93,7 @@ static void no_smaller_model_serves_better_than_two_lobes(void **state)
 
 static void no_smaller_model_serves_better_than_three_lobes(void **state)
 {
-    check(*state, 3, 30, 60);
+    check(*state, 3, 0, 80);
 }
 
 int main(void)
