@@ -1,6 +1,7 @@
 /* The sections of linear layers: what is written is read back, and what is wrong is named. */
 #include "tests/support/cmocka_all.h"
 
+#include "btf/material/layer_rounding.h"
 #include "btf/material/material.h"
 #include "tests/btf/material/layers_example.h"
 #include "tests/btf/material/weft_bytes.h"
@@ -222,6 +223,29 @@ static void a_file_has_the_smaller_of_both(void **state)
     }
 }
 
+/* Rounded, all values are whole numbers: of a layer that no texel has any of, too. */
+static void an_empty_layer_keeps_none_from_packing(void **state)
+{
+    (void)state;
+    enum { EMPTY = 5 };
+    weft_error error = {0};
+    weft_material material;
+    values_of_example(&material);
+    weft_layers *layers = material.layers;
+    for (int k = 0; k < layers->level_count; k++) {
+        size_t texels = (size_t)layers->level[k].width * (size_t)layers->level[k].height;
+        int8_t *group = layers->level[k].coefficient + EMPTY / WEFT_LAYERS_GROUP * WEFT_LAYERS_GROUP * texels;
+        for (size_t i = 0; i < texels; i++)
+            group[WEFT_LAYERS_GROUP * i + EMPTY % WEFT_LAYERS_GROUP] = 0;
+    }
+    assert_false(weft_layers_have_differences(layers));
+    weft_layers_round_values(0.01, layers);
+    assert_true(weft_layers_have_differences(layers));
+    expect_ok(weft_material_write("empty.weft", &material, &error), &error);
+    assert_int_equal(codec_of_layers("empty.weft"), 2);
+    weft_material_free(&material);
+}
+
 static void values_too_large_are_refused(void **state)
 {
     (void)state;
@@ -367,6 +391,7 @@ int main(void)
         cmocka_unit_test(values_by_differences_are_read_back),
         cmocka_unit_test(differences_are_those_of_the_document),
         cmocka_unit_test(a_file_has_the_smaller_of_both),
+        cmocka_unit_test(an_empty_layer_keeps_none_from_packing),
         cmocka_unit_test(values_too_large_are_refused),
         cmocka_unit_test(every_field_is_checked),
         cmocka_unit_test(coefficients_must_be_those_of_the_layers),
