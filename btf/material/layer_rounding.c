@@ -68,16 +68,20 @@ static void round_layer(weft_layers *layers, int layer, double asked)
     layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
 }
 
-/* The coefficients become fewer whole numbers, and the scale grows by as much. */
+/* The coefficients become fewer whole numbers, which lie `grid` apart, and on every coarser level half as far: more is
+ * averaged out there, so that what is rounded away would show. The scale stays. */
 static void round_coefficients(weft_layers *layers, int layer, double grid)
 {
     for (int k = 0; k < layers->level_count; k++) {
         size_t texels;
         int8_t *c = coefficients_of(layers, k, layer, &texels);
-        for (size_t i = 0; i < texels; i++)
-            c[WEFT_LAYERS_GROUP * i] = (int8_t)lround((double)c[WEFT_LAYERS_GROUP * i] / grid);
+        double of_level = fmax(grid * exp2(-k), 1);
+        for (size_t i = 0; i < texels; i++) {
+            double code = of_level * round((double)c[WEFT_LAYERS_GROUP * i] / of_level);
+            c[WEFT_LAYERS_GROUP * i] =
+                (int8_t)lround(fmin(fmax(code, -WEFT_LAYERS_LARGEST_CODE), WEFT_LAYERS_LARGEST_CODE));
+        }
     }
-    layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
 }
 
 /* Nothing has any of this layer: what its values are does not matter, but whole numbers let all values be packed. */

@@ -8,6 +8,7 @@
 #include "tests/support/expect_ok.h"
 #include "tests/support/scratch_folder.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -246,6 +247,37 @@ static void an_empty_layer_keeps_none_from_packing(void **state)
     weft_material_free(&material);
 }
 
+/* Steps of 32 codes on the finest level, half of that on each coarser one; the scale stays. */
+static void coarser_levels_are_rounded_less(void **state)
+{
+    (void)state;
+    enum { LAYER = 2, TIMES = 32 };
+    weft_material material, whole;
+    values_of_example(&material);
+    values_of_example(&whole);
+    weft_layers *layers = material.layers;
+    double square = 0;
+    for (int i = 0; i < 3 * layers->image_count; i++)
+        square += pow((double)weft_float_of_half(layers->value[3 * (8 * (i / 3) + LAYER) + i % 3]), 2);
+    double rms = (double)layers->scale[LAYER] * sqrt(square / (3 * layers->image_count));
+    weft_layers_round_coefficients(TIMES * rms, layers);
+    assert_float_equal(layers->scale[LAYER], whole.layers->scale[LAYER], 0);
+    int changed = 0;
+    for (int k = 0; k < layers->level_count; k++) {
+        const weft_layers_level *level = &layers->level[k];
+        for (int i = 0; i < level->width * level->height; i++) {
+            int at = WEFT_LAYERS_GROUP * i + LAYER, code = level->coefficient[at],
+                before = whole.layers->level[k].coefficient[at];
+            assert_true(abs(code) == 127 || abs(code) % (TIMES >> k) == 0);
+            assert_in_range(abs(code - before), 0, TIMES >> k >> 1);
+            changed += code != before;
+        }
+    }
+    assert_true(changed > 10);
+    weft_material_free(&whole);
+    weft_material_free(&material);
+}
+
 static void values_too_large_are_refused(void **state)
 {
     (void)state;
@@ -392,6 +424,7 @@ int main(void)
         cmocka_unit_test(differences_are_those_of_the_document),
         cmocka_unit_test(a_file_has_the_smaller_of_both),
         cmocka_unit_test(an_empty_layer_keeps_none_from_packing),
+        cmocka_unit_test(coarser_levels_are_rounded_less),
         cmocka_unit_test(values_too_large_are_refused),
         cmocka_unit_test(every_field_is_checked),
         cmocka_unit_test(coefficients_must_be_those_of_the_layers),
