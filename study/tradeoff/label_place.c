@@ -3,20 +3,20 @@
 /* Of the font of the page, rather too much. */
 static const double letter_width = 7, ascent = 11, descent = 4, line_height = 15;
 
-enum { LINES = 6 };
+enum { LINES = 12 };
 
 static bool overlap(const weft_label_box *a, const weft_label_box *b)
 {
     return a->left < b->right && b->left < a->right && a->top < b->bottom && b->top < a->bottom;
 }
 
-static bool is_free(const weft_label_box *box, double width, const weft_label_box *taken, size_t count)
+static bool is_free(const weft_label_box *box, double width, double height, const weft_label_box *taken, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         if (overlap(box, &taken[i]))
             return false;
     }
-    return box->left >= 0 && box->right <= width && box->top >= 0;
+    return box->left >= 0 && box->right <= width && box->top >= 0 && box->bottom <= height;
 }
 
 static weft_label_place place_at(double x, double y, double length, bool on_the_left)
@@ -33,7 +33,7 @@ static double base_line(double y, double radius, int line)
     return line % 2 == 0 ? y + radius + 10 + away : y - radius - 1 - away;
 }
 
-weft_label_place weft_label_place_choose(double x, double y, double radius, size_t letters, double width,
+weft_label_place weft_label_place_choose(double x, double y, double radius, size_t letters, double width, double height,
                                          const weft_label_box *taken, size_t count)
 {
     double length = letter_width * (double)letters;
@@ -42,7 +42,7 @@ weft_label_place weft_label_place_choose(double x, double y, double radius, size
         bool on_the_left = i % 2 == 0 ? is_right : !is_right;
         weft_label_place place =
             place_at(x + (on_the_left ? -1 : 1) * (radius + 7), base_line(y, radius, i / 2), length, on_the_left);
-        if (is_free(&place.box, width, taken, count))
+        if (is_free(&place.box, width, height, taken, count))
             return place;
     }
     return place_at(x + (is_right ? -1 : 1) * (radius + 7), base_line(y, radius, 0), length, is_right);

@@ -16,10 +16,10 @@ typedef struct weft_label_place {
     weft_label_box box;
 } weft_label_place;
 
-/* The place for a text of so many letters beside a disc of `radius` at (x, y), in a plot of `width`: below or above the
- * disc, towards the middle of the plot or away from it, else further below: the first that lies on none of taken
- * [count] and within the plot; the first of all where there is none. Pure. */
-weft_label_place weft_label_place_choose(double x, double y, double radius, size_t letters, double width,
+/* The place for a text of so many letters beside a disc of `radius` at (x, y), in a plot of `width`, whose axis lies at
+ * `height`: below or above the disc, towards the middle of the plot or away from it, else further below: the first that
+ * lies on none of taken [count] and within the plot; the first of all where there is none. Pure. */
+weft_label_place weft_label_place_choose(double x, double y, double radius, size_t letters, double width, double height,
                                          const weft_label_box *taken, size_t count);
 
 #endif

@@ -179,7 +179,7 @@ static taken_boxes rings_of(const weft_plot *plot, const log_axis *x, const log_
 static void draw_label(weft_page *page, const weft_plot_point *point, double x, double y, taken_boxes *taken)
 {
     weft_label_place place =
-        weft_label_place_choose(x, y, RADIUS, strlen(point->label), WIDTH, taken->box, taken->count);
+        weft_label_place_choose(x, y, RADIUS, strlen(point->label), WIDTH, HEIGHT - BOTTOM, taken->box, taken->count);
     if (taken->count < sizeof taken->box / sizeof *taken->box)
         taken->box[taken->count++] = place.box;
     fprintf(page->html, "<text class=\"label\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", place.x, place.y,

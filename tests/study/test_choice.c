@@ -155,15 +155,16 @@ static void points_lie_on_logarithmic_axes(void **state)
 static void labels_do_not_lie_on_each_other(void **state)
 {
     (void)state;
-    enum { POINTS = 3, BOXES = 2 * POINTS, WIDTH = 760, LETTERS = 30 };
-    static const double at[POINTS][2] = {{700, 40}, {690, 48}, {705, 52}};
+    enum { POINTS = 3, BOXES = 2 * POINTS, WIDTH = 760, HEIGHT = 382, LETTERS = 30 };
+    static const double at[POINTS][2] = {{700, 360}, {690, 368}, {705, 372}};
     weft_label_box box[BOXES];
     size_t count = 0;
     for (; count < POINTS; count++)
         box[count] = (weft_label_box){at[count][0] - 13, at[count][1] - 13, at[count][0] + 13, at[count][1] + 13};
     for (int i = 0; i < POINTS; i++) {
-        weft_label_place place = weft_label_place_choose(at[i][0], at[i][1], 9, LETTERS, WIDTH, box, count);
-        assert_true(place.box.left >= 0 && place.box.right <= WIDTH && place.box.top >= 0);
+        weft_label_place place = weft_label_place_choose(at[i][0], at[i][1], 9, LETTERS, WIDTH, HEIGHT, box, count);
+        assert_true(place.box.left >= 0 && place.box.right <= WIDTH && place.box.top >= 0 &&
+                    place.box.bottom <= HEIGHT);
         assert_true(place.ends_there);
         box[count++] = place.box;
     }
@@ -171,7 +172,7 @@ static void labels_do_not_lie_on_each_other(void **state)
         for (size_t j = 0; j < i; j++)
             assert_true(box[i].right <= box[j].left || box[j].right <= box[i].left || box[i].bottom <= box[j].top ||
                         box[j].bottom <= box[i].top);
-    weft_label_place alone = weft_label_place_choose(100, 100, 9, LETTERS, WIDTH, NULL, 0);
+    weft_label_place alone = weft_label_place_choose(100, 100, 9, LETTERS, WIDTH, HEIGHT, NULL, 0);
     assert_false(alone.ends_there);
     assert_true(alone.y > 100 && alone.x > 100);
 }
