@@ -330,6 +330,32 @@ static void a_step_is_the_root_of_twelve_times_rounding(void **state)
     weft_material_free(&material);
 }
 
+/* Codes that were rounded to every eighth lie eight apart: that is their step. */
+static void coefficients_are_moved_by_what_they_lie_apart(void **state)
+{
+    (void)state;
+    enum { SIDE = 6, LAYERS = 4, APART = 8 };
+    const weft_layers shape = {.layer_count = LAYERS,
+                               .view_count = 1,
+                               .image_count = 1,
+                               .light_side = 4,
+                               .view_side = 4,
+                               .light_smoothness = 1,
+                               .view_smoothness = 1,
+                               .least_cosine = 1};
+    weft_material material;
+    weft_error error = {0};
+    expect_ok(weft_material_create(SIDE, SIDE, 0, 0, 0, false, &material, &error), &error);
+    expect_ok(weft_layers_create(&shape, SIDE, SIDE, 1, &material.layers, &error), &error);
+    int8_t *code = material.layers->level[0].coefficient, before[LAYERS * SIDE * SIDE];
+    for (int i = 0; i < LAYERS * SIDE * SIDE; i++)
+        before[i] = code[i] = (int8_t)(i % LAYERS == 1 ? i % 100 : APART * (i % 13));
+    weft_material_move_by_steps(&material);
+    for (int i = 0; i < LAYERS * SIDE * SIDE; i++)
+        assert_int_equal(abs(code[i] - before[i]), i % LAYERS == 1 ? 4 : APART);
+    weft_material_free(&material);
+}
+
 /* ---- Registration ---- */
 
 static weft_rgb sloping(int x, int y, weft_vec3 light, weft_vec3 view)
@@ -484,6 +510,7 @@ int main(void)
         cmocka_unit_test(levels_are_measured_where_texels_lie_beside_each_other),
         cmocka_unit_test(coarser_levels_of_a_material_are_as_narrow_as_they_are),
         cmocka_unit_test(a_step_is_the_root_of_twelve_times_rounding),
+        cmocka_unit_test(coefficients_are_moved_by_what_they_lie_apart),
         cmocka_unit_test(a_displacement_costs_the_slope),
         cmocka_unit_test(flash_photographs_of_a_card_are_covered),
     };
