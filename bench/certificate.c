@@ -1,11 +1,14 @@
 /* Whether the certificate of a material covers what it says, on directions that neither the fit nor the certificate
  * has seen: `bench_certificate NAME.btf.h5 lobes|layers [SIDE]`, of at most SIDE x SIDE texels of the middle (32). A
  * further split of the dataset is left out of both; of fewer than 24 images each in turn. Layers are seen through the
- * heights of the dataset where weft compress keeps them. Prints one row of comma-separated values a level. */
+ * heights of the dataset where weft compress keeps them. Prints one row of comma-separated values a level: at its
+ * end the quantile of the certificate and the one that was needed. */
+#include "base/numeric/statistics.h"
 #include "study/error/coverage.h"
 #include "study/hold_out/hold_out.h"
 #include "study/hold_out/residuals.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,6 +25,7 @@ typedef struct testing {
     bool through_heights; /* the last fit */
     size_t count[SHOWN_LEVELS];
     weft_covered *covered[SHOWN_LEVELS];
+    double quantile[SHOWN_LEVELS]; /* of the last certificate */
 } testing;
 
 static weft_code put_level(testing *t, const weft_residuals *residuals, int level, const weft_certificate *certificate,
@@ -32,6 +36,8 @@ static weft_code put_level(testing *t, const weft_residuals *residuals, int leve
     if (!grown)
         return weft_fail_memory(error, "samples", count * sizeof *grown);
     t->covered[level] = grown;
+    t->quantile[level] =
+        certificate->level[level < certificate->level_count ? level : certificate->level_count - 1].quantile;
     for (size_t i = 0; i < count; i++) {
         const weft_residual *r = &residuals->value[level][i];
         weft_vec3 light = weft_direction_of_angles((weft_angles){weft_rad_of_deg(15 * r->light), 0}),
@@ -101,6 +107,20 @@ static void say_shares(const weft_coverage_share share[WEFT_RING_COUNT])
     }
 }
 
+/* By what the interval of a level is too wide: the quantile of the errors in half widths. */
+static double needed_share(const testing *t, int level)
+{
+    size_t count = t->count[level];
+    float *share = malloc(count * sizeof *share);
+    for (size_t i = 0; share && i < count; i++) {
+        const weft_covered *c = &t->covered[level][i];
+        share[i] = fabsf(c->value.sample - c->value.prediction) / fmaxf(c->half_width, 1e-20f);
+    }
+    double needed = share ? (double)weft_quantile_of_floats(share, count, 0.95) : 0;
+    free(share);
+    return needed;
+}
+
 static weft_code say(const testing *t, weft_error *error)
 {
     for (int level = 0; level < SHOWN_LEVELS && t->count[level] > 0; level++) {
@@ -111,7 +131,7 @@ static weft_code say(const testing *t, weft_error *error)
                100 * coverage.dark.covered, 100 * coverage.bright.covered, coverage.all.width, coverage.even_width);
         say_shares(coverage.by_view);
         say_shares(coverage.by_light);
-        printf("\n");
+        printf(",%.3f,%.3f\n", t->quantile[level], needed_share(t, level) * t->quantile[level]);
     }
     return WEFT_OK;
 }

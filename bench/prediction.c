@@ -43,7 +43,9 @@ static uint64_t make(weft_dataset *dataset, weft_compress_options options, const
     weft_error error = {0};
     weft_material material;
     uint64_t own, bytes;
-    stop_on(weft_hold_out_measure(dataset, &options, 1, scratch, NULL, held_out, &error), &error);
+    int splits;
+    stop_on(weft_hold_out_enough_splits(weft_dataset_get_layout(dataset), &splits, &error), &error);
+    stop_on(weft_hold_out_measure(dataset, &options, splits, scratch, NULL, held_out, &error), &error);
     stop_on(weft_hold_out_bytes(held_out, &options.added_bytes, &error), &error);
     stop_on(weft_prediction_stored_bytes(prediction, &own, &error), &error);
     options.added_bytes += own;

@@ -141,8 +141,10 @@ static const weft_option option_table[] = {
              "frames a second: 730 x 400 pixels, every texel, level and direction evaluated",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(compress_command, least_fps), .low = 0.01, .high = 10000},
     {"hold-out", .argument = "off|N",
-     .help = "Fit some texels N times without about a tenth of the views and of the lights, others each time, and say "
-             "how well the material predicts these (default: 1); the material itself is fitted to all images",
+     .help =
+         "Fit some texels N times without about a tenth of the views and of the lights, others each time, and say "
+         "how well the material predicts these (default: 1, or more where few are held out); the material itself is "
+         "fitted to all images",
      .read = read_hold_out},
     {"report", .argument = "DIR",
      .help = "With --error or --budget: a page with a map of the models that were chosen, and their shares by level",
@@ -248,10 +250,15 @@ static weft_code measure_hold_out(const compress_command *command, weft_dataset 
     char scratch_path[PATH_MAX];
     weft_error own = {0};
     *result = (weft_hold_out){0};
-    if (command->hold_out == 0)
+    int splits = command->hold_out;
+    if (splits == 0)
         return WEFT_OK;
     snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
-    weft_code code = weft_hold_out_measure(dataset, options, command->hold_out, scratch_path, progress, result, &own);
+    weft_code code = WEFT_OK;
+    if (splits == NOT_GIVEN)
+        code = weft_hold_out_enough_splits(weft_dataset_get_layout(dataset), &splits, &own);
+    if (code == WEFT_OK)
+        code = weft_hold_out_measure(dataset, options, splits, scratch_path, progress, result, &own);
     if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT) {
         weft_command_say(&command->common, "error on directions that were not fitted: not measured: %s", own.message);
         *result = (weft_hold_out){0};
@@ -360,7 +367,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
 static int run(int argc, char **argv)
 {
     compress_command command = {.options = weft_compress_default_options(),
-                                .hold_out = 1,
+                                .hold_out = NOT_GIVEN,
                                 .lobes = NOT_GIVEN,
                                 .table = NOT_GIVEN,
                                 .layers = NOT_GIVEN};

@@ -89,6 +89,9 @@ static void say_certificate(const weft_common_options *common, const weft_certif
     weft_command_say(common, "  certificate: %s;", line);
     weft_certificate_row(certificate, 2, line);
     weft_command_say(common, "    where %.3g is said, view and light at 30 degrees: %s", certificate->mean, line);
+    weft_certificate_describe_levels(certificate, line);
+    if (line[0])
+        weft_command_say(common, "    %s", line);
 }
 
 /* An event of what is in the metadata, too. */

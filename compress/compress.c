@@ -176,11 +176,11 @@ static weft_code identify(const weft_dataset *dataset, const weft_compress_optio
              (long)status.st_mtim.tv_nsec);
     snprintf(
         text->options, sizeof text->options,
-        "%s, %d lobes, %d layers, lights %d, weights %d, frames %d, N <= %.17g, error <= %.17g, levels %d, held out "
-        "%08lx",
-        weft_compress_model_name(report->model), report->lobe_count, options->layer_count, options->light_table,
-        (int)options->weights, (int)options->frames, options->max_exponent, options->target_error, options->levels,
-        held_out);
+        "%s, %d lobes, %d layers, maps %d, lights %d, weights %d, frames %d, N <= %.17g, error <= %.17g, levels %d, "
+        "held out %08lx",
+        weft_compress_model_name(report->model), report->lobe_count, options->layer_count, (int)options->layer_maps,
+        options->light_table, (int)options->weights, (int)options->frames, options->max_exponent, options->target_error,
+        options->levels, held_out);
     return WEFT_OK;
 }
 

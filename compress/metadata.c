@@ -46,16 +46,25 @@ static json_t *describe_kriging(const weft_layers_report *report)
                      "incidence", terms.incidence_power, "light", terms.light_power, "view", terms.view_power);
 }
 
+/* By kind of maps. Scattered images do not try the last one. */
+static json_t *list_trials(const weft_layers_report *report)
+{
+    json_t *trials = json_array();
+    int tried = report->scattered ? WEFT_LAYERS_OF_HALF_VECTOR_SQUARED : WEFT_LAYERS_KINDS;
+    for (int kind = 0; kind < tried; kind++)
+        json_array_append_new(trials, json_real(report->trial_error[kind]));
+    return trials;
+}
+
 static json_t *describe_layers(const weft_compress_options *options, const weft_layers_report *report)
 {
     static const char *const kind[] = {"light", "half vector", "half vector, squared incidence"};
     const weft_error_summary *fitted = &report->fitted;
-    json_t *layers =
-        json_pack("{s:i, s:s, s:[f,f,f], s:i, s:{s:f, s:f, s:f, s:f, s:o}}", "count", options->layer_count, "maps_over",
-                  kind[report->kind], "trial_relative_rmse", report->trial_error[0], report->trial_error[1],
-                  report->trial_error[2], "learned_from_texels", report->training_texels, "fitted", "median_relative",
-                  fitted->median_relative, "percentile80_relative", fitted->percentile80_relative, "rmse", fitted->rmse,
-                  "relative_rmse", fitted->relative_rmse, "psnr_db", weft_json_number(fitted->psnr_db));
+    json_t *layers = json_pack(
+        "{s:i, s:s, s:o, s:i, s:{s:f, s:f, s:f, s:f, s:o}}", "count", options->layer_count, "maps_over",
+        kind[report->kind], "trial_relative_rmse", list_trials(report), "learned_from_texels", report->training_texels,
+        "fitted", "median_relative", fitted->median_relative, "percentile80_relative", fitted->percentile80_relative,
+        "rmse", fitted->rmse, "relative_rmse", fitted->relative_rmse, "psnr_db", weft_json_number(fitted->psnr_db));
     if (report->scattered)
         weft_json_put(&layers, "kriging", describe_kriging(report));
     return layers;

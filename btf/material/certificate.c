@@ -135,6 +135,8 @@ json_t *weft_certificate_pack(const weft_certificate *c)
     weft_json_put(&object, "images_by_view", pack_counts(c->view_images));
     weft_json_put(&object, "images_by_light", pack_counts(c->light_images));
     weft_json_put(&object, "quantiles", pack_quantiles(c));
+    if (c->measured_levels > 0)
+        weft_json_put(&object, "measured_levels", json_integer(c->measured_levels));
     weft_json_put(&object, "fitted", pack_shares(c, offsetof(weft_certificate_level, fitted)));
     weft_json_put(&object, "storage", pack_shares(c, offsetof(weft_certificate_level, storage)));
     if (c->has_registration)
@@ -195,6 +197,14 @@ static bool read_shares(const json_t *list, weft_certificate *c, size_t offset)
     return complete;
 }
 
+static bool read_whole(const json_t *object, const char *name, int *number)
+{
+    const json_t *item = json_object_get(object, name);
+    json_int_t value = json_integer_value(item);
+    *number = (int)value;
+    return json_is_integer(item) && value >= 1 && value <= LARGEST;
+}
+
 static bool read_levels(const json_t *object, weft_certificate *c)
 {
     double quantile[WEFT_MATERIAL_MAX_LEVELS];
@@ -204,19 +214,15 @@ static bool read_levels(const json_t *object, weft_certificate *c)
     c->level_count = (int)count;
     for (size_t k = 0; k < count; k++)
         c->level[k].quantile = quantile[k];
+    const json_t *measured = json_object_get(object, "measured_levels");
+    if (measured &&
+        !(read_whole(object, "measured_levels", &c->measured_levels) && c->measured_levels <= c->level_count))
+        return false;
     const json_t *registration = json_object_get(object, "registration");
     c->has_registration = registration != NULL;
     return read_shares(json_object_get(object, "fitted"), c, offsetof(weft_certificate_level, fitted)) &&
            read_shares(json_object_get(object, "storage"), c, offsetof(weft_certificate_level, storage)) &&
            (!registration || read_shares(registration, c, offsetof(weft_certificate_level, registration)));
-}
-
-static bool read_whole(const json_t *object, const char *name, int *number)
-{
-    const json_t *item = json_object_get(object, name);
-    json_int_t value = json_integer_value(item);
-    *number = (int)value;
-    return json_is_integer(item) && value >= 1 && value <= LARGEST;
 }
 
 static bool read_over(const json_t *object, bool *over_images)

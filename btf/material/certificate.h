@@ -34,7 +34,9 @@ typedef struct weft_certificate {
     double view[WEFT_RING_COUNT], light[WEFT_RING_COUNT];                 /* factors */
     int view_images[WEFT_RING_COUNT], light_images[WEFT_RING_COUNT]; /* 0: the factor is that of the nearest ring */
     bool has_registration;
-    int level_count; /* coarser levels have the last one's */
+    int level_count;     /* coarser levels have the last one's */
+    int measured_levels; /* of these, whose residuals are means over as many texels as theirs, neighbours; others have
+                            the quantile of fewer texels, rather too large. 0: not known */
     weft_certificate_level level[WEFT_MATERIAL_MAX_LEVELS];
 } weft_certificate;
 

@@ -17,15 +17,23 @@ static weft_half *values_of(const weft_layers *layers, int layer, size_t i)
     return &layers->value[3 * ((size_t)layers->layer_count * (i / 3) + (size_t)layer) + i % 3];
 }
 
-/* Of a layer over the texels of the finest level. */
-static double coefficient_rms(const weft_layers *layers, int layer)
+static double rms_of_level(const weft_layers *layers, int k, int layer)
 {
     size_t texels;
-    const int8_t *c = coefficients_of(layers, 0, layer, &texels);
+    const int8_t *c = coefficients_of(layers, k, layer, &texels);
     double sum = 0;
     for (size_t i = 0; i < texels; i++)
         sum += (double)(c[WEFT_LAYERS_GROUP * i] * c[WEFT_LAYERS_GROUP * i]);
     return sqrt(sum / (double)texels);
+}
+
+/* Of a layer over the texels of the finest level that has any of it. */
+static double coefficient_rms(const weft_layers *layers, int layer)
+{
+    double rms = 0;
+    for (int k = 0; k < layers->level_count && !(rms > 0); k++)
+        rms = rms_of_level(layers, k, layer);
+    return rms;
 }
 
 /* Of a layer over images and channels, of a coefficient of 1. */
@@ -60,16 +68,27 @@ static void round_layer(weft_layers *layers, int layer, double asked)
     layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
 }
 
-/* The coefficients become fewer whole numbers, and the scale grows by as much. */
+/* The coefficients become fewer whole numbers, which lie `grid` apart, and on every coarser level half as far: more is
+ * averaged out there, so that what is rounded away would show. The scale stays. */
 static void round_coefficients(weft_layers *layers, int layer, double grid)
 {
     for (int k = 0; k < layers->level_count; k++) {
         size_t texels;
         int8_t *c = coefficients_of(layers, k, layer, &texels);
-        for (size_t i = 0; i < texels; i++)
-            c[WEFT_LAYERS_GROUP * i] = (int8_t)lround((double)c[WEFT_LAYERS_GROUP * i] / grid);
+        double of_level = fmax(grid * exp2(-k), 1);
+        for (size_t i = 0; i < texels; i++) {
+            double code = of_level * round((double)c[WEFT_LAYERS_GROUP * i] / of_level);
+            c[WEFT_LAYERS_GROUP * i] =
+                (int8_t)lround(fmin(fmax(code, -WEFT_LAYERS_LARGEST_CODE), WEFT_LAYERS_LARGEST_CODE));
+        }
     }
-    layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
+}
+
+/* Nothing has any of this layer: what its values are does not matter, but whole numbers let all values be packed. */
+static void clear_layer(weft_layers *layers, int layer)
+{
+    for (size_t i = 0; i < 3 * (size_t)layers->image_count; i++)
+        *values_of(layers, layer, i) = 0;
 }
 
 void weft_layers_round_values(double step, weft_layers *layers)
@@ -78,6 +97,8 @@ void weft_layers_round_values(double step, weft_layers *layers)
         double of_value = (double)layers->scale[layer] * coefficient_rms(layers, layer);
         if (of_value > 0)
             round_layer(layers, layer, step / of_value);
+        else
+            clear_layer(layers, layer);
     }
 }
 
@@ -88,4 +109,10 @@ void weft_layers_round_coefficients(double step, weft_layers *layers)
         if (of_coefficient > 0 && step / of_coefficient > 1)
             round_coefficients(layers, layer, fmin(step / of_coefficient, WEFT_LAYERS_LARGEST_CODE));
     }
+}
+
+void weft_layers_round(double step, weft_layers *layers)
+{
+    weft_layers_round_values(step, layers);
+    weft_layers_round_coefficients(step, layers);
 }

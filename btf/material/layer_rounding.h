@@ -1,5 +1,6 @@
 /* Coarser numbers in the layers of a material (btf/material/layers.h), where what is rounded away does not matter: a
- * file of fewer digits is smaller. The scale of a layer takes the steps, so that every reader plays the result. */
+ * file of fewer digits is smaller. The scale of a layer takes the steps of its values, and codes of coefficients lie
+ * some apart, so that every reader plays the result. */
 #ifndef WEFT_BTF_MATERIAL_LAYER_ROUNDING_H
 #define WEFT_BTF_MATERIAL_LAYER_ROUNDING_H
 
@@ -7,11 +8,14 @@
 
 /* Rounds the values of each layer to steps that change reflectance times cosine by `step` > 0, RMS over the texels of
  * the finest level; but no finer than a 2048th of the largest value: half floats hold no larger whole numbers
- * exactly. */
+ * exactly. A layer that no texel has any of gets values of 0. */
 void weft_layers_round_values(double step, weft_layers *layers);
 
-/* Rounds the coefficients of each layer, on all levels, to steps that change reflectance times cosine by `step` > 0,
- * RMS over the images. Steps that are finer than those of the codes change nothing. */
+/* Rounds the coefficients of each layer to steps that change reflectance times cosine by `step` > 0, RMS over the
+ * images, and by half as much on every coarser level. Steps that are finer than those of the codes change nothing. */
 void weft_layers_round_coefficients(double step, weft_layers *layers);
+
+/* Both, the values first. */
+void weft_layers_round(double step, weft_layers *layers);
 
 #endif

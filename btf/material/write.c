@@ -194,7 +194,9 @@ static size_t packed_size(const file_image *file, const void *bytes, size_t size
     return packed > 0 ? packed : size;
 }
 
-/* The smaller one. Copies, as of images that a scene never reaches, are smaller as they are. */
+/* The smaller one. Copies, as of images that a scene never reaches, are smaller as they are. They are compared at the
+ * lower level, where a try of 1.3 MB takes 0.03 s: at the level that is written it takes 0.6 s, which would triple the
+ * time that a price list or a pruning spends on each file. Only near a tie may that choose the larger one. */
 static weft_layers_coding choose_coding(const file_image *file, const weft_layers *layers, uint8_t *bytes, size_t size)
 {
     if (!weft_layers_have_differences(layers))

@@ -124,17 +124,22 @@ static weft_code make_projector(fitting *work, weft_projector *projector, weft_e
     return weft_projector_create(&prior, work->factor, work->images.image_count, projector, error);
 }
 
-/* Values and coefficients of each layer are rounded to steps that change a sample alike: an error that spreads evenly
- * over a step has a twelfth of its square. Steps are powers of the root of 2, so that the last digits of the noise
- * decide none. */
-static void round_numbers(const weft_components *components, weft_layers *layers)
+static double mean_square_weight(const weft_layer_images *images)
 {
-    double square = 12 * rounding_share * components->noise / (2 * layers->layer_count);
-    if (!(square > 0))
-        return;
-    double step = exp2(floor(log2(square)) / 2);
-    weft_layers_round_values(step, layers);
-    weft_layers_round_coefficients(step, layers);
+    double sum = 0;
+    for (int i = 0; i < images->image_count; i++)
+        sum += (double)images->weight[i] * (double)images->weight[i];
+    return sum / images->image_count;
+}
+
+/* Values and coefficients of each layer are rounded to steps that change a sample alike: an error that spreads evenly
+ * over a step has a twelfth of its square. The noise is that of weighted samples, and so rounding counts by the
+ * weights, too. Steps are powers of the root of 2, so that the last digits of the noise decide none. */
+static double rounding_step(const weft_components *components, const weft_layer_images *images, int layer_count)
+{
+    double noise = components->noise / mean_square_weight(images);
+    double square = 12 * rounding_share * noise / (2 * layer_count);
+    return square > 0 ? exp2(floor(log2(square)) / 2) : 0;
 }
 
 static weft_code project(fitting *work, weft_layers_report *report, weft_error *error)
@@ -156,8 +161,10 @@ static weft_code project(fitting *work, weft_layers_report *report, weft_error *
         code = weft_layer_model_double(&work->layers, error);
     if (code == WEFT_OK)
         weft_layers_fill_levels(&work->projection, work->layers);
-    if (code == WEFT_OK && work->options->rounded)
-        round_numbers(&work->components, work->layers);
+    report->rounding_step = rounding_step(
+        &work->components, report->scattered ? &work->completion.images : &work->images, work->layers->layer_count);
+    if (code == WEFT_OK && work->options->rounded && report->rounding_step > 0)
+        weft_layers_round(report->rounding_step, work->layers);
     return code;
 }
 

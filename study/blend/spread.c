@@ -146,14 +146,28 @@ static void read_layer(const weft_layers *layers, int layer, plane *p)
         p->from[i] = *code_at(&layers->level[0], layer, i);
 }
 
+/* Layers that were rounded have few codes. What is added is a fraction of one: it is held by codes that are so many
+ * times as fine, of which the largest is one yet, and at most this many. */
+enum { FINEST_CODES = 16 };
+
+static int finer_codes(const plane *p)
+{
+    float most = 1;
+    for (size_t i = 0; i < (size_t)p->added.width * (size_t)p->added.height; i++)
+        most = fmaxf(most, fabsf(p->mixed[i] + p->added.value[i]));
+    return (int)fminf(fmaxf(floorf(WEFT_LAYERS_LARGEST_CODE / most), 1), FINEST_CODES);
+}
+
 static void write_layer(const plane *p, int layer, weft_layers *layers)
 {
     const float most = WEFT_LAYERS_LARGEST_CODE;
+    const int finer = finer_codes(p);
+    layers->scale[layer] /= (float)finer;
     for (int k = 0; k < layers->level_count; k++) {
         const weft_layers_level *level = &layers->level[k];
         for (int y = 0; y < level->height; y++)
             for (int x = 0; x < level->width; x++) {
-                float code = roundf(mean_over(p, true, k, x, y));
+                float code = roundf((float)finer * mean_over(p, true, k, x, y));
                 *code_at(level, layer, (size_t)y * (size_t)level->width + (size_t)x) =
                     (int8_t)fminf(fmaxf(code, -most), most);
             }

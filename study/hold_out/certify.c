@@ -224,6 +224,7 @@ static weft_code certify_levels(const weft_residuals *held, const weft_residuals
                                 float *scratch, weft_certificate *c, weft_error *error)
 {
     c->level_count = weft_smaller(held->level_count + source->apart, WEFT_MATERIAL_MAX_LEVELS);
+    c->measured_levels = source->apart == 0 ? c->level_count : weft_smaller(source->beside + 1, c->level_count);
     for (int k = 0; k < c->level_count; k++) {
         int of_excerpt = level_of_excerpt(source, k);
         if (k > 0 && of_excerpt == level_of_excerpt(source, k - 1))

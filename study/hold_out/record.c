@@ -217,6 +217,23 @@ void weft_certificate_describe(const weft_certificate *c, char line[WEFT_HOLD_OU
                c->image_count == c->direction_count ? "" : " with their views and lights");
 }
 
+void weft_certificate_describe_levels(const weft_certificate *c, char line[WEFT_HOLD_OUT_LINE])
+{
+    int last = c->measured_levels - 1;
+    line[0] = 0;
+    if (c->measured_levels == 0)
+        return;
+    if (last > 0)
+        APPEND(line, "measured on levels 0 to %d", last);
+    else
+        APPEND(line, "measured on level 0");
+    if (c->measured_levels < c->level_count)
+        APPEND(line,
+               ": the texels it is measured on lie in squares of %d x %d; coarser levels have the width of smaller "
+               "squares, which is rather too wide",
+               1 << last, 1 << last);
+}
+
 void weft_certificate_row(const weft_certificate *c, int ring, char line[WEFT_HOLD_OUT_LINE])
 {
     const weft_vec3 light = weft_direction_of_angles((weft_angles){weft_rad_of_deg(30), 0}),

@@ -36,6 +36,9 @@ void weft_certificate_describe(const weft_certificate *certificate, char line[WE
  * sampling 14 %, ...". Pure. */
 void weft_certificate_row(const weft_certificate *certificate, int view_ring, char line[WEFT_HOLD_OUT_LINE]);
 
+/* On which levels it was measured, and why coarser ones are rather too wide; "" where that is not known. Pure. */
+void weft_certificate_describe_levels(const weft_certificate *certificate, char line[WEFT_HOLD_OUT_LINE]);
+
 /* How it was measured: what was held out, and on which texels. Pure. */
 void weft_hold_out_explain(const weft_hold_out *result, char line[WEFT_HOLD_OUT_LINE]);
 

@@ -47,13 +47,44 @@ static void move_frames(int16_t *number, size_t count, uint64_t *state)
         number[i] = (int16_t)(number[i] == 0 ? 0 : held(number[i] + next_sign(state), -32767, 32767));
 }
 
+/* How far apart the codes of layers lie that were rounded (btf/material/layer_rounding.h): step [layer_count]. */
+static void find_code_steps(const weft_layers *layers, size_t texels, int step[WEFT_LAYERS_MAX])
+{
+    enum { LARGEST = WEFT_LAYERS_LARGEST_CODE };
+    for (size_t k = 0; k < (size_t)layers->layer_count; k++) {
+        const int8_t *code =
+            layers->level[0].coefficient + k / WEFT_LAYERS_GROUP * WEFT_LAYERS_GROUP * texels + k % WEFT_LAYERS_GROUP;
+        bool is_there[2 * LARGEST + 1] = {false};
+        int last = -1, least = 2 * LARGEST;
+        for (size_t i = 0; i < texels; i++)
+            is_there[code[WEFT_LAYERS_GROUP * i] + LARGEST] = true;
+        for (int c = 0; c <= 2 * LARGEST; c++) {
+            if (is_there[c] && last >= 0 && c - last < least)
+                least = c - last;
+            last = is_there[c] ? c : last;
+        }
+        step[k] = least < 2 * LARGEST ? least : 1;
+    }
+}
+
+static void move_coefficients(weft_layers *layers, size_t texels, uint64_t *state)
+{
+    int step[WEFT_LAYERS_MAX];
+    int8_t *coefficient = layers->level[0].coefficient;
+    bool is_rounded = weft_layers_have_differences(layers);
+    if (is_rounded)
+        find_code_steps(layers, texels, step);
+    for (size_t i = 0; i < texels * (size_t)layers->layer_count; i++) {
+        size_t layer = i / (WEFT_LAYERS_GROUP * texels) * WEFT_LAYERS_GROUP + i % WEFT_LAYERS_GROUP;
+        int moved = coefficient[i] + next_sign(state) * (is_rounded ? step[layer] : 1);
+        coefficient[i] = (int8_t)held(moved, -WEFT_LAYERS_LARGEST_CODE, WEFT_LAYERS_LARGEST_CODE);
+    }
+}
+
 static void move_layers(weft_layers *layers, size_t texels, uint64_t *state)
 {
     size_t series = (size_t)layers->layer_count;
-    int8_t *coefficient = layers->level[0].coefficient;
-    for (size_t i = 0; i < texels * series; i++)
-        coefficient[i] =
-            (int8_t)held(coefficient[i] + next_sign(state), -WEFT_LAYERS_LARGEST_CODE, WEFT_LAYERS_LARGEST_CODE);
+    move_coefficients(layers, texels, state);
     if (weft_layers_have_differences(layers))
         move_whole_numbers(layers->value, 3 * (size_t)layers->image_count * series, state);
     else

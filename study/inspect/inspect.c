@@ -131,6 +131,9 @@ static json_t *describe_certificate(const weft_certificate *certificate)
         weft_certificate_row(certificate, ring, line);
         weft_json_put(&described, name, json_string(line));
     }
+    weft_certificate_describe_levels(certificate, line);
+    if (line[0])
+        weft_json_put(&described, "levels", json_string(line));
     return described;
 }
 

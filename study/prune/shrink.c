@@ -93,12 +93,6 @@ static double step_of(int number)
     return finest_step * pow(step_ratio, number);
 }
 
-static void round_layers(double step, weft_layers *layers)
-{
-    weft_layers_round_values(step, layers);
-    weft_layers_round_coefficients(step, layers);
-}
-
 /* The largest step that pictures allow, found by halving; -1: not even the finest. */
 static weft_code round_values(shrinking *s, weft_error *error)
 {
@@ -107,14 +101,14 @@ static weft_code round_values(shrinking *s, weft_error *error)
         int middle = (low + high) / 2;
         weft_prune_error is;
         WEFT_TRY(begin(s, s->before->layer_count, error));
-        round_layers(step_of(middle), s->material->layers);
+        weft_layers_round(step_of(middle), s->material->layers);
         WEFT_TRY(look(s, WEFT_LAYERS_MAX, &is, error));
         *(is_within(&is, &s->allowed, share_of_digits) ? &low : &high) = middle;
     }
     WEFT_TRY(begin(s, s->before->layer_count, error));
     s->report->value_step = low < 0 ? 0 : step_of(low);
     if (low >= 0)
-        round_layers(step_of(low), s->material->layers);
+        weft_layers_round(step_of(low), s->material->layers);
     return settle(s, error);
 }
 

@@ -49,7 +49,8 @@ static weft_certificate expected_certificate(const weft_dataset_layout *layout, 
                           .image_count = 1232,
                           .direction_count = 16,
                           .mean = (double)(float)(0.1 * next_number(last)),
-                          .level_count = expected_levels(layout)};
+                          .level_count = expected_levels(layout),
+                          .measured_levels = 1};
     for (int knot = 0; knot < WEFT_CERTIFICATE_KNOTS; knot++) {
         c.value[knot] = 0.5 * knot + 0.4 * next_number(last);
         c.spread[knot] = next_number(last);
@@ -70,13 +71,13 @@ static weft_certificate expected_certificate(const weft_dataset_layout *layout, 
     return c;
 }
 
-static weft_hold_out record_of(const weft_dataset_layout *layout, const weft_splits *splits, bool has_surface,
-                               const weft_compress_options *options)
+static weft_hold_out record_of(const weft_dataset_layout *layout, const weft_splits *splits, int split_count,
+                               bool has_surface, const weft_compress_options *options)
 {
     double last = 0;
     bool views = splits->view_held_count > 0, lights = splits->light_held_count > 0;
     weft_hold_out record = {.kind = splits->kind,
-                            .split_count = splits->kind == WEFT_SPLIT_EACH ? splits->count : 1,
+                            .split_count = splits->kind == WEFT_SPLIT_EACH ? splits->count : split_count,
                             .view_count = splits->view_count,
                             .view_held_count = splits->view_held_count,
                             .light_count = splits->light_count,
@@ -102,8 +103,10 @@ weft_code weft_expected_record(weft_dataset *dataset, const weft_compress_option
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     weft_splits splits;
+    int split_count;
+    WEFT_TRY(weft_hold_out_enough_splits(layout, &split_count, error));
     WEFT_TRY(weft_splits_create(layout, 0, 2, &splits, error));
-    *expected = record_of(layout, &splits, weft_dataset_has_surface(dataset), options);
+    *expected = record_of(layout, &splits, split_count, weft_dataset_has_surface(dataset), options);
     weft_splits_free(&splits);
     return weft_certify_registration(dataset, &expected->certificate, error);
 }

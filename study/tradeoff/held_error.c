@@ -1,5 +1,6 @@
 #include "study/tradeoff/held_error.h"
 
+#include "base/integers.h"
 #include "compress/compress.h"
 #include "study/bard/texels.h"
 #include "study/error/coverage.h"
@@ -14,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SPLITS = 4 /* of a handful of images, each held out in turn */ };
+enum { MOST_SPLITS = WEFT_HOLD_OUT_ENOUGH /* also of a handful of images, each held out in turn */ };
 
 static const size_t enough_residuals = 1 << 20;
 static const double certified = 0.95;
@@ -36,6 +37,7 @@ struct weft_held_bench {
     weft_priced_model fitted_model;
     double fit_s;
     weft_material material[MOST_SPLITS];
+    double rounding_step[MOST_SPLITS]; /* of their layers */
 };
 
 void weft_held_error_free(weft_held_error *measured)
@@ -46,17 +48,17 @@ void weft_held_error_free(weft_held_error *measured)
 
 /* ---- The bench ---- */
 
-static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side, uint64_t split,
+static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_splits_asked asked,
                          weft_held_bench *bench, weft_error *error)
 {
     if (asprintf(&bench->material_path, "%s.weft", bench->scratch_path) < 0) {
         bench->material_path = NULL;
         return weft_fail_memory(error, "path", strlen(bench->scratch_path));
     }
-    WEFT_TRY(weft_splits_create(weft_dataset_get_layout(dataset), split, 2, &bench->splits, error));
-    bench->split_count = 1;
-    if (bench->splits.kind == WEFT_SPLIT_EACH)
-        bench->split_count = bench->splits.count < MOST_SPLITS ? bench->splits.count : MOST_SPLITS;
+    /* The one after the last is that of the fitted images. */
+    WEFT_TRY(weft_splits_create(weft_dataset_get_layout(dataset), asked.first, asked.count + 1, &bench->splits, error));
+    bench->split_count = bench->splits.kind == WEFT_SPLIT_EACH ? MOST_SPLITS : asked.count;
+    bench->split_count = weft_smaller(bench->split_count, bench->splits.count);
     bool has_surface = weft_dataset_has_surface(dataset);
     int images = weft_dataset_get_layout(dataset)->image_count;
     WEFT_TRY(weft_excerpt_read(dataset, kind, has_surface ? weft_hold_out_surface_side(images) : side, &bench->excerpt,
@@ -67,7 +69,7 @@ static weft_code prepare(weft_dataset *dataset, weft_excerpt_kind kind, int side
     return weft_sample_kinds_mark(&bench->excerpt, &bench->kinds, error);
 }
 
-weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, uint64_t split,
+weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_splits_asked asked,
                                  const char *scratch_path, weft_held_bench **result, weft_error *error)
 {
     weft_held_bench *bench = calloc(1, sizeof *bench);
@@ -76,7 +78,7 @@ weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, 
     bench->dataset = dataset;
     bench->scratch_path = scratch_path;
     bench->has_pictures = kind == WEFT_EXCERPT_BLOCK;
-    weft_code code = prepare(dataset, kind, side, split, bench, error);
+    weft_code code = prepare(dataset, kind, side, asked, bench, error);
     if (code == WEFT_OK)
         *result = bench;
     else
@@ -161,23 +163,26 @@ static const weft_excerpt *fitted_excerpt(const weft_held_bench *bench, const we
     return is_fitted_alone(bench, model) ? &bench->alone : &bench->excerpt;
 }
 
-static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *model, const uint8_t *unseen,
-                           weft_material *material, weft_error *error)
+static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *model, int split, const uint8_t *unseen,
+                           weft_error *error)
 {
     weft_dataset *others;
     weft_compress_report report;
     weft_compress_options options = model->options;
     options.levels = bench->has_pictures && options.budget_bytes == 0; /* fewer texels come from there */
     options.heights = false; /* those of the whole dataset are given afterwards */
+    options.rounded = false; /* and so are layers rounded */
     WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(bench->dataset), &fitted_excerpt(bench, model)->layout,
                                         false, &model->options, &options.budget_bytes, error));
     options.added_bytes = 0;
     WEFT_TRY(weft_excerpt_write(fitted_excerpt(bench, model), unseen, bench->scratch_path, &others, error));
-    weft_code code = weft_compress(others, &options, NULL, material, &report, error);
+    weft_code code = weft_compress(others, &options, NULL, &bench->material[split], &report, error);
     weft_dataset_close(others);
-    if (code == WEFT_OK)
-        bench->fit_s += report.seconds;
-    return code;
+    if (code != WEFT_OK)
+        return code;
+    bench->fit_s += report.seconds;
+    bench->rounding_step[split] = report.layers.rounding_step;
+    return WEFT_OK;
 }
 
 static weft_code make_predictor(const weft_held_bench *bench, const weft_priced_model *model,
@@ -295,12 +300,13 @@ static weft_code give_heights(const weft_held_bench *bench, const weft_priced_mo
     return WEFT_OK;
 }
 
-static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *model, const weft_material *fitted,
+static weft_code ask_material(weft_held_bench *bench, const weft_priced_model *model, int split,
                               const weft_trial *trial, said *answer, weft_weight *weight, weft_error *error)
 {
     weft_material material;
     weft_predictor *predictor;
-    WEFT_TRY(weft_variant_make(fitted, model, bench->material_path, &material, error));
+    WEFT_TRY(weft_variant_make(&bench->material[split], model, bench->rounding_step[split], bench->material_path,
+                               &material, error));
     weft_code code = weft_weight_of(&material, weight, error);
     if (code == WEFT_OK)
         code = give_heights(bench, model, &material, weight, error);
@@ -374,8 +380,8 @@ static weft_code ask_model(weft_held_bench *bench, const weft_priced_model *mode
     if (model->family == WEFT_PRICED_CLOTH)
         return ask_cloth(bench, model, trial, unseen, answer, error);
     if (!bench->is_fitted)
-        WEFT_TRY(fit_split(bench, model, unseen, &bench->material[split], error));
-    return ask_material(bench, model, &bench->material[split], trial, answer, weight, error);
+        WEFT_TRY(fit_split(bench, model, split, unseen, error));
+    return ask_material(bench, model, split, trial, answer, weight, error);
 }
 
 /* ---- What can be known ---- */

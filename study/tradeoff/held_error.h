@@ -25,17 +25,24 @@ typedef struct weft_held_error {
 } weft_held_error;
 void weft_held_error_free(weft_held_error *measured);
 
+/* Which splits are measured, with others for other numbers (study/hold_out/split.h): 1 .. WEFT_HOLD_OUT_ENOUGH. Their
+ * samples count together. */
+typedef struct weft_splits_asked {
+    uint64_t first;
+    int count;
+} weft_splits_asked;
+
 /* Some texels of a dataset, and the images that are held out of them. */
 typedef struct weft_held_bench weft_held_bench;
 
-/* Reads at most side x side texels of the kind; `split` says which directions are held out: others for other numbers
- * (study/hold_out/split.h). Pictures are compared where texels are neighbours (WEFT_EXCERPT_BLOCK). Files are written
+/* Reads at most side x side texels of the kind, of which `asked` says which directions are held out; of a handful of
+ * images each is in turn. Pictures are compared where texels are neighbours (WEFT_EXCERPT_BLOCK). Files are written
  * to the folder of `scratch_path`, nameless once they are complete. The caller frees.
  * Of a dataset with a surface the kind is to be WEFT_EXCERPT_BLOCK: then more are read, to which layers are fitted, and
  * those in the middle are measured, of which all models are asked for what is known through the surface alone. Dataset
  * and path must outlive the bench.
  * Errors: those of weft_splits_create and of reading. */
-weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, uint64_t split,
+weft_code weft_held_bench_create(weft_dataset *dataset, weft_excerpt_kind kind, int side, weft_splits_asked asked,
                                  const char *scratch_path, weft_held_bench **result, weft_error *error);
 void weft_held_bench_free(weft_held_bench *bench);
 

@@ -1,10 +1,23 @@
 #include "study/tradeoff/plot.h"
 
+#include "study/tradeoff/label_place.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 760, HEIGHT = 430, LEFT = 62, RIGHT = 18, TOP = 34, BOTTOM = 48, RADIUS = 9, THUMBNAIL = 96 };
+enum {
+    WIDTH = 760,
+    HEIGHT = 430,
+    LEFT = 62,
+    RIGHT = 18,
+    TOP = 34,
+    BOTTOM = 48,
+    RADIUS = 9,
+    MARK_RADIUS = RADIUS + 4,
+    THUMBNAIL = 96,
+    MOST_MARKED = 16
+};
 
 /* ---- Axes ---- */
 
@@ -143,11 +156,34 @@ static weft_code draw_front(weft_page *page, const weft_plot *plot, const log_ax
     return WEFT_OK;
 }
 
-static void draw_label(weft_page *page, const weft_plot_point *point, double x, double y)
+/* What labels must not cover: the rings of marked points, and the labels that are there already. */
+typedef struct taken_boxes {
+    weft_label_box box[2 * MOST_MARKED];
+    size_t count;
+} taken_boxes;
+
+static taken_boxes rings_of(const weft_plot *plot, const log_axis *x, const log_axis *y)
 {
-    bool left = x > WIDTH / 2.0;
-    fprintf(page->html, "<text class=\"label\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">",
-            x + (left ? -1 : 1) * (RADIUS + 7), y + RADIUS + 10, left ? "end" : "start");
+    taken_boxes taken = {.count = 0};
+    for (int i = 0; i < plot->point_count && taken.count < MOST_MARKED; i++) {
+        const weft_plot_point *point = &plot->point[i];
+        if (!is_shown(point) || !point->is_marked)
+            continue;
+        double at_x = place_on(x, point->x), at_y = place_on(y, point->y);
+        taken.box[taken.count++] =
+            (weft_label_box){at_x - MARK_RADIUS, at_y - MARK_RADIUS, at_x + MARK_RADIUS, at_y + MARK_RADIUS};
+    }
+    return taken;
+}
+
+static void draw_label(weft_page *page, const weft_plot_point *point, double x, double y, taken_boxes *taken)
+{
+    weft_label_place place =
+        weft_label_place_choose(x, y, RADIUS, strlen(point->label), WIDTH, HEIGHT - BOTTOM, taken->box, taken->count);
+    if (taken->count < sizeof taken->box / sizeof *taken->box)
+        taken->box[taken->count++] = place.box;
+    fprintf(page->html, "<text class=\"label\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", place.x, place.y,
+            place.ends_there ? "end" : "start");
     weft_page_text(page, point->label);
     fputs("</text>", page->html);
 }
@@ -163,18 +199,18 @@ static void draw_thumbnail(weft_page *page, const weft_plot_point *point, double
             left, top, THUMBNAIL, THUMBNAIL);
 }
 
-static void draw_point(weft_page *page, const weft_plot_point *point, double x, double y)
+static void draw_point(weft_page *page, const weft_plot_point *point, double x, double y, taken_boxes *taken)
 {
     fprintf(page->html, "<a class=\"point colour%d\" href=\"#%s\"><title>", point->colour, point->target);
     weft_page_text(page, point->label);
     fputs("</title>", page->html);
     if (point->is_marked)
-        fprintf(page->html, "<circle class=\"mark\" cx=\"%.1f\" cy=\"%.1f\" r=\"%d\"/>", x, y, RADIUS + 4);
+        fprintf(page->html, "<circle class=\"mark\" cx=\"%.1f\" cy=\"%.1f\" r=\"%d\"/>", x, y, MARK_RADIUS);
     fprintf(page->html,
             "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%d\"/><text class=\"number\" x=\"%.1f\" y=\"%.1f\">%d</text>", x, y,
             RADIUS, x, y + 3.5, point->number);
     if (point->is_marked)
-        draw_label(page, point, x, y);
+        draw_label(page, point, x, y, taken);
     if (point->picture)
         draw_thumbnail(page, point, x, y);
     fputs("</a>\n", page->html);
@@ -183,10 +219,11 @@ static void draw_point(weft_page *page, const weft_plot_point *point, double x, 
 /* The marked ones lie above the others. */
 static void draw_points(weft_page *page, const weft_plot *plot, const log_axis *x, const log_axis *y, bool marked)
 {
+    taken_boxes taken = rings_of(plot, x, y);
     for (int i = 0; i < plot->point_count; i++) {
         const weft_plot_point *point = &plot->point[i];
         if (is_shown(point) && point->is_marked == marked)
-            draw_point(page, point, place_on(x, point->x), place_on(y, point->y));
+            draw_point(page, point, place_on(x, point->x), place_on(y, point->y), &taken);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "study/tradeoff/preset.h"
 
 #include "compress/compress.h"
+#include "study/hold_out/hold_out.h"
 #include "study/tradeoff/frame_timer.h"
 #include "study/tradeoff/held_error.h"
 
@@ -10,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ERROR_SIDE = 24, SURFACE_SIDE = 32, SPLIT = 1 /* the measurement begins with 0 */ };
+enum { ERROR_SIDE = 24, SURFACE_SIDE = 32 };
 
 /* ---- The models ---- */
 
@@ -36,6 +37,7 @@ static weft_compress_options merge(const weft_compress_options *given, const wef
     merged.light_table = chosen->light_table;
     merged.frames = chosen->frames;
     merged.layer_count = chosen->layer_count;
+    merged.rounded = chosen->rounded;
     merged.heights = chosen->heights;
     merged.table_components = chosen->table_components;
     return merged;
@@ -118,8 +120,10 @@ static int choose_side(const weft_dataset *dataset)
 static weft_code measure(choosing *work, weft_error *error)
 {
     weft_held_bench *bench;
-    WEFT_TRY(weft_held_bench_create(work->dataset, choose_texels(work), choose_side(work->dataset), SPLIT,
-                                    work->scratch_path, &bench, error));
+    int splits; /* of the measurement, which begins with 0 */
+    WEFT_TRY(weft_hold_out_enough_splits(weft_dataset_get_layout(work->dataset), &splits, error));
+    WEFT_TRY(weft_held_bench_create(work->dataset, choose_texels(work), choose_side(work->dataset),
+                                    (weft_splits_asked){(uint64_t)splits, splits}, work->scratch_path, &bench, error));
     weft_code code = measure_models(work, bench, error);
     weft_held_bench_free(bench);
     return code;

@@ -15,11 +15,11 @@ typedef struct weft_preset_wish {
 
 /* Chooses among the models that weft compress makes (study/tradeoff/choice.h), without those of a light table, which
  * take many times as long and are seldom worth it. Fits each to at most 24 x 24 texels, or of a dataset with a surface
- * measures each on 32 x 32, without the images of a split that the measurement afterwards does not begin with
- * (study/hold_out/split.h), and finds for the one that is chosen how large its file will be and how long a frame takes
- * (weft_prediction_find_costs). One that is too slow is chosen no longer, and the preset
- * chooses among the others. *options gets lobes, tables, frames, layers and whether through heights, and keeps
- * all else. Without a preset there is one model, that of the options, which stay as they are. Writes to the folder of
+ * measures each on 32 x 32, without the images of as many splits as the measurement afterwards takes
+ * (weft_hold_out_enough_splits), but others, and finds for the one that is chosen how large its file will be and how
+ * long a frame takes (weft_prediction_find_costs). One that is too slow is chosen no longer, and the preset chooses
+ * among the others. *options gets lobes, tables, frames, layers and whether through heights, and keeps all else.
+ * Without a preset there is one model, that of the options, which stay as they are. Writes to the folder of
  * `scratch_path`; nothing is left there. The result does not depend on the number of
  * threads; with least_fps it depends on the machine. Errors: WEFT_BAD_USAGE for a dataset of one image, where all that
  * was held out is masked, or where no model is fast enough; where frames are to be fast also WEFT_SYSTEM where there is

@@ -34,6 +34,7 @@ struct weft_price_shop {
     bool is_fitted;
     weft_priced_model fitted_model;
     weft_material fitted;
+    double rounding_step; /* of its layers */
     double fit_s;
 };
 
@@ -173,10 +174,12 @@ static weft_code fit_block(weft_price_shop *shop, const weft_priced_model *model
     shop->is_fitted = false;
     weft_material_free(&shop->fitted);
     weft_compress_options options = model->options;
-    options.heights = true; /* variants do without them */
+    options.heights = true;  /* variants do without them */
+    options.rounded = false; /* and round by themselves */
     WEFT_TRY(weft_compress(block, &options, NULL, &shop->fitted, &report, error));
     shop->is_fitted = true;
     shop->fitted_model = *model;
+    shop->rounding_step = report.layers.rounding_step;
     shop->fit_s = report.seconds;
     return WEFT_OK;
 }
@@ -282,7 +285,7 @@ static weft_code price_model(weft_price_shop *shop, const weft_priced_model *mod
     if (!*has_parts)
         return WEFT_OK;
     weft_material material;
-    WEFT_TRY(weft_variant_make(&shop->fitted, model, shop->material_path, &material, error));
+    WEFT_TRY(weft_variant_make(&shop->fitted, model, shop->rounding_step, shop->material_path, &material, error));
     weft_code code = price_material(shop, &material, price, error);
     weft_material_free(&material);
     return code;

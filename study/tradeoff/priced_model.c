@@ -133,26 +133,33 @@ static weft_compress_options layers_alone(const model_list *list, int layers)
     return options;
 }
 
-/* The same as they are seen without the heights, and then through them. */
-static bool add_pair(model_list *list, const weft_compress_options *through, int layers)
+static bool add_as_they_are_seen(model_list *list, const weft_compress_options *options, const char *seen,
+                                 const char *argument)
 {
-    weft_compress_options without = *through;
     char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
-    without.heights = false;
-    snprintf(name, sizeof name, "%d layers, without heights", layers);
-    snprintf(arguments, sizeof arguments, "--layers %d --heights off", layers);
-    bool added = add(list, WEFT_PRICED_LAYERS, &without, 5, name, arguments);
-    snprintf(name, sizeof name, "%d layers, through heights", layers);
-    snprintf(arguments, sizeof arguments, "--layers %d", layers);
-    return added && add(list, WEFT_PRICED_LAYERS, through, 5, name, arguments);
+    snprintf(name, sizeof name, "%d layers%s%s", options->layer_count, options->rounded ? ", rounded" : "", seen);
+    snprintf(arguments, sizeof arguments, "--layers %d%s%s", options->layer_count,
+             options->rounded ? " --rounding on" : "", argument);
+    return add(list, WEFT_PRICED_LAYERS, options, options->rounded ? 1 : 5, name, arguments);
 }
 
-static bool add_flat(model_list *list, const weft_compress_options *options, int layers)
+/* Where there are heights, without them and then through them. */
+static bool add_numbers(model_list *list, const weft_compress_options *options)
 {
-    char name[WEFT_PRICED_NAME], arguments[WEFT_PRICED_ARGUMENTS];
-    snprintf(name, sizeof name, "%d layers", layers);
-    snprintf(arguments, sizeof arguments, "--layers %d", layers);
-    return add(list, WEFT_PRICED_LAYERS, options, 5, name, arguments);
+    weft_compress_options without = *options;
+    if (!list->dataset->has_surface)
+        return add_as_they_are_seen(list, options, "", "");
+    without.heights = false;
+    return add_as_they_are_seen(list, &without, ", without heights", " --heights off") &&
+           add_as_they_are_seen(list, options, ", through heights", "");
+}
+
+/* With exact numbers, and the same with rounded ones. */
+static bool add_exact_and_rounded(model_list *list, const weft_compress_options *options)
+{
+    weft_compress_options rounded = *options;
+    rounded.rounded = true;
+    return add_numbers(list, options) && add_numbers(list, &rounded);
 }
 
 /* Files hold layers by fours: the first ones of these. */
@@ -184,7 +191,7 @@ static void add_layers(model_list *list)
     for (int layers = FEWEST_LAYERS; layers <= WEFT_LAYERS_MAX; layers *= 2) {
         weft_compress_options options = layers_alone(list, layers);
         char name[WEFT_PRICED_NAME];
-        bool added = list->dataset->has_surface ? add_pair(list, &options, layers) : add_flat(list, &options, layers);
+        bool added = add_exact_and_rounded(list, &options);
         if (added && layers == FEWEST_LAYERS)
             add_least_rank(list, &options);
         snprintf(name, sizeof name, "%d layers, half the texels a side", layers);

@@ -4,7 +4,7 @@
 
 #include "compress/options/options.h"
 
-enum { WEFT_PRICED_MOST = 48, WEFT_PRICED_NAME = 48, WEFT_PRICED_ARGUMENTS = 64 };
+enum { WEFT_PRICED_MOST = 64, WEFT_PRICED_NAME = 48, WEFT_PRICED_ARGUMENTS = 64 };
 
 typedef enum weft_priced_family {
     WEFT_PRICED_LOBES,
@@ -50,8 +50,8 @@ typedef struct weft_priced_dataset {
 weft_priced_dataset weft_priced_dataset_of(const weft_dataset *dataset);
 
 /* The models that the photographs of a dataset can carry: model [WEFT_PRICED_MOST]; returns how many. One that is made
- * from the fit of another (table_bits, first_layers, fewer_texels, options.heights) comes after it; layers through
- * heights come right after the same without. Pure. */
+ * from the fit of another (table_bits, first_layers, fewer_texels, options.heights, options.rounded) comes after it;
+ * layers through heights come right after the same without. Pure. */
 int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced_dataset *dataset,
                             weft_priced_model *model);
 

@@ -130,8 +130,8 @@ static weft_code study(studying *work, const char *dataset_path, const char *fol
         work->scratch_path = NULL;
         return weft_fail_memory(error, "path", strlen(folder));
     }
-    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_EXCERPT_BLOCK, MEASURED_SIDE, 0, work->scratch_path,
-                                    &work->bench, error));
+    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_EXCERPT_BLOCK, MEASURED_SIDE, (weft_splits_asked){0, 1},
+                                    work->scratch_path, &work->bench, error));
     WEFT_TRY(weft_price_shop_open(work->dataset, FITTED_SIDE, work->scratch_path, work->progress, &work->shop, error));
     describe(work);
     WEFT_TRY(study_models(work, error));

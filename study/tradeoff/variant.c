@@ -1,5 +1,6 @@
 #include "study/tradeoff/variant.h"
 
+#include "btf/material/layer_rounding.h"
 #include "btf/material/models.h"
 
 #include <string.h>
@@ -23,8 +24,8 @@ static void keep_first_layers(weft_layers *layers, int kept)
     }
 }
 
-weft_code weft_variant_make(const weft_material *fitted, const weft_priced_model *model, const char *path,
-                            weft_material *result, weft_error *error)
+weft_code weft_variant_make(const weft_material *fitted, const weft_priced_model *model, double rounding_step,
+                            const char *path, weft_material *result, weft_error *error)
 {
     WEFT_TRY(weft_material_write(path, fitted, error));
     weft_code code = weft_material_read(path, result, error);
@@ -34,6 +35,8 @@ weft_code weft_variant_make(const weft_material *fitted, const weft_priced_model
         weft_material_take_heights(result, NULL);
     if (model->first_layers > 0 && result->layers)
         keep_first_layers(result->layers, model->first_layers);
+    if (model->options.rounded && result->layers && rounding_step > 0)
+        weft_layers_round(rounding_step, result->layers);
     if (model->fewer_texels)
         weft_material_drop_finest(result);
     if (model->table_bits > 0)

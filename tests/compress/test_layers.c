@@ -14,6 +14,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { WIDTH = 13, HEIGHT = 9, VIEWS = 61, LIGHTS = 61, LAYERS = 8 };
 
@@ -261,6 +262,58 @@ static void what_is_all_but_exact_is_rounded_no_finer_than_half_floats(void **st
     assert_true(weft_layers_have_differences(material.layers));
     assert_true(error_over(&material, measured, 60) < 0.009);
     weft_material_free(&material);
+}
+
+/* Coefficients belong to their maps: what was kept of others is not taken. */
+static void a_checkpoint_is_of_its_kind_of_maps(void **state)
+{
+    (void)state;
+    static const char *const kept = "maps.partial";
+    weft_material of_light, fresh, after;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_widths, WEFT_FAR);
+    options.layer_maps = WEFT_LAYER_MAPS_OF_HALF_VECTOR;
+    fit(&options, &fresh, NULL);
+    options.checkpoint_path = kept;
+    options.layer_maps = WEFT_LAYER_MAPS_OF_LIGHT;
+    fit(&options, &of_light, NULL);
+    assert_int_equal(access(kept, F_OK), 0);
+    options.layer_maps = WEFT_LAYER_MAPS_OF_HALF_VECTOR;
+    fit(&options, &after, NULL);
+    assert_memory_equal(after.layers->level[0].coefficient, fresh.layers->level[0].coefficient,
+                        WIDTH * HEIGHT * LAYERS);
+    unlink(kept);
+    weft_material_free(&of_light);
+    weft_material_free(&fresh);
+    weft_material_free(&after);
+}
+
+/* As bright in every image, so that all count alike, and noise that no layer holds. */
+static void fill_noise(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
+{
+    (void)mask;
+    for (int i = 0; i < 3 * layout->image_count; i++) {
+        double noise = sin(12.9898 * x + 78.233 * y + 37.719 * i) * 43758.5453;
+        samples[i] = (float)(0.3 + 0.1 * (noise - floor(noise)));
+    }
+}
+
+/* Weights of the screen count rounding as they count noise. */
+static void rounding_counts_by_the_weights(void **state)
+{
+    (void)state;
+    weft_material material;
+    weft_compress_report plain, screen;
+    weft_compress_options options = options_for_layers();
+    write_dataset(fill_noise, WEFT_FAR);
+    fit(&options, &material, &plain);
+    weft_material_free(&material);
+    options.weights = WEFT_WEIGHTS_SCREEN;
+    fit(&options, &material, &screen);
+    weft_material_free(&material);
+    print_message("steps %.5f, for the screen %.5f\n", plain.layers.rounding_step, screen.layers.rounding_step);
+    assert_true(plain.layers.rounding_step > 0);
+    assert_float_equal(screen.layers.rounding_step / plain.layers.rounding_step, 1, 0.01);
 }
 
 /* Masked samples neither pull the fit nor count as black. */
@@ -531,6 +584,8 @@ int main(void)
         cmocka_unit_test(layers_follow_samples_and_what_lies_between_them),
         cmocka_unit_test(what_is_rounded_does_not_show),
         cmocka_unit_test(what_is_all_but_exact_is_rounded_no_finer_than_half_floats),
+        cmocka_unit_test(a_checkpoint_is_of_its_kind_of_maps),
+        cmocka_unit_test(rounding_counts_by_the_weights),
         cmocka_unit_test(the_growth_of_a_highlight_chooses_the_map),
         cmocka_unit_test(masked_samples_leave_no_trace),
         cmocka_unit_test(what_is_held_out_is_not_seen),

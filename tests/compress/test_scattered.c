@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <omp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -254,6 +255,23 @@ static void threads_leave_no_trace(void **state)
     }
 }
 
+/* The metadata have errors of the two kinds of maps that scattered images choose between, and none of the third. */
+static void what_was_not_tried_is_not_told(void **state)
+{
+    (void)state;
+    static const char list[] = "\"trial_relative_rmse\":[";
+    weft_dataset_layout layout = list_of(20, 20, WEFT_FAR);
+    weft_material material = compress_list(&layout, fill_masked, WEFT_LAYERS_AUTOMATIC, NULL);
+    const char *at = strstr(material.metadata, list);
+    double error[2];
+    int end = 0;
+    assert_non_null(at);
+    assert_int_equal(sscanf(at + strlen(list), "%lf,%lf]%n", &error[0], &error[1], &end), 2);
+    assert_true(end > 0 && error[0] > 0 && error[1] > 0);
+    weft_material_free(&material);
+    weft_dataset_layout_free(&layout);
+}
+
 /* ---- One view ---- */
 
 static void one_view_speaks_of_its_lights(void **state)
@@ -385,6 +403,7 @@ int main(void)
         cmocka_unit_test(few_near_photographs_share_a_highlight),
         cmocka_unit_test(masked_samples_leave_no_trace),
         cmocka_unit_test(threads_leave_no_trace),
+        cmocka_unit_test(what_was_not_tried_is_not_told),
         cmocka_unit_test(one_view_speaks_of_its_lights),
         cmocka_unit_test(bad_sets_keep_to_the_limits),
     };

@@ -139,12 +139,14 @@ static weft_material layered(double (*pattern)(int x, int y))
 
 /* The share of texels that would be brighter than the ceiling of their square by 1 %, seen from where they are
  * brightest. */
-static double share_held_down(const weft_layers_level *level)
+static double share_held_down(const weft_layers *layers)
 {
+    const weft_layers_level *level = &layers->level[0];
     int count = 0, across = (level->width + WEFT_CEILING_SIDE - 1) / WEFT_CEILING_SIDE;
     for (int i = 0; i < level->width * level->height; i++) {
         int square = i / level->width / WEFT_CEILING_SIDE * across + i % level->width / WEFT_CEILING_SIDE;
-        double value = (level->coefficient[LAYERS * i] + abs(level->coefficient[LAYERS * i + 1])) / 127.0;
+        double value = level->coefficient[LAYERS * i] * (double)layers->scale[0] +
+                       abs(level->coefficient[LAYERS * i + 1]) * (double)layers->scale[1];
         count += value > 1.01 * weft_ceiling_of_code(level->ceiling[square]);
     }
     return (double)count / (level->width * level->height);
@@ -180,10 +182,43 @@ static void what_becomes_brighter_is_not_held_down(void **state)
     (void)state;
     weft_material material = layered(grain), tile;
     blended(&material, &tile);
-    print_message("%.4f of the texels are held down\n", share_held_down(&tile.layers->level[0]));
-    assert_true(share_held_down(&tile.layers->level[0]) < 0.01);
+    print_message("%.4f of the texels are held down\n", share_held_down(tile.layers));
+    assert_true(share_held_down(tile.layers) < 0.01);
     weft_material_free(&tile);
     weft_material_free(&material);
+}
+
+/* The same material twice: with codes that are multiples of 8, and with an eighth of them in steps eight times as
+ * large, as rounding leaves them. */
+static void what_is_spread_over_coarse_codes_is_as_fine(void **state)
+{
+    (void)state;
+    enum { TIMES = 8 };
+    weft_material fine = layered(blots), coarse = layered(blots), tile[2];
+    for (int k = 0; k < fine.level_count; k++) {
+        weft_layers_level *level[2] = {&fine.layers->level[k], &coarse.layers->level[k]};
+        for (int i = 0; i < LAYERS * level[0]->width * level[0]->height; i++) {
+            level[1]->coefficient[i] = (int8_t)(level[0]->coefficient[i] / TIMES);
+            level[0]->coefficient[i] = (int8_t)(TIMES * level[1]->coefficient[i]);
+        }
+    }
+    for (int layer = 0; layer < LAYERS; layer++)
+        coarse.layers->scale[layer] *= TIMES;
+    blended(&fine, &tile[0]);
+    blended(&coarse, &tile[1]);
+    double apart = 0;
+    for (int i = 0; i < LAYERS * tile[0].level[0].width * tile[0].level[0].height; i++) {
+        double value[2];
+        for (int t = 0; t < 2; t++)
+            value[t] = tile[t].layers->level[0].coefficient[i] * (double)tile[t].layers->scale[i % LAYERS];
+        apart = fmax(apart, fabs(value[1] - value[0]) / (double)fine.layers->scale[0]);
+    }
+    print_message("%.3f steps of the fine codes apart at most\n", apart);
+    assert_true(apart < 1.01);
+    for (int t = 0; t < 2; t++)
+        weft_material_free(&tile[t]);
+    weft_material_free(&coarse);
+    weft_material_free(&fine);
 }
 
 /* A glossy cloth that leans to the left at one end and to the right at the other, and is brighter there. */
@@ -243,6 +278,7 @@ int main(void)
         cmocka_unit_test(a_membrane_is_as_steep_as_asked),
         cmocka_unit_test(layers_meet_under_every_light),
         cmocka_unit_test(what_becomes_brighter_is_not_held_down),
+        cmocka_unit_test(what_is_spread_over_coarse_codes_is_as_fine),
         cmocka_unit_test(lobes_meet_and_levels_go_with_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -253,6 +253,8 @@ static void levels_are_measured_where_texels_lie_beside_each_other(void **state)
     weft_certificate squares = certify_levels(4), texels = certify_levels(1);
     assert_int_equal(squares.level_count, 7);
     assert_int_equal(texels.level_count, 7);
+    assert_int_equal(squares.measured_levels, 3);
+    assert_int_equal(texels.measured_levels, 1);
     for (int k = 0; k < 7; k++) {
         assert_float_equal(squares.level[k].quantile / squares.level[0].quantile, 1.0 / (1 << of_squares[k]), 0.02);
         assert_float_equal(texels.level[k].quantile / texels.level[0].quantile, 1.0 / (1 << of_texels[k]), 0.02);
@@ -293,7 +295,7 @@ static void coarser_levels_of_a_material_are_as_narrow_as_they_are(void **state)
     weft_dataset_close(dataset);
     const weft_certificate_level *level = result.certificate.level;
     print_message("quantiles %.3f, %.3f, %.3f\n", level[0].quantile, level[1].quantile, level[2].quantile);
-    assert_int_equal(result.texel_count, 144);
+    assert_int_equal(result.texel_count, 256); /* spread; the certificate has squares of its own */
     assert_float_equal(level[1].quantile / level[0].quantile, 1.96 / 2 / 1.645, 0.08);
     assert_float_equal(level[2].quantile / level[0].quantile, 1.96 / 4 / 1.645, 0.08);
 }
@@ -325,6 +327,32 @@ static void a_step_is_the_root_of_twelve_times_rounding(void **state)
         assert_int_equal(material.level[0].diffuse[4 * i + 3], 0);
     }
     assert_float_equal(sqrt(moved / rounded), sqrt(12), 0.15);
+    weft_material_free(&material);
+}
+
+/* Codes that were rounded to every eighth lie eight apart: that is their step. */
+static void coefficients_are_moved_by_what_they_lie_apart(void **state)
+{
+    (void)state;
+    enum { SIDE = 6, LAYERS = 4, APART = 8 };
+    const weft_layers shape = {.layer_count = LAYERS,
+                               .view_count = 1,
+                               .image_count = 1,
+                               .light_side = 4,
+                               .view_side = 4,
+                               .light_smoothness = 1,
+                               .view_smoothness = 1,
+                               .least_cosine = 1};
+    weft_material material;
+    weft_error error = {0};
+    expect_ok(weft_material_create(SIDE, SIDE, 0, 0, 0, false, &material, &error), &error);
+    expect_ok(weft_layers_create(&shape, SIDE, SIDE, 1, &material.layers, &error), &error);
+    int8_t *code = material.layers->level[0].coefficient, before[LAYERS * SIDE * SIDE];
+    for (int i = 0; i < LAYERS * SIDE * SIDE; i++)
+        before[i] = code[i] = (int8_t)(i % LAYERS == 1 ? i % 100 : APART * (i % 13));
+    weft_material_move_by_steps(&material);
+    for (int i = 0; i < LAYERS * SIDE * SIDE; i++)
+        assert_int_equal(abs(code[i] - before[i]), i % LAYERS == 1 ? 4 : APART);
     weft_material_free(&material);
 }
 
@@ -482,6 +510,7 @@ int main(void)
         cmocka_unit_test(levels_are_measured_where_texels_lie_beside_each_other),
         cmocka_unit_test(coarser_levels_of_a_material_are_as_narrow_as_they_are),
         cmocka_unit_test(a_step_is_the_root_of_twelve_times_rounding),
+        cmocka_unit_test(coefficients_are_moved_by_what_they_lie_apart),
         cmocka_unit_test(a_displacement_costs_the_slope),
         cmocka_unit_test(flash_photographs_of_a_card_are_covered),
     };

@@ -197,6 +197,38 @@ static void of_one_view_lights_are_held_out(void **state)
     weft_dataset_layout_free(&layout);
 }
 
+static int enough_splits(int views, int lights)
+{
+    weft_dataset_layout layout = {.width = 1, .height = 1, .image_count = views * lights, .view_count = views};
+    weft_error error = {0};
+    int count;
+    assert_int_equal(weft_dataset_layout_allocate(&layout, NULL), WEFT_OK);
+    for (int i = 0; i < layout.image_count; i++) {
+        layout.light[i] = weft_direction_of_angles(weft_ubo81_angles(i % lights));
+        layout.view_of_image[i] = i / lights;
+        layout.view[i / lights] = weft_direction_of_angles(weft_ubo81_angles(i / lights));
+    }
+    expect_ok(weft_hold_out_enough_splits(&layout, &count, &error), &error);
+    weft_dataset_layout_free(&layout);
+    return count;
+}
+
+/* 10 views and lights are held out together, or as many as leave others for a prediction. */
+static void few_directions_are_held_out_more_than_once(void **state)
+{
+    (void)state;
+    assert_int_equal(enough_splits(81, 81), 1); /* 8 and 8 */
+    assert_int_equal(enough_splits(61, 61), 1); /* 5 or 6 of each */
+    assert_int_equal(enough_splits(41, 41), 2); /* 4 and 4 */
+    assert_int_equal(enough_splits(1, 81), 2);  /* 8 */
+    assert_int_equal(enough_splits(19, 19), 1); /* of 6 inner directions two are held out three times */
+    weft_dataset_layout list = list_layout(42);
+    int count;
+    assert_int_equal(weft_hold_out_enough_splits(&list, &count, NULL), WEFT_OK);
+    assert_int_equal(count, 1);
+    weft_dataset_layout_free(&list);
+}
+
 static void a_handful_is_left_out_one_by_one(void **state)
 {
     (void)state;
@@ -576,6 +608,7 @@ int main(void)
         cmocka_unit_test(lights_that_jitter_are_held_out_with_their_neighbours),
         cmocka_unit_test(every_image_of_a_list_is_held_out_once),
         cmocka_unit_test(of_one_view_lights_are_held_out),
+        cmocka_unit_test(few_directions_are_held_out_more_than_once),
         cmocka_unit_test(a_handful_is_left_out_one_by_one),
         cmocka_unit_test(small_squares_are_one_of_every_cell),
         cmocka_unit_test(scattered_texels_are_one_of_every_cell),

@@ -1,4 +1,4 @@
-/* What is on a price list, what it says of models on images that they were not fitted to, and what it chooses. */
+/* What is on a price list, and what it says of models on images that they were not fitted to. */
 #include "fixture.h"
 
 #include "base/atomic_file.h"
@@ -11,6 +11,7 @@
 #include "study/tradeoff/plot.h"
 #include "study/tradeoff/preset.h"
 #include "study/tradeoff/tradeoff.h"
+#include "study/tradeoff/variant.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,68 +22,6 @@ enum { DIRECTIONS = WEFT_UBO81_COUNT, IMAGES = DIRECTIONS * DIRECTIONS };
 
 static const char *const path = "tradeoff.btf.h5";
 static const char *const scratch = "tradeoff_scratch.btf.h5";
-
-/* ---- Choices ---- */
-
-static const weft_offer offers[] = {
-    {1000, 0.40, true}, {2000, 0.20, true},   {2100, 0.39, true}, {4000, 0.05, true}, {8000, 0.045, true},
-    {9000, 0.04, true}, {3000, 0.001, false}, {500, 0.5, false},  {2000, 0.20, true},
-};
-enum { OFFERS = sizeof offers / sizeof *offers };
-
-static void offers_are_beaten_by_what_can_be_had(void **state)
-{
-    (void)state;
-    const bool beaten[OFFERS] = {false, false, true, false, false, false, false, false, true};
-    for (size_t i = 0; i < OFFERS; i++)
-        assert_int_equal(weft_offer_is_beaten(offers, OFFERS, i), beaten[i]);
-}
-
-/* Errors of at most sqrt(0.04 x 0.40) = 0.126 are small enough: 4000 bytes are the fewest of these. */
-static void presets_choose_by_their_rules(void **state)
-{
-    (void)state;
-    assert_int_equal(weft_preset_choose(offers, OFFERS, WEFT_PRESET_BEST), 5);
-    assert_int_equal(weft_preset_choose(offers, OFFERS, WEFT_PRESET_SMALL), 3);
-    assert_int_equal(weft_preset_choose(offers, OFFERS, WEFT_PRESET_BALANCED), 3);
-}
-
-/* Between 100 bytes of error 0.2 and 10000 of 0.02 a straight line has 0.0632 at 1000. */
-static void balanced_is_the_bend(void **state)
-{
-    (void)state;
-    weft_offer curve[] = {
-        {10, 1, true}, {100, 0.1, true}, {1000, 0.04, true}, {3000, 0.0325, true}, {10000, 0.01, true}};
-    assert_int_equal(weft_preset_choose(curve, 5, WEFT_PRESET_SMALL), 1);
-    assert_int_equal(weft_preset_choose(curve, 5, WEFT_PRESET_BALANCED), 1);
-    curve[2].error = 0.028;
-    assert_int_equal(weft_preset_choose(curve, 5, WEFT_PRESET_BALANCED), 2);
-    curve[3].error = 0.0125;
-    assert_int_equal(weft_preset_choose(curve, 5, WEFT_PRESET_BALANCED), 3);
-    curve[2].may_be_chosen = curve[3].may_be_chosen = false;
-    assert_int_equal(weft_preset_choose(curve, 5, WEFT_PRESET_BALANCED), 1);
-}
-
-/* A file ten times as large for half a hundredth less error is not better. */
-static void a_hundredth_is_not_worth_any_bytes(void **state)
-{
-    (void)state;
-    weft_offer near[] = {{100, 0.3, true}, {1000, 0.1005, true}, {10000, 0.1, true}};
-    assert_int_equal(weft_preset_choose(near, 3, WEFT_PRESET_BEST), 1);
-    near[1].error = 0.102;
-    assert_int_equal(weft_preset_choose(near, 3, WEFT_PRESET_BEST), 2);
-    near[0].error = 0.1002;
-    for (weft_preset preset = WEFT_PRESET_SMALL; preset < WEFT_PRESET_COUNT; preset++)
-        assert_int_equal(weft_preset_choose(near, 3, preset), 0);
-}
-
-static void nothing_is_chosen_of_nothing(void **state)
-{
-    (void)state;
-    const weft_offer none[] = {{1, 1, false}};
-    for (weft_preset preset = WEFT_PRESET_SMALL; preset <= WEFT_PRESET_BEST; preset++)
-        assert_int_equal(weft_preset_choose(none, 1, preset), 1);
-}
 
 /* ---- Models ---- */
 
@@ -130,6 +69,7 @@ static void the_list_has_what_the_photographs_carry(void **state)
                                          "2 lobes, T in 4 bits",
                                          "2 lobes, T, S",
                                          "64 layers",
+                                         "64 layers, rounded",
                                          "16 layers over the light",
                                          "16 layers over the half vector",
                                          "32 layers, 21 views",
@@ -139,10 +79,11 @@ static void the_list_has_what_the_photographs_carry(void **state)
     for (int i = 0; i < count; i++) {
         for (int j = 0; j < i; j++)
             assert_string_not_equal(model[i].name, model[j].name);
-        if (model[i].table_bits > 0 || model[i].first_layers > 0 || model[i].fewer_texels)
+        if (model[i].table_bits > 0 || model[i].first_layers > 0 || model[i].fewer_texels || model[i].options.rounded)
             assert_true(weft_priced_models_share_fit(&model[i], &model[i - 1]));
     }
     assert_false(weft_priced_models_share_fit(find(model, count, "1 lobe"), find(model, count, "1 lobe, T")));
+    assert_string_equal(find(model, count, "16 layers, rounded")->arguments, "--layers 16 --rounding on");
     count = weft_priced_models_list(&few, &flat, model);
     assert_non_null(find(model, count, "2 lobes"));
     assert_null(find(model, count, "2 lobes, T"));
@@ -291,7 +232,9 @@ static weft_held_bench *open_bench(weft_dataset **dataset)
     weft_held_bench *bench;
     weft_error error = {0};
     expect_ok(weft_dataset_open(path, dataset, &error), &error);
-    expect_ok(weft_held_bench_create(*dataset, WEFT_EXCERPT_BLOCK, 32, 0, scratch, &bench, &error), &error);
+    expect_ok(
+        weft_held_bench_create(*dataset, WEFT_EXCERPT_BLOCK, 32, (weft_splits_asked){0, 1}, scratch, &bench, &error),
+        &error);
     return bench;
 }
 
@@ -442,7 +385,7 @@ static void bytes_are_those_of_the_file(void **state)
     assert_int_not_equal(access(scratch, F_OK), 0);
 }
 
-/* ---- Presets ---- */
+/* ---- Rounded layers ---- */
 
 /* Nobody can predict more than a fifth of it. */
 static weft_rgb noisy(int x, int y, weft_vec3 light, weft_vec3 view)
@@ -454,292 +397,56 @@ static weft_rgb noisy(int x, int y, weft_vec3 light, weft_vec3 view)
     return (weft_rgb){factor * value.r, factor * value.g, factor * value.b};
 }
 
-/* The file that weft compress would write, with what it was measured to be. */
-static double compress_as_chosen(weft_dataset *dataset, const weft_compress_options *options,
-                                 const weft_prediction *prediction, weft_hold_out *held_out)
+static void expect_same_layers(const weft_layers *a, const weft_layers *b)
 {
-    weft_material material;
-    weft_error error = {0};
-    uint64_t bytes;
-    expect_ok(weft_hold_out_measure(dataset, options, 1, scratch, NULL, held_out, &error), &error);
-    expect_ok(weft_compress(dataset, options, NULL, &material, NULL, &error), &error);
-    expect_ok(weft_hold_out_store(held_out, &material, &error), &error);
-    expect_ok(weft_material_put_metadata(&material, "predicted", weft_prediction_to_json(prediction), &error), &error);
-    expect_ok(weft_material_size(&material, &bytes, &error), &error);
-    weft_material_free(&material);
-    return (double)bytes;
+    assert_memory_equal(a->value, b->value, 3 * (size_t)a->image_count * (size_t)a->layer_count * sizeof *a->value);
+    assert_memory_equal(a->scale, b->scale, (size_t)a->layer_count * sizeof *a->scale);
+    for (int k = 0; k < a->level_count; k++)
+        assert_memory_equal(a->level[k].coefficient, b->level[k].coefficient,
+                            (size_t)a->level[k].width * (size_t)a->level[k].height * (size_t)a->layer_count);
 }
 
-/* The file says it where it was wished for; those who look on hear it wherever a frame was drawn. */
-static void events_say_how_long_a_frame_takes(void **state)
-{
-    (void)state;
-    weft_prediction prediction = {.preset = WEFT_PRESET_SMALL, .bytes = 1, .error = 1, .frame_ms = 12.5};
-    json_t *kept = weft_prediction_to_json(&prediction), *event = weft_prediction_to_event(&prediction);
-    assert_null(json_object_get(kept, "frame_ms"));
-    assert_float_equal(json_real_value(json_object_get(event, "frame_ms")), 12.5, 0);
-    json_decref(kept);
-    json_decref(event);
-    prediction.frame_ms = 0;
-    event = weft_prediction_to_event(&prediction);
-    assert_null(json_object_get(event, "frame_ms"));
-    json_decref(event);
-}
-
-static int count_of(const char *text, const char *word)
-{
-    int count = 0;
-    for (const char *at = strstr(text, word); at; at = strstr(at + 1, word))
-        count++;
-    return count;
-}
-
-/* A model that all presets choose is named once, with why each does. */
-static void page_names_a_chosen_model_once(void **state)
-{
-    (void)state;
-    static weft_tradeoff tradeoff;
-    char *page;
-    size_t size;
-    weft_error error = {0};
-    tradeoff.row_count = 1;
-    tradeoff.row[0] = (weft_tradeoff_row){.model = {.name = "8 layers", .arguments = "--layers 8"}};
-    for (weft_preset preset = WEFT_PRESET_NONE; preset < WEFT_PRESET_COUNT; preset++)
-        tradeoff.row[0].is_chosen[preset] = true;
-    expect_ok(weft_tradeoff_write_page(&tradeoff, "one.btf.h5", "one-model", &error), &error);
-    expect_ok(weft_read_file("one-model/index.html", 1 << 20, &page, &size, &error), &error);
-    assert_int_equal(count_of(page, "<a href=\"#model-1\">8 layers</a>"), 1);
-    assert_int_equal(count_of(page, "<b>small</b>, <b>balanced</b>, <b>best</b>"), 1);
-    for (weft_preset preset = WEFT_PRESET_SMALL; preset < WEFT_PRESET_COUNT; preset++)
-        assert_int_equal(count_of(page, weft_preset_reason(preset)), 1);
-    free(page);
-}
-
-/* It is written where it was wished for. */
-static void expect_speed(weft_prediction prediction)
-{
-    prediction.least_fps = 10;
-    json_t *object = weft_prediction_to_json(&prediction);
-    assert_float_equal(json_real_value(json_object_get(object, "frame_ms")), prediction.frame_ms, 0);
-    assert_float_equal(json_real_value(json_object_get(object, "least_fps")), 10, 0);
-    json_decref(object);
-    weft_frame_timer *timer;
-    assert_int_equal(weft_frame_timer_open(&timer, NULL), WEFT_OK);
-    assert_true(prediction.frame_ms > 0 ? weft_frame_timer_why_not(timer)[0] == 0 : prediction.frame_ms >= 0);
-    weft_frame_timer_close(timer);
-}
-
-/* The texels by which a size is predicted are held twice, as they are read and as they are written: memory for one and
- * a half of them does not do. */
-static void a_prediction_keeps_to_the_memory_that_is_allowed(void **state)
-{
-    (void)state;
-    enum { SIDE = 32 };
-    weft_dataset *dataset;
-    weft_error error = {0};
-    fixture_far_dataset(path, SIDE, SIDE, 4, noisy, FIXTURE_MASK_NONE);
-    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    uint64_t once = 7ull * SIDE * SIDE * (uint64_t)weft_dataset_get_layout(dataset)->image_count;
-    weft_memory_budget now = weft_memory_budget_begin(0);
-    weft_compress_options options = weft_compress_default_options();
-    weft_prediction prediction = {.model = "diffuse", .error = 0.5};
-    options.layer_count = options.lobe_count = 0;
-    options.table = false;
-    options.memory_bytes = weft_memory_budget_taken(&now) + once + once / 2;
-    assert_int_equal(weft_prediction_find_costs(dataset, &options, scratch, NULL, &prediction, &error), WEFT_BAD_USAGE);
-    assert_non_null(strstr(error.message, "the texels by which its size is predicted"));
-    assert_int_not_equal(access(scratch, F_OK), 0);
-    options.memory_bytes += 256ull << 20;
-    expect_ok(weft_prediction_find_costs(dataset, &options, scratch, NULL, &prediction, &error), &error);
-    weft_dataset_close(dataset);
-    unlink(path);
-}
-
-/* All texels are measured both times, but other directions. */
-static void a_preset_predicts_size_and_error(void **state)
+/* A row of rounded layers is made of the fit of exact ones, and is what weft compress --rounding on makes. */
+static void rounded_layers_are_those_of_the_command(void **state)
 {
     (void)state;
     weft_dataset *dataset;
-    weft_error error = {0};
-    fixture_far_dataset(path, 10, 9, 4, noisy, FIXTURE_MASK_NONE);
-    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    weft_compress_options options = weft_compress_default_options();
-    weft_prediction prediction;
-    weft_hold_out held_out;
-    options.weights = WEFT_WEIGHTS_SCREEN;
-    const weft_preset_wish wish = {.preset = WEFT_PRESET_SMALL, .times_frames = true};
-    expect_ok(weft_preset_predict(dataset, &wish, scratch, NULL, &options, &prediction, &error), &error);
-    expect_speed(prediction);
-    assert_int_equal(options.weights, WEFT_WEIGHTS_SCREEN);
-    assert_false(options.light_table);
-    double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
-    assert_float_equal(prediction.bytes, bytes, 0.02 * bytes);
-    double measured = held_out.material.all.relative_rmse;
-    assert_float_equal(prediction.error, measured, 0.1 * measured);
-    assert_true(fabs(prediction.error - measured) > 1e-6 * measured);
-    weft_dataset_close(dataset);
-    unlink(path);
-    assert_int_not_equal(access(scratch, F_OK), 0);
-}
-
-/* ---- What is asked for ---- */
-
-/* The middle is even, and the rest is not: a block of the middle alone weighs a third of what its share is. */
-static weft_rgb even_in_the_middle(int x, int y, weft_vec3 light, weft_vec3 view)
-{
-    bool is_middle = abs(x - 48) < 32 && abs(y - 40) < 32;
-    double share = is_middle ? 0.5 : fmod(0.618 * (x + 1) * (y + 3), 1), gloss = pow(fmax(light.z * view.z, 0), 6);
-    return (weft_rgb){0.1 + share * gloss, 0.1 + 0.5 * share * gloss, 0.2};
-}
-
-static void size_is_that_of_all_texels(void **state)
-{
-    (void)state;
-    weft_dataset *dataset;
-    weft_error error = {0};
-    fixture_far_dataset(path, 96, 80, 2, even_in_the_middle, FIXTURE_MASK_NONE);
-    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    weft_compress_options options = weft_compress_default_options();
-    weft_prediction prediction = {.model = "1 lobe", .arguments = "--lobes 1", .error = 0.123456789};
-    weft_hold_out held_out;
-    options.layer_count = 0;
-    options.lobe_count = 1;
-    options.table = false;
-    expect_ok(weft_prediction_find_costs(dataset, &options, scratch, NULL, &prediction, &error), &error);
-    double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
-    print_message("predicted %.0f bytes, is %.0f\n", prediction.bytes, bytes);
-    assert_float_equal(prediction.bytes, bytes, 0.05 * bytes);
-    weft_dataset_close(dataset);
-    unlink(path);
-    assert_int_not_equal(access(scratch, F_OK), 0);
-}
-
-/* All texels are in the prediction, too: it holds to the length of the metadata. */
-static void what_is_asked_for_is_predicted(void **state)
-{
-    (void)state;
-    static const struct {
-        double target;
-        uint64_t budget;
-        const char *arguments;
-    } row[] = {{0.2, 0, "--error 20"}, {0, 26000, "--budget 0.026"}};
-    weft_dataset *dataset;
+    weft_price_shop *shop;
+    weft_priced_model model[WEFT_PRICED_MOST];
+    weft_material fitted, made, variant;
+    weft_compress_report report;
     weft_error error = {0};
     fixture_far_dataset(path, 16, 12, 4, noisy, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    for (int i = 0; i < 2; i++) {
-        weft_compress_options options = weft_compress_default_options();
-        weft_prediction prediction;
-        weft_hold_out held_out;
-        uint64_t own;
-        options.target_error = row[i].target;
-        options.budget_bytes = row[i].budget;
-        options.layer_count = 0;
-        const weft_preset_wish wish = {.preset = WEFT_PRESET_NONE};
-        expect_ok(weft_preset_predict(dataset, &wish, scratch, NULL, &options, &prediction, &error), &error);
-        assert_string_equal(prediction.arguments, row[i].arguments);
-        expect_ok(weft_prediction_added_bytes(dataset, &options, &prediction, &own, &error), &error);
-        options.added_bytes = own;
-        double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
-        double measured = held_out.material.all.relative_rmse;
-        print_message("%s: predicted %.0f bytes, is %.0f; error %.4f, is %.4f\n", row[i].arguments, prediction.bytes,
-                      bytes, prediction.error, measured);
-        assert_float_equal(prediction.bytes, bytes, 0.02 * bytes);
-        assert_float_equal(prediction.error, measured, 0.1 * measured);
-        assert_true(row[i].budget == 0 || bytes <= (double)row[i].budget);
-        json_t *kept = weft_prediction_to_json(&prediction);
-        assert_null(json_object_get(kept, "preset"));
-        json_decref(kept);
-    }
+    int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model);
+    const weft_priced_model *exact = find(model, count, "8 layers"), *rounded = find(model, count, "8 layers, rounded");
+    expect_ok(weft_compress(dataset, &exact->options, NULL, &fitted, &report, &error), &error);
+    expect_ok(weft_compress(dataset, &rounded->options, NULL, &made, NULL, &error), &error);
+    expect_ok(weft_variant_make(&fitted, rounded, report.layers.rounding_step, "variant.weft", &variant, &error),
+              &error);
+    assert_true(weft_layers_have_differences(variant.layers));
+    expect_same_layers(variant.layers, made.layers);
+    expect_ok(weft_material_write("tradeoff.weft", &made, &error), &error);
+    double bytes = (double)weft_file_bytes("tradeoff.weft");
+    expect_ok(weft_price_shop_open(dataset, 64, scratch, NULL, &shop, &error), &error);
+    weft_price of_exact = ask(shop, exact), of_rounded = ask(shop, rounded);
+    print_message("%.0f bytes, rounded %.0f, as the command makes it %.0f\n", of_exact.bytes, of_rounded.bytes, bytes);
+    assert_true(of_rounded.fit_s <= of_exact.fit_s && of_rounded.fit_s >= of_exact.fit_s);
+    assert_float_equal(of_rounded.bytes, bytes, 128); /* other digits of the error in the metadata */
+    assert_true(of_rounded.bytes < 0.7 * of_exact.bytes);
+    assert_int_equal(of_rounded.fetches.reads, of_exact.fetches.reads);
+    weft_price_shop_close(shop);
+    weft_material_free(&fitted);
+    weft_material_free(&made);
+    weft_material_free(&variant);
     weft_dataset_close(dataset);
+    unlink("tradeoff.weft");
     unlink(path);
-}
-
-/* Nobody knows the time of what is not asked for. */
-typedef struct times {
-    const double *frame_ms;
-    int asked;
-} times;
-
-static weft_code tell_time(void *context, size_t which, double *frame_ms, weft_error *error)
-{
-    (void)error;
-    times *t = context;
-    t->asked++;
-    *frame_ms = t->frame_ms[which];
-    return WEFT_OK;
-}
-
-static void frames_that_are_too_slow_are_not_chosen(void **state)
-{
-    (void)state;
-    const weft_offer all[] = {{1000, 0.5, true}, {2000, 0.3, true}, {4000, 0.2, true}, {8000, 0.1, true}};
-    const double frame_ms[] = {12, 30, 20, 50};
-    static const struct {
-        double most_ms;
-        size_t chosen, fastest;
-        int asked;
-    } row[] = {{50, 3, 4, 1}, {49, 2, 3, 2}, {19, 0, 2, 4}, {11, 4, 0, 4}, {INFINITY, 3, 4, 1}};
-    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
-        weft_offer offer[4];
-        memcpy(offer, all, sizeof all);
-        times t = {frame_ms, 0};
-        size_t chosen, fastest;
-        assert_int_equal(
-            weft_preset_choose_fast(offer, 4, WEFT_PRESET_BEST, row[i].most_ms, tell_time, &t, &chosen, &fastest, NULL),
-            WEFT_OK);
-        assert_int_equal(chosen, row[i].chosen);
-        assert_int_equal(fastest, row[i].fastest);
-        assert_int_equal(t.asked, row[i].asked);
-    }
-}
-
-/* ---- Plots ---- */
-
-static int find_discs(const char *svg, double x[], double y[], int most)
-{
-    int count = 0;
-    for (const char *at = svg; (at = strstr(at, "<circle cx=\"")) && count < most; at++, count++)
-        assert_int_equal(sscanf(at, "<circle cx=\"%lf\" cy=\"%lf\"", &x[count], &y[count]), 2);
-    return count;
-}
-
-static void points_lie_on_logarithmic_axes(void **state)
-{
-    (void)state;
-    const weft_plot_point point[] = {{1, 100, 1, 0, "first & <last>", NULL, "a", false, true},
-                                     {10, 10, 2, 1, "b", NULL, "b", false, true},
-                                     {100, 1, 3, 2, "c", "c.png", "c", true, true},
-                                     {0, 5, 4, 2, "absent", NULL, "d", false, false}};
-    const weft_plot plot = {"title", "x", "y", 4, point};
-    weft_page page;
-    weft_error error = {0};
-    double x[4], y[4];
-    expect_ok(weft_page_begin("tradeoff-plot", "plot", &page, &error), &error);
-    expect_ok(weft_plot_write(&page, &plot, &error), &error);
-    fflush(page.html);
-    assert_int_equal(find_discs(page.bytes, x, y, 4), 3);
-    assert_float_equal(x[1], (x[0] + x[2]) / 2, 0.11);
-    assert_float_equal(y[1], (y[0] + y[2]) / 2, 0.11);
-    assert_true(x[0] > 60 && x[2] > x[0] + 400 && x[2] < 745);
-    assert_true(y[0] > 30 && y[2] > y[0] + 250 && y[2] < 390);
-    assert_non_null(strstr(page.bytes, "first &amp; &lt;last&gt;"));
-    assert_null(strstr(page.bytes, "absent"));
-    assert_non_null(strstr(page.bytes, "href=\"c.png\""));
-    weft_page_abandon(&page);
-    rmdir("tradeoff-plot");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(offers_are_beaten_by_what_can_be_had),
-        cmocka_unit_test(presets_choose_by_their_rules),
-        cmocka_unit_test(balanced_is_the_bend),
-        cmocka_unit_test(page_names_a_chosen_model_once),
-        cmocka_unit_test(events_say_how_long_a_frame_takes),
-        cmocka_unit_test(a_hundredth_is_not_worth_any_bytes),
-        cmocka_unit_test(nothing_is_chosen_of_nothing),
         cmocka_unit_test(the_list_has_what_the_photographs_carry),
         cmocka_unit_test(maps_are_of_the_kind_asked_for),
         cmocka_unit_test(fewer_photographs_are_spread),
@@ -747,12 +454,7 @@ int main(void)
         cmocka_unit_test(variants_are_made_of_the_same_fit),
         cmocka_unit_test(two_layers_are_the_first_of_four),
         cmocka_unit_test(bytes_are_those_of_the_file),
-        cmocka_unit_test(a_prediction_keeps_to_the_memory_that_is_allowed),
-        cmocka_unit_test(a_preset_predicts_size_and_error),
-        cmocka_unit_test(size_is_that_of_all_texels),
-        cmocka_unit_test(what_is_asked_for_is_predicted),
-        cmocka_unit_test(frames_that_are_too_slow_are_not_chosen),
-        cmocka_unit_test(points_lie_on_logarithmic_axes),
+        cmocka_unit_test(rounded_layers_are_those_of_the_command),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -139,7 +139,9 @@ static void bard_and_cloth_do_not_see_what_is_held_out(void **state)
     expect_ok(weft_splits_create(&grid, 0, 2, &splits, &error), &error);
     fixture_far_dataset(path, 2, 2, 6, spoilt, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, 32, 0, scratch, &bench, &error), &error);
+    expect_ok(
+        weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, 32, (weft_splits_asked){0, 1}, scratch, &bench, &error),
+        &error);
     expect_nothing_leaks(bench, "BARD from one light", 0.005);
     expect_nothing_leaks(bench, "analytic cloth", 0.03);
     weft_held_bench_free(bench);
@@ -210,7 +212,9 @@ static void a_fitted_cloth_lies_where_it_was_fitted(void **state)
     fixture_cloth.width = fixture_cloth.height = 13.3, fixture_cloth.left = 5.2, fixture_cloth.top = 9.7;
     fixture_far_dataset(path, WHOLE, WHOLE, 3, fixture_woven, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    expect_ok(weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, SIDE, 0, scratch, &bench, &error), &error);
+    expect_ok(
+        weft_held_bench_create(dataset, WEFT_EXCERPT_BLOCK, SIDE, (weft_splits_asked){0, 1}, scratch, &bench, &error),
+        &error);
     int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &parts, model);
     expect_ok(weft_held_bench_measure(bench, find(model, count, "analytic cloth"), &measured, &error), &error);
     print_message("analytic cloth on a block: %.4f\n", measured.held[WEFT_SAMPLES_ALL].relative_rmse);

@@ -19,7 +19,8 @@ static weft_certificate example(void)
                           .value = {0.1, 0.2, 0.4, 0.6, 0.8, 1, 2, 4},
                           .spread = {0.1, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.6},
                           .has_registration = true,
-                          .level_count = 2};
+                          .level_count = 2,
+                          .measured_levels = 1};
     for (int ring = 0; ring < WEFT_RING_COUNT; ring++) {
         c.view[ring] = 1 + 0.1 * ring;
         c.light[ring] = 2 + 0.1 * ring;
@@ -103,6 +104,7 @@ static void what_is_stored_comes_back(void **state)
     json_decref(object);
     assert_memory_equal(&read.view_images, &c.view_images, sizeof c.view_images);
     assert_memory_equal(&read.light_images, &c.light_images, sizeof c.light_images);
+    assert_int_equal(read.measured_levels, 1);
     assert_true(read.over_images && read.has_registration && read.image_count == 100 && read.direction_count == 12);
     for (double theta = 0; theta < 90; theta += 7)
         assert_float_equal(weft_certificate_half_width(&read, 0, 0.3, tilted(theta), tilted(80 - 0.8 * theta)),
@@ -153,6 +155,8 @@ static void damaged_values_are_refused(void **state)
         {"fitted", "[[1,2,3,4,5,6]]", "levels"},
         {"storage", "[[1,2,3,4,5,6],[1,2,3,4,5,-1]]", "levels"},
         {"registration", "7", "levels"},
+        {"measured_levels", "3", "levels"},
+        {"measured_levels", "0", "levels"},
     };
     for (size_t i = 0; i < sizeof damage / sizeof *damage; i++) {
         weft_certificate read;
@@ -162,6 +166,16 @@ static void damaged_values_are_refused(void **state)
         if (!fault || !strstr(fault, damage[i][2]))
             fail_msg("%s = %s: %s", damage[i][0], damage[i][1] ? damage[i][1] : "nothing", fault ? fault : "taken");
     }
+}
+
+static void measured_levels_may_be_unknown(void **state)
+{
+    (void)state;
+    weft_certificate read;
+    json_t *object = changed("measured_levels", NULL);
+    assert_null(weft_certificate_unpack(object, &read));
+    assert_int_equal(read.measured_levels, 0);
+    json_decref(object);
 }
 
 static void registration_may_be_absent(void **state)
@@ -209,6 +223,7 @@ int main(void)
         cmocka_unit_test(parts_add_to_the_whole_as_they_are_said_to),
         cmocka_unit_test(what_is_stored_comes_back),
         cmocka_unit_test(damaged_values_are_refused),
+        cmocka_unit_test(measured_levels_may_be_unknown),
         cmocka_unit_test(registration_may_be_absent),
         cmocka_unit_test(a_material_with_a_damaged_certificate_is_refused),
     };

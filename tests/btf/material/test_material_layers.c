@@ -1,12 +1,14 @@
 /* The sections of linear layers: what is written is read back, and what is wrong is named. */
 #include "tests/support/cmocka_all.h"
 
+#include "btf/material/layer_rounding.h"
 #include "btf/material/material.h"
 #include "tests/btf/material/layers_example.h"
 #include "tests/btf/material/weft_bytes.h"
 #include "tests/support/expect_ok.h"
 #include "tests/support/scratch_folder.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -222,6 +224,60 @@ static void a_file_has_the_smaller_of_both(void **state)
     }
 }
 
+/* Rounded, all values are whole numbers: of a layer that no texel has any of, too. */
+static void an_empty_layer_keeps_none_from_packing(void **state)
+{
+    (void)state;
+    enum { EMPTY = 5 };
+    weft_error error = {0};
+    weft_material material;
+    values_of_example(&material);
+    weft_layers *layers = material.layers;
+    for (int k = 0; k < layers->level_count; k++) {
+        size_t texels = (size_t)layers->level[k].width * (size_t)layers->level[k].height;
+        int8_t *group = layers->level[k].coefficient + EMPTY / WEFT_LAYERS_GROUP * WEFT_LAYERS_GROUP * texels;
+        for (size_t i = 0; i < texels; i++)
+            group[WEFT_LAYERS_GROUP * i + EMPTY % WEFT_LAYERS_GROUP] = 0;
+    }
+    assert_false(weft_layers_have_differences(layers));
+    weft_layers_round_values(0.01, layers);
+    assert_true(weft_layers_have_differences(layers));
+    expect_ok(weft_material_write("empty.weft", &material, &error), &error);
+    assert_int_equal(codec_of_layers("empty.weft"), 2);
+    weft_material_free(&material);
+}
+
+/* Steps of 32 codes on the finest level, half of that on each coarser one; the scale stays. */
+static void coarser_levels_are_rounded_less(void **state)
+{
+    (void)state;
+    enum { LAYER = 2, TIMES = 32 };
+    weft_material material, whole;
+    values_of_example(&material);
+    values_of_example(&whole);
+    weft_layers *layers = material.layers;
+    double square = 0;
+    for (int i = 0; i < 3 * layers->image_count; i++)
+        square += pow((double)weft_float_of_half(layers->value[3 * (8 * (i / 3) + LAYER) + i % 3]), 2);
+    double rms = (double)layers->scale[LAYER] * sqrt(square / (3 * layers->image_count));
+    weft_layers_round_coefficients(TIMES * rms, layers);
+    assert_float_equal(layers->scale[LAYER], whole.layers->scale[LAYER], 0);
+    int changed = 0;
+    for (int k = 0; k < layers->level_count; k++) {
+        const weft_layers_level *level = &layers->level[k];
+        for (int i = 0; i < level->width * level->height; i++) {
+            int at = WEFT_LAYERS_GROUP * i + LAYER, code = level->coefficient[at],
+                before = whole.layers->level[k].coefficient[at];
+            assert_true(abs(code) == 127 || abs(code) % (TIMES >> k) == 0);
+            assert_in_range(abs(code - before), 0, TIMES >> k >> 1);
+            changed += code != before;
+        }
+    }
+    assert_true(changed > 10);
+    weft_material_free(&whole);
+    weft_material_free(&material);
+}
+
 static void values_too_large_are_refused(void **state)
 {
     (void)state;
@@ -367,6 +423,8 @@ int main(void)
         cmocka_unit_test(values_by_differences_are_read_back),
         cmocka_unit_test(differences_are_those_of_the_document),
         cmocka_unit_test(a_file_has_the_smaller_of_both),
+        cmocka_unit_test(an_empty_layer_keeps_none_from_packing),
+        cmocka_unit_test(coarser_levels_are_rounded_less),
         cmocka_unit_test(values_too_large_are_refused),
         cmocka_unit_test(every_field_is_checked),
         cmocka_unit_test(coefficients_must_be_those_of_the_layers),
