@@ -146,8 +146,8 @@ static void read_layer(const weft_layers *layers, int layer, plane *p)
         p->from[i] = *code_at(&layers->level[0], layer, i);
 }
 
-/* Layers that were rounded have few codes. What is added is a fraction of one: it is held by codes that are so many
- * times as fine, of which the largest is one yet, and at most this many. */
+/* A layer may have few codes: files were once rounded so. What is added is then a fraction of a code. So the codes
+ * become finer by a whole number, as far as the largest remains a code, and by no more than this. */
 enum { FINEST_CODES = 16 };
 
 static int finer_codes(const plane *p)

@@ -189,7 +189,7 @@ static void what_becomes_brighter_is_not_held_down(void **state)
 }
 
 /* The same material twice: with codes that are multiples of 8, and with an eighth of them in steps eight times as
- * large, as rounding leaves them. */
+ * large, as files were once rounded. */
 static void what_is_spread_over_coarse_codes_is_as_fine(void **state)
 {
     (void)state;
