@@ -15,9 +15,9 @@ static const double least_ratio = 1.4, least_contrast = 0.5, most_contrast = 2;
 /* One light: what a place has in one photograph follows from what it has in the other, within this much of it. */
 static const double most_scatter = 0.03;
 
-/* And it must not slant over the sheet, by more than this in the mean: hands that hold a lamp still slant it by a half
- * of that, a lamp that moved by six degrees around the sheet by twice and more. */
-static const double most_slant = 0.01;
+/* And it must not slant over the sheet, by more than this in the mean. Hands that hold a lamp still slant it by up to a
+ * hundredth; a lamp half a metre away that went six degrees around the sheet, by 0.023. */
+static const double most_slant = 0.018;
 enum { FEWEST_PLACES = 40 };
 
 static bool is_one_view(const weft_pose *a, const weft_pose *b)
