@@ -14,10 +14,6 @@ static const double least_ratio = 1.4, least_contrast = 0.5, most_contrast = 2;
 
 /* One light: what a place has in one photograph follows from what it has in the other, within this much of it. */
 static const double most_scatter = 0.03;
-
-/* And it must not slant over the sheet, by more than this in the mean. Hands that hold a lamp still slant it by up to a
- * hundredth; a lamp half a metre away that went six degrees around the sheet, by 0.023. */
-static const double most_slant = 0.018;
 enum { FEWEST_PLACES = 40 };
 
 static bool is_one_view(const weft_pose *a, const weft_pose *b)
@@ -27,9 +23,9 @@ static bool is_one_view(const weft_pose *a, const weft_pose *b)
            fabs(log(weft_length(p) / weft_length(q))) < distance_share;
 }
 
-/* Logarithms of the light of a place in both photographs, and where it lies. */
+/* Logarithms of the light of a place in both photographs. */
 typedef struct both {
-    double bright, dark, at[2];
+    double bright, dark;
 } both;
 
 static int by_bright(const void *left, const void *right)
@@ -39,16 +35,13 @@ static int by_bright(const void *left, const void *right)
 }
 
 /* Places that both photographs show, by their light in the brighter one. Samples are in the order of their places. */
-static size_t find_common(const weft_paper_places *places, const weft_paper_samples *bright,
-                          const weft_paper_samples *dark, both *place)
+static size_t find_common(const weft_paper_samples *bright, const weft_paper_samples *dark, both *place)
 {
     size_t count = 0;
     for (int i = 0, k = 0; i < bright->count && k < dark->count;) {
         const weft_paper_sample *a = &bright->sample[i], *b = &dark->sample[k];
         if (a->place == b->place && a->light[1] > 0 && b->light[1] > 0)
-            place[count++] = (both){log((double)a->light[1]),
-                                    log((double)b->light[1]),
-                                    {places->place[a->place][0], places->place[a->place][1]}};
+            place[count++] = (both){log((double)a->light[1]), log((double)b->light[1])};
         i += a->place <= b->place;
         k += b->place <= a->place;
     }
@@ -65,31 +58,6 @@ static double scatter(const both *place, size_t count, double *scratch)
     return 1.4826 / sqrt(1.5) * weft_quantile(scratch, count - 2, 0.5);
 }
 
-/* How far a slanting plane takes the dark photograph's light from a function of the bright one's: its standard
- * deviation over the sheet. A place is held against its neighbours in brightness; those that differ by far lie between
- * paper and ink, or in a shadow. */
-static double slant(const both *place, size_t count, double far)
-{
-    double xx = 0, xy = 0, yy = 0, xe = 0, ye = 0, spread[2] = {0, 0}, mean[2] = {0, 0};
-    for (size_t i = 1; i + 1 < count; i++) {
-        const both *low = &place[i - 1], *here = &place[i], *high = &place[i + 1];
-        double e = here->dark - 0.5 * (low->dark + high->dark);
-        double x = here->at[0] - 0.5 * (low->at[0] + high->at[0]), y = here->at[1] - 0.5 * (low->at[1] + high->at[1]);
-        if (fabs(e) > far)
-            continue;
-        xx += x * x, xy += x * y, yy += y * y, xe += x * e, ye += y * e;
-    }
-    for (size_t i = 0; i < count; i++)
-        for (int axis = 0; axis < 2; axis++)
-            mean[axis] += place[i].at[axis] / (double)count;
-    for (size_t i = 0; i < count; i++)
-        for (int axis = 0; axis < 2; axis++)
-            spread[axis] += pow(place[i].at[axis] - mean[axis], 2) / (double)count;
-    double determinant = xx * yy - xy * xy;
-    double a = (xe * yy - ye * xy) / determinant, b = (ye * xx - xe * xy) / determinant;
-    return sqrt(a * a * spread[0] + b * b * spread[1]);
-}
-
 static double median_ratio(const both *place, size_t count, double *scratch)
 {
     for (size_t i = 0; i < count; i++)
@@ -97,13 +65,12 @@ static double median_ratio(const both *place, size_t count, double *scratch)
     return weft_quantile(scratch, count, 0.5);
 }
 
-static bool is_one_light(const weft_paper_places *places, const weft_lamp_evidence *bright,
-                         const weft_lamp_evidence *dark, both *place, double *scratch)
+static bool is_one_light(const weft_lamp_evidence *bright, const weft_lamp_evidence *dark, both *place, double *scratch)
 {
-    size_t count = find_common(places, &bright->paper, &dark->paper, place);
+    size_t count = find_common(&bright->paper, &dark->paper, place);
     double written = log(bright->exposure / dark->exposure), seen = median_ratio(place, count, scratch);
     return count >= FEWEST_PLACES && seen > least_contrast * written && seen < most_contrast * written &&
-           scatter(place, count, scratch) < most_scatter && slant(place, count, 4 * most_scatter) < most_slant;
+           scatter(place, count, scratch) < most_scatter;
 }
 
 /* The next darker photograph of what `bright` shows; -1: none. */
@@ -115,7 +82,7 @@ static int next_darker(const weft_lamp_problem *problem, int bright, both *place
         const weft_lamp_evidence *evidence = &problem->evidence[i];
         if (evidence->exposure > 0 && evidence->exposure * least_ratio < from->exposure &&
             (next < 0 || evidence->exposure > problem->evidence[next].exposure) &&
-            is_one_view(&from->pose, &evidence->pose) && is_one_light(problem->places, from, evidence, place, scratch))
+            is_one_view(&from->pose, &evidence->pose) && is_one_light(from, evidence, place, scratch))
             next = i;
     }
     return next;
