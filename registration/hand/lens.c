@@ -1,6 +1,7 @@
 #include "registration/hand/lens.h"
 
 #include "base/numeric/statistics.h"
+#include "registration/hand/strays.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -111,17 +112,46 @@ static int count_views(const weft_hand_photograph *photograph, int count, double
     return distinct;
 }
 
-/* Gives photographs that do not fit a remark; returns how many. */
-static int leave_out(weft_hand_photograph *photograph, int count, const weft_camera *camera)
+/* How far off the corners of a photograph are that is used: RMS, median over the photographs. */
+static double median_rms(const weft_hand_photograph *photograph, int count)
 {
     double *rms = malloc((size_t)count * sizeof *rms);
-    int used = 0, left_out = 0;
+    int used = 0;
     for (int i = 0; rms && i < count; i++) {
         if (weft_hand_used(&photograph[i]))
             rms[used++] = photograph[i].corner_rms_px;
     }
     double median = rms ? weft_quantile(rms, (size_t)used, 0.5) : INFINITY;
-    double limit = fmax(outlier_ratio * median, outlier_floor * fmax(camera->width, camera->height));
+    free(rms);
+    return median;
+}
+
+/* Farther off than this is an outlier: a corner among those of its photograph, or a photograph. */
+static double outlier_limit(double median, const weft_camera *camera)
+{
+    return fmax(outlier_ratio * median, outlier_floor * fmax(camera->width, camera->height));
+}
+
+/* Takes single corners out, first: a pin before one marker is no reason to lose a photograph. *dropped: how many. */
+static weft_code drop_strays(weft_hand_photograph *photograph, int count, const weft_camera *camera, int *dropped,
+                             weft_error *error)
+{
+    double limit = outlier_limit(median_rms(photograph, count), camera);
+    *dropped = 0;
+    for (int i = 0; i < count; i++) {
+        int own = 0;
+        if (weft_hand_used(&photograph[i]))
+            WEFT_TRY(weft_strays_drop(camera, limit, &photograph[i], &own, error));
+        *dropped += own;
+    }
+    return WEFT_OK;
+}
+
+/* Gives photographs that do not fit a remark; returns how many. */
+static int leave_out(weft_hand_photograph *photograph, int count, const weft_camera *camera)
+{
+    double median = median_rms(photograph, count), limit = outlier_limit(median, camera);
+    int left_out = 0;
     for (int i = 0; i < count; i++) {
         weft_hand_photograph *p = &photograph[i];
         if (!weft_hand_used(p) || p->corner_rms_px <= limit)
@@ -133,7 +163,6 @@ static int leave_out(weft_hand_photograph *photograph, int count, const weft_cam
             p->corner_rms_px, median);
         left_out++;
     }
-    free(rms);
     return left_out;
 }
 
@@ -242,9 +271,13 @@ weft_code weft_lens_estimate_from(weft_hand_photograph *photograph, int count, i
         lens->camera = *known;
     else
         WEFT_TRY(fit_unknown(photograph, count, width, height, lens, error));
+    int wrong;
     do {
         WEFT_TRY(fit(photograph, count, lens->knowledge, lens, error));
-    } while (leave_out(photograph, count, &lens->camera) > 0);
+        WEFT_TRY(drop_strays(photograph, count, &lens->camera, &wrong, error));
+        if (!wrong)
+            wrong = leave_out(photograph, count, &lens->camera);
+    } while (wrong > 0);
     lens->rms_px = rms_of(photograph, count);
     return share_poses(photograph, count, &lens->camera, error);
 }

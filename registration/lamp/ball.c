@@ -90,12 +90,26 @@ typedef struct spot {
     double x, y, weight, sum; /* sum over all pixels of the disc */
     long pixels, disc_pixels;
     double brightest;
+    double most; /* around (at_x, at_y) */
     int at_x, at_y;
 } spot;
 
 static bool in_disc(const disc *d, int x, int y)
 {
     return (x - d->x) * (x - d->x) + (y - d->y) * (y - d->y) <= d->radius * d->radius;
+}
+
+/* Of the pixel and the eight around it. The other ball mirrors the lamp, too: a speck that is clipped as the lamp's own
+ * highlight is, and smaller. */
+static double brightness_around(const weft_light_values *values, const sight *ball, int x, int y)
+{
+    double sum = 0;
+    for (int i = 0; i < 9; i++) {
+        int at_x = x + i % 3 - 1, at_y = y + i / 3 - 1;
+        if (in_disc(&ball->outline, at_x, at_y) && shows_above(ball, at_x, at_y))
+            sum += brightness(values, at_x, at_y);
+    }
+    return sum;
 }
 
 static void find_brightest(const weft_light_values *values, const sight *ball, const int box[4], spot *s)
@@ -107,8 +121,9 @@ static void find_brightest(const weft_light_values *values, const sight *ball, c
             double value = brightness(values, x, y);
             s->sum += value;
             s->disc_pixels++;
-            if (value > s->brightest)
-                s->brightest = value, s->at_x = x, s->at_y = y;
+            double around = value >= s->brightest ? brightness_around(values, ball, x, y) : 0;
+            if (value > s->brightest || around > s->most)
+                s->brightest = value, s->most = around, s->at_x = x, s->at_y = y;
         }
     }
 }

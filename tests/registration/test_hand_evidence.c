@@ -158,6 +158,19 @@ static weft_light_values draw_ball(const weft_camera *camera, const weft_pose *p
     return values;
 }
 
+/* A single clipped pixel where the ball is dark, above the highlight in the file: the other ball's highlight, mirrored.
+ */
+static void add_speck(const weft_camera *camera, weft_light_values *values)
+{
+    int skipped = 0;
+    for (int i = 0; i < camera->width * camera->height; i++) {
+        if (values->grey[i] < 1 && ++skipped == 60) {
+            values->grey[i] = NAN;
+            return;
+        }
+    }
+}
+
 static void a_highlight_beside_clipped_paper_is_the_lamps(void **state)
 {
     (void)state;
@@ -168,6 +181,8 @@ static void a_highlight_beside_clipped_paper_is_the_lamps(void **state)
         double theta = weft_rad_of_deg(20 + 17 * i), phi = 1.3 * i;
         weft_vec3 lamp = weft_scale(weft_vec3_of(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)), 700);
         weft_light_values values = draw_ball(&camera, &pose, place, diameter, lamp);
+        if (i < 2) /* farther from the highlight than that is wide */
+            add_speck(&camera, &values);
         weft_highlight seen = weft_ball_highlight(&camera, &pose, &values, place, diameter);
         free(values.grey);
         assert_true(seen.found);
