@@ -68,14 +68,14 @@ static void round_layer(weft_layers *layers, int layer, double asked)
     layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
 }
 
-/* The coefficients become fewer whole numbers, which lie `grid` apart, and on every coarser level half as far: more is
- * averaged out there, so that what is rounded away would show. The scale stays. */
-static void round_coefficients(weft_layers *layers, int layer, double grid)
+/* The coefficients become fewer whole numbers, which lie `grid` apart, and on every coarser level `coarser` times as
+ * far. The scale stays. */
+static void round_coefficients(weft_layers *layers, int layer, double grid, double coarser)
 {
     for (int k = 0; k < layers->level_count; k++) {
         size_t texels;
         int8_t *c = coefficients_of(layers, k, layer, &texels);
-        double of_level = fmax(grid * exp2(-k), 1);
+        double of_level = fmax(grid * pow(coarser, k), 1);
         for (size_t i = 0; i < texels; i++) {
             double code = of_level * round((double)c[WEFT_LAYERS_GROUP * i] / of_level);
             c[WEFT_LAYERS_GROUP * i] =
@@ -102,17 +102,17 @@ void weft_layers_round_values(double step, weft_layers *layers)
     }
 }
 
-void weft_layers_round_coefficients(double step, weft_layers *layers)
+void weft_layers_round_coefficients(double step, double coarser, weft_layers *layers)
 {
     for (int layer = 0; layer < layers->layer_count; layer++) {
         double of_coefficient = value_rms(layers, layer);
         if (of_coefficient > 0 && step / of_coefficient > 1)
-            round_coefficients(layers, layer, fmin(step / of_coefficient, WEFT_LAYERS_LARGEST_CODE));
+            round_coefficients(layers, layer, fmin(step / of_coefficient, WEFT_LAYERS_LARGEST_CODE), coarser);
     }
 }
 
 void weft_layers_round(double step, weft_layers *layers)
 {
     weft_layers_round_values(step, layers);
-    weft_layers_round_coefficients(step, layers);
+    weft_layers_round_coefficients(step, 0.5, layers);
 }

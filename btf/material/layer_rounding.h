@@ -12,10 +12,12 @@
 void weft_layers_round_values(double step, weft_layers *layers);
 
 /* Rounds the coefficients of each layer to steps that change reflectance times cosine by `step` > 0, RMS over the
- * images, and by half as much on every coarser level. Steps that are finer than those of the codes change nothing. */
-void weft_layers_round_coefficients(double step, weft_layers *layers);
+ * images, and by `coarser` times as much from level to level. Steps that are finer than those of the codes change
+ * nothing. */
+void weft_layers_round_coefficients(double step, double coarser, weft_layers *layers);
 
-/* Both, the values first. */
+/* Both, the values first; coefficients by half as much on every coarser level: more is averaged out there, so that what
+ * is rounded away would show. */
 void weft_layers_round(double step, weft_layers *layers);
 
 #endif

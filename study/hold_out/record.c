@@ -227,11 +227,14 @@ void weft_certificate_describe_levels(const weft_certificate *c, char line[WEFT_
         APPEND(line, "measured on levels 0 to %d", last);
     else
         APPEND(line, "measured on level 0");
-    if (c->measured_levels < c->level_count)
+    if (c->measured_levels < c->level_count && last > 0)
         APPEND(line,
                ": the texels it is measured on lie in squares of %d x %d; coarser levels have the width of smaller "
                "squares, which is rather too wide",
                1 << last, 1 << last);
+    else if (c->measured_levels < c->level_count)
+        APPEND(line,
+               " alone, on single texels; coarser levels have the width of fewer texels, which is rather too wide");
 }
 
 void weft_certificate_row(const weft_certificate *c, int ring, char line[WEFT_HOLD_OUT_LINE])

@@ -93,6 +93,13 @@ static double step_of(int number)
     return finest_step * pow(step_ratio, number);
 }
 
+/* Pictures say what may go, whatever level they ask for. */
+static void round_layers(double step, weft_layers *layers)
+{
+    weft_layers_round_values(step, layers);
+    weft_layers_round_coefficients(step, 1, layers);
+}
+
 /* The largest step that pictures allow, found by halving; -1: not even the finest. */
 static weft_code round_values(shrinking *s, weft_error *error)
 {
@@ -101,14 +108,14 @@ static weft_code round_values(shrinking *s, weft_error *error)
         int middle = (low + high) / 2;
         weft_prune_error is;
         WEFT_TRY(begin(s, s->before->layer_count, error));
-        weft_layers_round(step_of(middle), s->material->layers);
+        round_layers(step_of(middle), s->material->layers);
         WEFT_TRY(look(s, WEFT_LAYERS_MAX, &is, error));
         *(is_within(&is, &s->allowed, share_of_digits) ? &low : &high) = middle;
     }
     WEFT_TRY(begin(s, s->before->layer_count, error));
     s->report->value_step = low < 0 ? 0 : step_of(low);
     if (low >= 0)
-        weft_layers_round(step_of(low), s->material->layers);
+        round_layers(step_of(low), s->material->layers);
     return settle(s, error);
 }
 

@@ -260,7 +260,7 @@ static void coarser_levels_are_rounded_less(void **state)
     for (int i = 0; i < 3 * layers->image_count; i++)
         square += pow((double)weft_float_of_half(layers->value[3 * (8 * (i / 3) + LAYER) + i % 3]), 2);
     double rms = (double)layers->scale[LAYER] * sqrt(square / (3 * layers->image_count));
-    weft_layers_round_coefficients(TIMES * rms, layers);
+    weft_layers_round_coefficients(TIMES * rms, 0.5, layers);
     assert_float_equal(layers->scale[LAYER], whole.layers->scale[LAYER], 0);
     int changed = 0;
     for (int k = 0; k < layers->level_count; k++) {
