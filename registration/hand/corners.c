@@ -64,17 +64,7 @@ static weft_code keep_plane(const weft_light_values *values, weft_hand_photograp
     double reach = distortion_share * fmax(values->width, values->height);
     weft_code code = weft_opencv_fit_homography((const double(*)[2])p->plate, (const double(*)[2])p->seen,
                                                 p->corner_count, reach, homography.m, agrees, error);
-    int kept = 0;
-    for (int i = 0; code == WEFT_OK && i < p->corner_count; i++) {
-        if (!agrees[i])
-            continue;
-        for (int axis = 0; axis < 2; axis++) {
-            p->plate[kept][axis] = p->plate[i][axis];
-            p->seen[kept][axis] = p->seen[i][axis];
-        }
-        kept++;
-    }
-    p->corner_count = kept;
+    weft_hand_keep_corners(p, agrees);
     return code == WEFT_BAD_INPUT ? WEFT_OK : code;
 }
 

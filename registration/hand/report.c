@@ -196,17 +196,17 @@ static void write_row(weft_page *page, const weft_hand_photograph *p)
     weft_page_text(page, p->name);
     fprintf(page->html,
             "</td><td>%.1f, %.1f</td><td>%.0f</td><td>%.1f, %.1f</td><td>%.0f</td><td>%.2f</td><td>%.2f</td>"
-            "<td>%.4f</td><td>%d</td></tr>\n",
+            "<td>%.4f</td><td>%d of %d</td></tr>\n",
             weft_deg_of_rad(view.theta_rad), weft_deg_of_rad(view.phi_rad), (double)weft_length(eye),
             weft_deg_of_rad(light.theta_rad), weft_deg_of_rad(light.phi_rad), (double)weft_length(lamp),
-            p->lamp.uncertainty_deg, p->corner_rms_px, p->uncertainty_mm, p->marker_count);
+            p->lamp.uncertainty_deg, p->corner_rms_px, p->uncertainty_mm, p->corner_count, 4 * p->marker_count);
 }
 
 static void write_table(weft_page *page, const weft_hand *hand)
 {
     fputs("<h2>All that are used</h2>\n<table class=\"long\">\n", page->html);
     weft_page_columns(page, "photograph|view: theta, phi, degrees|camera, mm|lamp: theta, phi, degrees|lamp, mm|lamp: "
-                            "standard error, degrees|corners, pixels RMS|warp: standard error, mm|markers");
+                            "standard error, degrees|corners, pixels RMS|warp: standard error, mm|corners used");
     for (int i = 0; i < hand->count; i++) {
         if (weft_hand_used(&hand->photograph[i]))
             write_row(page, &hand->photograph[i]);

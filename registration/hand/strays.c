@@ -18,7 +18,8 @@ static double distance(const weft_homography *homography, const double plate[2],
 weft_code weft_strays_drop(const weft_camera *camera, double reach_px, weft_hand_photograph *photograph, int *dropped,
                            weft_error *error)
 {
-    int count = photograph->corner_count, agreeing = 0, kept = 0;
+    const int count = photograph->corner_count, found = 4 * photograph->marker_count;
+    int agreeing = 0;
     double straight[WEFT_PLATE_CORNERS][2];
     uint8_t agrees[WEFT_PLATE_CORNERS] = {0};
     weft_homography homography;
@@ -33,20 +34,13 @@ weft_code weft_strays_drop(const weft_camera *camera, double reach_px, weft_hand
                                                 count, reach_px, homography.m, agrees, error);
     if (code != WEFT_OK)
         return code == WEFT_BAD_INPUT ? WEFT_OK : code;
-    for (int i = 0; i < count; i++)
-        agreeing += distance(&homography, photograph->plate[i], straight[i]) <= reach_px;
-    if (agreeing < fewest_corners || agreeing < least_share * count)
-        return WEFT_OK;
     for (int i = 0; i < count; i++) {
-        if (!(distance(&homography, photograph->plate[i], straight[i]) <= reach_px))
-            continue;
-        for (int axis = 0; axis < 2; axis++) {
-            photograph->plate[kept][axis] = photograph->plate[i][axis];
-            photograph->seen[kept][axis] = photograph->seen[i][axis];
-        }
-        kept++;
+        agrees[i] = distance(&homography, photograph->plate[i], straight[i]) <= reach_px;
+        agreeing += agrees[i];
     }
-    photograph->corner_count = kept;
-    *dropped = count - kept;
+    if (agreeing < fewest_corners || agreeing < least_share * found)
+        return WEFT_OK;
+    weft_hand_keep_corners(photograph, agrees);
+    *dropped = count - agreeing;
     return WEFT_OK;
 }

@@ -9,6 +9,7 @@
 #include "registration/pose/prediction.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 enum { WEFT_PLATE_CORNERS = 4 * WEFT_SHEET_MARKER_COUNT };
 
@@ -36,7 +37,8 @@ typedef struct weft_hand_photograph {
     char remark[192]; /* why it is left out; empty where it is used */
     bool is_twin;     /* left out as the darker one of a pair, and sound otherwise */
 
-    int marker_count, corner_count;
+    int marker_count;                                                 /* found; each has four corners */
+    int corner_count;                                                 /* of them, that lie on the plane of the sheet */
     double plate[WEFT_PLATE_CORNERS][2], seen[WEFT_PLATE_CORNERS][2]; /* corners: mm, and pixels */
     double corner_rms_px;                                             /* under the lens of all photographs */
 
@@ -54,6 +56,22 @@ typedef struct weft_hand_photograph {
 
     weft_image thumbnail, rectified; /* for the report, sRGB; without pixels where there is none */
 } weft_hand_photograph;
+
+/* Keeps those corners whose `keep` [corner_count] is not 0. */
+static inline void weft_hand_keep_corners(weft_hand_photograph *photograph, const uint8_t *keep)
+{
+    int kept = 0;
+    for (int i = 0; i < photograph->corner_count; i++) {
+        if (!keep[i])
+            continue;
+        for (int axis = 0; axis < 2; axis++) {
+            photograph->plate[kept][axis] = photograph->plate[i][axis];
+            photograph->seen[kept][axis] = photograph->seen[i][axis];
+        }
+        kept++;
+    }
+    photograph->corner_count = kept;
+}
 
 static inline bool weft_hand_used(const weft_hand_photograph *photograph)
 {
