@@ -161,7 +161,8 @@ static weft_preset_wish wish_of(const compress_command *command)
     bool alone = command->preset == WEFT_PRESET_NONE && command->least_fps > 0;
     return (weft_preset_wish){.preset = alone ? WEFT_PRESET_BEST : command->preset,
                               .least_fps = command->least_fps,
-                              .times_frames = !command->common.quiet && command->options.memory_bytes == 0};
+                              .times_frames = !command->common.quiet && command->options.memory_bytes == 0,
+                              .measured_splits = command->hold_out};
 }
 
 /* Whether each texel gets a model of its own. */

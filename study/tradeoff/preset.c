@@ -120,10 +120,12 @@ static int choose_side(const weft_dataset *dataset)
 static weft_code measure(choosing *work, weft_error *error)
 {
     weft_held_bench *bench;
-    int splits; /* of the measurement, which begins with 0 */
+    int splits;
     WEFT_TRY(weft_hold_out_enough_splits(weft_dataset_get_layout(work->dataset), &splits, error));
+    int measured = work->wish->measured_splits > 0 ? work->wish->measured_splits : splits; /* from 0 on */
     WEFT_TRY(weft_held_bench_create(work->dataset, choose_texels(work), choose_side(work->dataset),
-                                    (weft_splits_asked){(uint64_t)splits, splits}, work->scratch_path, &bench, error));
+                                    (weft_splits_asked){(uint64_t)measured, splits}, work->scratch_path, &bench,
+                                    error));
     weft_code code = measure_models(work, bench, error);
     weft_held_bench_free(bench);
     return code;

@@ -8,15 +8,16 @@
 
 /* What is wanted. */
 typedef struct weft_preset_wish {
-    weft_preset preset; /* WEFT_PRESET_NONE: what the options ask for */
-    double least_fps;   /* of frames as study/tradeoff/frame_timer.h draws them, here; with a preset; 0: any */
-    bool times_frames;  /* says how long one takes, where it can be drawn; with least_fps in any case */
+    weft_preset preset;  /* WEFT_PRESET_NONE: what the options ask for */
+    double least_fps;    /* of frames as study/tradeoff/frame_timer.h draws them, here; with a preset; 0: any */
+    bool times_frames;   /* says how long one takes, where it can be drawn; with least_fps in any case */
+    int measured_splits; /* that are asked for afterwards; < 1: weft_hold_out_enough_splits */
 } weft_preset_wish;
 
 /* Chooses among the models that weft compress makes (study/tradeoff/choice.h), without those of a light table, which
  * take many times as long and are seldom worth it. Fits each to at most 24 x 24 texels, or of a dataset with a surface
- * measures each on 32 x 32, without the images of as many splits as the measurement afterwards takes
- * (weft_hold_out_enough_splits), but others, and finds for the one that is chosen how large its file will be and how
+ * measures each on 32 x 32, without the images of weft_hold_out_enough_splits splits, none of which the measurement
+ * afterwards takes, and finds for the one that is chosen how large its file will be and how
  * long a frame takes (weft_prediction_find_costs). One that is too slow is chosen no longer, and the preset chooses
  * among the others. *options gets lobes, tables, frames, layers and whether through heights, and keeps all else.
  * Without a preset there is one model, that of the options, which stay as they are. Writes to the folder of
