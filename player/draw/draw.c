@@ -21,7 +21,6 @@ static void set_lights(const weft_player *p, GLuint program, const weft_scene *s
     weft_gl_set_int(program, "set_count", lighting.set_count);
     weft_gl_set_int(program, "key_count", lighting.key_count);
     weft_gl_set_int(program, "fill_count", lighting.fill_count);
-    weft_gl_set_int(program, "fill_step", lighting.fill_step);
     /* What moves under many lights has no time for more. */
     weft_gl_set_int(program, "shadow_taps", frame < 0 && lighting.fill_count > 0 ? 1 : 4);
     for (int i = 0; i < lighting.fill_count; i++) {

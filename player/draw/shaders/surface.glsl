@@ -19,7 +19,6 @@ uniform int key_count;   // places in the first light from which shadows fall: 0
 uniform int scene_count; // the first of them; the others are the environment
 uniform int set_count;   // of which each kind of pixels has others
 uniform int fill_count;  // 0: the environment casts no shadows
-uniform int fill_step;   // of its directions a pixel sees one in so many, its neighbours others
 uniform int light_count;
 uniform vec3 light_direction[MAX_LIGHTS];  // world, unit, toward the light
 uniform vec3 light_irradiance[MAX_LIGHTS]; // on a surface that faces it, over pi
@@ -132,8 +131,7 @@ float key_share_of(vec3 position, vec3 normal)
 float fill_share(vec3 position, vec3 normal)
 {
     float seen = 1e-3, all_of_it = 1e-3;
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    for (int i = (pixel.x + pixel.y) % fill_step; i < fill_count; i += fill_step) {
+    for (int i = 0; i < fill_count; i++) {
         float cosine = max(dot(fill_direction[i], normal), 0.0);
         all_of_it += cosine;
         seen += cosine * unshadowed_share(position, normal, KEY_PLACES + i, 1);
