@@ -12,7 +12,7 @@
 enum { WEFT_KEY_PLACES = 4, WEFT_FILL_DIRECTIONS = 8, WEFT_FILL_MOVING = 2 };
 
 /* Neighbouring pixels at rest are lit from other parts of the environment, so that what a few frames lack is fine grain
- * instead of a lean of the whole picture. As many kinds of pixels at most, 4 x 2 that repeat. */
+ * instead of a lean of the whole picture. As many kinds of pixels at most: each block of 4 x 2 has all of them. */
 enum { WEFT_LIGHT_SETS = 8 };
 
 typedef struct weft_lighting {

@@ -182,11 +182,20 @@ void choose_lights(inout SurfacePoint point)
     }
 }
 
-// Of 4 x 2 kinds, each next to the one that it completes most (player/draw/lighting.h).
+// The upper ones look random.
+uint random_bits(uvec2 place)
+{
+    uint bits = place.x * 0x9E3779B1u ^ place.y * 0x85EBCA77u;
+    return (bits ^ bits >> 15) * 0x2C1B3C6Du;
+}
+
+// Of 4 x 2 kinds, each next to the one that it completes most (player/draw/lighting.h). They change places from block to
+// block, all at once, so that each block has all of them: the same order everywhere would be a hatch.
 int pixel_kind()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    return (pixel.x & 1) * 4 + ((pixel.x >> 1 ^ pixel.y) & 1) * 2 + (pixel.y & 1);
+    int kind = (pixel.x & 1) * 4 + ((pixel.x >> 1 ^ pixel.y) & 1) * 2 + (pixel.y & 1);
+    return kind ^ int(random_bits(uvec2(pixel >> ivec2(2, 1))) >> 29);
 }
 
 SurfacePoint surface_point()
