@@ -377,5 +377,5 @@ void weft_panel_show(weft_application *a, int width, int height)
         weft_ui_dim_text("H: mouse and keys");
         weft_ui_panel_end();
     }
-    weft_panel_show_notes(a, width, height);
+    weft_panel_show_notes(a, panel, width, height);
 }

@@ -18,7 +18,8 @@ namespace
 {
 
 double scale_of_all = 1;
-float wrap_at = 0; /* from the left of the panel or note; 0: its right edge */
+float wrap_at = 0;              /* from the left of the panel or note; 0: its right edge */
+const char *room_for = nullptr; /* text that the next note is at least as large as */
 
 double pointer_moved_s = 0; /* last, by ImGui's clock */
 const double hint_waits_s = 0.4;
@@ -72,6 +73,14 @@ void load_font()
     config.FontDataOwnedByAtlas = false;
     ImGui::GetIO().Fonts->AddFontFromMemoryTTF((void *)weft_font_file, (int)weft_font_file_size, scaled(text_size),
                                                &config);
+}
+
+/* With this text in it, wrapped as it will be. */
+ImVec2 size_of_note(const char *text)
+{
+    const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+    const ImVec2 letters = ImGui::CalcTextSize(text, nullptr, false, wrap_at - padding.x);
+    return ImVec2(letters.x + 2 * padding.x, letters.y + 2 * padding.y);
 }
 
 /* Of the last widget, where the pointer rests on it. */
@@ -294,6 +303,9 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
     const float before = (float)x / std::max((float)share_x, 0.01f),
                 after = (ImGui::GetIO().DisplaySize.x - (float)x) / std::max(1 - (float)share_x, 0.01f);
     wrap_at = std::min(scaled(widest_note), std::max(scaled(narrowest_note), std::min(before, after) - scaled(64)));
+    if (room_for)
+        ImGui::SetNextWindowSizeConstraints(size_of_note(room_for), ImVec2(FLT_MAX, FLT_MAX));
+    room_for = nullptr;
     ImGui::Begin(name, nullptr,
                  fixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoInputs);
@@ -301,8 +313,7 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
 
 void weft_ui_room_for(const char *text)
 {
-    const float width = ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().WindowPadding.x;
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(FLT_MAX, FLT_MAX));
+    room_for = text;
 }
 
 void weft_ui_wrap_within(double width)
