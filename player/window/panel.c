@@ -1,7 +1,7 @@
 #include "player/window/panel.h"
 
 #include "player/scene/surroundings.h"
-#include "player/window/ui_bridge.h"
+#include "player/window/ui/ui_bridge.h"
 
 #include <math.h>
 #include <stdio.h>

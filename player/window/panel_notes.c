@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "player/scene/false_colour.h"
 #include "player/window/keys.h"
-#include "player/window/ui_bridge.h"
+#include "player/window/ui/ui_bridge.h"
 
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-#include "tests/player/ui_frames_bridge.h"
+#include "tests/player/window/ui_frames_bridge.h"
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>

@@ -1,6 +1,6 @@
 /* What a widget of the panel does, in a line that is shown where the pointer rests on it. Pure. */
-#ifndef WEFT_PLAYER_WINDOW_HINTS_H
-#define WEFT_PLAYER_WINDOW_HINTS_H
+#ifndef WEFT_PLAYER_WINDOW_UI_HINTS_H
+#define WEFT_PLAYER_WINDOW_UI_HINTS_H
 
 #include <stddef.h>
 

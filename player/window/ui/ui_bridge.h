@@ -1,8 +1,8 @@
 /* Widgets over the picture: the one door to Dear ImGui. Immediate: every frame, between weft_ui_begin and weft_ui_end,
  * says anew what there is, and each widget returns whether the user changed its value just now. One user interface at a
  * time; the thread and the OpenGL context of the window. */
-#ifndef WEFT_PLAYER_WINDOW_UI_BRIDGE_H
-#define WEFT_PLAYER_WINDOW_UI_BRIDGE_H
+#ifndef WEFT_PLAYER_WINDOW_UI_UI_BRIDGE_H
+#define WEFT_PLAYER_WINDOW_UI_UI_BRIDGE_H
 
 #include "base/status.h"
 

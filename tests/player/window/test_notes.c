@@ -1,7 +1,7 @@
 /* The notes over the picture: one that grows is as large at once as its new text, however long the next frame takes. */
 #include "base/clock.h"
 #include "player/window/panel.h"
-#include "tests/player/ui_frames_bridge.h"
+#include "tests/player/window/ui_frames_bridge.h"
 #include "tests/support/expect_ok.h"
 
 #include <stdio.h>

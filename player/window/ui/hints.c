@@ -1,4 +1,4 @@
-#include "player/window/hints.h"
+#include "player/window/ui/hints.h"
 
 #include <string.h>
 

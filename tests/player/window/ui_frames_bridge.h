@@ -1,6 +1,6 @@
 /* Frames of the widgets without a window or OpenGL: where they stand is computed, nothing is drawn. */
-#ifndef WEFT_TESTS_PLAYER_UI_FRAMES_BRIDGE_H
-#define WEFT_TESTS_PLAYER_UI_FRAMES_BRIDGE_H
+#ifndef WEFT_TESTS_PLAYER_WINDOW_UI_FRAMES_BRIDGE_H
+#define WEFT_TESTS_PLAYER_WINDOW_UI_FRAMES_BRIDGE_H
 
 #ifdef __cplusplus
 extern "C" {
