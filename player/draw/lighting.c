@@ -1,5 +1,7 @@
 #include "player/draw/lighting.h"
 
+#include <string.h>
+
 static void set(weft_lighting *lighting, int at, weft_vec3 direction, const double irradiance[3])
 {
     const double axis[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
@@ -131,6 +133,16 @@ weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *
     if (lighting.count == 0)
         add(&lighting, weft_vec3_of(0, 0, 1), (const double[3]){0, 0, 0});
     return lighting;
+}
+
+void weft_lighting_keep_one_kind(weft_lighting *lighting)
+{
+    for (int i = lighting->scene_count; i < lighting->count; i++) {
+        int kept = lighting->scene_count + (i - lighting->scene_count) * lighting->set_count;
+        memcpy(lighting->direction[i], lighting->direction[kept], sizeof lighting->direction[i]);
+        memcpy(lighting->irradiance[i], lighting->irradiance[kept], sizeof lighting->irradiance[i]);
+    }
+    lighting->set_count = 1;
 }
 
 int weft_lighting_held(const weft_lighting *lighting)

@@ -36,6 +36,9 @@ typedef struct weft_lighting {
  * light of some size its direction and its places move with the frame; frame 0 begins with its middle. */
 weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame);
 
+/* Lights all pixels alike, as those of the first kind. */
+void weft_lighting_keep_one_kind(weft_lighting *lighting);
+
 /* How many its arrays hold. */
 int weft_lighting_held(const weft_lighting *lighting);
 
