@@ -10,9 +10,17 @@ enum { HURRIED_LAYERS = 16 };
 
 static const double golden_ratio = 0.6180339887498949;
 
-static void set_lights(const weft_player *p, GLuint program, const weft_scene *scene, long frame)
+static weft_lighting lighting_of(const weft_player *p, const weft_scene *scene, const weft_sampling *sampling)
 {
-    weft_lighting lighting = weft_lighting_of(scene, p->environment, frame);
+    weft_lighting lighting = weft_lighting_of(scene, p->environment, sampling->frame);
+    if (!sampling->neighbours_differ)
+        weft_lighting_keep_one_kind(&lighting);
+    return lighting;
+}
+
+static void set_lights(const weft_player *p, GLuint program, const weft_scene *scene, const weft_sampling *sampling)
+{
+    weft_lighting lighting = lighting_of(p, scene, sampling);
     weft_gl_set_int(program, "light_count", lighting.count);
     int held = weft_lighting_held(&lighting);
     glUniform3fv(glGetUniformLocation(program, "light_direction"), held, lighting.direction[0]);
@@ -21,9 +29,8 @@ static void set_lights(const weft_player *p, GLuint program, const weft_scene *s
     weft_gl_set_int(program, "set_count", lighting.set_count);
     weft_gl_set_int(program, "key_count", lighting.key_count);
     weft_gl_set_int(program, "fill_count", lighting.fill_count);
-    weft_gl_set_int(program, "fill_step", lighting.fill_step);
     /* What moves under many lights has no time for more. */
-    weft_gl_set_int(program, "shadow_taps", frame < 0 && lighting.fill_count > 0 ? 1 : 4);
+    weft_gl_set_int(program, "shadow_taps", sampling->frame < 0 && lighting.fill_count > 0 ? 1 : 4);
     for (int i = 0; i < lighting.fill_count; i++) {
         char name[32];
         snprintf(name, sizeof name, "fill_direction[%d]", i);
@@ -51,7 +58,7 @@ void weft_player_set_point(const weft_player *p, GLuint program, const weft_scen
                            const weft_layer *layer)
 {
     set_rays(program, scene, pane);
-    set_lights(p, program, scene, pane->sampling.frame);
+    set_lights(p, program, scene, &pane->sampling);
     /* A frame at rest takes longer and shows less of its choices. */
     weft_gl_set_int(program, "chosen_places", pane->sampling.frame < 0 ? 1 : 3);
     weft_gl_set_float(program, "sequence", weft_player_sequence(p, pane->sampling.frame));
@@ -120,9 +127,10 @@ static void draw_environment(const weft_player *p, const weft_scene *scene, cons
 }
 
 /* What falls on the ground, of the first light and of all others. */
-static void set_ground_light(const weft_player *p, GLuint program, const weft_scene *scene, long frame)
+static void set_ground_light(const weft_player *p, GLuint program, const weft_scene *scene,
+                             const weft_sampling *sampling)
 {
-    weft_lighting l = weft_lighting_of(scene, p->environment, frame);
+    weft_lighting l = lighting_of(p, scene, sampling);
     double sum[2][3] = {{0}};
     for (int i = 0; i < weft_lighting_held(&l); i++)
         for (int c = 0; c < 3; c++)
@@ -147,7 +155,7 @@ static weft_code draw_ground(weft_player *p, const weft_scene *scene, const weft
     weft_gl_set_float(program, "ground_height", p->lowest_z);
     weft_gl_set_vec3(program, "ground_centre", (double)p->centre.x, (double)p->centre.y, p->lowest_z);
     weft_gl_set_float(program, "ground_size", p->radius);
-    set_ground_light(p, program, scene, pane->sampling.frame);
+    set_ground_light(p, program, scene, &pane->sampling);
     draw(p);
     return WEFT_OK;
 }

@@ -1,5 +1,7 @@
 #include "player/draw/lighting.h"
 
+#include <string.h>
+
 static void set(weft_lighting *lighting, int at, weft_vec3 direction, const double irradiance[3])
 {
     const double axis[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
@@ -82,7 +84,6 @@ static void choose_fill(weft_lighting *l, const weft_scene *scene, const weft_en
 {
     double place = fmod(0.5 + (double)(frame < 0 ? 0 : frame) * 0.6180339887498949, 1), at[WEFT_FILL_DIRECTIONS];
     l->fill_count = frame < 0 ? WEFT_FILL_MOVING : WEFT_FILL_DIRECTIONS;
-    l->fill_step = frame < 0 ? 1 : WEFT_FILL_STEP;
     for (int i = 0; i < l->fill_count; i++)
         at[i] = (i + place) / l->fill_count;
     find_fill(environment, frame >= 0, at, l->fill_count, l->fill);
@@ -119,7 +120,7 @@ static void add_environment(weft_lighting *l, const weft_scene *scene, const wef
 
 weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame)
 {
-    weft_lighting lighting = {.set_count = 1, .fill_step = 1};
+    weft_lighting lighting = {.set_count = 1};
     for (int i = 0; i < scene->light_count; i++)
         add(&lighting, i == 0 ? place_in_key(scene, frame) : weft_direction_of_angles(scene->light[i].direction),
             scene->light[i].irradiance);
@@ -132,6 +133,16 @@ weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *
     if (lighting.count == 0)
         add(&lighting, weft_vec3_of(0, 0, 1), (const double[3]){0, 0, 0});
     return lighting;
+}
+
+void weft_lighting_keep_one_kind(weft_lighting *lighting)
+{
+    for (int i = lighting->scene_count; i < lighting->count; i++) {
+        int kept = lighting->scene_count + (i - lighting->scene_count) * lighting->set_count;
+        memcpy(lighting->direction[i], lighting->direction[kept], sizeof lighting->direction[i]);
+        memcpy(lighting->irradiance[i], lighting->irradiance[kept], sizeof lighting->irradiance[i]);
+    }
+    lighting->set_count = 1;
 }
 
 int weft_lighting_held(const weft_lighting *lighting)

@@ -6,13 +6,13 @@
 #include "player/scene/environment.h"
 #include "player/scene/scene.h"
 
-/* Places in the key light, and directions of the environment, from which a frame at rest sees their shadows; a pixel
- * sees every other of these directions, its neighbours the others. A moving frame takes the middle of the key light,
- * and two directions. */
-enum { WEFT_KEY_PLACES = 4, WEFT_FILL_DIRECTIONS = 8, WEFT_FILL_STEP = 1, WEFT_FILL_MOVING = 2 };
+/* Places in the key light, and directions of the environment, from which every pixel of a frame at rest sees their
+ * shadows: where neighbours see others of them, soft shadows have a hatch. A moving frame takes the middle of the key
+ * light, and two directions. */
+enum { WEFT_KEY_PLACES = 4, WEFT_FILL_DIRECTIONS = 8, WEFT_FILL_MOVING = 2 };
 
 /* Neighbouring pixels at rest are lit from other parts of the environment, so that what a few frames lack is fine grain
- * instead of a lean of the whole picture. As many kinds of pixels at most, 4 x 2 that repeat. */
+ * instead of a lean of the whole picture. As many kinds of pixels at most: each block of 4 x 2 has all of them. */
 enum { WEFT_LIGHT_SETS = 8 };
 
 typedef struct weft_lighting {
@@ -28,7 +28,6 @@ typedef struct weft_lighting {
     /* Of the environment, as likely as it is bright from there: what the mesh hides of these stands for what it hides
      * of all of it. Those that follow each other in time fill the gaps. */
     int fill_count; /* 0 without an environment */
-    int fill_step;  /* a pixel sees one in so many */
     weft_vec3 fill[WEFT_FILL_DIRECTIONS];
 } weft_lighting;
 
@@ -36,6 +35,9 @@ typedef struct weft_lighting {
  * moves (player/scene/environment.h says what follows). There is always a light, though it may be black. With a key
  * light of some size its direction and its places move with the frame; frame 0 begins with its middle. */
 weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame);
+
+/* Lights all pixels alike, as those of the first kind. */
+void weft_lighting_keep_one_kind(weft_lighting *lighting);
 
 /* How many its arrays hold. */
 int weft_lighting_held(const weft_lighting *lighting);

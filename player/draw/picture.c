@@ -18,7 +18,7 @@ static long least_frames(const weft_scene *scene)
 
 /* One place in each cell of a grid, and no two in a row or column of one that is as fine again: across a long pixel,
  * too, places are as close as frames are many. */
-static weft_sampling sampling_of(long frame, int samples)
+static weft_sampling sampling_of(long frame, int samples, long total)
 {
     long column = frame % samples, row = frame / samples % samples;
     return (weft_sampling){
@@ -27,6 +27,7 @@ static weft_sampling sampling_of(long frame, int samples)
         .level_bias = -log2((double)samples),
         .longest_pixel = samples,
         .frame = frame,
+        .neighbours_differ = total < SOFT_FRAMES,
     };
 }
 
@@ -37,7 +38,7 @@ static weft_code add_frames(weft_player *p, const weft_scene *scene, int samples
     while (total < least_frames(scene))
         total += places;
     for (long i = 0; i < total; i++) {
-        const weft_sampling sampling = sampling_of(i, samples);
+        const weft_sampling sampling = sampling_of(i, samples, total);
         weft_canvas_begin_frame(canvas);
         WEFT_TRY(weft_player_draw(p, scene, canvas->width, canvas->height, sampling, error));
         weft_canvas_end_frame(canvas);

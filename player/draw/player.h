@@ -82,6 +82,9 @@ typedef struct weft_sampling {
      * mean see places all along it. Below 1 as 1: the level of its length. */
     double longest_pixel;
     long frame; /* number of the frame in a mean; -1: a picture that moves, to be good by itself */
+    /* Neighbouring pixels of a frame of a mean are lit from other parts of the environment: a mean of few frames is
+     * grain then, instead of a lean. One of many frames is smooth without. */
+    bool neighbours_differ;
     /* WEFT_FILTER_AUTO is then stochastic, of linear layers the first 16 are drawn, and of an environment two lights a
      * pixel, by chance. */
     bool hurry;

@@ -20,5 +20,6 @@ weft_sampling weft_sampling_at_rest(int frame)
         .shift_y = frame > 0 ? radical_inverse(frame, 3) - 0.5 : 0,
         .longest_pixel = longest_pixel,
         .frame = frame,
+        .neighbours_differ = true,
     };
 }

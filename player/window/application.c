@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "player/window/keys.h"
-#include "player/window/ui_bridge.h"
+#include "player/window/ui/ui_bridge.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

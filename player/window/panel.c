@@ -1,7 +1,7 @@
 #include "player/window/panel.h"
 
 #include "player/scene/surroundings.h"
-#include "player/window/ui_bridge.h"
+#include "player/window/ui/ui_bridge.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -377,5 +377,5 @@ void weft_panel_show(weft_application *a, int width, int height)
         weft_ui_dim_text("H: mouse and keys");
         weft_ui_panel_end();
     }
-    weft_panel_show_notes(a, width, height);
+    weft_panel_show_notes(a, panel, width, height);
 }

@@ -15,8 +15,8 @@ void weft_panel_follow_weave(weft_application *application);
 
 /* ---- Its parts ---- */
 
-/* Over the picture: what goes on, what was done, and the list of keys. */
-void weft_panel_show_notes(const weft_application *application, int width, int height);
+/* Over the picture, which begins at `left`: what goes on, what was done, and the list of keys. */
+void weft_panel_show_notes(const weft_application *application, int left, int width, int height);
 
 /* The section on what lies under the pointer. */
 void weft_panel_show_probe(const weft_application *application);

@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "player/scene/false_colour.h"
 #include "player/window/keys.h"
-#include "player/window/ui_bridge.h"
+#include "player/window/ui/ui_bridge.h"
 
 #include <stdio.h>
 
@@ -23,6 +23,7 @@ static void show_progress(const weft_application *a, double middle, double botto
 
 static void show_note(const weft_application *a, double middle, double bottom)
 {
+    weft_ui_room_for(a->note);
     weft_ui_note_begin("note", middle, bottom, 0.5, 1);
     if (a->note_is_error)
         weft_ui_heading(a->note);
@@ -117,9 +118,9 @@ static void show_help(const weft_ui_box *room)
     weft_ui_list("help", line, count, middle_heading(line, count), room);
 }
 
-void weft_panel_show_notes(const weft_application *a, int width, int height)
+void weft_panel_show_notes(const weft_application *a, int left, int width, int height)
 {
-    double left = weft_panel_width(a), middle = (left + width) / 2, bottom = height - MARGIN * a->scale;
+    double middle = (left + width) / 2.0, bottom = height - MARGIN * a->scale;
     show_colours(&a->interaction.scene, left, height, a->scale);
     show_errors(a, width, height);
     show_unmeasured(a, left);

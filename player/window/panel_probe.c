@@ -1,6 +1,6 @@
 #include "player/window/panel.h"
 
-#include "player/window/ui_bridge.h"
+#include "player/window/ui/ui_bridge.h"
 
 #include <math.h>
 #include <stdio.h>

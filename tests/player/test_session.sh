@@ -71,6 +71,21 @@ click() { # X Y: of the window
 
 shoot_when is_of_size 450x720
 start=$next
+
+# Where the pointer rests on a widget, a hint lies over the picture beside it: letters on a dark ground.
+has_hint() {
+    import -window root hint.png
+    [ "$(mean hint.png 200x16+350+113)" -lt 300 ] && [ "$(convert hint.png -crop 200x16+350+113 +repage -colorspace gray \
+        -format '%[fx:round(1000*maxima)]' info:)" -gt 700 ]
+}
+! has_hint || fail "a hint where the pointer is not"
+xdotool mousemove --window "$window" 262 99
+for _ in $(seq 30); do
+    ! has_hint || break
+    sleep 0.2
+done
+has_hint || fail "no hint over 'Difference'"
+xdotool mousemove --window "$window" 555 360
 drag 1 $((panel + 225)) 360 60 20
 shoot_when is_not "$start"
 

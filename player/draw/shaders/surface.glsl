@@ -19,7 +19,6 @@ uniform int key_count;   // places in the first light from which shadows fall: 0
 uniform int scene_count; // the first of them; the others are the environment
 uniform int set_count;   // of which each kind of pixels has others
 uniform int fill_count;  // 0: the environment casts no shadows
-uniform int fill_step;   // of its directions a pixel sees one in so many, its neighbours others
 uniform int light_count;
 uniform vec3 light_direction[MAX_LIGHTS];  // world, unit, toward the light
 uniform vec3 light_irradiance[MAX_LIGHTS]; // on a surface that faces it, over pi
@@ -132,8 +131,7 @@ float key_share_of(vec3 position, vec3 normal)
 float fill_share(vec3 position, vec3 normal)
 {
     float seen = 1e-3, all_of_it = 1e-3;
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    for (int i = (pixel.x + pixel.y) % fill_step; i < fill_count; i += fill_step) {
+    for (int i = 0; i < fill_count; i++) {
         float cosine = max(dot(fill_direction[i], normal), 0.0);
         all_of_it += cosine;
         seen += cosine * unshadowed_share(position, normal, KEY_PLACES + i, 1);
@@ -184,11 +182,20 @@ void choose_lights(inout SurfacePoint point)
     }
 }
 
-// Of 4 x 2 kinds, each next to the one that it completes most (player/draw/lighting.h).
+// The upper ones look random.
+uint random_bits(uvec2 place)
+{
+    uint bits = place.x * 0x9E3779B1u ^ place.y * 0x85EBCA77u;
+    return (bits ^ bits >> 15) * 0x2C1B3C6Du;
+}
+
+// Of 4 x 2 kinds, each next to the one that it completes most (player/draw/lighting.h). They change places from block to
+// block, all at once, so that each block has all of them: the same order everywhere would be a hatch.
 int pixel_kind()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    return (pixel.x & 1) * 4 + ((pixel.x >> 1 ^ pixel.y) & 1) * 2 + (pixel.y & 1);
+    int kind = (pixel.x & 1) * 4 + ((pixel.x >> 1 ^ pixel.y) & 1) * 2 + (pixel.y & 1);
+    return kind ^ int(random_bits(uvec2(pixel >> ivec2(2, 1))) >> 29);
 }
 
 SurfacePoint surface_point()

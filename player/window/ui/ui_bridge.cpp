@@ -1,6 +1,7 @@
-#include "player/window/ui_bridge.h"
+#include "player/window/ui/ui_bridge.h"
 
 #include "base/picture/font_file.h"
+#include "player/window/ui/hints.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -17,7 +18,11 @@ namespace
 {
 
 double scale_of_all = 1;
-float wrap_at = 0; /* from the left of the panel or note; 0: its right edge */
+float wrap_at = 0;              /* from the left of the panel or note; 0: its right edge */
+const char *room_for = nullptr; /* text that the next note is at least as large as */
+
+double pointer_moved_s = 0; /* last, by ImGui's clock */
+const double hint_waits_s = 0.4;
 
 const float label_width = 82, text_size = 15, widest_note = 560, narrowest_note = 160, smallest_list = 0.75f;
 const ImVec4 accent(0.86f, 0.47f, 0.30f, 1), dim(0.62f, 0.62f, 0.64f, 1);
@@ -70,12 +75,30 @@ void load_font()
                                                &config);
 }
 
+/* With this text in it, wrapped as it will be. */
+ImVec2 size_of_note(const char *text)
+{
+    const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+    const ImVec2 letters = ImGui::CalcTextSize(text, nullptr, false, wrap_at - padding.x);
+    return ImVec2(letters.x + 2 * padding.x, letters.y + 2 * padding.y);
+}
+
+/* Of the last widget, where the pointer rests on it. */
+void show_hint(const char *label)
+{
+    const char *hint = weft_hint_of(label);
+    const bool rests = ImGui::GetTime() - pointer_moved_s >= hint_waits_s && !ImGui::IsAnyMouseDown();
+    if (hint && rests && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ImGui::SetTooltip("%s", hint);
+}
+
 void put_label(const char *label)
 {
     ImGui::AlignTextToFramePadding();
     ImGui::PushStyleColor(ImGuiCol_Text, dim);
     ImGui::TextUnformatted(label);
     ImGui::PopStyleColor();
+    show_hint(label);
     ImGui::SameLine(scaled(label_width) + ImGui::GetStyle().WindowPadding.x);
     ImGui::SetNextItemWidth(-1);
     ImGui::PushID(label);
@@ -237,6 +260,9 @@ void weft_ui_begin(void)
     ImGui_ImplGlfw_NewFrame();
     hear_mouse();
     ImGui::NewFrame();
+    const ImVec2 moved = ImGui::GetIO().MouseDelta;
+    if (moved.x != 0 || moved.y != 0 || ImGui::IsAnyMouseDown())
+        pointer_moved_s = ImGui::GetTime();
 }
 
 bool weft_ui_is_behind(void)
@@ -277,6 +303,9 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
     const float before = (float)x / std::max((float)share_x, 0.01f),
                 after = (ImGui::GetIO().DisplaySize.x - (float)x) / std::max(1 - (float)share_x, 0.01f);
     wrap_at = std::min(scaled(widest_note), std::max(scaled(narrowest_note), std::min(before, after) - scaled(64)));
+    if (room_for)
+        ImGui::SetNextWindowSizeConstraints(size_of_note(room_for), ImVec2(FLT_MAX, FLT_MAX));
+    room_for = nullptr;
     ImGui::Begin(name, nullptr,
                  fixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoInputs);
@@ -284,8 +313,7 @@ void weft_ui_note_begin(const char *name, double x, double y, double share_x, do
 
 void weft_ui_room_for(const char *text)
 {
-    const float width = ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().WindowPadding.x;
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(FLT_MAX, FLT_MAX));
+    room_for = text;
 }
 
 void weft_ui_wrap_within(double width)
@@ -388,7 +416,9 @@ void weft_ui_value(const char *label, const char *value)
 
 bool weft_ui_button(const char *label)
 {
-    return ImGui::Button(label);
+    const bool pressed = ImGui::Button(label);
+    show_hint(label);
+    return pressed;
 }
 
 bool weft_ui_entry_chosen(const char *label, const char *whole)
@@ -407,7 +437,9 @@ bool weft_ui_entry_chosen(const char *label, const char *whole)
 
 bool weft_ui_toggle(const char *label, bool *value)
 {
-    return ImGui::Checkbox(label, value);
+    const bool changed = ImGui::Checkbox(label, value);
+    show_hint(label);
+    return changed;
 }
 
 bool weft_ui_slider(const char *label, double *value, double low, double high, const char *format, bool logarithmic)
@@ -416,6 +448,7 @@ bool weft_ui_slider(const char *label, double *value, double low, double high, c
     bool changed = ImGui::SliderScalar("##slider", ImGuiDataType_Double, value, &low, &high, format,
                                        logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
     ImGui::PopID();
+    show_hint(label);
     if (changed)
         *value = std::min(std::max(*value, low), high);
     return changed;
@@ -436,6 +469,7 @@ bool weft_ui_whole(const char *label, int *value, int low, int high)
     put_label(label);
     bool changed = ImGui::SliderInt("##whole", value, low, high);
     ImGui::PopID();
+    show_hint(label);
     if (changed)
         *value = std::min(std::max(*value, low), high);
     return changed;
@@ -480,6 +514,7 @@ bool weft_ui_choice(const char *label, int *value, const char *const *name, cons
         if (chosen)
             ImGui::PopStyleColor();
         ImGui::EndDisabled();
+        show_hint(name[i]);
         ImGui::PopID();
     }
     ImGui::PopID();

@@ -1,8 +1,8 @@
 /* Widgets over the picture: the one door to Dear ImGui. Immediate: every frame, between weft_ui_begin and weft_ui_end,
  * says anew what there is, and each widget returns whether the user changed its value just now. One user interface at a
  * time; the thread and the OpenGL context of the window. */
-#ifndef WEFT_PLAYER_WINDOW_UI_BRIDGE_H
-#define WEFT_PLAYER_WINDOW_UI_BRIDGE_H
+#ifndef WEFT_PLAYER_WINDOW_UI_UI_BRIDGE_H
+#define WEFT_PLAYER_WINDOW_UI_UI_BRIDGE_H
 
 #include "base/status.h"
 
@@ -36,8 +36,8 @@ bool weft_ui_wants_keyboard(void);
 void weft_ui_panel_begin(const char *name, double x, double y, double width, double height);
 /* A note as large as its text, at the given share of its own size from (x, y): 0.5, 0.5 centres it there. */
 void weft_ui_note_begin(const char *name, double x, double y, double share_x, double share_y);
-/* The note that is begun next is as wide as this text at least. A note is as wide as its text was in the picture
- * before, so that what grows would be cropped for as long as the next picture takes. */
+/* The note that is begun next is as large as this text at least, which has to stay until then. A note is as large as
+ * its text was in the picture before, so that what grows would be cropped for as long as the next picture takes. */
 void weft_ui_room_for(const char *text);
 /* Text of the note that was begun wraps within a narrower width. */
 void weft_ui_wrap_within(double width);

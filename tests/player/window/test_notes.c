@@ -1,0 +1,98 @@
+/* The notes over the picture: one that grows is as large at once as its new text, however long the next frame takes. */
+#include "base/clock.h"
+#include "player/window/panel.h"
+#include "tests/player/window/ui_frames_bridge.h"
+#include "tests/support/expect_ok.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { WIDTH = 1280, HEIGHT = 800, LEFT = 330, SETTLES = 6 };
+
+typedef struct size {
+    double width, height;
+} size;
+
+static size note_after(const weft_application *a, const char *name, int frames)
+{
+    size note = {0, 0};
+    for (int i = 0; i < frames; i++) {
+        ui_frames_begin();
+        weft_panel_show_notes(a, LEFT, WIDTH, HEIGHT);
+        ui_frames_end(name, &note.width, &note.height);
+    }
+    return note;
+}
+
+static weft_application *with_nothing_to_say(void)
+{
+    weft_application *a = calloc(1, sizeof *a);
+    assert_non_null(a);
+    a->scale = 1;
+    a->progress = -1;
+    a->interaction.scene = weft_scene_default();
+    return a;
+}
+
+static void expect_whole_at_once(const weft_application *a, const char *name)
+{
+    size first = note_after(a, name, 1), later = note_after(a, name, SETTLES);
+    printf("%s: %.0f x %.0f at first, then %.0f x %.0f\n", name, first.width, first.height, later.width, later.height);
+    assert_true(later.width > 0 && later.height > 0);
+    assert_true(first.width >= later.width && first.height >= later.height);
+}
+
+static void what_is_read_has_room_to_the_end(void **state)
+{
+    (void)state;
+    weft_application *a = with_nothing_to_say();
+    a->progress = 0.03;
+    size before = note_after(a, "progress", SETTLES);
+    a->progress = 1;
+    expect_whole_at_once(a, "progress");
+    size after = note_after(a, "progress", 1);
+    assert_true(after.width == before.width); /* nor does it jump */
+    free(a);
+}
+
+/* The second is wider, the third wraps into several lines. */
+static void a_note_in_place_of_a_shorter_one_is_whole(void **state)
+{
+    (void)state;
+    static const char *const said[] = {
+        "drape", "wipe: compressed left, analytic right",
+        "warning: the material was not made from 'a dataset with a name that is quite long "
+        "of satin photographed in may.btf.h5' as it is: sizes, lights or views differ"};
+    weft_application *a = with_nothing_to_say();
+    a->note_ends_s = weft_now_s() + 1000;
+    for (int i = 0; i < 3; i++) {
+        snprintf(a->note, sizeof a->note, "%s", said[i]);
+        if (i == 0)
+            note_after(a, "note", SETTLES);
+        expect_whole_at_once(a, "note");
+    }
+    free(a);
+}
+
+static int open_frames(void **state)
+{
+    (void)state;
+    ui_frames_open(WIDTH, HEIGHT);
+    return 0;
+}
+
+static int close_frames(void **state)
+{
+    (void)state;
+    ui_frames_close();
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_read_has_room_to_the_end),
+        cmocka_unit_test(a_note_in_place_of_a_shorter_one_is_whole),
+    };
+    return cmocka_run_group_tests(tests, open_frames, close_frames);
+}

@@ -1,0 +1,18 @@
+/* Frames of the widgets without a window or OpenGL: where they stand is computed, nothing is drawn. */
+#ifndef WEFT_TESTS_PLAYER_WINDOW_UI_FRAMES_BRIDGE_H
+#define WEFT_TESTS_PLAYER_WINDOW_UI_FRAMES_BRIDGE_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+void ui_frames_open(double width, double height);
+void ui_frames_close(void);
+void ui_frames_begin(void);
+/* `name`: of a panel or note of this frame; 0 and 0 where there is none. */
+void ui_frames_end(const char *name, double *width, double *height);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
