@@ -68,20 +68,34 @@ static void round_layer(weft_layers *layers, int layer, double asked)
     layers->scale[layer] = (float)((double)layers->scale[layer] * grid);
 }
 
-/* The coefficients become fewer whole numbers, which lie `grid` apart, and on every coarser level `coarser` times as
- * far. The scale stays. */
-static void round_coefficients(weft_layers *layers, int layer, double grid, double coarser)
+static long held(long code)
 {
+    return code > WEFT_LAYERS_LARGEST_CODE    ? WEFT_LAYERS_LARGEST_CODE
+           : code < -WEFT_LAYERS_LARGEST_CODE ? -WEFT_LAYERS_LARGEST_CODE
+                                              : code;
+}
+
+/* How many times a step may be halved before it is finer than those of the codes. */
+static int halvings_of(double grid)
+{
+    return (int)floor(log2(grid) + 1e-6);
+}
+
+/* The coefficients become fewer whole numbers, and the scale grows by as much: by the step of the finest level, or
+ * where those of coarser levels are `halved` by the last of these that is no finer than 1. So all codes are exact
+ * multiples. */
+static void round_coefficients(weft_layers *layers, int layer, double grid, bool halved)
+{
+    int halvings = halved ? halvings_of(grid) : 0;
+    double least = grid * exp2(-halvings);
     for (int k = 0; k < layers->level_count; k++) {
         size_t texels;
         int8_t *c = coefficients_of(layers, k, layer, &texels);
-        double of_level = fmax(grid * pow(coarser, k), 1);
-        for (size_t i = 0; i < texels; i++) {
-            double code = of_level * round((double)c[WEFT_LAYERS_GROUP * i] / of_level);
-            c[WEFT_LAYERS_GROUP * i] =
-                (int8_t)lround(fmin(fmax(code, -WEFT_LAYERS_LARGEST_CODE), WEFT_LAYERS_LARGEST_CODE));
-        }
+        int apart = 1 << (k < halvings ? halvings - k : 0);
+        for (size_t i = 0; i < texels; i++)
+            c[WEFT_LAYERS_GROUP * i] = (int8_t)held(apart * lround((double)c[WEFT_LAYERS_GROUP * i] / (apart * least)));
     }
+    layers->scale[layer] = (float)((double)layers->scale[layer] * least);
 }
 
 /* Nothing has any of this layer: what its values are does not matter, but whole numbers let all values be packed. */
@@ -102,17 +116,17 @@ void weft_layers_round_values(double step, weft_layers *layers)
     }
 }
 
-void weft_layers_round_coefficients(double step, double coarser, weft_layers *layers)
+void weft_layers_round_coefficients(double step, bool halved, weft_layers *layers)
 {
     for (int layer = 0; layer < layers->layer_count; layer++) {
         double of_coefficient = value_rms(layers, layer);
         if (of_coefficient > 0 && step / of_coefficient > 1)
-            round_coefficients(layers, layer, fmin(step / of_coefficient, WEFT_LAYERS_LARGEST_CODE), coarser);
+            round_coefficients(layers, layer, fmin(step / of_coefficient, WEFT_LAYERS_LARGEST_CODE), halved);
     }
 }
 
 void weft_layers_round(double step, weft_layers *layers)
 {
     weft_layers_round_values(step, layers);
-    weft_layers_round_coefficients(step, 0.5, layers);
+    weft_layers_round_coefficients(step, true, layers);
 }

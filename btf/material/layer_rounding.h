@@ -1,6 +1,5 @@
 /* Coarser numbers in the layers of a material (btf/material/layers.h), where what is rounded away does not matter: a
- * file of fewer digits is smaller. The scale of a layer takes the steps of its values, and codes of coefficients lie
- * some apart, so that every reader plays the result. */
+ * file of fewer digits is smaller. The scale of a layer takes the steps, so that every reader plays the result. */
 #ifndef WEFT_BTF_MATERIAL_LAYER_ROUNDING_H
 #define WEFT_BTF_MATERIAL_LAYER_ROUNDING_H
 
@@ -12,9 +11,9 @@
 void weft_layers_round_values(double step, weft_layers *layers);
 
 /* Rounds the coefficients of each layer to steps that change reflectance times cosine by `step` > 0, RMS over the
- * images, and by `coarser` times as much from level to level. Steps that are finer than those of the codes change
- * nothing. */
-void weft_layers_round_coefficients(double step, double coarser, weft_layers *layers);
+ * images: on all levels, or where `halved` by half as much from level to level, down to between one and two steps of
+ * the codes as they were. Steps that are finer than those of the codes change nothing. */
+void weft_layers_round_coefficients(double step, bool halved, weft_layers *layers);
 
 /* Both, the values first; coefficients by half as much on every coarser level: more is averaged out there, so that what
  * is rounded away would show. */

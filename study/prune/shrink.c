@@ -97,7 +97,7 @@ static double step_of(int number)
 static void round_layers(double step, weft_layers *layers)
 {
     weft_layers_round_values(step, layers);
-    weft_layers_round_coefficients(step, 1, layers);
+    weft_layers_round_coefficients(step, false, layers);
 }
 
 /* The largest step that pictures allow, found by halving; -1: not even the finest. */

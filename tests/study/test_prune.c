@@ -375,7 +375,7 @@ static void rounding_changes_reflectance_by_its_step(void **state)
     weft_layers *whole = make_layers(), *layers = make_layers();
     double squares = 0;
     weft_layers_round_values(step, layers);
-    weft_layers_round_coefficients(step, 1, layers);
+    weft_layers_round_coefficients(step, false, layers);
     for (int texel = 0; texel < SIDE * SIDE; texel++)
         for (int i = 0; i < 3 * SHOTS; i++) {
             double difference = value_of(layers, texel, i) - value_of(whole, texel, i);

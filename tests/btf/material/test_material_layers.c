@@ -247,7 +247,7 @@ static void an_empty_layer_keeps_none_from_packing(void **state)
     weft_material_free(&material);
 }
 
-/* Steps of 32 codes on the finest level, half of that on each coarser one; the scale stays. */
+/* Steps of 32 codes on the finest level, half of that on each coarser one: the scale stays, for they end with 1. */
 static void coarser_levels_are_rounded_less(void **state)
 {
     (void)state;
@@ -260,7 +260,7 @@ static void coarser_levels_are_rounded_less(void **state)
     for (int i = 0; i < 3 * layers->image_count; i++)
         square += pow((double)weft_float_of_half(layers->value[3 * (8 * (i / 3) + LAYER) + i % 3]), 2);
     double rms = (double)layers->scale[LAYER] * sqrt(square / (3 * layers->image_count));
-    weft_layers_round_coefficients(TIMES * rms, 0.5, layers);
+    weft_layers_round_coefficients(TIMES * rms, true, layers);
     assert_float_equal(layers->scale[LAYER], whole.layers->scale[LAYER], 0);
     int changed = 0;
     for (int k = 0; k < layers->level_count; k++) {
