@@ -372,13 +372,14 @@ static int side_of_squares(const weft_dataset_layout *layout, const measuring *w
 }
 
 /* Errors are those of single texels that lie spread: what glints is rare, and neighbours glint together, so that a few
- * squares of them may say twice as much as all texels would. Only what levels say needs neighbours. */
+ * squares of them may say twice as much as all texels would. Only what levels say needs neighbours. Where memory is
+ * short the squares serve for both: spread texels lie in many chunks of the file, which take more of it. */
 static bool has_spread_texels(const weft_dataset *dataset, const measuring *work)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     bool has_others = weft_larger(layout->width, layout->height) > side_of_squares(layout, work);
-    return has_others && layout->distance != WEFT_NEAR && !weft_dataset_has_surface(dataset) &&
-           !fits_neighbours(dataset, work);
+    return has_others && work->options.memory_bytes == 0 && layout->distance != WEFT_NEAR &&
+           !weft_dataset_has_surface(dataset) && !fits_neighbours(dataset, work);
 }
 
 static weft_code read_spread_texels(weft_dataset *dataset, measuring *work, weft_error *error)

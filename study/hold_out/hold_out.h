@@ -58,13 +58,13 @@ weft_code weft_hold_out_enough_splits(const weft_dataset_layout *layout, int *co
  * compares what the material says of the others with their samples, in the quantity of the dataset. Without mip levels,
  * held-out images of `options` and checkpoint. A budget is taken for the share of the texels in the whole material. The
  * texels are at most 16 x 16 (24 x 24 with layers, fewer where there are very many images) that lie spread, and for the
- * certificate as many as 12 x 12 (24 x 24) in small squares; 64 x 64 neighbours
- * where the fit borrows from them or the dataset has a surface, which is seen in other texels than its own: then
- * weft_hold_out_surface_side. Layers are asked with and without it, and what is better counts. What was left
+ * certificate, and for all where options->memory_bytes is a limit, as many as 12 x 12 (24 x 24) in small squares; 64 x
+ * 64 neighbours where the fit borrows from them or the dataset has a surface, which is seen in other texels than its
+ * own: then weft_hold_out_surface_side. Layers are asked with and without it, and what is better counts. What was left
  * out is not in what the fit reads: neither its samples, nor its views as entries of T.
  *
- * Writes a dataset of those texels to the folder of `scratch_path`, nameless once it is complete. The result depends
- * neither on the number of threads nor on the memory allowed.
+ * Writes a dataset of those texels to the folder of `scratch_path`, nameless once it is complete. The result does
+ * not depend on the number of threads, nor on how large the limit is.
  * Errors: WEFT_BAD_USAGE for a dataset of one image, where all that was held out is masked, or as weft_compress; those
  * of reading; WEFT_SYSTEM. */
 weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_options *options, int split_count,
