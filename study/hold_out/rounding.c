@@ -71,11 +71,13 @@ static void move_coefficients(weft_layers *layers, size_t texels, uint64_t *stat
 {
     int step[WEFT_LAYERS_MAX];
     int8_t *coefficient = layers->level[0].coefficient;
+    if (texels == 0)
+        return;
     bool is_rounded = weft_layers_have_differences(layers);
     if (is_rounded)
         find_code_steps(layers, texels, step);
     for (size_t i = 0; i < texels * (size_t)layers->layer_count; i++) {
-        size_t layer = i / (WEFT_LAYERS_GROUP * texels) * WEFT_LAYERS_GROUP + i % WEFT_LAYERS_GROUP;
+        size_t layer = i / WEFT_LAYERS_GROUP / texels * WEFT_LAYERS_GROUP + i % WEFT_LAYERS_GROUP;
         int moved = coefficient[i] + next_sign(state) * (is_rounded ? step[layer] : 1);
         coefficient[i] = (int8_t)held(moved, -WEFT_LAYERS_LARGEST_CODE, WEFT_LAYERS_LARGEST_CODE);
     }

@@ -115,17 +115,17 @@ struct list_shape {
     bool has_second;
     float name, meaning;
     float gap = scaled(28), spacing = scaled(4);
-
-    float width() const
-    {
-        return (name + meaning) * (has_second ? 2.0f : 1.0f) + (has_second ? gap : 0);
-    }
-
-    float height() const
-    {
-        return (float)longest * (ImGui::GetFontSize() + spacing);
-    }
 };
+
+float width_of(const list_shape &shape)
+{
+    return (shape.name + shape.meaning) * (shape.has_second ? 2.0f : 1.0f) + (shape.has_second ? shape.gap : 0);
+}
+
+float height_of(const list_shape &shape)
+{
+    return (float)shape.longest * (ImGui::GetFontSize() + shape.spacing);
+}
 
 list_shape shape_of(const weft_ui_entry *line, size_t count, size_t middle)
 {
@@ -326,13 +326,14 @@ void weft_ui_list(const char *name, const weft_ui_entry *line, size_t count, siz
     const ImVec2 size((float)room->width, (float)room->height), padding = ImGui::GetStyle().WindowPadding;
     list_shape shape = shape_of(line, count, middle);
     const ImVec2 free(size.x - 2 * padding.x - scaled(16), size.y - 2 * padding.y - scaled(16));
-    if (shape.width() > free.x / smallest_list)
+    if (width_of(shape) > free.x / smallest_list)
         shape = shape_of(line, count, count);
-    const float letters = std::max(smallest_list, std::min({1.0f, free.x / shape.width(), free.y / shape.height()}));
+    const float letters =
+        std::max(smallest_list, std::min({1.0f, free.x / width_of(shape), free.y / height_of(shape)}));
     ImGui::SetNextWindowPos(ImVec2((float)room->x + size.x / 2, (float)room->y + size.y / 2), ImGuiCond_Always,
                             ImVec2(0.5f, 0.5f));
-    ImGui::SetNextWindowSize(ImVec2(std::min(shape.width() * letters + 2 * padding.x + scaled(12), size.x),
-                                    std::min(shape.height() * letters + 2 * padding.y, size.y)));
+    ImGui::SetNextWindowSize(ImVec2(std::min(width_of(shape) * letters + 2 * padding.x + scaled(12), size.x),
+                                    std::min(height_of(shape) * letters + 2 * padding.y, size.y)));
     ImGui::SetNextWindowBgAlpha(0.94f);
     ImGui::Begin(name, nullptr, fixed);
     ImGui::SetWindowFontScale(letters);
