@@ -69,7 +69,7 @@ static void find_code_steps(const weft_layers *layers, size_t texels, int step[W
 
 static void move_coefficients(weft_layers *layers, size_t texels, uint64_t *state)
 {
-    int step[WEFT_LAYERS_MAX];
+    int step[WEFT_LAYERS_MAX] = {0};
     int8_t *coefficient = layers->level[0].coefficient;
     if (texels == 0)
         return;
