@@ -38,10 +38,12 @@ static weft_rgb noisy(int x, int y, weft_vec3 light, weft_vec3 view)
 static double compress_as_chosen(weft_dataset *dataset, const weft_compress_options *options,
                                  const weft_prediction *prediction, weft_hold_out *held_out)
 {
+    int splits;
     weft_material material;
     weft_error error = {0};
     uint64_t bytes;
-    expect_ok(weft_hold_out_measure(dataset, options, 1, scratch, NULL, held_out, &error), &error);
+    expect_ok(weft_hold_out_enough_splits(weft_dataset_get_layout(dataset), &splits, &error), &error);
+    expect_ok(weft_hold_out_measure(dataset, options, splits, scratch, NULL, held_out, &error), &error);
     expect_ok(weft_compress(dataset, options, NULL, &material, NULL, &error), &error);
     expect_ok(weft_hold_out_store(held_out, &material, &error), &error);
     expect_ok(weft_material_put_metadata(&material, "predicted", weft_prediction_to_json(prediction), &error), &error);
@@ -126,8 +128,9 @@ static void a_preset_predicts_size_and_error(void **state)
     double bytes = compress_as_chosen(dataset, &options, &prediction, &held_out);
     assert_float_equal(prediction.bytes, bytes, 0.02 * bytes);
     double measured = held_out.material.all.relative_rmse;
+    print_message("error: predicted %.9f, is %.9f\n", prediction.error, measured);
     assert_float_equal(prediction.error, measured, 0.1 * measured);
-    assert_true(fabs(prediction.error - measured) > 1e-6 * measured);
+    assert_true(fabs(prediction.error - measured) > 1e-3 * measured); /* of the same directions it would be 3e-4 */
     weft_dataset_close(dataset);
     unlink(path);
     assert_int_not_equal(access(scratch, F_OK), 0);
