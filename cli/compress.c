@@ -109,7 +109,7 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.heights)},
     {"rounding", .argument = "on|off",
      .help = "With layers: round their numbers where what they leave of the photographs hides it. Files of small "
-             "cloths are a third as large; Weft of before November 2026 does not read it (default: off)",
+             "cloths are a third as large; Weft of before 27 November 2026 does not read it (default: off)",
      .kind = WEFT_OPTION_SWITCH, .offset = offsetof(compress_command, options.rounded)},
     {"frames", .argument = "on|off|given",
      .help = "Turn the frame of each texel where that helps, from that of the surface and from the one that the "

@@ -82,7 +82,7 @@ uint64_t weft_section_size(const weft_material *material, weft_section_kind kind
     case WEFT_SECTION_ERRO:
         return WEFT_FORMAT_ERRORS * sizeof(double);
     case WEFT_SECTION_LAYR:
-        return material->layers ? weft_layers_header_size(material->layers) : 0;
+        return material->layers ? weft_layers_header_size(material->layers, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES) : 0;
     case WEFT_SECTION_LCOE:
         return material->layers ? texels * (uint64_t)material->layers->layer_count : 0;
     case WEFT_SECTION_HGHT:

@@ -28,7 +28,8 @@ extern const unsigned char weft_format_magic[8];
 typedef enum weft_codec {
     WEFT_CODEC_NONE = 0,
     WEFT_CODEC_ZSTD = 1,
-    WEFT_CODEC_DIFFERENCES = 2 /* of LAYR alone: Zstandard, with its values by differences */
+    WEFT_CODEC_DIFFERENCES = 2, /* of LAYR alone: Zstandard, with its values by differences; read, not written */
+    WEFT_CODEC_WEIGHTED = 3     /* the same with the weights of what they are told from */
 } weft_codec;
 
 typedef enum weft_section_kind {

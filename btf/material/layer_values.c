@@ -3,6 +3,8 @@
 #include <math.h>
 
 enum { RED, GREEN, BLUE, CHANNELS };
+enum { OF_GREEN, OF_BEFORE, OF_ACROSS };
+enum { SHIFT = 6 /* 2^6 is the weight of one */ };
 
 /* The images that one is told from; -1: there is none. */
 typedef struct weft_image_origins {
@@ -27,21 +29,27 @@ static int whole(weft_half value)
     return (int)weft_float_of_half(value);
 }
 
-/* Green, or how much more than green a channel is. */
-static int told(const weft_layers *layers, long image, int layer, int channel)
+/* The share of green that another channel is told from, rounded down. */
+static int share_of_green(int green, const int8_t *weight)
 {
-    const weft_half *value = layers->value + index_of(layers, image, layer);
-    return channel == GREEN ? whole(value[GREEN]) : whole(value[channel]) - whole(value[GREEN]);
+    return (weight[OF_GREEN] * green) >> SHIFT;
 }
 
-/* The mean of the origins, rounded down. */
-static int predicted(const weft_layers *layers, weft_image_origins from, int layer, int channel)
+/* Green, or how much more than its share of green a channel is. */
+static int told(const weft_layers *layers, long image, int layer, int channel, const int8_t *weight)
+{
+    const weft_half *value = layers->value + index_of(layers, image, layer);
+    return whole(value[channel]) - (channel == GREEN ? 0 : share_of_green(whole(value[GREEN]), weight));
+}
+
+/* The sum of the weighted origins, rounded down. */
+static int predicted(const weft_layers *layers, weft_image_origins from, int layer, int channel, const int8_t *weight)
 {
     if (from.before < 0 && from.across < 0)
         return 0;
-    int before = told(layers, from.before < 0 ? from.across : from.before, layer, channel);
-    int across = told(layers, from.across < 0 ? from.before : from.across, layer, channel);
-    return (before + across) >> 1;
+    int before = told(layers, from.before < 0 ? from.across : from.before, layer, channel, weight);
+    int across = told(layers, from.across < 0 ? from.before : from.across, layer, channel, weight);
+    return (weight[OF_BEFORE] * before + weight[OF_ACROSS] * across) >> SHIFT;
 }
 
 /* 0, -1, 1, -2 .. as 0, 1, 2, 3 .. */
@@ -65,37 +73,119 @@ bool weft_layer_values_are_whole(const weft_layers *layers)
     return true;
 }
 
-static void write_image(const weft_layers *layers, int view, uint32_t image, uint8_t *low)
+/* ---- Weights ---- */
+
+weft_value_weights weft_value_weights_plain(void)
+{
+    enum { ONE = WEFT_VALUE_WEIGHT_OF_ONE };
+    return (weft_value_weights){{{ONE, ONE / 2, ONE / 2}, {0, ONE / 2, ONE / 2}, {ONE, ONE / 2, ONE / 2}}};
+}
+
+static int8_t weight_of(double weight)
+{
+    return (int8_t)weft_clamp(rint(WEFT_VALUE_WEIGHT_OF_ONE * weight), INT8_MIN, INT8_MAX);
+}
+
+/* Sums over the images that have both origins: of green against a channel, both without the mean of the origins; and of
+ * what a channel tells against its origins. */
+typedef struct weight_sums {
+    double green_green, green_channel;
+    double before_before, before_across, across_across, before_own, across_own;
+} weight_sums;
+
+static void add_image(const weft_layers *layers, weft_image_origins from, long image, int layer, int channel,
+                      const int8_t *weight, weight_sums *sums)
+{
+    const int8_t all[WEFT_VALUE_WEIGHTS] = {0};
+    double green = told(layers, image, layer, GREEN, all) -
+                   0.5 * (told(layers, from.before, layer, GREEN, all) + told(layers, from.across, layer, GREEN, all));
+    double other = told(layers, image, layer, channel, all) - 0.5 * (told(layers, from.before, layer, channel, all) +
+                                                                     told(layers, from.across, layer, channel, all));
+    double own = told(layers, image, layer, channel, weight);
+    double before = told(layers, from.before, layer, channel, weight);
+    double across = told(layers, from.across, layer, channel, weight);
+    sums->green_green += green * green;
+    sums->green_channel += green * other;
+    sums->before_before += before * before;
+    sums->before_across += before * across;
+    sums->across_across += across * across;
+    sums->before_own += before * own;
+    sums->across_own += across * own;
+}
+
+static weight_sums sum_images(const weft_layers *layers, int layer, int channel, const int8_t *weight)
+{
+    weight_sums sums = {0};
+    for (int view = 0; view < layers->view_count; view++)
+        for (uint32_t image = layers->first[view]; image < layers->first[view + 1]; image++) {
+            weft_image_origins from = origins_of(layers, view, image);
+            if (from.before >= 0 && from.across >= 0)
+                add_image(layers, from, image, layer, channel, weight, &sums);
+        }
+    return sums;
+}
+
+static void fit_channel(const weft_layers *layers, int layer, int channel, int8_t *weight)
+{
+    weight_sums sums;
+    if (channel != GREEN) {
+        sums = sum_images(layers, layer, channel, weight);
+        if (sums.green_green > 0)
+            weight[OF_GREEN] = weight_of(sums.green_channel / sums.green_green);
+    }
+    sums = sum_images(layers, layer, channel, weight);
+    double determinant = sums.before_before * sums.across_across - sums.before_across * sums.before_across;
+    if (determinant > 1e-6 * sums.before_before * sums.across_across) {
+        weight[OF_BEFORE] =
+            weight_of((sums.before_own * sums.across_across - sums.across_own * sums.before_across) / determinant);
+        weight[OF_ACROSS] =
+            weight_of((sums.across_own * sums.before_before - sums.before_own * sums.before_across) / determinant);
+    }
+}
+
+weft_value_weights weft_value_weights_fit(const weft_layers *layers, int layer)
+{
+    weft_value_weights weights = weft_value_weights_plain();
+    for (int channel = 0; channel < CHANNELS; channel++)
+        fit_channel(layers, layer, channel, weights.of[channel]);
+    return weights;
+}
+
+/* ---- Writing and reading ---- */
+
+static void write_image(const weft_layers *layers, const weft_value_weights *weights, int view, uint32_t image,
+                        uint8_t *low)
 {
     weft_image_origins from = origins_of(layers, view, image);
     uint8_t *high = low + index_of(layers, layers->image_count, 0);
     for (int layer = 0; layer < layers->layer_count; layer++)
         for (int c = 0; c < CHANNELS; c++) {
+            const int8_t *weight = weights[layer].of[c];
             size_t at = index_of(layers, image, layer) + (size_t)c;
-            unsigned code = code_of(told(layers, image, layer, c) - predicted(layers, from, layer, c));
+            unsigned code = code_of(told(layers, image, layer, c, weight) - predicted(layers, from, layer, c, weight));
             low[at] = (uint8_t)code;
             high[at] = (uint8_t)(code >> 8);
         }
 }
 
-void weft_layer_values_write(const weft_layers *layers, uint8_t *bytes)
+void weft_layer_values_write(const weft_layers *layers, const weft_value_weights *weights, uint8_t *bytes)
 {
     for (int view = 0; view < layers->view_count; view++)
         for (uint32_t image = layers->first[view]; image < layers->first[view + 1]; image++)
-            write_image(layers, view, image, bytes);
+            write_image(layers, weights, view, image, bytes);
 }
 
 /* False where a value is beyond what may be. */
-static bool read_pixel(const uint8_t *low, const uint8_t *high, weft_image_origins from, long image, int layer,
-                       weft_layers *layers)
+static bool read_pixel(const uint8_t *low, const uint8_t *high, const weft_value_weights *weights,
+                       weft_image_origins from, long image, int layer, weft_layers *layers)
 {
     size_t at = index_of(layers, image, layer);
     int value[CHANNELS];
     for (int c = 0; c < CHANNELS; c++)
         value[c] = difference_of(low[at + (size_t)c] | (unsigned)high[at + (size_t)c] << 8) +
-                   predicted(layers, from, layer, c);
-    value[RED] += value[GREEN];
-    value[BLUE] += value[GREEN];
+                   predicted(layers, from, layer, c, weights->of[c]);
+    value[RED] += share_of_green(value[GREEN], weights->of[RED]);
+    value[BLUE] += share_of_green(value[GREEN], weights->of[BLUE]);
     for (int c = 0; c < CHANNELS; c++) {
         if (value[c] < -WEFT_LAYERS_LARGEST_WHOLE || value[c] > WEFT_LAYERS_LARGEST_WHOLE)
             return false;
@@ -104,14 +194,14 @@ static bool read_pixel(const uint8_t *low, const uint8_t *high, weft_image_origi
     return true;
 }
 
-const char *weft_layer_values_read(const uint8_t *bytes, weft_layers *layers)
+const char *weft_layer_values_read(const uint8_t *bytes, const weft_value_weights *weights, weft_layers *layers)
 {
     const uint8_t *high = bytes + index_of(layers, layers->image_count, 0);
     for (int view = 0; view < layers->view_count; view++)
         for (uint32_t image = layers->first[view]; image < layers->first[view + 1]; image++) {
             weft_image_origins from = origins_of(layers, view, image);
             for (int layer = 0; layer < layers->layer_count; layer++)
-                if (!read_pixel(bytes, high, from, image, layer, layers))
+                if (!read_pixel(bytes, high, &weights[layer], from, image, layer, layers))
                     return "holds a value that is no whole number from -2048 to 2048";
         }
     return NULL;

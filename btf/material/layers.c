@@ -189,10 +189,16 @@ static array_list arrays_of(const weft_layers *layers)
                         {12 * views, 12 * images, 4 * (views + 1), 4 * count, 6 * images * count}};
 }
 
-size_t weft_layers_header_size(const weft_layers *layers)
+static size_t weights_size(const weft_layers *layers, weft_layers_coding coding)
+{
+    size_t count = (size_t)layers->layer_count;
+    return coding == WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES ? count * sizeof(weft_value_weights) : 0;
+}
+
+size_t weft_layers_header_size(const weft_layers *layers, weft_layers_coding coding)
 {
     array_list list = arrays_of(layers);
-    size_t size = 4 * HEADER_WORDS;
+    size_t size = 4 * HEADER_WORDS + weights_size(layers, coding);
     for (int i = 0; i < ARRAYS; i++)
         size += list.size[i];
     return size;
@@ -201,6 +207,16 @@ size_t weft_layers_header_size(const weft_layers *layers)
 bool weft_layers_have_differences(const weft_layers *layers)
 {
     return weft_layer_values_are_whole(layers);
+}
+
+static void write_differences(const weft_layers *layers, uint8_t *bytes)
+{
+    weft_value_weights weights[WEFT_LAYERS_MAX];
+    size_t size = weights_size(layers, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES);
+    for (int layer = 0; layer < layers->layer_count; layer++)
+        weights[layer] = weft_value_weights_fit(layers, layer);
+    memcpy(bytes, weights, size);
+    weft_layer_values_write(layers, weights, bytes + size);
 }
 
 void weft_layers_header_write(const weft_layers *layers, weft_layers_coding coding, uint8_t *bytes)
@@ -218,8 +234,8 @@ void weft_layers_header_write(const weft_layers *layers, weft_layers_coding codi
         memcpy(bytes, list.array[i], list.size[i]);
         bytes += list.size[i];
     }
-    if (coding == WEFT_LAYERS_BY_DIFFERENCES)
-        weft_layer_values_write(layers, bytes);
+    if (coding == WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES)
+        write_differences(layers, bytes);
     else
         memcpy(bytes, list.array[VALUES], list.size[VALUES]);
 }
@@ -286,6 +302,16 @@ static const char *fault_of_arrays(const weft_layers *layers)
     return fault;
 }
 
+static const char *read_differences(const uint8_t *bytes, weft_layers_coding coding, weft_layers *layers)
+{
+    weft_value_weights weights[WEFT_LAYERS_MAX];
+    size_t size = weights_size(layers, coding);
+    for (int layer = 0; layer < layers->layer_count; layer++)
+        weights[layer] = weft_value_weights_plain();
+    memcpy(weights, bytes, size);
+    return weft_layer_values_read(bytes + size, weights, layers);
+}
+
 static const char *read_arrays(const uint8_t *bytes, weft_layers_coding coding, weft_layers *layers)
 {
     array_list list = arrays_of(layers);
@@ -296,8 +322,8 @@ static const char *read_arrays(const uint8_t *bytes, weft_layers_coding coding, 
     const char *fault = fault_of_arrays(layers);
     if (fault)
         return fault;
-    if (coding == WEFT_LAYERS_BY_DIFFERENCES)
-        fault = weft_layer_values_read(bytes, layers);
+    if (coding != WEFT_LAYERS_AS_THEY_ARE)
+        fault = read_differences(bytes, coding, layers);
     else
         memcpy(list.array[VALUES], bytes, list.size[VALUES]);
     return fault ? fault : fault_of_values(layers);
@@ -315,7 +341,7 @@ weft_code weft_layers_header_read(const uint8_t *bytes, size_t size, weft_layers
         shape = shape_of(bytes);
         *fault = fault_of_shape(&shape);
     }
-    if (!*fault && size != weft_layers_header_size(&shape))
+    if (!*fault && size != weft_layers_header_size(&shape, coding))
         *fault = "its size does not fit its counts";
     if (*fault)
         return WEFT_BAD_INPUT;

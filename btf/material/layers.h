@@ -108,16 +108,20 @@ size_t weft_ceiling_count(int width, int height);
 
 /* ---- The file (docs/reference/weft-format.md, 7) ---- */
 
-/* Bytes of the section LAYR. Pure. */
-size_t weft_layers_header_size(const weft_layers *layers);
+/* How the section LAYR has the values. */
+typedef enum weft_layers_coding {
+    WEFT_LAYERS_AS_THEY_ARE,
+    WEFT_LAYERS_BY_DIFFERENCES, /* from the mean of two others, and from green: read, not written */
+    WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES
+} weft_layers_coding;
 
-/* How the section has the values. */
-typedef enum weft_layers_coding { WEFT_LAYERS_AS_THEY_ARE, WEFT_LAYERS_BY_DIFFERENCES } weft_layers_coding;
+/* Bytes of the section LAYR. Pure. */
+size_t weft_layers_header_size(const weft_layers *layers, weft_layers_coding coding);
 
 /* Whether the values may be told by differences: they are whole numbers of -2048 .. 2048. Pure. */
 bool weft_layers_have_differences(const weft_layers *layers);
 
-/* Writes the section LAYR to bytes [weft_layers_header_size]. */
+/* Writes the section LAYR to bytes [weft_layers_header_size], as they are or by weighted differences. */
 void weft_layers_header_write(const weft_layers *layers, weft_layers_coding coding, uint8_t *bytes);
 
 /* Reads a section LAYR of `size` bytes for a material of width x height texels and so many levels. `fault` receives

@@ -128,7 +128,9 @@ static weft_code read_opacity(const weft_file_image *file, const weft_section *s
 
 static weft_layers_coding coding_of(const weft_section *section)
 {
-    return section->codec == WEFT_CODEC_DIFFERENCES ? WEFT_LAYERS_BY_DIFFERENCES : WEFT_LAYERS_AS_THEY_ARE;
+    return section->codec == WEFT_CODEC_DIFFERENCES ? WEFT_LAYERS_BY_DIFFERENCES
+           : section->codec == WEFT_CODEC_WEIGHTED  ? WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES
+                                                    : WEFT_LAYERS_AS_THEY_ARE;
 }
 
 /* Before LCOE, whose sizes show that the file is as large as the layers it claims. */

@@ -127,7 +127,8 @@ static weft_code check_codec(const weft_file_image *file, const weft_section *se
                    ? WEFT_OK
                    : weft_fail_section(file, section, error, "stored and decoded size differ without a codec");
     bool is_layers = weft_section_kind_of(section->type) == WEFT_SECTION_LAYR;
-    if (section->codec != WEFT_CODEC_ZSTD && !(section->codec == WEFT_CODEC_DIFFERENCES && is_layers))
+    bool has_differences = section->codec == WEFT_CODEC_DIFFERENCES || section->codec == WEFT_CODEC_WEIGHTED;
+    if (section->codec != WEFT_CODEC_ZSTD && !(has_differences && is_layers))
         return weft_fail_section(file, section, error, "unknown codec");
     /* stored_size is at most the size of the file, so the product cannot overflow. */
     if (section->decoded_size > section->stored_size * WEFT_FORMAT_MAX_RATIO + WEFT_FORMAT_FREE_RATIO)

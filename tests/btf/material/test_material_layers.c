@@ -134,10 +134,16 @@ static const weft_half *values_of_example(weft_material *material)
 
 static uint8_t *write_differences(const weft_layers *layers, size_t *size)
 {
-    *size = weft_layers_header_size(layers);
+    *size = weft_layers_header_size(layers, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES);
     uint8_t *bytes = malloc(*size);
-    weft_layers_header_write(layers, WEFT_LAYERS_BY_DIFFERENCES, bytes);
+    weft_layers_header_write(layers, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES, bytes);
     return bytes;
+}
+
+static void read_differences(const uint8_t *bytes, size_t size, weft_layers_coding coding, weft_layers **layers)
+{
+    const char *fault = NULL;
+    assert_int_equal(weft_layers_header_read(bytes, size, coding, 5, 3, 4, layers, &fault, NULL), WEFT_OK);
 }
 
 /* All signs and sizes, of views of 2, 1 and 4 images. */
@@ -153,10 +159,8 @@ static void values_by_differences_are_read_back(void **state)
     assert_true(weft_layers_have_differences(material.layers));
     size_t size;
     uint8_t *bytes = write_differences(material.layers, &size);
-    weft_layers *again = NULL;
-    const char *fault = NULL;
-    assert_int_equal(weft_layers_header_read(bytes, size, WEFT_LAYERS_BY_DIFFERENCES, 5, 3, 4, &again, &fault, NULL),
-                     WEFT_OK);
+    weft_layers *again;
+    read_differences(bytes, size, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES, &again);
     assert_memory_equal(again->value, value, EXAMPLE_VALUES * sizeof *value);
     material.layers->value[5] = weft_half_of_float(2050);
     assert_false(weft_layers_have_differences(material.layers));
@@ -165,27 +169,95 @@ static void values_by_differences_are_read_back(void **state)
     weft_material_free(&material);
 }
 
-/* By hand, from the document: red, green and blue of layer 0, of views of 2, 3 and 2 images. */
+/* LAYR of the example in memory, its views of 2, 3 and 2 images, and the codes of layer 0; all others are 0. */
+static uint8_t *header_of_codes(weft_layers_coding coding, const unsigned code[7][3], size_t *size)
+{
+    static const uint32_t first[] = {0, 2, 5, 7};
+    weft_material material;
+    values_of_example(&material);
+    memcpy(material.layers->first, first, sizeof first);
+    *size = weft_layers_header_size(material.layers, coding);
+    uint8_t *bytes = malloc(*size), *low = bytes + *size - 2 * EXAMPLE_VALUES, *high = low + EXAMPLE_VALUES;
+    weft_layers_header_write(material.layers, WEFT_LAYERS_AS_THEY_ARE, bytes);
+    memset(low, 0, 2 * (size_t)EXAMPLE_VALUES);
+    for (int i = 0; i < 21; i++) {
+        int at = 24 * (i / 3) + i % 3;
+        low[at] = (uint8_t)code[i / 3][i % 3];
+        high[at] = (uint8_t)(code[i / 3][i % 3] >> 8);
+    }
+    weft_material_free(&material);
+    return bytes;
+}
+
+static void expect_read_as(const uint8_t *bytes, size_t size, weft_layers_coding coding, const int rgb[7][3])
+{
+    weft_layers *layers;
+    read_differences(bytes, size, coding, &layers);
+    for (int i = 0; i < 21; i++)
+        assert_float_equal(weft_float_of_half(layers->value[24 * (i / 3) + i % 3]), rgb[i / 3][i % 3], 0);
+    weft_layers_free(layers);
+}
+
+/* By hand, from the document: red, green and blue of layer 0 without weights. */
 static void differences_are_those_of_the_document(void **state)
 {
     (void)state;
     static const int rgb[7][3] = {{3, 5, 4}, {6, 9, 9}, {0, 2, 0}, {1, 1, 1}, {300, 1, 1}, {1, 1, 1}, {0, 0, -1}};
     /* x: (-2 5 -1) (-3 9 0) | (-2 2 -2) (0 1 0) (299 1 0) | (0 1 0) (0 0 -1)
      * d: (-2 5 -1) (-1 4 1) | (0 -3 -1) (3 -4 1) (299 0 0) | (2 -1 2) (0 -1 -1) */
-    static const uint32_t first[] = {0, 2, 5, 7};
     static const unsigned code[7][3] = {{3, 10, 1}, {1, 8, 2}, {0, 5, 1}, {6, 7, 2}, {598, 0, 0}, {4, 1, 4}, {0, 1, 1}};
+    size_t size;
+    uint8_t *bytes = header_of_codes(WEFT_LAYERS_BY_DIFFERENCES, code, &size);
+    expect_read_as(bytes, size, WEFT_LAYERS_BY_DIFFERENCES, rgb);
+    free(bytes);
+}
+
+/* The same with weights, computed from the document by a script. */
+static void weighted_differences_are_those_of_the_document(void **state)
+{
+    (void)state;
+    static const int8_t weight[9] = {96, 40, 24, 0, -16, 70, -20, 64, -3};
+    static const int rgb[7][3] = {{5, 5, -3},   {9, 8, -3}, {6, 1, -3}, {11, 4, -3},
+                                  {308, 3, -2}, {5, -1, 0}, {1, 3, -2}};
+    static const unsigned code[7][3] = {{3, 10, 1},  {1, 8, 2}, {14, 5, 1}, {6, 7, 2},
+                                        {598, 0, 0}, {4, 1, 4}, {17, 1, 1}};
+    size_t size;
+    uint8_t *bytes = header_of_codes(WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES, code, &size);
+    uint8_t *weights = bytes + size - 2 * EXAMPLE_VALUES - 8 * sizeof weight;
+    memset(weights, 0, 8 * sizeof weight);
+    memcpy(weights, weight, sizeof weight);
+    expect_read_as(bytes, size, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES, rgb);
+    free(bytes);
+}
+
+/* Red is one and a half times green, rounded down, blue is minus green, and every view has what the one before it has:
+ * weights of 96, -64 and, of the view before, 64 leave nothing of red, blue and all views but the first. */
+static void weights_are_those_that_leave_least(void **state)
+{
+    (void)state;
+    static const uint32_t first[] = {0, 3, 6, 7};
+    static const int green[] = {31, -78, 200, 31, -78, 200, 31};
     weft_material material;
     values_of_example(&material);
     memset(material.layers->value, 0, EXAMPLE_VALUES * sizeof *material.layers->value);
     memcpy(material.layers->first, first, sizeof first);
-    for (int i = 0; i < 21; i++)
-        material.layers->value[24 * (i / 3) + i % 3] = weft_half_of_float((float)rgb[i / 3][i % 3]);
+    for (int i = 0; i < 7; i++) {
+        weft_half *value = material.layers->value + 24 * i + 3;
+        value[0] = weft_half_of_float(floorf(1.5f * (float)green[i]));
+        value[1] = weft_half_of_float((float)green[i]);
+        value[2] = weft_half_of_float((float)-green[i]);
+    }
     size_t size;
     uint8_t *bytes = write_differences(material.layers, &size);
     const uint8_t *low = bytes + size - 2 * EXAMPLE_VALUES, *high = low + EXAMPLE_VALUES;
-    for (int i = 0; i < 21; i++) {
-        int at = 24 * (i / 3) + i % 3;
-        assert_int_equal(low[at] + 256 * high[at], code[i / 3][i % 3]);
+    const int8_t *weight = (const int8_t *)(low - 8 * 9) + 9;
+    assert_int_equal(weight[0], 96);
+    assert_int_equal(weight[6], -64);
+    assert_int_equal(weight[4], 0);
+    assert_int_equal(weight[5], 64);
+    for (int i = 0; i < EXAMPLE_VALUES; i++) {
+        int is_told = i / 24 < 3 && i % 24 == 4;
+        assert_int_equal(low[i] + 256 * high[i] != 0, is_told);
     }
     free(bytes);
     weft_material_free(&material);
@@ -216,7 +288,7 @@ static void a_file_has_the_smaller_of_both(void **state)
             for (int i = 24; i < EXAMPLE_VALUES; i++)
                 material.layers->value[i] = i / 24 % 2 ? 0 : value[i % 24];
         expect_ok(weft_material_write("whole.weft", &material, &error), &error);
-        assert_int_equal(codec_of_layers("whole.weft"), copies ? 1 : 2);
+        assert_int_equal(codec_of_layers("whole.weft"), copies ? 1 : 3);
         expect_ok(weft_material_read("whole.weft", &again, &error), &error);
         assert_memory_equal(again.layers->value, value, EXAMPLE_VALUES * sizeof *value);
         weft_material_free(&material);
@@ -243,7 +315,7 @@ static void an_empty_layer_keeps_none_from_packing(void **state)
     weft_layers_round_values(0.01, layers);
     assert_true(weft_layers_have_differences(layers));
     expect_ok(weft_material_write("empty.weft", &material, &error), &error);
-    assert_int_equal(codec_of_layers("empty.weft"), 2);
+    assert_int_equal(codec_of_layers("empty.weft"), 3);
     weft_material_free(&material);
 }
 
@@ -292,7 +364,7 @@ static void values_too_large_are_refused(void **state)
         weft_layers *layers = NULL;
         const char *fault = NULL;
         assert_int_equal(
-            weft_layers_header_read(bytes, size, WEFT_LAYERS_BY_DIFFERENCES, 5, 3, 4, &layers, &fault, NULL),
+            weft_layers_header_read(bytes, size, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES, 5, 3, 4, &layers, &fault, NULL),
             WEFT_BAD_INPUT);
         assert_non_null(strstr(fault, "no whole number"));
         free(bytes);
@@ -313,7 +385,7 @@ static header take_header(void)
     weft_material material;
     layers_write_example(NAME);
     assert_int_equal(weft_material_read(NAME, &material, NULL), WEFT_OK);
-    header h = {.size = weft_layers_header_size(material.layers)};
+    header h = {.size = weft_layers_header_size(material.layers, WEFT_LAYERS_AS_THEY_ARE)};
     h.bytes = malloc(h.size);
     weft_layers_header_write(material.layers, WEFT_LAYERS_AS_THEY_ARE, h.bytes);
     weft_material_free(&material);
@@ -422,6 +494,8 @@ int main(void)
         cmocka_unit_test(sections_of_layers_can_be_skipped),
         cmocka_unit_test(values_by_differences_are_read_back),
         cmocka_unit_test(differences_are_those_of_the_document),
+        cmocka_unit_test(weighted_differences_are_those_of_the_document),
+        cmocka_unit_test(weights_are_those_that_leave_least),
         cmocka_unit_test(a_file_has_the_smaller_of_both),
         cmocka_unit_test(an_empty_layer_keeps_none_from_packing),
         cmocka_unit_test(coarser_levels_are_rounded_less),
