@@ -3,6 +3,7 @@
 #include "base/text/json_text.h"
 #include "btf/dataset/dataset.h"
 #include "registration/hand/certainty.h"
+#include "registration/hand/hidden.h"
 #include "registration/hand/thumbnail.h"
 #include "registration/hand/twin.h"
 #include "registration/lamp/read.h"
@@ -198,6 +199,8 @@ static weft_code put_image(const work *w, int image, weft_error *error)
     if (code == WEFT_OK)
         code = fill_from_twins(w, index, &t, error);
     if (code == WEFT_OK) {
+        weft_hand_mask_hidden(w->settings, p->lamp.position_mm, weft_pose_camera_position(&p->pose), t.mask,
+                              &p->hidden_texels);
         p->contrast = weft_hand_contrast(t.value, t.mask, t.count);
         code = weft_thumbnail_of_texels(t.value, w->settings->width, w->settings->height, &p->rectified, error);
     }
@@ -232,12 +235,12 @@ static json_t *pack_photograph(const weft_hand_photograph *p)
     if (!weft_hand_used(p))
         return json_pack("{so ss}", "file", weft_json_text(p->name, strlen(p->name)), "left_out", p->remark);
     weft_vec3 eye = weft_pose_camera_position(&p->pose), lamp = p->lamp.position_mm;
-    return json_pack("{so sf sf sf s[fff] s[fff] sf s[fff] sI sI}", "file", weft_json_text(p->name, strlen(p->name)),
+    return json_pack("{so sf sf sf s[fff] s[fff] sf s[fff] sI sI sI}", "file", weft_json_text(p->name, strlen(p->name)),
                      "corner_rms_px", p->corner_rms_px, "correlation", p->correlation, "standard_error_mm",
                      p->uncertainty_mm, "camera_mm", eye.x, eye.y, eye.z, "lamp_mm", lamp.x, lamp.y, lamp.z,
                      "lamp_uncertainty_deg", p->lamp.uncertainty_deg, "white_level", p->lamp.level[0], p->lamp.level[1],
                      p->lamp.level[2], "clipped_texels", (json_int_t)p->clipped_texels, "dark_texels",
-                     (json_int_t)p->dark_texels);
+                     (json_int_t)p->dark_texels, "hidden_texels", (json_int_t)p->hidden_texels);
 }
 
 /* What told the tone curve, and how well. */

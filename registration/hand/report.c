@@ -27,13 +27,15 @@ void weft_hand_describe_tone(const weft_hand *hand, char words[WEFT_HAND_WORDS_S
 void weft_hand_describe_masks(const weft_hand *hand, const weft_hand_settings *settings,
                               char words[WEFT_HAND_WORDS_SIZE])
 {
-    long clipped = 0, dark = 0;
+    long clipped = 0, dark = 0, hidden = 0;
     for (int i = 0; i < hand->count; i++) {
         clipped += hand->photograph[i].clipped_texels;
         dark += hand->photograph[i].dark_texels;
+        hidden += hand->photograph[i].hidden_texels;
     }
-    snprintf(words, WEFT_HAND_WORDS_SIZE, "%ld of %ld samples are clipped, %ld are too dark to be read", clipped,
-             (long)settings->width * settings->height * hand->used_count, dark);
+    snprintf(words, WEFT_HAND_WORDS_SIZE,
+             "%ld of %ld samples are clipped, %ld are too dark to be read, %ld lie behind the pin or a ball", clipped,
+             (long)settings->width * settings->height * hand->used_count, dark, hidden);
 }
 
 static weft_vec3 view_of(const weft_hand_photograph *p)

@@ -14,7 +14,7 @@ enum { WEFT_HAND_WORDS_SIZE = 200 };
 /* What tells the tone curve, and how well, in words. Pure. */
 void weft_hand_describe_tone(const weft_hand *hand, char words[WEFT_HAND_WORDS_SIZE]);
 
-/* How many samples are masked because they are clipped, or too dark to be read, in words. Pure. */
+/* How many samples are masked because they are clipped, too dark to be read, or hidden, in words. Pure. */
 void weft_hand_describe_masks(const weft_hand *hand, const weft_hand_settings *settings,
                               char words[WEFT_HAND_WORDS_SIZE]);
 
