@@ -59,7 +59,7 @@ static int side_of_squares(const weft_dataset_layout *layout, const weft_compres
     return side > SQUARE_SIDE ? side - side % SQUARE_SIDE : side;
 }
 
-static int side_of_spread(const weft_dataset_layout *layout, const weft_compress_options *options)
+int weft_measured_texels_spread_side(const weft_dataset_layout *layout, const weft_compress_options *options)
 {
     return side_of(options->layer_count > 0 ? LAYERS_SIDE : SPREAD_SIDE, most_samples, layout->image_count);
 }
@@ -110,7 +110,8 @@ weft_code weft_measured_texels_read_spread(weft_dataset *dataset, const weft_com
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     *texels = (weft_measured_texels){.spacing = 1, .neighbours = 1};
-    return weft_excerpt_read(dataset, WEFT_EXCERPT_SCATTERED, side_of_spread(layout, options), &texels->excerpt, error);
+    return weft_excerpt_read(dataset, WEFT_EXCERPT_SCATTERED, weft_measured_texels_spread_side(layout, options),
+                             &texels->excerpt, error);
 }
 
 /* The last level that has texels; all of them are spread over the dataset. */
@@ -127,7 +128,7 @@ weft_code weft_measured_texels_read_levels(weft_dataset *dataset, const weft_com
                                            weft_measured_texels *texels, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    int singles = options->layer_count > 0 ? side_of_spread(layout, options) : 0;
+    int singles = options->layer_count > 0 ? weft_measured_texels_spread_side(layout, options) : 0;
     *texels = (weft_measured_texels){0};
     WEFT_TRY(weft_excerpt_read_levels(dataset, singles, &texels->excerpt, &texels->level, error));
     const weft_dataset_layout *read = &texels->excerpt.layout;

@@ -30,6 +30,9 @@ long weft_measured_texels_count(const weft_measured_texels *texels);
 bool weft_measures_spread_texels(const weft_dataset *dataset, const weft_compress_options *options,
                                  const weft_splits *splits);
 
+/* How many single texels are read along each side, of at least as many. Pure. */
+int weft_measured_texels_spread_side(const weft_dataset_layout *layout, const weft_compress_options *options);
+
 /* Reads single texels, each at another place of its cell of a grid. The caller frees. Errors: those of reading. */
 weft_code weft_measured_texels_read_spread(weft_dataset *dataset, const weft_compress_options *options,
                                            weft_measured_texels *texels, weft_error *error);
