@@ -1,8 +1,10 @@
 /* Whether the certificate of a material covers what it says, on directions that neither the fit nor the certificate
  * has seen: `bench_certificate NAME.btf.h5 lobes|layers [SIDE]`, of at most SIDE x SIDE texels of the middle (32). A
  * further split of the dataset is left out of both; of fewer than 24 images each in turn. Layers are seen through the
- * heights of the dataset where weft compress keeps them. Prints one row of comma-separated values a level: at its
- * end the quantile of the certificate and the one that was needed. */
+ * heights of the dataset where weft compress keeps them. A level of the material is asked for the means of photographs
+ * over its texels; through heights means of level 0 are. Prints one row of comma-separated values a level: at its end
+ * the quantile of the certificate and the one that was needed. */
+#include "base/half.h"
 #include "base/numeric/statistics.h"
 #include "study/error/coverage.h"
 #include "study/hold_out/hold_out.h"
@@ -28,10 +30,13 @@ typedef struct testing {
     double quantile[SHOWN_LEVELS]; /* of the last certificate */
 } testing;
 
-static weft_code put_level(testing *t, const weft_residuals *residuals, int level, const weft_certificate *certificate,
-                           weft_error *error)
+/* ---- What a level says ---- */
+
+/* Residuals of level `from` of an excerpt, as of level `level` of the material. */
+static weft_code put_level(testing *t, const weft_residuals *residuals, int from, int level,
+                           const weft_certificate *certificate, weft_error *error)
 {
-    size_t count = residuals->count[level];
+    size_t count = residuals->count[from];
     weft_covered *grown = realloc(t->covered[level], (t->count[level] + count + 1) * sizeof *grown);
     if (!grown)
         return weft_fail_memory(error, "samples", count * sizeof *grown);
@@ -39,7 +44,7 @@ static weft_code put_level(testing *t, const weft_residuals *residuals, int leve
     t->quantile[level] =
         certificate->level[level < certificate->level_count ? level : certificate->level_count - 1].quantile;
     for (size_t i = 0; i < count; i++) {
-        const weft_residual *r = &residuals->value[level][i];
+        const weft_residual *r = &residuals->value[from][i];
         weft_vec3 light = weft_direction_of_angles((weft_angles){weft_rad_of_deg(15 * r->light), 0}),
                   view = weft_direction_of_angles((weft_angles){weft_rad_of_deg(15 * r->view), 0});
         double half_width = weft_certificate_half_width(certificate, level, (double)r->prediction, light, view);
@@ -49,22 +54,24 @@ static weft_code put_level(testing *t, const weft_residuals *residuals, int leve
     return WEFT_OK;
 }
 
-static weft_code ask(testing *t, const uint8_t *held, const weft_material *material,
-                     const weft_certificate *certificate, weft_error *error)
+/* Levels `level` and, of means of these texels, `more` coarser ones. */
+static weft_code ask_levels(testing *t, const weft_excerpt *excerpt, int level, int more, const uint8_t *held,
+                            const weft_material *material, const weft_certificate *certificate, weft_error *error)
 {
     weft_trial trial = {0};
     weft_predictor *predictor = NULL;
     weft_asked_samples asked = {0}, none = {0};
     weft_residuals residuals = {0};
-    weft_code code = weft_trial_create(&t->excerpt, held, held, &trial, error);
+    const weft_residuals_taken taken = {.most = 1 << 22, .last_level = more};
+    weft_code code = weft_trial_create(excerpt, held, held, &trial, error);
     if (code == WEFT_OK)
-        code = weft_predictor_of_window(&t->excerpt.layout, &t->excerpt.window, material, &predictor, error);
+        code = weft_predictor_of_window(&excerpt->layout, &excerpt->window, material, &predictor, error);
     if (code == WEFT_OK)
         code = weft_trial_ask(&trial, predictor, &asked, &none, error);
     if (code == WEFT_OK)
-        code = weft_residuals_add(&residuals, &t->excerpt, &asked, NULL, 0, 1 << 22, error);
-    for (int level = 0; code == WEFT_OK && level < SHOWN_LEVELS && level < residuals.level_count; level++)
-        code = put_level(t, &residuals, level, certificate, error);
+        code = weft_residuals_add(&residuals, excerpt, &asked, NULL, &taken, error);
+    for (int k = 0; code == WEFT_OK && k < residuals.level_count && level + k < SHOWN_LEVELS; k++)
+        code = put_level(t, &residuals, k, level + k, certificate, error);
     weft_residuals_free(&residuals);
     weft_asked_samples_free(&asked);
     weft_asked_samples_free(&none);
@@ -73,6 +80,81 @@ static weft_code ask(testing *t, const uint8_t *held, const weft_material *mater
     return code;
 }
 
+/* Mean of what is not masked of four texels, into the sample `at` of the coarser excerpt. */
+static void average(const weft_excerpt *fine, const size_t texel[4], size_t image, weft_excerpt *coarse, size_t at)
+{
+    double sum[3] = {0};
+    int count = 0;
+    for (int i = 0; i < 4; i++) {
+        size_t from = texel[i] * (size_t)fine->layout.image_count + image;
+        for (size_t c = 0; c < 3 && !fine->mask[from]; c++)
+            sum[c] += (double)weft_float_of_half(fine->samples[3 * from + c]);
+        count += !fine->mask[from];
+    }
+    coarse->mask[at] = count == 0;
+    for (size_t c = 0; c < 3; c++)
+        coarse->samples[3 * at + c] = weft_half_of_float((float)(sum[c] / fmax(1, count)));
+}
+
+/* Texels of the next level, of an even number of texels along each side. */
+static weft_code halve(const weft_excerpt *fine, weft_excerpt *coarse, weft_error *error)
+{
+    const weft_dataset_layout *from = &fine->layout;
+    size_t width = (size_t)from->width / 2, height = (size_t)from->height / 2, images = (size_t)from->image_count;
+    *coarse = (weft_excerpt){.layout = {.width = (int)width,
+                                        .height = (int)height,
+                                        .image_count = from->image_count,
+                                        .view_count = from->view_count,
+                                        .values = from->values,
+                                        .distance = from->distance,
+                                        .texel_pitch_mm = 2 * from->texel_pitch_mm,
+                                        .texel_aspect = from->texel_aspect},
+                             .window = {0, 0, (int)width, (int)height},
+                             .neighbours = 1,
+                             .samples = malloc(3 * width * height * images * sizeof(weft_half)),
+                             .mask = malloc(width * height * images)};
+    WEFT_TRY(weft_dataset_layout_allocate(&coarse->layout, error));
+    if (!coarse->samples || !coarse->mask)
+        return weft_fail_memory(error, "samples", 7 * width * height * images);
+    memcpy(coarse->layout.light, from->light, images * sizeof *from->light);
+    memcpy(coarse->layout.view_of_image, from->view_of_image, images * sizeof *from->view_of_image);
+    memcpy(coarse->layout.view, from->view, (size_t)from->view_count * sizeof *from->view);
+    for (size_t texel = 0; texel < width * height; texel++) {
+        size_t first = 4 * width * (texel / width) + 2 * (texel % width);
+        const size_t four[4] = {first, first + 1, first + 2 * width, first + 2 * width + 1};
+        for (size_t image = 0; image < images; image++)
+            average(fine, four, image, coarse, texel * images + image);
+    }
+    return WEFT_OK;
+}
+
+static weft_code ask_coarser(testing *t, weft_excerpt *excerpt, int level, const uint8_t *held, weft_material *material,
+                             const weft_certificate *certificate, weft_error *error)
+{
+    weft_excerpt coarse = {0};
+    bool has_coarser = excerpt->layout.width >= 4 && excerpt->layout.width % 2 == 0 && excerpt->layout.height >= 4 &&
+                       excerpt->layout.height % 2 == 0;
+    WEFT_TRY(ask_levels(t, excerpt, level, 0, held, material, certificate, error));
+    if (level + 1 == SHOWN_LEVELS || !has_coarser)
+        return WEFT_OK;
+    weft_material_drop_finest(material);
+    weft_code code = halve(excerpt, &coarse, error);
+    if (code == WEFT_OK)
+        code = ask_coarser(t, &coarse, level + 1, held, material, certificate, error);
+    weft_excerpt_free(&coarse);
+    return code;
+}
+
+/* The material loses its levels. */
+static weft_code ask(testing *t, const uint8_t *held, weft_material *material, const weft_certificate *certificate,
+                     weft_error *error)
+{
+    return t->through_heights ? ask_levels(t, &t->excerpt, 0, SHOWN_LEVELS - 1, held, material, certificate, error)
+                              : ask_coarser(t, &t->excerpt, 0, held, material, certificate, error);
+}
+
+/* ---- The test ---- */
+
 /* Fit and certificate of what is left. */
 static weft_code test_split(testing *t, int split, weft_error *error)
 {
@@ -80,9 +162,12 @@ static weft_code test_split(testing *t, int split, weft_error *error)
     weft_dataset *others;
     weft_hold_out result;
     weft_material material = {0};
+    int splits;
     WEFT_TRY(weft_excerpt_write_with_surface(&t->excerpt, held, "bench-certificate.btf.h5", &others, error));
     weft_compress_options options = weft_compress_settle(&t->options, others);
-    weft_code code = weft_hold_out_measure(others, &options, 1, "bench-certificate-split.btf.h5", NULL, &result, error);
+    weft_code code = weft_hold_out_enough_splits(weft_dataset_get_layout(others), &splits, error);
+    if (code == WEFT_OK)
+        code = weft_hold_out_measure(others, &options, splits, "bench-certificate-split.btf.h5", NULL, &result, error);
     if (code == WEFT_OK)
         code = weft_compress(others, &options, NULL, &material, NULL, error);
     t->through_heights = code == WEFT_OK && result.heights.used;

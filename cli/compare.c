@@ -167,12 +167,15 @@ static void say_coverage(const weft_common_options *common, const weft_compariso
         "sample, %.1f %% if all were alike",
         100 * coverage->all.covered, 100 * comparison->held_out.certificate.probability, 100 * coverage->all.width,
         100 * coverage->even_width);
-    char event[256];
+    char line[WEFT_HOLD_OUT_LINE], event[256];
+    weft_certificate_describe_levels(&comparison->held_out.certificate, line);
+    if (line[0])
+        weft_command_say(common, "  %s", line);
     snprintf(event, sizeof event,
              "{\"event\":\"coverage\",\"values\":%ld,\"covered\":%.6g,\"width\":%.6g,\"even_width\":%.6g,"
-             "\"dark\":%.6g,\"bright\":%.6g}",
+             "\"dark\":%.6g,\"bright\":%.6g,\"measured_levels\":%d}",
              coverage->all.count, coverage->all.covered, coverage->all.width, coverage->even_width,
-             coverage->dark.covered, coverage->bright.covered);
+             coverage->dark.covered, coverage->bright.covered, comparison->held_out.certificate.measured_levels);
     weft_command_event(common, event);
 }
 

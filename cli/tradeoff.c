@@ -40,8 +40,13 @@ static weft_code say_results(const tradeoff_command *command, const weft_tradeof
     const weft_common_options *common = &command->common;
     char held[160];
     weft_tradeoff_print_held(result, held, sizeof held);
-    weft_command_say(common, "relative RMSE with %s held out, on %ld of %ld texels:", held, result->measured_texels,
-                     result->texels);
+    char times[32] = "", lobes[48] = "";
+    if (result->split_count > 1 && result->measured_texels != result->neighbours)
+        snprintf(times, sizeof times, " %d times", result->split_count);
+    if (result->lobe_texels != result->measured_texels)
+        snprintf(lobes, sizeof lobes, ", lobes on %ld", result->lobe_texels);
+    weft_command_say(common, "relative RMSE with %s held out%s, on %ld of %ld texels%s:", held, times,
+                     result->measured_texels, result->texels, lobes);
     weft_command_say(common, "%-36s %12s %8s %9s %12s %8s %9s", "model", "bytes", "fit, s", "ms a frame", "not fitted",
                      "fitted", "95 % wide");
     for (int i = 0; i < result->row_count; i++) {

@@ -49,6 +49,11 @@ double weft_certificate_half_width(const weft_certificate *c, double level, doub
            weft_certificate_scale_of_rings(c, value, ring_of(light), ring_of(view));
 }
 
+bool weft_certificate_is_measured(const weft_certificate *c, double level)
+{
+    return (level > 0 ? floor(level) : 0) < c->measured_levels;
+}
+
 weft_certificate_parts weft_certificate_parts_of(const weft_certificate *c, int level, int ring)
 {
     const weft_certificate_level *at = &c->level[level_index(c, level)];

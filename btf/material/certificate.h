@@ -45,7 +45,10 @@ typedef struct weft_certificate {
 double weft_certificate_half_width(const weft_certificate *certificate, double level, double value, weft_vec3 light,
                                    weft_vec3 view);
 
-/* The same without q, for directions of these rings: what residuals are divided by. Pure. */
+/* Whether its quantile was measured for that level, and is not that of fewer texels, or not known to be. Pure. */
+bool weft_certificate_is_measured(const weft_certificate *certificate, double level);
+
+/* Half the width without q, for directions of these rings: what residuals are divided by. Pure. */
 double weft_certificate_scale_of_rings(const weft_certificate *certificate, double value, int light_ring,
                                        int view_ring);
 

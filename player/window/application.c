@@ -222,6 +222,8 @@ static weft_code evaluate_probe(weft_application *a, weft_error *error)
     const weft_probe *p = &a->probe;
     WEFT_TRY(weft_probe_value(&a->plots, a->player, &a->interaction.scene, p, a->reflectance, error));
     a->half_width_probability = certificate && is_as_certified(a) ? certificate->probability : 0;
+    a->half_width_levels = certificate ? certificate->measured_levels : 0;
+    a->half_width_is_measured = certificate && weft_certificate_is_measured(certificate, p->level);
     for (int c = 0; c < 3; c++) {
         a->reflectance[c] *= fmax(0, (double)p->light.z);
         a->half_width[c] =

@@ -50,6 +50,8 @@ struct weft_application {
     double reflectance[3]; /* BRDF x pi x cosine of the light, there, and half of the interval about it: */
     double half_width[3];  /* 0 where the material does not say, or what is shown is not what it says it of */
     double half_width_probability;
+    int half_width_levels;       /* on which it was measured: the first ones; 0: not known */
+    bool half_width_is_measured; /* on the level that is shown; else it is rather too wide */
     weft_probe_plots plots;
     weft_weave_edit weave; /* what the sliders change */
     weft_history history;  /* of lights, weave, and what is shown */

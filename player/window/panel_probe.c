@@ -24,6 +24,12 @@ static void reflectance_rows(const weft_application *a)
     snprintf(name, sizeof name, "%g %%", 100 * a->half_width_probability);
     snprintf(text, sizeof text, "\xc2\xb1%.3f \xc2\xb1%.3f \xc2\xb1%.3f", half[0], half[1], half[2]);
     weft_ui_value(name, text);
+    if (a->half_width_levels == 0)
+        return;
+    snprintf(text, sizeof text, "on level%s 0%s%.0d%s", a->half_width_levels > 1 ? "s" : "",
+             a->half_width_levels > 1 ? " to " : "", a->half_width_levels - 1,
+             a->half_width_is_measured ? "" : "; here wider");
+    weft_ui_value("Measured", text);
 }
 
 static void place_rows(const weft_probe *probe)

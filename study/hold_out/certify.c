@@ -252,6 +252,14 @@ static weft_code certify(const weft_residuals *held, const weft_residuals *fitte
     return WEFT_OK;
 }
 
+static size_t largest_count(const weft_residuals *residuals)
+{
+    size_t largest = 0;
+    for (int k = 0; k < residuals->level_count; k++)
+        largest = residuals->count[k] > largest ? residuals->count[k] : largest;
+    return largest;
+}
+
 weft_code weft_certify(const weft_residuals *held, const weft_residuals *fitted, double probability, double spacing,
                        int neighbours, weft_certificate *c, bool *found, weft_error *error)
 {
@@ -260,7 +268,8 @@ weft_code weft_certify(const weft_residuals *held, const weft_residuals *fitted,
     *found = c->mean > 0;
     if (!*found)
         return WEFT_OK;
-    size_t most = held->count[0] > fitted->count[0] ? held->count[0] : fitted->count[0];
+    size_t of_held = largest_count(held), of_fitted = largest_count(fitted);
+    size_t most = of_held > of_fitted ? of_held : of_fitted;
     float *scratch = malloc(most * sizeof *scratch);
     if (!scratch)
         return weft_fail_memory(error, "residuals", most * sizeof *scratch);

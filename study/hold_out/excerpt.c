@@ -1,8 +1,9 @@
 #include "study/hold_out/excerpt.h"
 
 #include "base/integers.h"
+#include "study/hold_out/excerpt_layout.h"
+#include "study/hold_out/scattered.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,21 +35,6 @@ static texel_choice choose_texels(const weft_dataset_layout *layout, weft_excerp
     return choice;
 }
 
-/* A place in the cell `index` of `count` that `texels` are cut into; `at` from 0 to below 1. */
-static int place_in_cell(int index, int count, int texels, double at)
-{
-    int from = (int)((long)texels * index / count), to = (int)((long)texels * (index + 1) / count);
-    return from + (int)(at * (to - from));
-}
-
-/* Steps of what is scattered: the powers of 1 / 1.32472, the plastic number. They fill a square evenly and have no
- * period. */
-static double additive_sequence(int axis, double number)
-{
-    static const double step[2] = {0.7548776662466927, 0.5698402909980532};
-    return fmod(step[axis] * number, 1);
-}
-
 /* Column or row of the dataset for the `index`-th of `count`, where squares of so many texels along a `side` lie `at`
  * from 0 to below 1 in their cells. */
 static int place_in_square(int index, int count, int texels, int side, double at)
@@ -62,20 +48,17 @@ static void place_of_square(const texel_choice *choice, int i, int j, int *x, in
 {
     int side = choice->square_side, across = (choice->columns + side - 1) / side;
     double number = (double)(j / side) * across + i / side + 1;
-    *x = place_in_square(i, choice->columns, choice->width, side, additive_sequence(0, number));
-    *y = place_in_square(j, choice->rows, choice->height, side, additive_sequence(1, number));
+    *x = place_in_square(i, choice->columns, choice->width, side, weft_scattered_number(0, number));
+    *y = place_in_square(j, choice->rows, choice->height, side, weft_scattered_number(1, number));
 }
 
 /* Place in the dataset of texel (i, j) of the excerpt. */
 static void place_of_texel(const texel_choice *choice, int i, int j, int *x, int *y)
 {
-    double number = (double)j * choice->columns + i + 1;
     *x = choice->first_x + i * choice->stride;
     *y = choice->first_y + j * choice->stride;
-    if (choice->kind == WEFT_EXCERPT_SCATTERED) {
-        *x = place_in_cell(i, choice->columns, choice->width, additive_sequence(0, number));
-        *y = place_in_cell(j, choice->rows, choice->height, additive_sequence(1, number));
-    }
+    if (choice->kind == WEFT_EXCERPT_SCATTERED)
+        weft_scattered_texel(choice->columns, choice->rows, choice->width, choice->height, i, j, x, y);
     if (choice->square_side > 0)
         place_of_square(choice, i, j, x, y);
 }
@@ -97,20 +80,18 @@ static weft_vec3 offset_of(const texel_choice *choice, double pitch)
     return weft_vec3_of(pitch * x, pitch * y, 0);
 }
 
-static weft_code make_layout(const weft_dataset_layout *source, const texel_choice *choice, weft_dataset_layout *layout,
-                             weft_error *error)
+weft_code weft_excerpt_make_layout(const weft_dataset_layout *source, int columns, int rows, int stride,
+                                   weft_vec3 offset, weft_dataset_layout *layout, weft_error *error)
 {
-    *layout = (weft_dataset_layout){.width = choice->columns,
-                                    .height = choice->rows,
+    *layout = (weft_dataset_layout){.width = columns,
+                                    .height = rows,
                                     .image_count = source->image_count,
                                     .view_count = source->view_count,
                                     .values = source->values,
                                     .distance = source->distance,
-                                    .texel_pitch_mm = source->texel_pitch_mm * choice->stride,
+                                    .texel_pitch_mm = source->texel_pitch_mm * stride,
                                     .texel_aspect = source->texel_aspect};
     WEFT_TRY(weft_dataset_layout_allocate(layout, error));
-    bool is_near = source->distance == WEFT_NEAR;
-    weft_vec3 offset = is_near ? offset_of(choice, source->texel_pitch_mm) : weft_vec3_of(0, 0, 0);
     for (int image = 0; image < source->image_count; image++) {
         layout->light[image] = weft_subtract(source->light[image], offset);
         layout->view_of_image[image] = source->view_of_image[image];
@@ -123,6 +104,14 @@ static weft_code make_layout(const weft_dataset_layout *source, const texel_choi
                (size_t)source->image_count * sizeof *source->figure[WEFT_IMAGE_WEIGHT]);
     }
     return WEFT_OK;
+}
+
+static weft_code make_layout(const weft_dataset_layout *source, const texel_choice *choice, weft_dataset_layout *layout,
+                             weft_error *error)
+{
+    bool is_near = source->distance == WEFT_NEAR;
+    weft_vec3 offset = is_near ? offset_of(choice, source->texel_pitch_mm) : weft_vec3_of(0, 0, 0);
+    return weft_excerpt_make_layout(source, choice->columns, choice->rows, choice->stride, offset, layout, error);
 }
 
 /* ---- Reading ---- */

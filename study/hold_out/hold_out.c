@@ -1,9 +1,9 @@
 #include "study/hold_out/hold_out.h"
 
 #include "base/integers.h"
-#include "compress/run/memory.h"
 #include "study/hold_out/certify.h"
 #include "study/hold_out/mean_error.h"
+#include "study/hold_out/measured_texels.h"
 #include "study/hold_out/misplaced.h"
 #include "study/hold_out/rounding.h"
 #include "study/hold_out/trial.h"
@@ -12,25 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Layers learn from 512 texels, which are to be there. */
-enum {
-    SIDE = 12,
-    SPREAD_SIDE = 16,
-    LAYERS_SIDE = 24,
-    SURFACE_SIDE = 64,
-    ASKED_SIDE = 48,
-    BLOCK_SIDE = 64,
-    SQUARE_SIDE = 4
-};
-
-/* Held out together. With the 8 of 41 x 41 the figure of a denim changed by 5 to 9 % from split to split, with the 12
- * of 64 x 64 that of a satin by 3 %. */
-enum { ENOUGH_DIRECTIONS = 10 };
-
-/* Of the excerpt, at most; of one with a surface, whose texels see each other, and of those of its texels that are
- * asked for. */
-static const long most_samples = 1L << 22, most_samples_with_surface = 1L << 25, most_samples_asked = 1L << 23;
 
 /* Of all splits, that a certificate is made of: the share of 95 % is known to 0.001 by so many. */
 static const size_t most_residuals = 1 << 16;
@@ -48,10 +29,8 @@ typedef struct measuring {
     const weft_compress_options *given;
     weft_compress_options options; /* of the fits without some images */
     const char *scratch_path;
-    weft_excerpt excerpt;
-    weft_texel_block asked; /* of an excerpt with a surface */
-    weft_excerpt alone;     /* these, where they are fitted alone; else nothing */
-    bool asks_heights;      /* of layers, whether they are to be seen through the surface of the excerpt */
+    weft_measured_texels texels;
+    bool asks_heights; /* of layers, whether they are to be seen through the surface of the texels */
     weft_splits splits;
     weft_compress_model whole_model; /* that all images carry, and its lobes */
     int whole_lobes;
@@ -60,22 +39,17 @@ typedef struct measuring {
     weft_means_taken material_taken, flat_taken, photographs_taken;
     int fitted_taken, flat_fitted_taken;
     int measured_count;                        /* of the splits: the first ones */
-    bool takes_errors, takes_residuals;        /* of the texels of this excerpt */
-    double spacing;                            /* of the texels of the excerpt, in texels of the dataset */
+    bool takes_errors;                         /* of these texels */
+    int first_level, last_level;               /* of these texels, whose residuals are taken */
     held_and_fitted residuals, flat_residuals; /* flat: the same without heights */
     weft_hold_out *result;
 } measuring;
-
-static const weft_excerpt *fitted_excerpt(const measuring *work)
-{
-    return work->alone.samples ? &work->alone : &work->excerpt;
-}
 
 static weft_code fit_without(const measuring *work, const uint8_t *held, weft_material *material,
                              weft_compress_report *report, weft_error *error)
 {
     weft_dataset *others;
-    WEFT_TRY(weft_excerpt_write(fitted_excerpt(work), held, work->scratch_path, &others, error));
+    WEFT_TRY(weft_excerpt_write(weft_measured_texels_fitted(&work->texels), held, work->scratch_path, &others, error));
     weft_code code = weft_compress(others, &work->options, NULL, material, report, error);
     weft_dataset_close(others);
     return code;
@@ -104,7 +78,7 @@ static void free_answers(answers *said)
 static weft_code ask_material(const measuring *work, const weft_trial *trial, const weft_material *material,
                               weft_asked_samples *held, weft_asked_samples *fitted, weft_error *error)
 {
-    const weft_excerpt *excerpt = fitted_excerpt(work);
+    const weft_excerpt *excerpt = weft_measured_texels_fitted(&work->texels);
     weft_predictor *predictor;
     WEFT_TRY(weft_predictor_of_window(&excerpt->layout, &excerpt->window, material, &predictor, error));
     weft_code code = weft_trial_ask(trial, predictor, held, fitted, error);
@@ -135,10 +109,10 @@ static weft_code ask(const measuring *work, const weft_trial *trial, weft_materi
 {
     if (work->asks_heights && material->layers) {
         WEFT_TRY(ask_material(work, trial, material, &said->flat, &said->flat_fitted, error));
-        WEFT_TRY(weft_excerpt_give_heights(&work->excerpt, material, error));
+        WEFT_TRY(weft_excerpt_give_heights(&work->texels.excerpt, material, error));
     }
     WEFT_TRY(ask_material(work, trial, material, &said->material, &said->fitted, error));
-    return work->takes_residuals ? ask_moved(work, trial, material, said, error) : WEFT_OK;
+    return ask_moved(work, trial, material, said, error);
 }
 
 /* Relative RMSE with and without heights where both are known. Samples ascend in both; masks may leave either without
@@ -213,10 +187,14 @@ static weft_code add_residuals(const measuring *work, int split, const weft_aske
                                const weft_asked_samples *moved, const weft_asked_samples *fitted,
                                held_and_fitted *residuals, weft_error *error)
 {
-    uint32_t first_image = (uint32_t)split * (uint32_t)work->splits.image_count;
-    size_t most = most_residuals / (size_t)work->measured_count;
-    WEFT_TRY(weft_residuals_add(&residuals->held, &work->excerpt, material, moved, first_image, most, error));
-    return weft_residuals_add(&residuals->fitted, &work->excerpt, fitted, NULL, first_image, most, error);
+    const weft_excerpt *excerpt = &work->texels.excerpt;
+    const weft_residuals_taken taken = {.first_image = (uint32_t)split * (uint32_t)work->splits.image_count,
+                                        .most = most_residuals / (size_t)work->measured_count,
+                                        .first_level = work->first_level,
+                                        .last_level = work->last_level,
+                                        .level = work->texels.level};
+    WEFT_TRY(weft_residuals_add(&residuals->held, excerpt, material, moved, &taken, error));
+    return weft_residuals_add(&residuals->fitted, excerpt, fitted, NULL, &taken, error);
 }
 
 static weft_code take_residuals(measuring *work, int split, const answers *said, weft_error *error)
@@ -244,7 +222,7 @@ static weft_code take_photographs(measuring *work, const answers *said, weft_err
 static weft_code ask_photographs(measuring *work, const weft_trial *trial, weft_error *error)
 {
     answers said = {0};
-    bool has_surface = weft_excerpt_has_surface(&work->excerpt);
+    bool has_surface = weft_excerpt_has_surface(&work->texels.excerpt);
     weft_code code = has_surface ? weft_trial_ask_photographs(trial, false, &said.photographs_flat, error) : WEFT_OK;
     if (code == WEFT_OK)
         code = weft_trial_ask_photographs(trial, has_surface, &said.photographs, error);
@@ -264,10 +242,10 @@ static weft_code ask_split(measuring *work, int split, answers *said, weft_error
     WEFT_TRY(fit_without(work, held, &material, &report, error));
     work->result->smaller_model |= report.model != work->whole_model || report.lobe_count != work->whole_lobes;
     weft_trial trial;
-    weft_code code = weft_trial_create(&work->excerpt, held, next, &trial, error);
-    if (work->asked.width > 0)
-        trial.asked = work->asked;
-    trial.predicts_asked = work->alone.samples != NULL;
+    weft_code code = weft_trial_create(&work->texels.excerpt, held, next, &trial, error);
+    if (work->texels.asked.width > 0)
+        trial.asked = work->texels.asked;
+    trial.predicts_asked = work->texels.alone.samples != NULL;
     if (code == WEFT_OK && work->takes_errors)
         code = ask_photographs(work, &trial, error);
     if (code == WEFT_OK)
@@ -284,124 +262,10 @@ static weft_code measure_split(measuring *work, int split, weft_error *error)
     weft_code code = ask_split(work, split, &said, error);
     if (code == WEFT_OK && work->takes_errors)
         code = take_answers(work, &said, error);
-    if (code == WEFT_OK && work->takes_residuals)
+    if (code == WEFT_OK)
         code = take_residuals(work, split, &said, error);
     free_answers(&said);
     return code;
-}
-
-/* ---- Preparation ---- */
-
-static int fewest_kept(const weft_splits *splits)
-{
-    int fewest = splits->image_count;
-    for (int s = 0; s < splits->count; s++) {
-        const uint8_t *held = weft_splits_held(splits, s);
-        int kept = 0;
-        for (int i = 0; i < splits->image_count; i++)
-            kept += held[i] == 0;
-        fewest = kept < fewest ? kept : fewest;
-    }
-    return fewest;
-}
-
-static int side_of(int most_side, long most, int image_count)
-{
-    int side = most_side;
-    while (side > 1 && (long)side * side * image_count > most)
-        side--;
-    return side;
-}
-
-weft_code weft_hold_out_enough_splits(const weft_dataset_layout *layout, int *count, weft_error *error)
-{
-    weft_splits splits;
-    WEFT_TRY(weft_splits_create(layout, 0, 2 * WEFT_HOLD_OUT_ENOUGH, &splits, error));
-    int held = weft_larger(1, splits.view_held_count + splits.light_held_count),
-        most = weft_smaller(splits.count / 2, WEFT_HOLD_OUT_ENOUGH);
-    bool is_grid = splits.kind == WEFT_SPLIT_DIRECTIONS;
-    *count = is_grid ? weft_larger(1, weft_smaller((ENOUGH_DIRECTIONS + held - 1) / held, most)) : 1;
-    weft_splits_free(&splits);
-    return WEFT_OK;
-}
-
-int weft_hold_out_surface_side(int image_count)
-{
-    return side_of(SURFACE_SIDE, most_samples_with_surface, image_count);
-}
-
-/* That a square of the dataset and, where lobes are fitted, a copy of its middle are within the limit. */
-static weft_code require_memory(const weft_dataset *dataset, const measuring *work, int side, int copied_side,
-                                weft_error *error)
-{
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    const uint64_t sample_bytes = 3 * sizeof(weft_half) + 1;
-    int smaller = layout->width < layout->height ? layout->width : layout->height;
-    uint64_t read = (uint64_t)(side < smaller ? side : smaller), copied = (uint64_t)copied_side;
-    weft_memory_budget budget = weft_memory_budget_begin(work->options.memory_bytes);
-    return weft_memory_budget_require(&budget,
-                                      sample_bytes * (uint64_t)layout->image_count * (read * read + copied * copied),
-                                      weft_dataset_path(dataset), "the images that are held out", error);
-}
-
-/* Lobes need no neighbours: those that are asked for are fitted alone. */
-static weft_code read_with_surface(weft_dataset *dataset, measuring *work, weft_error *error)
-{
-    int images = weft_dataset_get_layout(dataset)->image_count;
-    bool has_layers = work->options.layer_count > 0;
-    int side = has_layers ? side_of(ASKED_SIDE, most_samples_asked, images) : LAYERS_SIDE;
-    int read_side = weft_hold_out_surface_side(images);
-    WEFT_TRY(require_memory(dataset, work, read_side, has_layers ? 0 : side, error));
-    WEFT_TRY(weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, read_side, &work->excerpt, error));
-    work->asked = weft_excerpt_middle(&work->excerpt, side);
-    return has_layers ? WEFT_OK : weft_excerpt_crop(&work->excerpt, &work->asked, &work->alone, error);
-}
-
-static bool fits_neighbours(const weft_dataset *dataset, const measuring *work)
-{
-    weft_dataset_layout others = *weft_dataset_get_layout(dataset);
-    int lobes;
-    others.image_count = fewest_kept(&work->splits);
-    return weft_compress_plan(&others, &work->options, &lobes) == WEFT_COMPRESS_SPARSE;
-}
-
-static int side_of_squares(const weft_dataset_layout *layout, const measuring *work)
-{
-    int side = side_of(work->options.layer_count > 0 ? LAYERS_SIDE : SIDE, most_samples, layout->image_count);
-    return side > SQUARE_SIDE ? side - side % SQUARE_SIDE : side;
-}
-
-/* Errors are those of single texels that lie spread: what glints is rare, and neighbours glint together, so that a few
- * squares of them may say twice as much as all texels would. Only what levels say needs neighbours. Where memory is
- * short the squares serve for both: spread texels lie in many chunks of the file, which take more of it. */
-static bool has_spread_texels(const weft_dataset *dataset, const measuring *work)
-{
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    bool has_others = weft_larger(layout->width, layout->height) > side_of_squares(layout, work);
-    return has_others && work->options.memory_bytes == 0 && layout->distance != WEFT_NEAR &&
-           !weft_dataset_has_surface(dataset) && !fits_neighbours(dataset, work);
-}
-
-static weft_code read_spread_texels(weft_dataset *dataset, measuring *work, weft_error *error)
-{
-    int images = weft_dataset_get_layout(dataset)->image_count;
-    int side = side_of(work->options.layer_count > 0 ? LAYERS_SIDE : SPREAD_SIDE, most_samples, images);
-    return weft_excerpt_read(dataset, WEFT_EXCERPT_SCATTERED, side, &work->excerpt, error);
-}
-
-static weft_code read_excerpt(weft_dataset *dataset, measuring *work, weft_error *error)
-{
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    work->spacing = 1;
-    if (fits_neighbours(dataset, work))
-        return weft_excerpt_read(dataset, WEFT_EXCERPT_BLOCK, BLOCK_SIDE, &work->excerpt, error);
-    if (weft_dataset_has_surface(dataset))
-        return read_with_surface(dataset, work, error);
-    weft_excerpt_kind kind = layout->distance == WEFT_NEAR ? WEFT_EXCERPT_REGULAR : WEFT_EXCERPT_SMALL_SQUARES;
-    WEFT_TRY(weft_excerpt_read(dataset, kind, side_of_squares(layout, work), &work->excerpt, error));
-    work->spacing = sqrt((double)layout->width * layout->height /
-                         ((double)work->excerpt.layout.width * work->excerpt.layout.height));
-    return WEFT_OK;
 }
 
 /* ---- The certificate ---- */
@@ -420,20 +284,13 @@ static weft_code certify(weft_dataset *dataset, measuring *work, weft_error *err
     weft_hold_out *result = work->result;
     bool is_flat = result->heights.asked && !result->heights.used;
     const held_and_fitted *by = is_flat ? &work->flat_residuals : &work->residuals;
-    WEFT_TRY(weft_certify(&by->held, &by->fitted, certified, work->spacing, work->excerpt.neighbours,
+    WEFT_TRY(weft_certify(&by->held, &by->fitted, certified, work->texels.spacing, work->texels.neighbours,
                           &result->certificate, &result->has_certificate, error));
     result->certificate.direction_count = held_directions(work);
     return result->has_certificate ? weft_certify_registration(dataset, &result->certificate, error) : WEFT_OK;
 }
 
 /* ---- The whole ---- */
-
-static long asked_texels(const measuring *work)
-{
-    const weft_dataset_layout *layout = &work->excerpt.layout;
-    const weft_texel_block *asked = &work->asked;
-    return asked->width > 0 ? (long)asked->width * asked->height : (long)layout->width * layout->height;
-}
 
 static void describe(const weft_dataset_layout *layout, measuring *work)
 {
@@ -449,7 +306,7 @@ static void describe(const weft_dataset_layout *layout, measuring *work)
                                     .light_held_count = splits->light_held_count,
                                     .image_count = splits->image_count,
                                     .image_held_count = (int)lround((double)held / splits->count),
-                                    .texel_count = asked_texels(work),
+                                    .texel_count = weft_measured_texels_count(&work->texels),
                                     .dataset_texel_count = (long)layout->width * layout->height};
 }
 
@@ -458,8 +315,9 @@ static weft_code measure_texels(const weft_dataset *dataset, measuring *work, co
                                 weft_error *error)
 {
     static const char step[] = "fitting without some images";
-    WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(dataset), &fitted_excerpt(work)->layout, false,
-                                        work->given, &work->options.budget_bytes, error));
+    WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(dataset),
+                                        &weft_measured_texels_fitted(&work->texels)->layout, false, work->given,
+                                        &work->options.budget_bytes, error));
     for (int s = 0; s < work->measured_count; s++) {
         weft_progress_report(progress, step, s, work->measured_count);
         WEFT_TRY(measure_split(work, s, error));
@@ -468,35 +326,44 @@ static weft_code measure_texels(const weft_dataset *dataset, measuring *work, co
     return WEFT_OK;
 }
 
+/* Errors and level 0 are of single texels, the other levels of texels of their own. */
 static weft_code measure_spread_texels(weft_dataset *dataset, measuring *work, const weft_progress *progress,
                                        weft_error *error)
 {
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
-    WEFT_TRY(read_spread_texels(dataset, work, error));
-    describe(layout, work);
     work->takes_errors = true;
-    work->takes_residuals = false;
+    work->last_level = 0;
+    WEFT_TRY(weft_measured_texels_read_spread(dataset, &work->options, &work->texels, error));
+    describe(weft_dataset_get_layout(dataset), work);
     WEFT_TRY(measure_texels(dataset, work, progress, error));
+    weft_measured_texels_free(&work->texels);
     work->takes_errors = false;
-    weft_excerpt_free(&work->excerpt);
-    return WEFT_OK;
+    work->first_level = 1;
+    work->last_level = WEFT_RESIDUAL_LEVELS - 1;
+    WEFT_TRY(weft_measured_texels_read_levels(dataset, &work->options, &work->texels, error));
+    return measure_texels(dataset, work, progress, error);
+}
+
+/* All levels are of the same texels. */
+static weft_code measure_neighbours(weft_dataset *dataset, measuring *work, const weft_progress *progress,
+                                    weft_error *error)
+{
+    work->takes_errors = true;
+    work->last_level = WEFT_RESIDUAL_LEVELS - 1;
+    WEFT_TRY(weft_measured_texels_read(dataset, &work->options, &work->splits, &work->texels, error));
+    describe(weft_dataset_get_layout(dataset), work);
+    work->asks_heights = work->given->heights && weft_excerpt_has_surface(&work->texels.excerpt);
+    return measure_texels(dataset, work, progress, error);
 }
 
 static weft_code measure_splits(weft_dataset *dataset, measuring *work, const weft_progress *progress,
                                 weft_error *error)
 {
-    const weft_dataset_layout *layout = weft_dataset_get_layout(dataset);
     work->options.added_bytes = 0;
-    work->whole_model = weft_compress_plan(layout, &work->options, &work->whole_lobes);
-    work->takes_errors = !has_spread_texels(dataset, work);
-    if (!work->takes_errors)
+    work->whole_model = weft_compress_plan(weft_dataset_get_layout(dataset), &work->options, &work->whole_lobes);
+    if (weft_measures_spread_texels(dataset, &work->options, &work->splits))
         WEFT_TRY(measure_spread_texels(dataset, work, progress, error));
-    WEFT_TRY(read_excerpt(dataset, work, error));
-    if (work->takes_errors)
-        describe(layout, work);
-    work->takes_residuals = true;
-    work->asks_heights = work->given->heights && weft_excerpt_has_surface(&work->excerpt);
-    WEFT_TRY(measure_texels(dataset, work, progress, error));
+    else
+        WEFT_TRY(measure_neighbours(dataset, work, progress, error));
     decide_on_heights(work);
     if (work->result->material.all.count == 0)
         return weft_fail(error, WEFT_BAD_USAGE, "every sample that was held out is masked");
@@ -520,8 +387,7 @@ weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_optio
         code = measure_splits(dataset, &work, progress, error);
     free_residuals(&work.residuals);
     free_residuals(&work.flat_residuals);
-    weft_excerpt_free(&work.excerpt);
-    weft_excerpt_free(&work.alone);
+    weft_measured_texels_free(&work.texels);
     weft_splits_free(&work.splits);
     /* What is free is given back to the system, so that the fit of the whole has room. */
     malloc_trim(0);

@@ -43,25 +43,14 @@ typedef struct weft_hold_out {
     weft_certificate certificate;    /* an interval for any pixel, at 0.95 */
 } weft_hold_out;
 
-/* Along each side of the block of texels that is read of a dataset with a surface: 64, or fewer of very many images.
- * What a view saw beyond the block is not known, and steep views see furthest: of a part of a material less counts what
- * they see. Pure. */
-int weft_hold_out_surface_side(int image_count);
-
-/* Splits whose mean says what is to be said of a dataset, 1 .. WEFT_HOLD_OUT_ENOUGH: of a grid as many as hold out 10
- * views and lights, for with fewer the figure is as much one of the directions as of the model. As many others are left
- * for a prediction. Errors: those of weft_splits_create. */
-enum { WEFT_HOLD_OUT_ENOUGH = 4 };
-weft_code weft_hold_out_enough_splits(const weft_dataset_layout *layout, int *count, weft_error *error);
-
 /* Fits some texels with `options` to the images that a split leaves, for each of up to `split_count` splits, and
  * compares what the material says of the others with their samples, in the quantity of the dataset. Without mip levels,
- * held-out images of `options` and checkpoint. A budget is taken for the share of the texels in the whole material. The
- * texels are at most 16 x 16 (24 x 24 with layers, fewer where there are very many images) that lie spread, and for the
- * certificate, and for all where options->memory_bytes is a limit, as many as 12 x 12 (24 x 24) in small squares; 64 x
- * 64 neighbours where the fit borrows from them or the dataset has a surface, which is seen in other texels than its
- * own: then weft_hold_out_surface_side. Layers are asked with and without it, and what is better counts. What was left
- * out is not in what the fit reads: neither its samples, nor its views as entries of T.
+ * held-out images of `options` and checkpoint. A budget is taken for the share of the texels in the whole material.
+ * Which texels are measured says study/hold_out/measured_texels.h: at most 16 x 16 single ones (24 x 24 with layers),
+ * and for the coarser levels of the certificate 8 x 8 of each of levels 1 to 3, all of them spread; small squares where
+ * options->memory_bytes is a limit; 64 x 64 neighbours where the fit borrows from them or the dataset has a surface,
+ * which is seen in other texels than its own. Layers are asked with and without it, and what is better counts. What was
+ * left out is not in what the fit reads: neither its samples, nor its views as entries of T.
  *
  * Writes a dataset of those texels to the folder of `scratch_path`, nameless once it is complete. The result does
  * not depend on the number of threads, nor on how large the limit is.

@@ -229,8 +229,8 @@ void weft_certificate_describe_levels(const weft_certificate *c, char line[WEFT_
         APPEND(line, "measured on level 0");
     if (c->measured_levels < c->level_count && last > 0)
         APPEND(line,
-               ": the texels it is measured on lie in squares of %d x %d; coarser levels have the width of smaller "
-               "squares, which is rather too wide",
+               ": no larger squares than of %d x %d texels are measured, and coarser levels have the width of smaller "
+               "ones, which is rather too wide",
                1 << last, 1 << last);
     else if (c->measured_levels < c->level_count)
         APPEND(line,

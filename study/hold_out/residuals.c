@@ -151,9 +151,9 @@ static int first_of_texel(size_t texel, int stride)
     return (int)(stride * fmod(section * (double)texel, 1));
 }
 
-/* Those of one texel of a level, seen from its centre, in every `stride`-th image. */
+/* Those of one texel, seen from its centre, in every `stride`-th image: for level `level`. */
 static void add_texel(weft_residuals *residuals, const weft_excerpt *excerpt, const asked_images *images,
-                      const answers *a, size_t texel, int stride, uint32_t first_image)
+                      const answers *a, size_t texel, int level, int stride, uint32_t first_image)
 {
     const weft_dataset_layout *layout = &excerpt->layout;
     int x = (int)(texel % (size_t)a->width), y = (int)(texel / (size_t)a->width);
@@ -173,7 +173,7 @@ static void add_texel(weft_residuals *residuals, const weft_excerpt *excerpt, co
             residual.prediction = prediction;
             residual.error = fabsf(sample - prediction);
             residual.moved = fabsf(a->value[2][at] - prediction);
-            residuals->value[a->level][residuals->count[a->level]++] = residual;
+            residuals->value[level][residuals->count[level]++] = residual;
         }
     }
 }
@@ -191,36 +191,53 @@ static weft_code make_room(weft_residuals *residuals, int level, size_t more, we
     return WEFT_OK;
 }
 
-static weft_code add_level(weft_residuals *residuals, const weft_excerpt *excerpt, const asked_images *images,
-                           const answers *a, uint32_t first_image, size_t most, weft_error *error)
+static bool is_of_level(const answers *a, const weft_residuals_taken *taken, size_t texel, int level)
 {
-    size_t count = values_of(a, images), texels = (size_t)a->width * (size_t)a->height;
-    int stride = weft_larger(1, (int)((count + most - 1) / most));
-    WEFT_TRY(make_room(residuals, a->level, count / (size_t)stride + 3 * texels, error));
+    return taken->level ? taken->level[texel] == level : a->level == level;
+}
+
+/* Of those texels of `a` that are of level `level`. */
+static weft_code add_level(weft_residuals *residuals, const weft_excerpt *excerpt, const asked_images *images,
+                           const answers *a, int level, const weft_residuals_taken *taken, weft_error *error)
+{
+    size_t texels = (size_t)a->width * (size_t)a->height, own = 0;
     for (size_t texel = 0; texel < texels; texel++)
-        add_texel(residuals, excerpt, images, a, texel, stride, first_image);
-    residuals->level_count = a->level + 1 > residuals->level_count ? a->level + 1 : residuals->level_count;
+        own += is_of_level(a, taken, texel, level);
+    size_t count = 3 * own * (size_t)images->count;
+    int stride = weft_larger(1, (int)((count + taken->most - 1) / taken->most));
+    if (level < taken->first_level || own == 0)
+        return WEFT_OK;
+    WEFT_TRY(make_room(residuals, level, count / (size_t)stride + 3 * own, error));
+    for (size_t texel = 0; texel < texels; texel++)
+        if (is_of_level(a, taken, texel, level))
+            add_texel(residuals, excerpt, images, a, texel, level, stride, taken->first_image);
+    residuals->level_count = weft_larger(level + 1, residuals->level_count);
     return WEFT_OK;
 }
 
 /* Level after level, as long as there are four squares. */
 static weft_code add_levels(weft_residuals *residuals, const weft_excerpt *excerpt, const asked_images *images,
-                            answers *a, uint32_t first_image, size_t most, weft_error *error)
+                            answers *a, const weft_residuals_taken *taken, weft_error *error)
 {
-    WEFT_TRY(add_level(residuals, excerpt, images, a, first_image, most, error));
-    while (a->level + 1 < WEFT_RESIDUAL_LEVELS && weft_smaller(a->width, a->height) >= 4) {
+    int last = weft_smaller(taken->last_level, WEFT_RESIDUAL_LEVELS - 1);
+    for (int level = 0; taken->level && level <= last; level++)
+        WEFT_TRY(add_level(residuals, excerpt, images, a, level, taken, error));
+    if (taken->level)
+        return WEFT_OK;
+    WEFT_TRY(add_level(residuals, excerpt, images, a, 0, taken, error));
+    while (a->level < last && weft_smaller(a->width, a->height) >= 4) {
         answers coarse = {0};
         weft_code code = make_coarser(a, images, &coarse, error);
         free_answers(a);
         *a = coarse;
         WEFT_TRY(code);
-        WEFT_TRY(add_level(residuals, excerpt, images, a, first_image, most, error));
+        WEFT_TRY(add_level(residuals, excerpt, images, a, a->level, taken, error));
     }
     return WEFT_OK;
 }
 
 weft_code weft_residuals_add(weft_residuals *residuals, const weft_excerpt *excerpt, const weft_asked_samples *asked,
-                             const weft_asked_samples *moved, uint32_t first_image, size_t most, weft_error *error)
+                             const weft_asked_samples *moved, const weft_residuals_taken *taken, weft_error *error)
 {
     asked_images images;
     answers a = {.width = excerpt->layout.width, .height = excerpt->layout.height};
@@ -229,7 +246,7 @@ weft_code weft_residuals_add(weft_residuals *residuals, const weft_excerpt *exce
         code = allocate(&a, &images, error);
     if (code == WEFT_OK) {
         put_answers(excerpt, asked, moved, &images, &a);
-        code = add_levels(residuals, excerpt, &images, &a, first_image, most, error);
+        code = add_levels(residuals, excerpt, &images, &a, taken, error);
     }
     free_answers(&a);
     free_images(&images);

@@ -24,12 +24,20 @@ typedef struct weft_residuals {
 } weft_residuals;
 void weft_residuals_free(weft_residuals *residuals);
 
+/* Which residuals are added. */
+typedef struct weft_residuals_taken {
+    uint32_t first_image; /* images are numbered from it on */
+    size_t most;          /* of a level, about: of every texel every n-th image is taken, beginning with another one
+                             at each. Texels differ more than images do, and none is left out */
+    int first_level, last_level; /* others stay as they are */
+    const uint8_t *level;        /* [texel] of an excerpt whose texels are of several levels (excerpt_levels.h); NULL:
+                                    they are of level 0, and means over squares of them are those of the others */
+} weft_residuals_taken;
+
 /* Adds the residuals of what is said of some images of an excerpt. `moved` are the same samples as a material says them
- * whose stored numbers were moved by a step each (study/hold_out/rounding.h), or NULL. Of every texel of a level
- * every n-th image is taken, beginning with another one at each, so that about `most` residuals are added to it: texels
- * differ more than images do, and none is left out. Images are numbered from `first_image` on. Errors:
- * WEFT_SYSTEM for memory. */
+ * whose stored numbers were moved by a step each (study/hold_out/rounding.h), or NULL. Errors: WEFT_SYSTEM for memory.
+ */
 weft_code weft_residuals_add(weft_residuals *residuals, const weft_excerpt *excerpt, const weft_asked_samples *asked,
-                             const weft_asked_samples *moved, uint32_t first_image, size_t most, weft_error *error);
+                             const weft_asked_samples *moved, const weft_residuals_taken *taken, weft_error *error);
 
 #endif

@@ -48,4 +48,10 @@ void weft_splits_free(weft_splits *splits);
 /* The flags of one split: [image_count]. */
 const uint8_t *weft_splits_held(const weft_splits *splits, int split);
 
+/* Splits whose mean says what is to be said of a dataset, 1 .. WEFT_HOLD_OUT_ENOUGH: of a grid as many as hold out 10
+ * views and lights, for with fewer the figure is as much one of the directions as of the model. As many others are left
+ * for a prediction. Errors: those of weft_splits_create. */
+enum { WEFT_HOLD_OUT_ENOUGH = 4 };
+weft_code weft_hold_out_enough_splits(const weft_dataset_layout *layout, int *count, weft_error *error);
+
 #endif

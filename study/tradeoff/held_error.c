@@ -6,6 +6,7 @@
 #include "study/error/coverage.h"
 #include "study/hold_out/certify.h"
 #include "study/hold_out/hold_out.h"
+#include "study/hold_out/measured_texels.h"
 #include "study/tradeoff/cloth.h"
 #include "study/tradeoff/held_pictures.h"
 #include "study/tradeoff/variant.h"
@@ -264,7 +265,8 @@ static weft_code find_interval(const weft_held_bench *bench, const weft_asked_sa
     weft_certificate certificate;
     bool found = false;
     *width = 0;
-    weft_code code = weft_residuals_add(&residuals, &bench->excerpt, held, NULL, 0, enough_residuals, error);
+    const weft_residuals_taken taken = {.most = enough_residuals};
+    weft_code code = weft_residuals_add(&residuals, &bench->excerpt, held, NULL, &taken, error);
     if (code == WEFT_OK)
         code = weft_certify(&residuals, &none, certified, 1, 1, &certificate, &found, error);
     if (code == WEFT_OK && found)

@@ -12,6 +12,22 @@ static double error_of(const weft_tradeoff_row *row)
     return row->measured.held[WEFT_SAMPLES_ALL].relative_rmse;
 }
 
+/* Which texels errors are of. */
+static void put_texels(weft_page *page, const weft_tradeoff *tradeoff)
+{
+    bool is_spread = tradeoff->measured_texels != tradeoff->neighbours || tradeoff->lobe_texels != tradeoff->neighbours;
+    if (!is_spread) {
+        fprintf(page->html, "<p class=\"note\">Errors are those of %ld texels in the middle", tradeoff->neighbours);
+        return;
+    }
+    fprintf(page->html,
+            "<p class=\"note\">Errors are those of %ld texels that lie spread, of lobes of %ld, as in the file of a "
+            "material; pictures, and errors of fewer texels and of cloth, are those of %ld texels in the middle",
+            tradeoff->measured_texels, tradeoff->lobe_texels, tradeoff->neighbours);
+    if (tradeoff->split_count > 1)
+        fprintf(page->html, "; others are held out %d times", tradeoff->split_count);
+}
+
 /* ---- The choice ---- */
 
 /* A model that several presets choose stands there once. */
@@ -65,7 +81,7 @@ static void put_summary(weft_page *page, const weft_tradeoff *tradeoff)
             "it was fitted to stands beside it.</p>\n",
             tradeoff->row_count, tradeoff->width, tradeoff->height, tradeoff->image_count, held);
     put_choices(page, tradeoff);
-    fprintf(page->html, "<p class=\"note\">Errors are those of %ld texels in the middle", tradeoff->measured_texels);
+    put_texels(page, tradeoff);
     if (tradeoff->fitted_texels < tradeoff->texels)
         fprintf(page->html,
                 "; bytes and times of fits are those of %ld texels, and the rest in proportion; frames show these",

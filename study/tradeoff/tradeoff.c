@@ -2,6 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/clock.h"
+#include "btf/material/layers.h"
+#include "study/hold_out/measured_texels.h"
 #include "study/tradeoff/cloth.h"
 
 #include <omp.h>
@@ -9,14 +11,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MEASURED_SIDE = 32, FITTED_SIDE = 64 };
+enum { PICTURE_SIDE = 32, FITTED_SIDE = 64 };
+
+/* Texels that lie spread are other ones for layers, which need more of them. */
+enum { TEXELS_OF_LOBES, TEXELS_OF_LAYERS, TEXELS_OF_END };
 
 /* The study at work. */
 typedef struct studying {
     weft_dataset *dataset;
     const char *cloth;
     char *scratch_path;
-    weft_held_bench *bench;
+    weft_held_bench *pictures;              /* neighbours */
+    weft_held_bench *spread[TEXELS_OF_END]; /* NULL where errors are of neighbours, too */
     weft_price_shop *shop;
     const weft_progress *progress;
     int work_done, work_total;
@@ -24,6 +30,36 @@ typedef struct studying {
 } studying;
 
 /* ---- Rows ---- */
+
+/* NULL: the model needs neighbours. */
+static weft_held_bench *spread_bench_of(const studying *work, const weft_priced_model *model)
+{
+    bool is_of_lobes = weft_priced_model_is_fit(model) && model->options.layer_count == 0;
+    if (model->fewer_texels || model->family == WEFT_PRICED_CLOTH)
+        return NULL;
+    return work->spread[is_of_lobes ? TEXELS_OF_LOBES : TEXELS_OF_LAYERS];
+}
+
+/* Pictures are of neighbours. So are errors at first; then those of spread texels take their place. */
+static weft_code measure_model(const studying *work, weft_tradeoff_row *row, weft_error *error)
+{
+    weft_held_error spread;
+    weft_held_bench *bench = spread_bench_of(work, &row->model);
+    WEFT_TRY(weft_held_bench_measure(work->pictures, &row->model, &row->measured, error));
+    row->is_of_neighbours = !bench;
+    if (!bench)
+        return WEFT_OK;
+    weft_code code = weft_held_bench_measure(bench, &row->model, &spread, error);
+    if (code != WEFT_OK) {
+        weft_held_error_free(&row->measured);
+        return code;
+    }
+    memcpy(row->measured.held, spread.held, sizeof spread.held);
+    memcpy(row->measured.fitted, spread.fitted, sizeof spread.fitted);
+    row->measured.interval_width = spread.interval_width;
+    weft_held_error_free(&spread);
+    return WEFT_OK;
+}
 
 /* A row that turns out to have less than it asks for is not kept. */
 static weft_code study_model(studying *work, const weft_priced_model *model, weft_error *error)
@@ -34,7 +70,7 @@ static weft_code study_model(studying *work, const weft_priced_model *model, wef
     WEFT_TRY(weft_price_ask(work->shop, model, &row->price, &has_parts, error));
     if (!has_parts)
         return WEFT_OK;
-    WEFT_TRY(weft_held_bench_measure(work->bench, model, &row->measured, error));
+    WEFT_TRY(measure_model(work, row, error));
     work->result->row_count++;
     return WEFT_OK;
 }
@@ -89,10 +125,15 @@ static void choose(weft_tradeoff *result)
 
 /* ---- The whole ---- */
 
+static long texels_of(const studying *work, int which)
+{
+    return weft_held_bench_texels(work->spread[which] ? work->spread[which] : work->pictures);
+}
+
 static void describe(studying *work)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
-    const weft_splits *splits = weft_held_bench_splits(work->bench);
+    const weft_splits *splits = weft_held_bench_splits(work->pictures);
     weft_tradeoff *result = work->result;
     result->width = layout->width;
     result->height = layout->height;
@@ -104,7 +145,9 @@ static void describe(studying *work)
     result->light_count = splits->light_count;
     for (int i = 0; i < splits->image_count; i++)
         result->image_held_count += weft_splits_held(splits, 0)[i] != 0;
-    result->measured_texels = weft_held_bench_texels(work->bench);
+    result->neighbours = weft_held_bench_texels(work->pictures);
+    result->measured_texels = texels_of(work, TEXELS_OF_LAYERS);
+    result->lobe_texels = texels_of(work, TEXELS_OF_LOBES);
     result->fitted_texels = weft_price_shop_texels(work->shop);
     result->texels = (long)layout->width * layout->height;
     result->threads = omp_get_max_threads();
@@ -121,6 +164,30 @@ static weft_code check_cloth(const char *path, weft_error *error)
     return code;
 }
 
+/* The texels and splits by which a material's own error is measured, where they lie spread. */
+static weft_code open_spread_bench(studying *work, int which, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    weft_compress_options options = weft_compress_default_options();
+    options.layer_count = which == TEXELS_OF_LAYERS ? WEFT_LAYERS_GROUP : 0;
+    if (!weft_measures_spread_texels(work->dataset, &options, weft_held_bench_splits(work->pictures)))
+        return WEFT_OK;
+    return weft_held_bench_create(
+        work->dataset, WEFT_EXCERPT_SCATTERED, weft_measured_texels_spread_side(layout, &options),
+        (weft_splits_asked){0, work->result->split_count}, work->scratch_path, &work->spread[which], error);
+}
+
+static weft_code open_benches(studying *work, weft_error *error)
+{
+    const weft_dataset_layout *layout = weft_dataset_get_layout(work->dataset);
+    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_EXCERPT_BLOCK, PICTURE_SIDE, (weft_splits_asked){0, 1},
+                                    work->scratch_path, &work->pictures, error));
+    WEFT_TRY(weft_hold_out_enough_splits(layout, &work->result->split_count, error));
+    for (int which = 0; which < TEXELS_OF_END; which++)
+        WEFT_TRY(open_spread_bench(work, which, error));
+    return WEFT_OK;
+}
+
 static weft_code study(studying *work, const char *dataset_path, const char *folder, weft_error *error)
 {
     WEFT_TRY(check_cloth(work->cloth, error));
@@ -130,8 +197,7 @@ static weft_code study(studying *work, const char *dataset_path, const char *fol
         work->scratch_path = NULL;
         return weft_fail_memory(error, "path", strlen(folder));
     }
-    WEFT_TRY(weft_held_bench_create(work->dataset, WEFT_EXCERPT_BLOCK, MEASURED_SIDE, (weft_splits_asked){0, 1},
-                                    work->scratch_path, &work->bench, error));
+    WEFT_TRY(open_benches(work, error));
     WEFT_TRY(weft_price_shop_open(work->dataset, FITTED_SIDE, work->scratch_path, work->progress, &work->shop, error));
     describe(work);
     WEFT_TRY(study_models(work, error));
@@ -158,7 +224,9 @@ weft_code weft_tradeoff_study(const char *dataset_path, const char *cloth, const
     *result = (weft_tradeoff){0};
     weft_code code = study(&work, dataset_path, folder, error);
     weft_price_shop_close(work.shop);
-    weft_held_bench_free(work.bench);
+    weft_held_bench_free(work.pictures);
+    for (int which = 0; which < TEXELS_OF_END; which++)
+        weft_held_bench_free(work.spread[which]);
     weft_dataset_close(work.dataset);
     free(work.scratch_path);
     result->seconds = weft_now_s() - began;

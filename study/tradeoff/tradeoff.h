@@ -14,7 +14,8 @@ typedef struct weft_tradeoff_row {
     weft_price price;
     weft_held_error measured;
     bool is_chosen[WEFT_PRESET_COUNT]; /* by each preset; by [WEFT_PRESET_NONE] where by any */
-    bool is_beaten;                    /* by another that weft compress makes (study/tradeoff/choice.h) */
+    bool is_of_neighbours; /* its error is that of the texels of its pictures, not of those that lie spread */
+    bool is_beaten;        /* by another that weft compress makes (study/tradeoff/choice.h) */
 } weft_tradeoff_row;
 
 /* Freed with weft_tradeoff_free. */
@@ -24,8 +25,11 @@ typedef struct weft_tradeoff {
     int width, height, image_count, view_count; /* of the dataset */
     weft_split_kind kind;
     int view_held_count, light_held_count, light_count, image_held_count;
-    long measured_texels, fitted_texels,
-        texels; /* whose error is measured; that are fitted for prices; of the dataset */
+    int split_count;            /* of errors; those of neighbours are of the first split alone */
+    long measured_texels;       /* whose error is measured: of layers and photographs, ... */
+    long lobe_texels;           /* ... of lobes, ... */
+    long neighbours;            /* ... and of pictures */
+    long fitted_texels, texels; /* that are fitted for prices; of the dataset */
     int threads;
     double seconds;
     char why_not_drawn[WEFT_MESSAGE_SIZE], renderer[128];
@@ -33,8 +37,10 @@ typedef struct weft_tradeoff {
 
 /* Fits and measures every model of study/tradeoff/priced_model.h, with the analytic cloth of the file `cloth` (a weave,
  * which is fitted, or microcylinder cloth, as it is; NULL: none), and writes folder/index.html with its pictures and
- * folder/tradeoff.csv; the page appears when it is complete. Errors are measured on a block of at most 32 x 32
- * neighbouring texels, prices on one of at most 64 x 64.
+ * folder/tradeoff.csv; the page appears when it is complete. Errors are measured on the texels and the splits of
+ * weft_hold_out_measure, as weft compress says them of a material; pictures on a block of at most 32 x 32 neighbouring
+ * texels, and so are the errors of what needs neighbours: fewer texels, cloth, and all where the dataset has a surface,
+ * near lights or a handful of photographs. Prices are of a block of at most 64 x 64.
  * Errors: WEFT_BAD_USAGE for a dataset of one image; those of weft_compress, of reading, writing and drawing. */
 weft_code weft_tradeoff_study(const char *dataset_path, const char *cloth, const char *folder,
                               const weft_progress *progress, weft_tradeoff *result, weft_error *error);

@@ -41,9 +41,13 @@ import json
 info = json.loads(open("info.log").read())
 kept = info["metadata"]["certificate"]
 assert kept["probability"] == 0.95 and kept["over"] == "images" and kept["images"] > 50, kept
-assert kept["directions"] >= 8 and "registration" not in kept, kept  # 4 of a split, of which there are several
-assert info["certificate"]["levels"].startswith("measured on level"), info["certificate"]
-assert kept["measured_levels"] <= len(kept["quantiles"]), kept
+split = info["metadata"]["held_out"]  # two of 24 views and two lights, as often as ten directions take
+assert split["splits"] == 3 and split["views_of"] == split["lights_of"] == [2, 24], split
+assert kept["directions"] == 12 and "registration" not in kept, kept
+# 12 x 12 texels are all measured, and so are means over 2 x 2 and 4 x 4 of them.
+assert info["certificate"]["levels"] == "measured on levels 0 to 2", info["certificate"]
+assert kept["measured_levels"] == 3 == len(kept["quantiles"]), kept
+assert kept["quantiles"][0] > kept["quantiles"][1] > kept["quantiles"][2] > 0, kept
 assert "registration not known" in info["certificate"]["view_30_deg"], info["certificate"]
 PYTHON
     # All sections but the metadata are those of a material without it.
@@ -67,7 +71,9 @@ events = map(json.loads, open("compare.log").read().splitlines())
 covered = next(e for e in events if e["event"] == "coverage")
 assert 0.92 < covered["covered"] < 0.98, covered
 assert covered["width"] < covered["even_width"], covered
+assert covered["measured_levels"] == 3, covered
 PYTHON
+grep -q "The interval is measured on levels 0 to 2[.]<" report/index.html || fail "the page does not say which levels are measured"
 grep -q 'id="certificate"' report/index.html || fail "the page of weft compare does not show the certificate"
 
 # The ends of the interval stand about the value, as far as the certificate says.

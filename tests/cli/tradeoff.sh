@@ -55,6 +55,31 @@ least = min(float(row["not_fitted_all_relative_rmse"]) for row in rows if row["o
 assert len(best) == 1 and float(best[0]["not_fitted_all_relative_rmse"]) <= 1.01 * least, best
 PYTHON
 
+# Of a material of more texels than are measured the list says the error that weft compress says of it: of the same texels, with
+# the same directions held out, as often.
+awk 'BEGIN {
+    print "theta_deg,phi_deg"
+    for (i = 0; i < 10; i++) { z = 1 - (i + 0.5) / 10 * 0.8; print atan2(sqrt(1 - z * z), z) * 57.29578 "," i * 137.50776 }
+}' >ten.csv
+expect_ok simulate "$assets/stitches/plain_knit.stitch" -o wide.btf.h5 --plane top --heights off --size 26x4 --noise 10 --bounces 0 \
+    --resolution 20 --directions ten.csv --seed 3
+expect_says "times, on 96 of 104 texels, lobes on 64:" tradeoff wide.btf.h5 -o wide
+for options in "--lobes 1 --table off" "--layers 8"; do
+    # shellcheck disable=SC2086
+    expect_ok compress wide.btf.h5 -o wide.weft $options --json
+    cp out.log events.log
+    options=$options "$python" - <<'PYTHON' || fail "the list and weft compress do not say the same of $options"
+import csv, json, os
+row = next(r for r in csv.DictReader(open("wide/tradeoff.csv")) if r["options"] == os.environ["options"])
+events = [json.loads(line) for line in open("events.log")]
+said = next(e for e in events if e["event"] == "held_out")["not_fitted"]["relative_rmse"]
+listed = float(row["not_fitted_all_relative_rmse"])
+# The list takes the samples of all splits together, weft compress means over the splits.
+assert abs(listed / said - 1) < 0.03, (listed, said)
+print(os.environ["options"], listed, said)
+PYTHON
+done
+
 # Refused in one line, before the work.
 expect_error 2 "needs a dataset and -o REPORT/" tradeoff knit.btf.h5
 expect_error 1 "absent.btf.h5" tradeoff absent.btf.h5 -o none

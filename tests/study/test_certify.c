@@ -173,7 +173,8 @@ static void expect_third_of_everything(const weft_excerpt *excerpt, const weft_a
 {
     weft_residuals some = {0};
     size_t of_image[3] = {0}, most = asked->count / 3;
-    assert_int_equal(weft_residuals_add(&some, excerpt, asked, NULL, 0, most, NULL), WEFT_OK);
+    const weft_residuals_taken taken = {.most = most, .last_level = WEFT_RESIDUAL_LEVELS};
+    assert_int_equal(weft_residuals_add(&some, excerpt, asked, NULL, &taken, NULL), WEFT_OK);
     assert_int_equal(some.count[0], most);
     for (size_t i = 0; i < most; i++)
         of_image[some.value[0][i].image]++;
@@ -205,7 +206,8 @@ static void coarser_levels_are_of_means(void **state)
     }
     const weft_asked_samples asked = {COUNT, value, group, sample};
     weft_residuals residuals = {0};
-    assert_int_equal(weft_residuals_add(&residuals, &excerpt, &asked, &asked, 5, 1 << 20, NULL), WEFT_OK);
+    const weft_residuals_taken taken = {.first_image = 5, .most = 1 << 20, .last_level = WEFT_RESIDUAL_LEVELS};
+    assert_int_equal(weft_residuals_add(&residuals, &excerpt, &asked, &asked, &taken, NULL), WEFT_OK);
     assert_int_equal(residuals.level_count, 3);
     assert_int_equal(residuals.count[0], COUNT);
     assert_int_equal(residuals.count[1], COUNT / 4);
@@ -277,8 +279,22 @@ static weft_rgb speckled(int x, int y, weft_vec3 light, weft_vec3 view)
     return (weft_rgb){value, value, value};
 }
 
-/* Of 40 x 40 texels some are read, 3.3 times as far from each other; means over four neighbours are known all the
- * same. */
+/* 12 x 12 texels in squares of 4 x 4. */
+static void expect_squares_where_memory_is_a_limit(weft_dataset *dataset, weft_compress_options options)
+{
+    weft_hold_out result;
+    weft_error error = {0};
+    options.memory_bytes = (uint64_t)4 << 30;
+    expect_ok(weft_hold_out_measure(dataset, &options, 1, "speckled-split.btf.h5", NULL, &result, &error), &error);
+    const weft_certificate_level *level = result.certificate.level;
+    assert_int_equal(result.texel_count, 144);
+    assert_int_equal(result.certificate.measured_levels, 3);
+    assert_float_equal(level[1].quantile / level[0].quantile, 1.96 / 2 / 1.645, 0.08);
+    assert_float_equal(level[2].quantile / level[0].quantile, 1.96 / 4 / 1.645, 0.08);
+    assert_true(level[3].quantile == level[2].quantile);
+}
+
+/* Of 40 x 40 texels some are read, and means over up to 8 x 8 neighbours elsewhere. */
 static void coarser_levels_of_a_material_are_as_narrow_as_they_are(void **state)
 {
     (void)state;
@@ -292,12 +308,17 @@ static void coarser_levels_of_a_material_are_as_narrow_as_they_are(void **state)
     fixture_far_dataset(path, 40, 40, 3, speckled, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
     expect_ok(weft_hold_out_measure(dataset, &options, 1, "speckled-split.btf.h5", NULL, &result, &error), &error);
+    expect_squares_where_memory_is_a_limit(dataset, options);
     weft_dataset_close(dataset);
     const weft_certificate_level *level = result.certificate.level;
     print_message("quantiles %.3f, %.3f, %.3f\n", level[0].quantile, level[1].quantile, level[2].quantile);
-    assert_int_equal(result.texel_count, 256); /* spread; the certificate has squares of its own */
+    assert_int_equal(result.texel_count, 256); /* spread; the coarser levels have texels of their own */
+    assert_int_equal(result.certificate.measured_levels, 4);
+    assert_int_equal(result.certificate.level_count, 6);
     assert_float_equal(level[1].quantile / level[0].quantile, 1.96 / 2 / 1.645, 0.08);
     assert_float_equal(level[2].quantile / level[0].quantile, 1.96 / 4 / 1.645, 0.08);
+    assert_float_equal(level[3].quantile / level[0].quantile, 1.96 / 8 / 1.645, 0.03);
+    assert_true(level[4].quantile == level[3].quantile);
 }
 
 /* ---- Storage ---- */
@@ -459,7 +480,8 @@ static void put_card(const weft_excerpt *excerpt, int card, weft_residuals *unse
     expect_ok(weft_trial_create(excerpt, held, held, &trial, &error), &error);
     expect_ok(weft_trial_ask(&trial, predictor, &asked, &none, &error), &error);
     unseen->count[0] = 0;
-    expect_ok(weft_residuals_add(unseen, excerpt, &asked, NULL, 0, 1 << 20, &error), &error);
+    const weft_residuals_taken taken = {.most = 1 << 20};
+    expect_ok(weft_residuals_add(unseen, excerpt, &asked, NULL, &taken, &error), &error);
     covered[0] += measure(&measured.certificate, unseen).all.covered * (double)unseen->count[0];
     covered[1] += (double)unseen->count[0];
     weft_asked_samples_free(&asked);

@@ -2,7 +2,7 @@
 #include "fixture.h"
 
 #include "btf/direction/direction.h"
-#include "study/hold_out/excerpt.h"
+#include "study/hold_out/excerpt_levels.h"
 #include "study/hold_out/record.h"
 
 #include <math.h>
@@ -313,6 +313,50 @@ static void scattered_texels_are_one_of_every_cell(void **state)
     unlink(path);
 }
 
+/* Of 31 x 26 texels: 4 x 4 single ones, then all whole texels of levels 2 and 3 and as many as 8 x 8 of level 1. */
+static void texels_of_levels_are_means_of_what_they_cover(void **state)
+{
+    (void)state;
+    enum { SIDE = 4, COUNT = 16 + 64 + 42 + 9 };
+    weft_dataset *dataset;
+    weft_excerpt excerpt;
+    weft_error error = {0};
+    uint8_t *level;
+    int of_level[WEFT_EXCERPT_LAST_LEVEL + 1] = {0}, places[WEFT_EXCERPT_LAST_LEVEL + 1] = {0}, odd = 0;
+    fixture_far_dataset(path, 31, 26, 2, by_place, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    expect_ok(weft_excerpt_read_levels(dataset, SIDE, &excerpt, &level, &error), &error);
+    weft_dataset_close(dataset);
+    assert_int_equal(excerpt.layout.width, SIDE);
+    assert_int_equal(excerpt.layout.height, (COUNT + SIDE - 1) / SIDE);
+    for (int texel = 0; texel < excerpt.layout.width * excerpt.layout.height; texel++) {
+        const weft_half *half = excerpt.samples + 3 * (size_t)texel * (size_t)excerpt.layout.image_count;
+        int k = level[texel];
+        if (texel >= COUNT) {
+            assert_int_equal(k, WEFT_EXCERPT_NO_LEVEL);
+            continue;
+        }
+        /* The mean place of a whole texel of its level. */
+        double x = 100 * (double)weft_float_of_half(half[0]) - ((1 << k) - 1) / 2.0,
+               y = 100 * (double)weft_float_of_half(half[1]) - ((1 << k) - 1) / 2.0;
+        assert_int_equal(k, texel < 16 ? 0 : texel < 80 ? 1 : texel < 122 ? 2 : 3);
+        assert_true(fabs(x - (1 << k) * round(x / (1 << k))) < 0.05);
+        assert_true(fabs(y - (1 << k) * round(y / (1 << k))) < 0.05);
+        assert_true(x > -0.05 && y > -0.05 && x + (1 << k) < 31.1 && y + (1 << k) < 26.1);
+        places[k] += (int)lround(x / (1 << k)) + 100 * (int)lround(y / (1 << k));
+        odd += k == 0 && lround(x) % 2 != lround(y) % 2;
+        of_level[k]++;
+    }
+    assert_int_equal(of_level[2], 7 * 6);
+    assert_int_equal(places[2], 6 * 21 + 7 * 1500); /* each once */
+    assert_int_equal(of_level[3], 3 * 3);
+    assert_int_equal(places[3], 3 * 3 + 3 * 300);
+    assert_in_range(odd, 3, 13);
+    weft_excerpt_free(&excerpt);
+    free(level);
+    unlink(path);
+}
+
 /* Two by two squares of 16 x 16 neighbours, each somewhere in its quarter of the dataset, and not all at the same
  * place.
  */
@@ -612,6 +656,7 @@ int main(void)
         cmocka_unit_test(a_handful_is_left_out_one_by_one),
         cmocka_unit_test(small_squares_are_one_of_every_cell),
         cmocka_unit_test(scattered_texels_are_one_of_every_cell),
+        cmocka_unit_test(texels_of_levels_are_means_of_what_they_cover),
         cmocka_unit_test(squares_are_one_of_every_cell),
         cmocka_unit_test(texels_of_a_near_dataset_keep_their_directions),
         cmocka_unit_test(what_is_written_lacks_what_is_held_out),

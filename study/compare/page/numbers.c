@@ -257,8 +257,13 @@ static void print_certificate(weft_page *page, const weft_comparison *comparison
         page->html,
         ". How many samples of this dataset lie in theirs; where they were fitted, more do than it promises. Widths "
         "are means, in parts of the mean sample; %.1f %% if all intervals were alike and held as many. On the right: "
-        "half the width where %.3g is said, under light at 30\u00b0, and the shares of its parts.</p>\n<table>",
+        "half the width where %.3g is said, under light at 30\u00b0, and the shares of its parts.",
         100 * coverage->even_width, certificate->mean);
+    weft_certificate_describe_levels(certificate, line);
+    if (line[0])
+        fputs(" The interval is ", page->html);
+    weft_page_text(page, line);
+    fputs(line[0] ? ".</p>\n<table>" : "</p>\n<table>", page->html);
     weft_page_columns(page, "|values|in their interval|width|:its parts");
     print_covered(page, "all", &coverage->all, "");
     print_covered(page, "darkest fifth that is said", &coverage->dark, "");

@@ -178,6 +178,17 @@ static void measured_levels_may_be_unknown(void **state)
     json_decref(object);
 }
 
+/* Between two levels the finer one counts. */
+static void levels_beyond_the_measured_ones_are_told(void **state)
+{
+    (void)state;
+    const weft_certificate c = {.level_count = 5, .measured_levels = 3}, unknown = {.level_count = 5};
+    assert_true(weft_certificate_is_measured(&c, -1) && weft_certificate_is_measured(&c, 0));
+    assert_true(weft_certificate_is_measured(&c, 2) && weft_certificate_is_measured(&c, 2.9));
+    assert_false(weft_certificate_is_measured(&c, 3) || weft_certificate_is_measured(&c, 4.5));
+    assert_false(weft_certificate_is_measured(&unknown, 0));
+}
+
 static void registration_may_be_absent(void **state)
 {
     (void)state;
@@ -224,6 +235,7 @@ int main(void)
         cmocka_unit_test(what_is_stored_comes_back),
         cmocka_unit_test(damaged_values_are_refused),
         cmocka_unit_test(measured_levels_may_be_unknown),
+        cmocka_unit_test(levels_beyond_the_measured_ones_are_told),
         cmocka_unit_test(registration_may_be_absent),
         cmocka_unit_test(a_material_with_a_damaged_certificate_is_refused),
     };
