@@ -9,8 +9,8 @@
 
 enum { ATTEMPTS = 3, DECIDING = 3, MOST_ALLOWANCE = 4 };
 
-static const double reserve = 0.95; /* of what is allowed: the rest is for other moments */
-static const double less = 0.8;     /* of what was asked, where other moments show more */
+static const double reserve = 0.9; /* of what is allowed: the rest is for other moments */
+static const double less = 0.8;    /* of what was asked, where other moments show more */
 
 /* The slope of sRGB at black: a value of linear radiance changes a pixel by no more than this many times itself. */
 static const double steepest_srgb = 12.92;

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Each step may use so much of what is allowed, with those before it. The rest is for moments that are not looked at.
- */
-static const double share_of_images = 0.35, share_of_digits = 0.9, share_of_layers = 1;
+/* Images may use so much of what is allowed. Digits may use all of the rest: a layer that they leave anything of costs
+ * few bytes, and what goes with it shows more at moments that are not looked at. */
+static const double share_of_images = 0.35;
 static const double margin_deg[] = {20, 40};
 static const double finest_step = 1e-4, step_ratio = 1.1;
 
@@ -110,7 +110,7 @@ static weft_code round_values(shrinking *s, weft_error *error)
         WEFT_TRY(begin(s, s->before->layer_count, error));
         round_layers(step_of(middle), s->material->layers);
         WEFT_TRY(look(s, WEFT_LAYERS_MAX, &is, error));
-        *(is_within(&is, &s->allowed, share_of_digits) ? &low : &high) = middle;
+        *(is_within(&is, &s->allowed, 1) ? &low : &high) = middle;
     }
     WEFT_TRY(begin(s, s->before->layer_count, error));
     s->report->value_step = low < 0 ? 0 : step_of(low);
@@ -130,7 +130,7 @@ static weft_code prune_layers(shrinking *s, weft_error *error)
         int middle = (low + high) / 2;
         weft_prune_error is;
         WEFT_TRY(weft_prune_pictures_compare(s->pictures, middle * WEFT_LAYERS_GROUP, &is, error));
-        *(is_within(&is, &s->allowed, share_of_layers) ? &high : &low) = middle;
+        *(is_within(&is, &s->allowed, 1) ? &high : &low) = middle;
     }
     s->report->layers = (weft_prune_count){(long)high * WEFT_LAYERS_GROUP, all};
     return begin(s, high * WEFT_LAYERS_GROUP, error);
