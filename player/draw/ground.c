@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Directions that a frame adds to a sum that is not whole. */
-enum { MOVING_DIRECTIONS = 4, RESTING_DIRECTIONS = 16 };
+enum { MOVING_DIRECTIONS = 4, RESTING_DIRECTIONS = 8 };
 
 static const double backdrop[3] = {0.34, 0.335, 0.33};
 
