@@ -44,7 +44,7 @@ double weft_player_sequence(const weft_player *p, long frame)
     return fmod((frame < 0 ? (double)p->frames_drawn : (double)frame) * golden_ratio, 1);
 }
 
-static void set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane)
+void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane)
 {
     weft_orbit_axes ray = weft_orbit_rays(&scene->orbit, pane->width, pane->height,
                                           pane->sampling.shift_x / pane->width, pane->sampling.shift_y / pane->height);
@@ -57,7 +57,7 @@ static void set_rays(GLuint program, const weft_scene *scene, const weft_pane *p
 void weft_player_set_point(const weft_player *p, GLuint program, const weft_scene *scene, const weft_pane *pane,
                            const weft_layer *layer)
 {
-    set_rays(program, scene, pane);
+    weft_player_set_rays(program, scene, pane);
     set_lights(p, program, scene, &pane->sampling);
     /* A frame at rest takes longer and shows less of its choices. */
     weft_gl_set_int(program, "chosen_places", pane->sampling.frame < 0 ? 1 : 3);
@@ -115,64 +115,27 @@ static void draw_screen_behind(const weft_player *p)
 
 typedef void draw_there(const weft_player *p);
 
-static void draw_environment(const weft_player *p, const weft_scene *scene, const weft_pane *pane, draw_there *draw)
+static void use_environment(const weft_player *p, const weft_scene *scene, const weft_pane *pane)
 {
     GLuint program = p->environment_background;
     glUseProgram(program);
-    set_rays(program, scene, pane);
+    weft_player_set_rays(program, scene, pane);
     weft_gl_bind(program, "map", 0, GL_TEXTURE_2D, p->environment_map);
     weft_gl_set_float(program, "strength", scene->environment_strength * scene->exposure);
     weft_gl_set_float(program, "turn", scene->environment_turn_rad / (2 * WEFT_PI));
-    draw(p);
 }
 
-/* What falls on the ground, of the first light and of all others. */
-static void set_ground_light(const weft_player *p, GLuint program, const weft_scene *scene,
-                             const weft_sampling *sampling)
-{
-    weft_lighting l = lighting_of(p, scene, sampling);
-    double sum[2][3] = {{0}};
-    for (int i = 0; i < weft_lighting_held(&l); i++)
-        for (int c = 0; c < 3; c++)
-            sum[i > 0 || l.scene_count == 0][c] +=
-                (double)(l.irradiance[i][c] * fmaxf(l.direction[i][2], 0)) / (i < l.scene_count ? 1 : l.set_count);
-    weft_gl_set_vec3(program, "ground_key", sum[0][0], sum[0][1], sum[0][2]);
-    weft_gl_set_vec3(program, "ground_fill", sum[1][0], sum[1][1], sum[1][2]);
-}
-
-static const double backdrop[3] = {0.34, 0.335, 0.33};
-
-static weft_code draw_ground(weft_player *p, const weft_scene *scene, const weft_pane *pane, draw_there *draw,
-                             weft_error *error)
-{
-    GLuint program;
-    WEFT_TRY(weft_programs_find_ground(&p->programs, weft_scene_has_shadows(scene), &program, error));
-    glUseProgram(program);
-    weft_player_set_point(p, program, scene, pane, &p->layer[0]);
-    weft_vec3 eye = weft_orbit_eye(&scene->orbit, p->centre, p->radius);
-    weft_gl_set_vec3(program, "eye", (double)eye.x, (double)eye.y, (double)eye.z);
-    weft_gl_set_vec3(program, "backdrop", backdrop[0], backdrop[1], backdrop[2]);
-    weft_gl_set_float(program, "ground_height", p->lowest_z);
-    weft_gl_set_vec3(program, "ground_centre", (double)p->centre.x, (double)p->centre.y, p->lowest_z);
-    weft_gl_set_float(program, "ground_size", p->radius);
-    set_ground_light(p, program, scene, &pane->sampling);
-    draw(p);
-    return WEFT_OK;
-}
-
-static weft_code draw_background(weft_player *p, const weft_scene *scene, const weft_pane *pane, draw_there *draw,
-                                 weft_error *error)
+static void draw_background(const weft_player *p, const weft_scene *scene, const weft_pane *pane, draw_there *draw)
 {
     glDisable(GL_BLEND);
-    if (scene->ground)
-        return draw_ground(p, scene, pane, draw, error);
-    if (scene->environment && p->environment) {
-        draw_environment(p, scene, pane, draw);
-        return WEFT_OK;
+    if (scene->ground) {
+        weft_player_use_ground(p, scene, pane);
+    } else if (scene->environment && p->environment) {
+        use_environment(p, scene, pane);
+    } else {
+        glUseProgram(p->background);
     }
-    glUseProgram(p->background);
     draw(p);
-    return WEFT_OK;
 }
 
 static weft_code shade_layer(weft_player *p, const weft_scene *scene, const weft_pane *pane, const weft_layer *layer,
@@ -197,7 +160,8 @@ static weft_code draw_opaque_pane(weft_player *p, const weft_scene *scene, const
     glBindFramebuffer(GL_FRAMEBUFFER, target);
     glViewport(pane->left, 0, pane->width, pane->height);
     WEFT_TRY(shade_layer(p, scene, pane, &p->layer[0], target, error));
-    return draw_background(p, scene, pane, draw_screen_behind, error);
+    draw_background(p, scene, pane, draw_screen_behind);
+    return WEFT_OK;
 }
 
 /* Through the holes of the cloth one more layer is seen, and the background. Reflectance is that of the whole texel,
@@ -208,7 +172,8 @@ static weft_code draw_pane_with_holes(weft_player *p, const weft_scene *scene, c
     WEFT_TRY(weft_player_draw_layers(p, scene, pane, WEFT_LAYER_COUNT, error));
     glBindFramebuffer(GL_FRAMEBUFFER, target);
     glViewport(pane->left, 0, pane->width, pane->height);
-    weft_code code = draw_background(p, scene, pane, draw_screen, error);
+    weft_code code = WEFT_OK;
+    draw_background(p, scene, pane, draw_screen);
     for (int i = WEFT_LAYER_COUNT - 1; code == WEFT_OK && i >= 0; i--) {
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -343,6 +308,7 @@ weft_code weft_player_draw(weft_player *p, const weft_scene *asked, int width, i
     GLint target;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
     WEFT_TRY(weft_player_draw_shadows(p, scene, sampling.frame, error));
+    WEFT_TRY(weft_player_advance_ground(p, scene, &sampling, error));
     const weft_pane whole = {.width = width, .height = height, .sampling = sampling};
     WEFT_TRY(draw[scene->layout](p, scene, &whole, (GLuint)target, error));
     p->frames_drawn++;

@@ -24,7 +24,7 @@ static weft_vec3 turned(weft_vec3 direction, double angle_rad)
 }
 
 /* Of a disc of radius key_size_rad about the light, which successive numbers fill evenly (Roberts' sequence R2). */
-static weft_vec3 place_in_key(const weft_scene *scene, long number)
+weft_vec3 weft_lighting_key_place(const weft_scene *scene, long number)
 {
     weft_vec3 middle = weft_direction_of_angles(scene->light[0].direction);
     if (number <= 0 || !(scene->key_size_rad > 0))
@@ -38,10 +38,17 @@ static weft_vec3 place_in_key(const weft_scene *scene, long number)
     return weft_unit(weft_add(middle, shift));
 }
 
+typedef double brightness_of(const weft_distant_light *light);
+
 static double brightness(const weft_distant_light *light)
 {
     return (double)light->direction.z > 0 ? (double)(light->irradiance[0] + light->irradiance[1] + light->irradiance[2])
                                           : 0;
+}
+
+static double brightness_on_ground(const weft_distant_light *light)
+{
+    return brightness(light) * (double)light->direction.z;
 }
 
 /* The i-th light that shadows may come from: a region, or at rest a part of one. Those that follow each other lie
@@ -53,16 +60,17 @@ static const weft_distant_light *fill_light(const weft_environment *environment,
 }
 
 /* Those above the horizon that the shares at[count], which increase, of all their brightness fall into. */
-static void find_fill(const weft_environment *environment, bool rests, const double *at, int count, weft_vec3 *fill)
+static void find_fill(const weft_environment *environment, bool rests, brightness_of *bright, const double *at,
+                      int count, weft_vec3 *fill)
 {
     int light_count = environment->region_count * (rests ? WEFT_ENVIRONMENT_PARTS : 1);
     double total = 0, passed = 0;
     for (int i = 0; i < light_count; i++)
-        total += brightness(fill_light(environment, rests, i));
+        total += bright(fill_light(environment, rests, i));
     int found = 0;
     for (int i = 0; i < light_count && found < count; i++) {
         const weft_distant_light *light = fill_light(environment, rests, i);
-        passed += brightness(light);
+        passed += bright(light);
         for (; found < count && at[found] * total < passed; found++)
             fill[found] = light->direction;
     }
@@ -76,7 +84,7 @@ static void choose_key(weft_lighting *l, const weft_scene *scene, long frame)
     bool is_one = frame < 0 || !(scene->key_size_rad > 0);
     l->key_count = l->scene_count == 0 ? 0 : is_one ? 1 : WEFT_KEY_PLACES;
     for (int i = 0; i < l->key_count; i++)
-        l->key[i] = place_in_key(scene, is_one ? frame : frame * WEFT_KEY_PLACES + i);
+        l->key[i] = weft_lighting_key_place(scene, is_one ? frame : frame * WEFT_KEY_PLACES + i);
 }
 
 /* All of them move on a frame. Lights lie along a curve that fills the sphere, and places on it are even in time. */
@@ -86,9 +94,17 @@ static void choose_fill(weft_lighting *l, const weft_scene *scene, const weft_en
     l->fill_count = frame < 0 ? WEFT_FILL_MOVING : WEFT_FILL_DIRECTIONS;
     for (int i = 0; i < l->fill_count; i++)
         at[i] = (i + place) / l->fill_count;
-    find_fill(environment, frame >= 0, at, l->fill_count, l->fill);
+    find_fill(environment, frame >= 0, brightness, at, l->fill_count, l->fill);
     for (int i = 0; i < l->fill_count; i++)
         l->fill[i] = turned(l->fill[i], scene->environment_turn_rad);
+}
+
+weft_vec3 weft_lighting_ground_place(const weft_scene *scene, const weft_environment *environment, long number)
+{
+    const double at = fmod(0.5 + (double)number * 0.6180339887498949, 1);
+    weft_vec3 direction;
+    find_fill(environment, true, brightness_on_ground, &at, 1, &direction);
+    return turned(direction, scene->environment_turn_rad);
 }
 
 /* The part of its regions that a frame lights pixels of one kind from. Each kind takes all of them in turn. Of the bits
@@ -122,7 +138,8 @@ weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *
 {
     weft_lighting lighting = {.set_count = 1};
     for (int i = 0; i < scene->light_count; i++)
-        add(&lighting, i == 0 ? place_in_key(scene, frame) : weft_direction_of_angles(scene->light[i].direction),
+        add(&lighting,
+            i == 0 ? weft_lighting_key_place(scene, frame) : weft_direction_of_angles(scene->light[i].direction),
             scene->light[i].irradiance);
     lighting.scene_count = lighting.count;
     choose_key(&lighting, scene, frame);

@@ -36,6 +36,11 @@ typedef struct weft_lighting {
  * light of some size its direction and its places move with the frame; frame 0 begins with its middle. */
 weft_lighting weft_lighting_of(const weft_scene *scene, const weft_environment *environment, long frame);
 
+/* Directions from which light falls on level ground: the n-th of the first light, and of an environment, each as likely
+ * as the light is that it brings. They are even, however many there are. */
+weft_vec3 weft_lighting_key_place(const weft_scene *scene, long number);
+weft_vec3 weft_lighting_ground_place(const weft_scene *scene, const weft_environment *environment, long number);
+
 /* Lights all pixels alike, as those of the first kind. */
 void weft_lighting_keep_one_kind(weft_lighting *lighting);
 

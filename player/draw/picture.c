@@ -37,6 +37,7 @@ static weft_code add_frames(weft_player *p, const weft_scene *scene, int samples
     long places = (long)samples * samples, total = places;
     while (total < least_frames(scene))
         total += places;
+    WEFT_TRY(weft_player_finish_ground(p, scene, error));
     for (long i = 0; i < total; i++) {
         const weft_sampling sampling = sampling_of(i, samples, total);
         weft_canvas_begin_frame(canvas);

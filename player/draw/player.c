@@ -15,6 +15,8 @@ static weft_code build_programs(weft_player *p, weft_error *error)
     const char *const background[] = {weft_glsl_background_frag, NULL}, *const copy[] = {weft_glsl_add_frag, NULL};
     WEFT_TRY(weft_gl_program("background", screen, background, &p->background, error));
     WEFT_TRY(weft_gl_program("environment", screen, environment, &p->environment_background, error));
+    const char *const ground[] = {weft_glsl_ground_frag, NULL};
+    WEFT_TRY(weft_gl_program("ground", screen, ground, &p->ground, error));
     WEFT_TRY(weft_gl_program("copy", screen, copy, &p->copy, error));
     return weft_shadow_map_create(&p->shadow, error);
 }
@@ -58,10 +60,13 @@ void weft_player_free(weft_player *p)
     weft_thread_texture_free(&p->threads);
     weft_programs_free(&p->programs);
     weft_shadow_map_free(&p->shadow);
+    for (int i = 0; i < WEFT_GROUND_LIGHTS; i++)
+        weft_ground_shadow_free(&p->ground_shadow[i]);
     for (int i = 0; i < WEFT_LAYER_COUNT; i++)
         weft_layer_free(&p->layer[i]);
     glDeleteProgram(p->background);
     glDeleteProgram(p->environment_background);
+    glDeleteProgram(p->ground);
     glDeleteProgram(p->copy);
     glDeleteTextures(1, &p->kept);
     glDeleteTextures(1, &p->environment_map);
@@ -86,12 +91,14 @@ weft_code weft_player_set_mesh(weft_player *p, const weft_mesh *mesh, weft_error
     if (!(radius > 0) || !isfinite(radius))
         return weft_fail(error, WEFT_BAD_INPUT, "the mesh is %g units large and cannot be looked at", (double)radius);
     free_mesh(p);
-    weft_shadow_map_forget(&p->shadow);
+    weft_player_forget_shadows(p);
     p->centre = weft_vec3_of((weft_real)centre[0], (weft_real)centre[1], (weft_real)centre[2]);
     p->radius = (double)radius;
-    p->lowest_z = (double)mesh->vertex[0].position[2];
-    for (int i = 1; i < mesh->vertex_count; i++)
+    p->lowest_z = p->highest_z = (double)mesh->vertex[0].position[2];
+    for (int i = 1; i < mesh->vertex_count; i++) {
         p->lowest_z = fmin(p->lowest_z, (double)mesh->vertex[i].position[2]);
+        p->highest_z = fmax(p->highest_z, (double)mesh->vertex[i].position[2]);
+    }
     p->triangle_count = mesh->triangle_count;
     p->coarse_count = mesh->coarse_count;
     glGenVertexArrays(1, &p->vertex_array);
@@ -115,7 +122,7 @@ weft_code weft_player_set_mesh(weft_player *p, const weft_mesh *mesh, weft_error
 static void has_now(weft_player *p, weft_mode mode, double width, double height)
 {
     p->has[mode] = true;
-    weft_shadow_map_forget(&p->shadow);
+    weft_player_forget_shadows(p);
     p->texel_count[mode][0] = width;
     p->texel_count[mode][1] = height;
 }
@@ -287,6 +294,7 @@ weft_code weft_player_set_environment(weft_player *p, const weft_image *image, i
     free(p->environment);
     glDeleteTextures(1, &p->environment_map);
     p->environment = environment;
+    weft_player_forget_shadows(p);
     p->environment_map = map;
     return WEFT_OK;
 }

@@ -2,6 +2,7 @@
 #ifndef WEFT_PLAYER_DRAW_PLAYER_PARTS_H
 #define WEFT_PLAYER_DRAW_PLAYER_PARTS_H
 
+#include "player/draw/ground_shadow.h"
 #include "player/draw/player.h"
 #include "player/draw/programs.h"
 #include "player/draw/shadow.h"
@@ -16,6 +17,9 @@
 
 enum { WEFT_LAYER_COUNT = 2 };
 
+/* On the ground: the first light of the scene, and all other light. */
+enum { WEFT_GROUND_LIGHTS = 2 };
+
 /* Which holes let light through, and how close they lie. */
 typedef struct weft_shadow_holes {
     bool any, relief;
@@ -28,7 +32,7 @@ struct weft_player {
     GLuint vertex_array, vertex_buffer, index_buffer;
     int triangle_count, coarse_count; /* coarse ones come after the others (player/mesh/mesh.h) */
     weft_vec3 centre;
-    double radius, lowest_z;
+    double radius, lowest_z, highest_z;
     /* What may lie on it */
     bool has[WEFT_MODE_COUNT];
     weft_raw_texture raw;
@@ -43,10 +47,11 @@ struct weft_player {
     weft_environment *environment; /* or NULL */
     GLuint environment_map;
     weft_shadow_map shadow;
-    weft_shadow_holes shadow_holes; /* that it was drawn with */
+    weft_ground_shadow ground_shadow[WEFT_GROUND_LIGHTS];
+    weft_shadow_holes shadow_holes; /* that both were drawn with */
     /* Programs */
     weft_programs programs;
-    GLuint background, environment_background, copy;
+    GLuint background, environment_background, ground, copy;
     GLuint empty_array;
     weft_labels labels;
     weft_layer layer[WEFT_LAYER_COUNT]; /* the second lies behind the first */
@@ -95,6 +100,35 @@ double weft_player_sequence(const weft_player *player, long frame);
 /* Draws what the shadows of the frame need, if it has any; leaves another framebuffer bound. Light passes through the
  * holes of the cloth, as the first mode that is shown and has holes knows them. Errors: WEFT_SYSTEM. */
 weft_code weft_player_draw_shadows(weft_player *player, const weft_scene *scene, long frame, weft_error *error);
+
+/* Adds to what the mesh hides of the lights from the ground, if the scene shows that and it is not whole yet: a few
+ * directions, or all that it lacks. It begins anew where lights, mesh or holes are others. Leaves another framebuffer
+ * bound. Errors: WEFT_SYSTEM. */
+weft_code weft_player_advance_ground(weft_player *player, const weft_scene *scene, const weft_sampling *sampling,
+                                     weft_error *error);
+weft_code weft_player_finish_ground(weft_player *player, const weft_scene *scene, weft_error *error);
+
+/* The program that draws the ground of a pane behind the mesh is in use then. */
+void weft_player_use_ground(const weft_player *player, const weft_scene *scene, const weft_pane *pane);
+
+/* What was drawn of shadows is drawn again. */
+void weft_player_forget_shadows(weft_player *player);
+
+/* Lets light through the holes that the scene shows, from now on. */
+void weft_player_take_holes(weft_player *player, const weft_scene *scene);
+
+/* The program that draws the mesh as it casts shadows, and what it needs, in use, but for its clip_of_world.
+ * `sequence`: as weft_player_sequence has it. Errors: WEFT_SYSTEM. */
+weft_code weft_player_find_caster(weft_player *player, const weft_scene *scene, bool is_soft, GLuint *program,
+                                  weft_error *error);
+void weft_player_set_caster(const weft_player *player, const weft_scene *scene, weft_vec3 light, double sequence,
+                            GLuint program);
+
+/* The triangles of the mesh; coarse ones where it has some. */
+void weft_player_draw_mesh(const weft_player *player, bool coarse);
+
+/* Sets the rays through the pixels of a pane, `program` being in use. */
+void weft_player_set_rays(GLuint program, const weft_scene *scene, const weft_pane *pane);
 
 /* Shows `texture`, which is taken. last_ring_z: the smallest z of the views and of the lights. */
 void weft_player_take_raw(weft_player *player, weft_raw_texture *texture, const double last_ring_z[2]);

@@ -125,7 +125,6 @@ void weft_programs_free(weft_programs *p)
     for (int i = 0; i < 2; i++) {
         glDeleteProgram(p->surface[i]);
         glDeleteProgram(p->geometry[i]);
-        glDeleteProgram(p->ground[i]);
     }
     *p = (weft_programs){0};
 }
@@ -179,9 +178,4 @@ static weft_code find_with_surface(const char *name, const char *fragment, bool 
 weft_code weft_programs_find_geometry(weft_programs *p, bool shadows, GLuint *program, weft_error *error)
 {
     return find_with_surface("geometry", weft_glsl_geometry_frag, shadows, &p->geometry[shadows], program, error);
-}
-
-weft_code weft_programs_find_ground(weft_programs *p, bool shadows, GLuint *program, weft_error *error)
-{
-    return find_with_surface("ground", weft_glsl_ground_frag, shadows, &p->ground[shadows], program, error);
 }

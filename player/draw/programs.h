@@ -36,7 +36,6 @@ typedef struct weft_programs {
     GLuint name[WEFT_PROGRAM_CAPACITY];
     GLuint surface[2];  /* [1]: of what lies behind another layer */
     GLuint geometry[2]; /* [1]: with shadows */
-    GLuint ground[2];   /* the same */
 } weft_programs;
 
 /* Start from a zeroed value. */
@@ -46,10 +45,9 @@ void weft_programs_free(weft_programs *programs);
 weft_code weft_programs_find(weft_programs *programs, const weft_program_kind *kind, GLuint *program,
                              weft_error *error);
 
-/* The same for the program that draws a layer of the surface (player/draw/shaders/surface.frag.glsl), for the one that
- * writes the inputs of the shading (player/draw/shaders/geometry.frag.glsl) and for the ground. */
+/* The same for the program that draws a layer of the surface (player/draw/shaders/surface.frag.glsl) and for the one
+ * that writes the inputs of the shading (player/draw/shaders/geometry.frag.glsl). */
 weft_code weft_programs_find_surface(weft_programs *programs, bool behind, GLuint *program, weft_error *error);
 weft_code weft_programs_find_geometry(weft_programs *programs, bool shadows, GLuint *program, weft_error *error);
-weft_code weft_programs_find_ground(weft_programs *programs, bool shadows, GLuint *program, weft_error *error);
 
 #endif

@@ -18,8 +18,9 @@ static double level_uniform(const weft_scene *scene)
     }
 }
 
-static void draw_mesh(const weft_player *p, bool coarse)
+void weft_player_draw_mesh(const weft_player *p, bool coarse)
 {
+    coarse = coarse && p->coarse_count > 0;
     size_t first = coarse ? (size_t)p->triangle_count : 0;
     glBindVertexArray(p->vertex_array);
     glDrawElements(GL_TRIANGLES, 3 * (coarse ? p->coarse_count : p->triangle_count), GL_UNSIGNED_INT,
@@ -33,7 +34,7 @@ static bool wants_coarse(const weft_player *p, const weft_scene *scene, const we
 {
     double side = pane->width < pane->height ? pane->width : pane->height;
     double radius = exp2(-pane->sampling.level_bias) * side / (2 * weft_orbit_slope() * scene->orbit.distance);
-    return p->coarse_count > 0 && WEFT_PI * radius * radius < smallest_triangle * p->triangle_count;
+    return WEFT_PI * radius * radius < smallest_triangle * p->triangle_count;
 }
 
 /* Width by height of what is shown. A cell of a weave need not be square, a texel is. */
@@ -79,7 +80,7 @@ static weft_code draw_layer(weft_player *p, const weft_scene *scene, const weft_
     set_view(p, program, scene, pane);
     if (front)
         weft_gl_bind(program, "front_depth", 0, GL_TEXTURE_2D, front->depth);
-    draw_mesh(p, wants_coarse(p, scene, pane));
+    weft_player_draw_mesh(p, wants_coarse(p, scene, pane));
     glDisable(GL_DEPTH_TEST);
     return WEFT_OK;
 }
@@ -125,18 +126,19 @@ static weft_shadow_holes holes_of(const weft_player *p, const weft_scene *scene)
 }
 
 /* What was drawn with other holes is drawn again. */
-static void take_holes(weft_player *p, const weft_scene *scene)
+void weft_player_take_holes(weft_player *p, const weft_scene *scene)
 {
     weft_shadow_holes now = holes_of(p, scene), *was = &p->shadow_holes;
     bool same = now.any ? was->any && now.relief == was->relief && now.mode == was->mode &&
                               now.repeat[0] == was->repeat[0] && now.repeat[1] == was->repeat[1]
                         : !was->any;
     if (!same)
-        weft_shadow_map_forget(&p->shadow);
+        weft_player_forget_shadows(p);
     *was = now;
 }
 
-static weft_code find_caster(weft_player *p, const weft_scene *scene, bool is_soft, GLuint *program, weft_error *error)
+weft_code weft_player_find_caster(weft_player *p, const weft_scene *scene, bool is_soft, GLuint *program,
+                                  weft_error *error)
 {
     *program = p->shadow.program;
     if (!p->shadow_holes.any)
@@ -145,8 +147,11 @@ static weft_code find_caster(weft_player *p, const weft_scene *scene, bool is_so
     return weft_programs_find(&p->programs, &kind, program, error);
 }
 
-static void set_holes(const weft_player *p, const weft_scene *scene, weft_vec3 light, double sequence, GLuint program)
+void weft_player_set_caster(const weft_player *p, const weft_scene *scene, weft_vec3 light, double sequence,
+                            GLuint program)
 {
+    if (!p->shadow_holes.any)
+        return;
     weft_mode mode = p->shadow_holes.mode;
     weft_player_bind_mode(p, scene, mode, program);
     set_material(p, program, scene, mode);
@@ -161,12 +166,11 @@ static weft_code draw_shadow(weft_player *p, const weft_scene *scene, int layer,
                              long frame, weft_error *error)
 {
     GLuint program;
-    WEFT_TRY(find_caster(p, scene, is_soft, &program, error));
+    WEFT_TRY(weft_player_find_caster(p, scene, is_soft, &program, error));
     if (!weft_shadow_map_begin(&p->shadow, layer, is_soft, light, p->centre, p->radius, program))
         return WEFT_OK;
-    if (p->shadow_holes.any)
-        set_holes(p, scene, light, is_soft ? weft_player_sequence(p, frame) : 0, program);
-    draw_mesh(p, is_soft && p->coarse_count > 0);
+    weft_player_set_caster(p, scene, light, is_soft ? weft_player_sequence(p, frame) : 0, program);
+    weft_player_draw_mesh(p, is_soft);
     weft_shadow_map_end();
     return WEFT_OK;
 }
@@ -177,7 +181,7 @@ weft_code weft_player_draw_shadows(weft_player *p, const weft_scene *scene, long
 {
     if (!weft_scene_has_shadows(scene))
         return WEFT_OK;
-    take_holes(p, scene);
+    weft_player_take_holes(p, scene);
     weft_lighting lighting = weft_lighting_of(scene, p->environment, frame);
     /* Light that moves over cloth with holes has no time for more. */
     bool is_soft = scene->key_size_rad > 0 || (frame < 0 && p->shadow_holes.any);

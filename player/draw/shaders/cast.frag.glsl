@@ -1,6 +1,7 @@
 // The shadow of cloth with holes: depth is kept where the cloth, as the light sees it, is no hole. A texel of the map that
 // is partly open is so by chance, and the comparisons around a place average that.
 uniform vec3 toward_light; // world, unit
+out vec4 colour; // where it is counted
 
 void main()
 {
@@ -16,4 +17,5 @@ void main()
     point.chance = pixel_chance();
     if (opacity(point) <= fract(point.chance + 0.61803399))
         discard;
+    colour = vec4(1.0);
 }
