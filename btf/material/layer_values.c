@@ -4,7 +4,7 @@
 
 enum { RED, GREEN, BLUE, CHANNELS };
 enum { OF_GREEN, OF_BEFORE, OF_ACROSS };
-enum { SHIFT = 6 /* 2^6 is the weight of one */ };
+enum { SHIFT = 5 /* 2^5 is the weight of one */ };
 
 /* The images that one is told from; -1: there is none. */
 typedef struct weft_image_origins {
@@ -29,27 +29,35 @@ static int whole(weft_half value)
     return (int)weft_float_of_half(value);
 }
 
-/* The share of green that another channel is told from, rounded down. */
-static int share_of_green(int green, const int8_t *weight)
+/* The sum of weighted values as a whole number. */
+static int whole_of_sum(int sum, const weft_value_weights *weights)
 {
-    return (weight[OF_GREEN] * green) >> SHIFT;
+    return (sum + (weights->to_nearest ? 1 << (SHIFT - 1) : 0)) >> SHIFT;
+}
+
+/* The share of green that another channel is told from. */
+static int share_of_green(int green, int channel, const weft_value_weights *weights)
+{
+    return whole_of_sum(weights->of[channel][OF_GREEN] * green, weights);
 }
 
 /* Green, or how much more than its share of green a channel is. */
-static int told(const weft_layers *layers, long image, int layer, int channel, const int8_t *weight)
+static int told(const weft_layers *layers, long image, int layer, int channel, const weft_value_weights *weights)
 {
     const weft_half *value = layers->value + index_of(layers, image, layer);
-    return whole(value[channel]) - (channel == GREEN ? 0 : share_of_green(whole(value[GREEN]), weight));
+    return whole(value[channel]) - (channel == GREEN ? 0 : share_of_green(whole(value[GREEN]), channel, weights));
 }
 
-/* The sum of the weighted origins, rounded down. */
-static int predicted(const weft_layers *layers, weft_image_origins from, int layer, int channel, const int8_t *weight)
+/* The sum of the weighted origins. */
+static int predicted(const weft_layers *layers, weft_image_origins from, int layer, int channel,
+                     const weft_value_weights *weights)
 {
     if (from.before < 0 && from.across < 0)
         return 0;
-    int before = told(layers, from.before < 0 ? from.across : from.before, layer, channel, weight);
-    int across = told(layers, from.across < 0 ? from.before : from.across, layer, channel, weight);
-    return (weight[OF_BEFORE] * before + weight[OF_ACROSS] * across) >> SHIFT;
+    int before = told(layers, from.before < 0 ? from.across : from.before, layer, channel, weights);
+    int across = told(layers, from.across < 0 ? from.before : from.across, layer, channel, weights);
+    const int8_t *weight = weights->of[channel];
+    return whole_of_sum(weight[OF_BEFORE] * before + weight[OF_ACROSS] * across, weights);
 }
 
 /* 0, -1, 1, -2 .. as 0, 1, 2, 3 .. */
@@ -78,7 +86,7 @@ bool weft_layer_values_are_whole(const weft_layers *layers)
 weft_value_weights weft_value_weights_plain(void)
 {
     enum { ONE = WEFT_VALUE_WEIGHT_OF_ONE };
-    return (weft_value_weights){{{ONE, ONE / 2, ONE / 2}, {0, ONE / 2, ONE / 2}, {ONE, ONE / 2, ONE / 2}}};
+    return (weft_value_weights){.of = {{ONE, ONE / 2, ONE / 2}, {0, ONE / 2, ONE / 2}, {ONE, ONE / 2, ONE / 2}}};
 }
 
 static int8_t weight_of(double weight)
@@ -94,16 +102,16 @@ typedef struct weight_sums {
 } weight_sums;
 
 static void add_image(const weft_layers *layers, weft_image_origins from, long image, int layer, int channel,
-                      const int8_t *weight, weight_sums *sums)
+                      const weft_value_weights *weights, weight_sums *sums)
 {
-    const int8_t all[WEFT_VALUE_WEIGHTS] = {0};
-    double green = told(layers, image, layer, GREEN, all) -
-                   0.5 * (told(layers, from.before, layer, GREEN, all) + told(layers, from.across, layer, GREEN, all));
-    double other = told(layers, image, layer, channel, all) - 0.5 * (told(layers, from.before, layer, channel, all) +
-                                                                     told(layers, from.across, layer, channel, all));
-    double own = told(layers, image, layer, channel, weight);
-    double before = told(layers, from.before, layer, channel, weight);
-    double across = told(layers, from.across, layer, channel, weight);
+    const weft_value_weights all = {0};
+    double green = told(layers, image, layer, GREEN, &all) - 0.5 * (told(layers, from.before, layer, GREEN, &all) +
+                                                                    told(layers, from.across, layer, GREEN, &all));
+    double other = told(layers, image, layer, channel, &all) - 0.5 * (told(layers, from.before, layer, channel, &all) +
+                                                                      told(layers, from.across, layer, channel, &all));
+    double own = told(layers, image, layer, channel, weights);
+    double before = told(layers, from.before, layer, channel, weights);
+    double across = told(layers, from.across, layer, channel, weights);
     sums->green_green += green * green;
     sums->green_channel += green * other;
     sums->before_before += before * before;
@@ -113,27 +121,28 @@ static void add_image(const weft_layers *layers, weft_image_origins from, long i
     sums->across_own += across * own;
 }
 
-static weight_sums sum_images(const weft_layers *layers, int layer, int channel, const int8_t *weight)
+static weight_sums sum_images(const weft_layers *layers, int layer, int channel, const weft_value_weights *weights)
 {
     weight_sums sums = {0};
     for (int view = 0; view < layers->view_count; view++)
         for (uint32_t image = layers->first[view]; image < layers->first[view + 1]; image++) {
             weft_image_origins from = origins_of(layers, view, image);
             if (from.before >= 0 && from.across >= 0)
-                add_image(layers, from, image, layer, channel, weight, &sums);
+                add_image(layers, from, image, layer, channel, weights, &sums);
         }
     return sums;
 }
 
-static void fit_channel(const weft_layers *layers, int layer, int channel, int8_t *weight)
+static void fit_channel(const weft_layers *layers, int layer, int channel, weft_value_weights *weights)
 {
+    int8_t *weight = weights->of[channel];
     weight_sums sums;
     if (channel != GREEN) {
-        sums = sum_images(layers, layer, channel, weight);
+        sums = sum_images(layers, layer, channel, weights);
         if (sums.green_green > 0)
             weight[OF_GREEN] = weight_of(sums.green_channel / sums.green_green);
     }
-    sums = sum_images(layers, layer, channel, weight);
+    sums = sum_images(layers, layer, channel, weights);
     double determinant = sums.before_before * sums.across_across - sums.before_across * sums.before_across;
     if (determinant > 1e-6 * sums.before_before * sums.across_across) {
         weight[OF_BEFORE] =
@@ -146,8 +155,9 @@ static void fit_channel(const weft_layers *layers, int layer, int channel, int8_
 weft_value_weights weft_value_weights_fit(const weft_layers *layers, int layer)
 {
     weft_value_weights weights = weft_value_weights_plain();
+    weights.to_nearest = true;
     for (int channel = 0; channel < CHANNELS; channel++)
-        fit_channel(layers, layer, channel, weights.of[channel]);
+        fit_channel(layers, layer, channel, &weights);
     return weights;
 }
 
@@ -160,9 +170,9 @@ static void write_image(const weft_layers *layers, const weft_value_weights *wei
     uint8_t *high = low + index_of(layers, layers->image_count, 0);
     for (int layer = 0; layer < layers->layer_count; layer++)
         for (int c = 0; c < CHANNELS; c++) {
-            const int8_t *weight = weights[layer].of[c];
+            const weft_value_weights *own = &weights[layer];
             size_t at = index_of(layers, image, layer) + (size_t)c;
-            unsigned code = code_of(told(layers, image, layer, c, weight) - predicted(layers, from, layer, c, weight));
+            unsigned code = code_of(told(layers, image, layer, c, own) - predicted(layers, from, layer, c, own));
             low[at] = (uint8_t)code;
             high[at] = (uint8_t)(code >> 8);
         }
@@ -183,9 +193,9 @@ static bool read_pixel(const uint8_t *low, const uint8_t *high, const weft_value
     int value[CHANNELS];
     for (int c = 0; c < CHANNELS; c++)
         value[c] = difference_of(low[at + (size_t)c] | (unsigned)high[at + (size_t)c] << 8) +
-                   predicted(layers, from, layer, c, weights->of[c]);
-    value[RED] += share_of_green(value[GREEN], weights->of[RED]);
-    value[BLUE] += share_of_green(value[GREEN], weights->of[BLUE]);
+                   predicted(layers, from, layer, c, weights);
+    value[RED] += share_of_green(value[GREEN], RED, weights);
+    value[BLUE] += share_of_green(value[GREEN], BLUE, weights);
     for (int c = 0; c < CHANNELS; c++) {
         if (value[c] < -WEFT_LAYERS_LARGEST_WHOLE || value[c] > WEFT_LAYERS_LARGEST_WHOLE)
             return false;

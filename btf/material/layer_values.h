@@ -11,21 +11,23 @@
 enum {
     WEFT_LAYERS_LARGEST_WHOLE = 2048, /* half floats hold all whole numbers up to it */
     WEFT_VALUE_WEIGHTS = 3, /* of green at the image, of the image before it, and of the one in the view before */
-    WEFT_VALUE_WEIGHT_OF_ONE = 64
+    WEFT_VALUE_WEIGHT_OF_ONE = 32
 };
 
-/* What the three channels of a layer are told with. */
+/* What the three channels of a layer are told with, and whether what they are told from is rounded to the nearest whole
+ * number; else down. */
 typedef struct weft_value_weights {
     int8_t of[3][WEFT_VALUE_WEIGHTS];
+    bool to_nearest;
 } weft_value_weights;
 
 /* Whether all values are whole numbers that differences can tell. Pure. */
 bool weft_layer_values_are_whole(const weft_layers *layers);
 
-/* The weights of a file without them: all of green, half of each image. Pure. */
+/* The weights of a file without them: all of green, half of each image, rounded down. Pure. */
 weft_value_weights weft_value_weights_plain(void);
 
-/* Those that leave the least squares of the differences of layer number `layer`, each to a 64th of -2 .. 127/64. The
+/* Those that leave the least squares of the differences of layer number `layer`, each to a 32nd of -4 .. 127/32. The
  * values are whole. Pure. */
 weft_value_weights weft_value_weights_fit(const weft_layers *layers, int layer);
 

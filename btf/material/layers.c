@@ -192,7 +192,7 @@ static array_list arrays_of(const weft_layers *layers)
 static size_t weights_size(const weft_layers *layers, weft_layers_coding coding)
 {
     size_t count = (size_t)layers->layer_count;
-    return coding == WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES ? count * sizeof(weft_value_weights) : 0;
+    return coding == WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES ? count * sizeof((weft_value_weights){0}.of) : 0;
 }
 
 size_t weft_layers_header_size(const weft_layers *layers, weft_layers_coding coding)
@@ -213,9 +213,10 @@ static void write_differences(const weft_layers *layers, uint8_t *bytes)
 {
     weft_value_weights weights[WEFT_LAYERS_MAX];
     size_t size = weights_size(layers, WEFT_LAYERS_BY_WEIGHTED_DIFFERENCES);
-    for (int layer = 0; layer < layers->layer_count; layer++)
+    for (int layer = 0; layer < layers->layer_count; layer++) {
         weights[layer] = weft_value_weights_fit(layers, layer);
-    memcpy(bytes, weights, size);
+        memcpy(bytes + (size_t)layer * sizeof weights->of, weights[layer].of, sizeof weights->of);
+    }
     weft_layer_values_write(layers, weights, bytes + size);
 }
 
@@ -306,9 +307,12 @@ static const char *read_differences(const uint8_t *bytes, weft_layers_coding cod
 {
     weft_value_weights weights[WEFT_LAYERS_MAX];
     size_t size = weights_size(layers, coding);
-    for (int layer = 0; layer < layers->layer_count; layer++)
+    for (int layer = 0; layer < layers->layer_count; layer++) {
         weights[layer] = weft_value_weights_plain();
-    memcpy(weights, bytes, size);
+        weights[layer].to_nearest = size > 0;
+        if (size > 0)
+            memcpy(weights[layer].of, bytes + (size_t)layer * sizeof weights->of, sizeof weights->of);
+    }
     return weft_layer_values_read(bytes + size, weights, layers);
 }
 

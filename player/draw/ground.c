@@ -26,11 +26,16 @@ static weft_vec3 ground_below(const weft_player *p)
     return weft_vec3_of(p->centre.x, p->centre.y, (weft_real)p->lowest_z);
 }
 
+static bool is_same_light(const double a[3], const double b[3])
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 /* Begins anew where the light is another one. */
 static weft_code follow(weft_player *p, weft_ground_shadow *shadow, const double light[3], double reach,
                         weft_error *error)
 {
-    if (shadow->count > 0 && memcmp(shadow->light, light, sizeof shadow->light) == 0)
+    if (shadow->count > 0 && is_same_light(shadow->light, light))
         return WEFT_OK;
     memcpy(shadow->light, light, sizeof shadow->light);
     return weft_ground_shadow_clear(shadow, ground_below(p), reach, error);

@@ -280,7 +280,7 @@ static void surface_rows(weft_interaction *i)
 {
     static const char *const level[] = {"Trilinear", "Nearest", "None"};
     int choice = (int)i->scene.level_choice;
-    i->changed |= weft_ui_slider("Repeats", &i->scene.repeat, 0.25, 64, "%.2f", true);
+    i->changed |= weft_ui_slider("Repeats", &i->scene.repeat, 0.25, 256, "%.2f", true);
     if (weft_ui_choice("Mip levels", &choice, level, NULL, 3)) {
         i->scene.level_choice = (weft_level_choice)choice;
         i->changed = true;

@@ -216,9 +216,9 @@ static void differences_are_those_of_the_document(void **state)
 static void weighted_differences_are_those_of_the_document(void **state)
 {
     (void)state;
-    static const int8_t weight[9] = {96, 40, 24, 0, -16, 70, -20, 64, -3};
-    static const int rgb[7][3] = {{5, 5, -3},   {9, 8, -3}, {6, 1, -3}, {11, 4, -3},
-                                  {308, 3, -2}, {5, -1, 0}, {1, 3, -2}};
+    static const int8_t weight[9] = {97, 20, 12, 0, -8, 35, -11, 32, -3};
+    static const int rgb[7][3] = {{13, 5, -3},  {21, 8, -3}, {8, 1, -2}, {20, 5, -3},
+                                  {316, 4, -2}, {7, 0, 0},   {9, 4, -2}};
     static const unsigned code[7][3] = {{3, 10, 1},  {1, 8, 2}, {14, 5, 1}, {6, 7, 2},
                                         {598, 0, 0}, {4, 1, 4}, {17, 1, 1}};
     size_t size;
@@ -230,8 +230,8 @@ static void weighted_differences_are_those_of_the_document(void **state)
     free(bytes);
 }
 
-/* Red is one and a half times green, rounded down, blue is minus green, and every view has what the one before it has:
- * weights of 96, -64 and, of the view before, 64 leave nothing of red, blue and all views but the first. */
+/* Red is three and a half times green, rounded up, blue is minus green, and every view has what the one before it has:
+ * weights of 112, -32 and, of the view before, 32 leave nothing of red, blue and all views but the first. */
 static void weights_are_those_that_leave_least(void **state)
 {
     (void)state;
@@ -243,7 +243,7 @@ static void weights_are_those_that_leave_least(void **state)
     memcpy(material.layers->first, first, sizeof first);
     for (int i = 0; i < 7; i++) {
         weft_half *value = material.layers->value + 24 * i + 3;
-        value[0] = weft_half_of_float(floorf(1.5f * (float)green[i]));
+        value[0] = weft_half_of_float(floorf(3.5f * (float)green[i] + 0.5f));
         value[1] = weft_half_of_float((float)green[i]);
         value[2] = weft_half_of_float((float)-green[i]);
     }
@@ -251,10 +251,10 @@ static void weights_are_those_that_leave_least(void **state)
     uint8_t *bytes = write_differences(material.layers, &size);
     const uint8_t *low = bytes + size - 2 * EXAMPLE_VALUES, *high = low + EXAMPLE_VALUES;
     const int8_t *weight = (const int8_t *)(low - 8 * 9) + 9;
-    assert_int_equal(weight[0], 96);
-    assert_int_equal(weight[6], -64);
+    assert_int_equal(weight[0], 112);
+    assert_int_equal(weight[6], -32);
     assert_int_equal(weight[4], 0);
-    assert_int_equal(weight[5], 64);
+    assert_int_equal(weight[5], 32);
     for (int i = 0; i < EXAMPLE_VALUES; i++) {
         int is_told = i / 24 < 3 && i % 24 == 4;
         assert_int_equal(low[i] + 256 * high[i] != 0, is_told);
