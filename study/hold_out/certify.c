@@ -270,7 +270,7 @@ weft_code weft_certify(const weft_residuals *held, const weft_residuals *fitted,
         return WEFT_OK;
     size_t of_held = largest_count(held), of_fitted = largest_count(fitted);
     size_t most = of_held > of_fitted ? of_held : of_fitted;
-    float *scratch = malloc(most * sizeof *scratch);
+    float *scratch = malloc((most + 1) * sizeof *scratch);
     if (!scratch)
         return weft_fail_memory(error, "residuals", most * sizeof *scratch);
     const level_source source = source_of_levels(held, spacing, neighbours);
