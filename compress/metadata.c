@@ -52,7 +52,7 @@ static json_t *list_trials(const weft_layers_report *report)
     json_t *trials = json_array();
     int tried = report->scattered ? WEFT_LAYERS_OF_HALF_VECTOR_SQUARED : WEFT_LAYERS_KINDS;
     for (int kind = 0; kind < tried; kind++)
-        json_array_append_new(trials, json_real(report->trial_error[kind]));
+        weft_json_append(&trials, json_real(report->trial_error[kind]));
     return trials;
 }
 

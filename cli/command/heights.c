@@ -1,5 +1,6 @@
 #include "cli/command/heights.h"
 
+#include "base/text/json_text.h"
 #include "relief/keep.h"
 #include "relief/page.h"
 
@@ -11,8 +12,7 @@ void weft_heights_say(const weft_common_options *common, const weft_relief_repor
     weft_relief_reason(report, reason, sizeof reason);
     weft_command_say(common, "%s", reason);
     json_t *object = weft_relief_report_pack(report);
-    if (object)
-        json_object_set_new(object, "event", json_string("relief"));
+    weft_json_put(&object, "event", json_string("relief"));
     char *event = object ? json_dumps(object, JSON_COMPACT) : NULL;
     json_decref(object);
     if (event)

@@ -63,8 +63,9 @@ weft_code weft_verify_cameras(const char *folder, const weft_session *sessions, 
     weft_code code = faults ? check_all(folder, sessions, list, progress, description, faults, error)
                             : weft_fail_memory(error, "description", 0);
     size_t count = json_array_size(faults);
+    if (code == WEFT_OK && count > 0 && json_object_set(description, "faults", faults) != 0)
+        code = weft_fail_memory(error, "description", 0);
     if (code == WEFT_OK && count > 0) {
-        json_object_set(description, "faults", faults);
         const char *first = json_string_value(json_object_get(json_array_get(faults, 0), "text"));
         code = count == 1 ? weft_fail(error, WEFT_BAD_INPUT, "%s", first)
                           : weft_fail(error, WEFT_BAD_INPUT, "session '%s': %zu faults of %d cameras", folder, count,
