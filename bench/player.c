@@ -1,7 +1,7 @@
-/* Frame times of the player, each mode at 730 x 400, from the scene to what a window would show: median of FRAMES
- * frames by the wall and by the GPU's own timestamps, and the mean processor time. "moving": the frames that the window
- * draws while things move, with as many pixels as it has time for, and with all of them. Usage: bench_player
- * [NAME.weft] [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
+/* Frame times of the player, each mode at 730 x 400 or another size, from the scene to what a window would show: median
+ * of FRAMES frames by the wall and by the GPU's own timestamps, and the mean processor time. "moving": the frames that
+ * the window draws while things move, with as many pixels as it has time for, and with all of them. Usage: bench_player
+ * [--size WxH] [NAME.weft] [NAME.btf.h5] [CLOTH.wv TILES] [MAP.exr] */
 #include "base/numeric/statistics.h"
 #include "bench/measure.h"
 #include "player/draw/moving.h"
@@ -17,7 +17,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 730, HEIGHT = 400, FRAMES = 41, WARM_UP = 15 };
+enum { FRAMES = 41, WARM_UP = 15 };
+
+static int width = 730, height = 400;
 
 static void stop_on(weft_code code, const weft_error *error)
 {
@@ -29,7 +31,7 @@ static void create_screen(GLuint *buffer, GLuint *texture)
 {
     weft_error error = {0};
     const weft_texture_format format = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
-    stop_on(weft_gl_texture(format, WIDTH, HEIGHT, 0, NULL, texture, &error), &error);
+    stop_on(weft_gl_texture(format, width, height, 0, NULL, texture, &error), &error);
     glGenFramebuffers(1, buffer);
     glBindFramebuffer(GL_FRAMEBUFFER, *buffer);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, *texture, 0);
@@ -117,7 +119,7 @@ static weft_image picture(weft_player *player, const weft_scene *scene, long fra
     for (int i = 0; i < samples; i++) {
         const weft_sampling sampling = {.frame = frame < 0 ? frame : frame + i};
         weft_canvas_begin_frame(canvas);
-        stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, sampling, &error), &error);
+        stop_on(weft_player_draw(player, scene, width, height, sampling, &error), &error);
         weft_canvas_end_frame(canvas);
     }
     stop_on(weft_canvas_read(canvas, &image, &error), &error);
@@ -163,8 +165,8 @@ static weft_image shown(const weft_scene *scene, const weft_image *picture)
 {
     weft_error error = {0};
     weft_image image;
-    stop_on(weft_image_create(WIDTH, HEIGHT, &image, &error), &error);
-    memcpy(image.pixels, picture->pixels, 3 * sizeof(float) * WIDTH * HEIGHT);
+    stop_on(weft_image_create(width, height, &image, &error), &error);
+    memcpy(image.pixels, picture->pixels, 3 * sizeof(float) * (size_t)width * (size_t)height);
     weft_scene_show(scene, &image);
     return image;
 }
@@ -182,7 +184,7 @@ static void judge_shown_frames(weft_player *player, const weft_scene *scene, con
         weft_image image = frames[i] > 0 ? picture(player, scene, 0, frames[i], canvas) : shown(scene, reference);
         if (frames[i] > 0)
             weft_scene_show(scene, &image);
-        for (int k = 0; frames[i] == 0 && k < 3 * WIDTH * HEIGHT; k++)
+        for (int k = 0; frames[i] == 0 && k < 3 * width * height; k++)
             image.pixels[k] = roundf(255 * image.pixels[k]) / 255;
         stop_on(weft_picture_quality_measure(&screen, &image, &quality, &error), &error);
         printf(frames[i] > 0 ? " %d" : " rounded", frames[i]);
@@ -297,7 +299,7 @@ static double sum_of_c(const weft_material *material, const weft_surface_sample 
     double sum = 0;
     stop_on(weft_table_directions_create(material, &directions, &error), &error);
     *pixels = 0;
-    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+    for (int i = 0; i < width * height; i++) {
         const weft_surface_sample *at = &surface[i];
         if (at->covered == 0)
             continue;
@@ -319,7 +321,7 @@ static void judge_material(weft_player *player, const char *path)
     long pixels;
     const weft_scene scene = weft_scene_default();
     stop_on(weft_material_read(path, &material, &error), &error);
-    stop_on(weft_player_read_surface(player, &scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &surface, &error), &error);
+    stop_on(weft_player_read_surface(player, &scene, WEFT_MODE_COMPRESSED, width, height, &surface, &error), &error);
     double start = bench_now_ms(CLOCK_MONOTONIC), sum = sum_of_c(&material, surface, &pixels),
            c_ms = bench_now_ms(CLOCK_MONOTONIC) - start;
     double frame_gb = 1e-9 * weft_fetches_of_material(&material).bytes * (double)pixels, speed = memory_speed();
@@ -406,10 +408,18 @@ int main(int argc, char **argv)
     weft_headless *headless;
     weft_player *player;
     weft_canvas canvas;
+    if (argc > 2 && strcmp(argv[1], "--size") == 0) {
+        if (sscanf(argv[2], "%dx%d", &width, &height) != 2 || width < 1 || height < 1) {
+            fprintf(stderr, "bench_player: --size takes WxH, not '%s'\n", argv[2]);
+            return WEFT_BAD_USAGE;
+        }
+        argc -= 2;
+        argv += 2;
+    }
     stop_on(weft_headless_create(WEFT_GL_CORE, &headless, &error), &error);
     stop_on(weft_player_create(&player, &error), &error);
-    stop_on(weft_canvas_create(WIDTH, HEIGHT, &canvas, &error), &error);
-    printf("%s, %d x %d\n", weft_gl_renderer(), WIDTH, HEIGHT);
+    stop_on(weft_canvas_create(width, height, &canvas, &error), &error);
+    printf("%s, %d x %d\n", weft_gl_renderer(), width, height);
     load(player, argc, argv);
     time_far_away(player, &canvas);
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {

@@ -1,5 +1,6 @@
-/* What each format of the samples of a dataset costs and loses: graphics memory, processor time of streaming and of a
- * frame, and the errors of samples and of a picture against half floats. Usage: bench_raw_formats NAME.btf.h5 */
+/* What each format of the samples of a dataset costs and loses: graphics memory, processor time of streaming, time of a
+ * frame by the wall and of processor, and the errors of samples and of a picture against half floats. Usage:
+ * bench_raw_formats NAME.btf.h5 */
 #include "../tests/player/raw/bc6h_decode.h"
 #include "bench/measure.h"
 #include "player/draw/canvas.h"
@@ -138,23 +139,29 @@ static sample_error compare_samples(const collection *c, const collection *exact
 
 /* ---- Pictures ---- */
 
-static weft_image draw(weft_player *player, weft_scene scene, weft_filter filter, weft_canvas *canvas, double *frame_ms)
+/* Of a frame. */
+typedef struct frame_time {
+    double wall_ms, processor_ms;
+} frame_time;
+
+static weft_image draw(weft_player *player, weft_scene scene, weft_filter filter, weft_canvas *canvas, frame_time *time)
 {
     weft_error error = {0};
     weft_image image;
     scene.filter = filter;
-    double start = 0;
+    frame_time start = {0};
     for (int frame = -1; frame < FRAMES; frame++) {
         const weft_sampling moving = {.frame = -1};
         if (frame == 0)
-            start = bench_now_ms(CLOCK_PROCESS_CPUTIME_ID);
+            start = (frame_time){bench_now_ms(CLOCK_MONOTONIC), bench_now_ms(CLOCK_PROCESS_CPUTIME_ID)};
         weft_canvas_clear(canvas);
         weft_canvas_begin_frame(canvas);
         stop_on(weft_player_draw(player, &scene, WIDTH, HEIGHT, moving, &error), &error);
         weft_canvas_end_frame(canvas);
         glFinish();
     }
-    *frame_ms = (bench_now_ms(CLOCK_PROCESS_CPUTIME_ID) - start) / FRAMES;
+    time->wall_ms = (bench_now_ms(CLOCK_MONOTONIC) - start.wall_ms) / FRAMES;
+    time->processor_ms = (bench_now_ms(CLOCK_PROCESS_CPUTIME_ID) - start.processor_ms) / FRAMES;
     stop_on(weft_canvas_read(canvas, &image, &error), &error);
     return image;
 }
@@ -177,9 +184,9 @@ static weft_scene make_scene(int i)
     return scene;
 }
 
-static double judge_picture(bench *b, int i, double *frame_ms)
+static double judge_picture(bench *b, int i, frame_time *time)
 {
-    weft_image image = draw(b->player, make_scene(i), WEFT_FILTER_EXACT, &b->canvas, frame_ms);
+    weft_image image = draw(b->player, make_scene(i), WEFT_FILTER_EXACT, &b->canvas, time);
     if (!b->reference[i].pixels)
         b->reference[i] = image;
     double error = bench_relative_rmse(&image, &b->reference[i], &b->background);
@@ -190,10 +197,10 @@ static double judge_picture(bench *b, int i, double *frame_ms)
 
 static void draw_background(bench *b)
 {
-    double frame_ms;
+    frame_time time;
     weft_scene scene = make_scene(0);
     scene.orbit.distance = 500;
-    b->background = draw(b->player, scene, WEFT_FILTER_EXACT, &b->canvas, &frame_ms);
+    b->background = draw(b->player, scene, WEFT_FILTER_EXACT, &b->canvas, &time);
 }
 
 static void show(bench *b, weft_raw_format format)
@@ -207,7 +214,7 @@ static void show(bench *b, weft_raw_format format)
 
 static void judge(bench *b, weft_raw_format format)
 {
-    double exact_ms, near_ms, stochastic_ms;
+    frame_time exact, near, stochastic;
     collection c = collect(b->dataset, format);
     sample_error e = compare_samples(&c, &b->exact);
     printf("%-28s %7.1f MB, streamed in %5.0f ms; samples: relative RMSE %.3f %%, each %.3f %%\n",
@@ -217,11 +224,13 @@ static void judge(bench *b, weft_raw_format format)
     show(b, format);
     if (!b->background.pixels)
         draw_background(b);
-    double far_error = judge_picture(b, 0, &exact_ms), near_error = judge_picture(b, 1, &near_ms);
-    weft_image stochastic = draw(b->player, make_scene(0), WEFT_FILTER_STOCHASTIC, &b->canvas, &stochastic_ms);
-    printf("%28s frame %.0f ms, near %.0f ms, stochastic %.0f ms; picture: relative RMSE %.3f %%, near %.3f %%\n", "",
-           exact_ms, near_ms, stochastic_ms, 100 * far_error, 100 * near_error);
-    weft_image_free(&stochastic);
+    double far_error = judge_picture(b, 0, &exact), near_error = judge_picture(b, 1, &near);
+    weft_image image = draw(b->player, make_scene(0), WEFT_FILTER_STOCHASTIC, &b->canvas, &stochastic);
+    printf("%28s wall / processor: frame %.2f / %.1f ms, near %.2f / %.1f ms, stochastic %.2f / %.1f ms\n", "",
+           exact.wall_ms, exact.processor_ms, near.wall_ms, near.processor_ms, stochastic.wall_ms,
+           stochastic.processor_ms);
+    printf("%28s picture: relative RMSE %.3f %%, near %.3f %%\n", "", 100 * far_error, 100 * near_error);
+    weft_image_free(&image);
 }
 
 int main(int argc, char **argv)
@@ -241,7 +250,7 @@ int main(int argc, char **argv)
     stop_on(weft_mesh_drape(&mesh, &error), &error);
     stop_on(weft_player_set_mesh(b.player, &mesh, &error), &error);
     weft_mesh_free(&mesh);
-    printf("%s, %d x %d; times are of processor, all threads\n", weft_gl_renderer(), WIDTH, HEIGHT);
+    printf("%s, %d x %d; processor: all threads\n", weft_gl_renderer(), WIDTH, HEIGHT);
     b.exact = collect(b.dataset, WEFT_RAW_HALF);
     for (int format = WEFT_RAW_HALF; format <= WEFT_RAW_BC6H; format++)
         judge(&b, (weft_raw_format)format);
