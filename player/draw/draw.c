@@ -67,7 +67,7 @@ void weft_player_set_point(const weft_player *p, GLuint program, const weft_scen
         return;
     weft_vec3 eye = weft_orbit_eye(&scene->orbit, p->centre, p->radius);
     weft_gl_set_vec3(program, "eye", eye.x, eye.y, eye.z);
-    weft_shadow_map_bind(&p->shadow, program, 14);
+    weft_shadow_map_bind(&p->shadow, program, WEFT_SHADOW_UNIT);
 }
 
 static void set_shown(const weft_player *p, GLuint program, const weft_scene *scene, weft_mode mode)

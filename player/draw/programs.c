@@ -2,6 +2,7 @@
 
 #include "player/draw/lighting.h"
 #include "player/draw/shadow.h"
+#include "player/gl/layer.h"
 #include "player/gl/shaders.h"
 #include "player/scene/false_colour.h"
 
@@ -46,6 +47,17 @@ static void define(const weft_program_kind *kind, char *text, size_t size)
         name_of(kind->opacity), kind->lobe_count, name_of(kind->view_table), name_of(kind->light_table),
         name_of(kind->fewer_bits), name_of(kind->noise), kind->layer_groups, kind->drawn_groups, kind->incidence_power,
         name_of(kind->relief), kind->pruned);
+}
+
+/* Some drivers count a sampler as used that no pixel reads, and none draws where samplers of two types share a unit.
+ * All begin on unit 0, and what only pictures bind would stay there in a plot. */
+static void place_samplers(GLuint program)
+{
+    glUseProgram(program);
+    weft_gl_set_int(program, "surface_rotation", WEFT_ROTATION_UNIT);
+    weft_gl_set_int(program, "surface_place", WEFT_PLACE_UNIT);
+    weft_gl_set_int(program, "surface_sides", WEFT_SIDES_UNIT);
+    weft_gl_set_int(program, "shadow_map", WEFT_SHADOW_UNIT);
 }
 
 static weft_code build(const weft_program_kind *kind, GLuint *program, weft_error *error)
@@ -103,7 +115,9 @@ static weft_code build(const weft_program_kind *kind, GLuint *program, weft_erro
                                    NULL};
     const char *const *const fragment[WEFT_MODE_COUNT] = {raw, kind->layer_groups > 0 ? layered : compressed,
                                                           kind->threads ? threads : analytic};
-    return weft_gl_program(weft_mode_name(kind->mode), vertex, fragment[kind->mode], program, error);
+    WEFT_TRY(weft_gl_program(weft_mode_name(kind->mode), vertex, fragment[kind->mode], program, error));
+    place_samplers(*program);
+    return WEFT_OK;
 }
 
 /* Of those that are kept in the order of their building; returns where the next one goes. */

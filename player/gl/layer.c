@@ -1,7 +1,5 @@
 #include "player/gl/layer.h"
 
-enum { ROTATION_UNIT = 12, PLACE_UNIT = 13, SIDES_UNIT = 15 };
-
 static weft_code attach(GLenum attachment, GLuint texture, weft_error *error)
 {
     glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
@@ -46,7 +44,7 @@ void weft_layer_free(weft_layer *layer)
 
 void weft_layer_bind(const weft_layer *layer, GLuint program)
 {
-    weft_gl_bind(program, "surface_rotation", ROTATION_UNIT, GL_TEXTURE_2D, layer->rotation);
-    weft_gl_bind(program, "surface_place", PLACE_UNIT, GL_TEXTURE_2D, layer->place);
-    weft_gl_bind(program, "surface_sides", SIDES_UNIT, GL_TEXTURE_2D, layer->sides);
+    weft_gl_bind(program, "surface_rotation", WEFT_ROTATION_UNIT, GL_TEXTURE_2D, layer->rotation);
+    weft_gl_bind(program, "surface_place", WEFT_PLACE_UNIT, GL_TEXTURE_2D, layer->place);
+    weft_gl_bind(program, "surface_sides", WEFT_SIDES_UNIT, GL_TEXTURE_2D, layer->sides);
 }

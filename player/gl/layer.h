@@ -15,6 +15,9 @@ typedef struct weft_layer {
 weft_code weft_layer_resize(weft_layer *layer, int width, int height, weft_error *error);
 void weft_layer_free(weft_layer *layer);
 
+/* Texture units of the samplers that a picture has and a plot has not. */
+enum { WEFT_ROTATION_UNIT = 12, WEFT_PLACE_UNIT = 13, WEFT_SHADOW_UNIT = 14, WEFT_SIDES_UNIT = 15 };
+
 /* Sets surface_rotation, surface_place and surface_sides of player/draw/shaders/surface.glsl. */
 void weft_layer_bind(const weft_layer *layer, GLuint program);
 

@@ -59,19 +59,39 @@ static weft_program_kind casting_kind(int choice)
                                .view_table = true};
 }
 
+/* What only pictures bind must not stand where a plot binds something else. The software rasteriser does not count such
+ * a sampler in a plot; it does in the program of a picture. Returns how many there are. */
+static int expect_samplers_placed(GLuint program)
+{
+    static const char *const name[] = {"surface_rotation", "surface_place", "surface_sides", "shadow_map"};
+    int found = 0;
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
+        GLint unit = 0, location = glGetUniformLocation(program, name[i]);
+        if (location < 0)
+            continue;
+        glGetUniformiv(program, location, &unit);
+        assert_true(unit >= 12);
+        found++;
+    }
+    return found;
+}
+
 /* Programs are built when they are first used: all of them are asked for here. */
 static void build_every_program(void)
 {
     weft_error error = {0};
     weft_programs programs = {0};
     GLuint program;
+    int placed = 0;
     for (int mode = 0; mode < WEFT_MODE_COUNT; mode++) {
         /* Each choice with one of the plots: they do not know each other. */
         for (int choice = 0; choice < (mode == WEFT_MODE_COMPRESSED ? LOBES + LAYERS : OTHERS); choice++) {
             const weft_program_kind kind = kind_of((weft_mode)mode, (choice + choice / 3) % 3, choice);
             expect_ok(weft_programs_find(&programs, &kind, &program, &error), &error);
+            placed += expect_samplers_placed(program);
         }
     }
+    assert_true(placed > 100);
     for (int choice = 0; choice < 16; choice++) {
         const weft_program_kind kind = casting_kind(choice);
         expect_ok(weft_programs_find(&programs, &kind, &program, &error), &error);

@@ -3,6 +3,7 @@
 #include "stage.h"
 
 #include "player/draw/player_parts.h"
+#include "player/gl/context.h"
 #include "reflectance/lafortune/lafortune.h"
 #include "reflectance/layers/layers.h"
 #include "reflectance/microcylinder/file.h"
@@ -27,13 +28,20 @@ static weft_rgba lit(weft_rgb brdf_pi, weft_vec3 light, double opacity)
     return (weft_rgba){brdf_pi.r * cosine, brdf_pi.g * cosine, brdf_pi.b * cosine, opacity};
 }
 
+/* Between texels graphics cards keep 8 bits of the fraction; the software rasteriser keeps more. Maps of layers that
+ * are divided by the square of a small incidence show it. */
+static bool filters_coarsely(void)
+{
+    return !strstr(weft_gl_renderer(), "llvmpipe");
+}
+
 static void expect_small(const char *what, stage_difference difference)
 {
     printf("%s: RMSE %.4f/255, largest %g/255 over %ld pixels\n", what, difference.rmse, difference.largest,
            difference.pixels);
     assert_true(difference.pixels > WIDTH * HEIGHT / 5);
     assert_true(difference.rmse < 1);
-    assert_true(difference.largest < 4);
+    assert_true(difference.largest < (filters_coarsely() ? 8 : 4));
 }
 
 /* ---- Compressed ---- */
