@@ -8,7 +8,6 @@
 enum { CEILING_STEPS = 8, CEILING_OF_ONE = 192, LEAST_SIDE = 4, MOST_SIDE = 64, HEADER_WORDS = 16 };
 
 /* A floor is a float of 4 bits of mantissa, whose exponent begins here: the lower bits of a float cut off. */
-enum { FLOOR_SHIFT = 19, FLOOR_FIRST = (127 - 13) << 4 };
 
 /* ---- Memory ---- */
 
@@ -149,21 +148,10 @@ uint8_t weft_ceiling_code(float value)
 
 float weft_floor_of_code(uint8_t code)
 {
-    uint32_t bits = (uint32_t)(FLOOR_FIRST + code) << FLOOR_SHIFT;
+    uint32_t bits = (uint32_t)(WEFT_FLOOR_FIRST + code) << WEFT_FLOOR_SHIFT;
     float value;
     memcpy(&value, &bits, sizeof value);
     return code > 0 ? value : 0;
-}
-
-uint8_t weft_floor_code(float value)
-{
-    uint32_t bits;
-    if (!(value >= weft_floor_of_code(1)))
-        return 0;
-    if (value >= weft_floor_of_code(255))
-        return 255;
-    memcpy(&bits, &value, sizeof bits);
-    return (uint8_t)((bits >> FLOOR_SHIFT) - FLOOR_FIRST);
 }
 
 size_t weft_ceiling_count(int width, int height)

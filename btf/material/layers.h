@@ -29,6 +29,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 typedef enum weft_layers_kind {
     WEFT_LAYERS_OF_LIGHT,
@@ -100,8 +101,19 @@ uint8_t weft_ceiling_code(float value);
  * 2^(floor(code / 16) - 13) (1 + (code mod 16) / 16), about 1.3e-4 .. 7.8. Pure. */
 float weft_floor_of_code(uint8_t code);
 
-/* The largest code whose floor is at most `value`. Pure. */
-uint8_t weft_floor_code(float value);
+/* The codes are the exponent and the first four bits of the fraction of a float. */
+enum { WEFT_FLOOR_SHIFT = 19, WEFT_FLOOR_FIRST = (127 - 13) << 4 };
+
+/* The largest code whose floor is at most `value`; 0 of what is no number. Here, so that loops over all samples become
+ * vectors. Pure. */
+static inline uint8_t weft_floor_code(float value)
+{
+    int32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    int32_t code = (bits >> WEFT_FLOOR_SHIFT) - WEFT_FLOOR_FIRST;
+    code = code < 255 ? code : 255;
+    return (uint8_t)(code > 0 && value == value ? code : 0);
+}
 
 /* Number of ceilings of a level. Pure. */
 size_t weft_ceiling_count(int width, int height);

@@ -5,7 +5,6 @@
 #include "compress/layers/kept_blocks.h"
 #include "compress/run/block_plan.h"
 
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 
@@ -44,12 +43,18 @@ void weft_projection_free(weft_projection *projection)
 
 /* ---- A block ---- */
 
+/* Of numbers: fmaxf, which is a call, looks for what is none. */
+static float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 static float brightest(const weft_layer_images *images, const float *vector)
 {
     float most = 0;
     for (size_t i = 0; i < (size_t)images->image_count; i++) {
-        float largest = fmaxf(vector[3 * i], fmaxf(vector[3 * i + 1], vector[3 * i + 2]));
-        most = fmaxf(most, largest / images->weight[i]);
+        float largest = larger(vector[3 * i], larger(vector[3 * i + 1], vector[3 * i + 2]));
+        most = larger(most, largest / images->weight[i]);
     }
     return most;
 }
