@@ -474,10 +474,13 @@ static void ceilings_hold_everywhere(void **state)
     weft_material_free(&material);
 }
 
-/* The mixture above a ground that is brighter in the right squares, and three noisy or shadowed images of 3721. */
+/* The mixture above a ground that is brighter in the right squares, three noisy or shadowed images of 3721, and every
+ * tenth masked. */
 static void fill_ground(const weft_dataset_layout *layout, int x, int y, float *samples, uint8_t *mask)
 {
     fill_mixture(layout, x, y, samples, mask);
+    for (int i = 3; i < layout->image_count; i += 10)
+        mask[i] = WEFT_MASK_SATURATED;
     for (int i = 0; i < layout->image_count; i++)
         for (int c = 0; c < 3; c++)
             samples[3 * i + c] = i % 1200 == 7 ? 0 : samples[3 * i + c] + (float)(layout->light[i].z * (x >= 8));
