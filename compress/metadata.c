@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIT_BYTES = 2048 /* of metadata besides the provenance */ };
+enum { FIT_BYTES = 2816 /* of metadata besides the provenance */ };
 
 const char *weft_compress_model_name(weft_compress_model model)
 {
@@ -25,8 +25,8 @@ weft_code weft_compress_metadata_bytes(const weft_dataset_layout *layout, uint64
     return WEFT_OK;
 }
 
-/* As in compress/kriging/covariance.h: base 2 logarithms, and the powers by which highlights grow. */
-static json_t *describe_kriging(const weft_layers_report *report)
+/* As in compress/kriging/covariance.h: base 2 logarithms of variances and lengths. */
+static json_t *list_exponents(const weft_covariance *covariance)
 {
     static const char *const name[WEFT_INCIDENCE_POWER] = {[WEFT_NOISE] = "noise",
                                                            [WEFT_DIFFUSE_VARIANCE] = "diffuse_variance",
@@ -37,13 +37,31 @@ static json_t *describe_kriging(const weft_layers_report *report)
                                                            [WEFT_HIGHLIGHT_VIEW_LENGTH] = "highlight_view_length",
                                                            [WEFT_FIXED_HIGHLIGHT_VARIANCE] = "fixed_variance",
                                                            [WEFT_FIXED_HIGHLIGHT_LENGTH] = "fixed_length"};
-    weft_covariance_terms terms = weft_covariance_terms_of(&report->covariance);
     json_t *numbers = json_object();
     for (int k = 0; k < WEFT_INCIDENCE_POWER; k++)
-        weft_json_put(&numbers, name[k], json_real(report->covariance.number[k]));
-    return json_pack("{s:f, s:i, s:o, s:{s:f, s:f, s:f}}", "left_out_relative_rmse", report->left_out_error,
-                     "left_out_images", report->left_out_count, "log2_covariance", numbers, "highlight_powers",
-                     "incidence", terms.incidence_power, "light", terms.light_power, "view", terms.view_power);
+        weft_json_put(&numbers, name[k], json_real(covariance->number[k]));
+    return numbers;
+}
+
+static json_t *describe_mean(const weft_layers_report *report)
+{
+    weft_covariance_terms terms = weft_covariance_terms_of(&report->mean);
+    return json_pack("{s:[f, f], s:o, s:f, s:f}", "left_out_relative_rmse", report->mean_error[0],
+                     report->mean_error[1], "log2_covariance", list_exponents(&report->mean), "reciprocity",
+                     terms.reciprocity, "half_turn", terms.half_turn);
+}
+
+/* And the powers by which highlights grow. */
+static json_t *describe_kriging(const weft_layers_report *report)
+{
+    weft_covariance_terms terms = weft_covariance_terms_of(&report->covariance);
+    json_t *kriging = json_pack("{s:f, s:i, s:o, s:{s:f, s:f, s:f}}", "left_out_relative_rmse", report->left_out_error,
+                                "left_out_images", report->left_out_count, "log2_covariance",
+                                list_exponents(&report->covariance), "highlight_powers", "incidence",
+                                terms.incidence_power, "light", terms.light_power, "view", terms.view_power);
+    if (report->mean.is_of_mean)
+        weft_json_put(&kriging, "mean", describe_mean(report));
+    return kriging;
 }
 
 /* By kind of maps. Scattered images do not try the last one. */

@@ -118,7 +118,10 @@ static const double least_gain = 1e-3;
 
 typedef struct search {
     reduced *part;
-    int count, number_count; /* numbers that are searched: the first ones of a covariance */
+    int count;
+    bool is_searched[WEFT_COVARIANCE_NUMBERS];
+    weft_covariance usual; /* where it begins */
+    double caution;        /* the share of the squared error that a step away from there must gain, with one image */
     double energy;
     double *square; /* [MOST_TRIED][count] */
 } search;
@@ -171,16 +174,13 @@ static weft_code try_each(const search *s, const weft_covariance *covariance, in
     return result;
 }
 
-/* What a covariance is compared by: its share of the energy, raised by how far its numbers are from the usual ones.
- * With one image a number that is doubled must lower the squared error by `caution`. */
+/* What a covariance is compared by: its share of the energy, raised by how far its numbers are from the usual ones. */
 static double judged(const search *s, const weft_covariance *covariance, double share)
 {
-    static const double caution = 0.03;
-    weft_covariance usual = weft_covariance_usual();
     double distance = 0;
     for (int k = 0; k < WEFT_COVARIANCE_NUMBERS; k++)
-        distance += (covariance->number[k] - usual.number[k]) * (covariance->number[k] - usual.number[k]);
-    return share * (1 + caution * distance / s->part[0].set.places.count);
+        distance += (covariance->number[k] - s->usual.number[k]) * (covariance->number[k] - s->usual.number[k]);
+    return share * (1 + s->caution * distance / s->part[0].set.places.count);
 }
 
 /* Moves one number both ways and goes on the better way while that helps. */
@@ -205,40 +205,86 @@ static weft_code move(const search *s, int number, double step, weft_covariance 
     }
 }
 
+/* Variances and lengths are always searched, symmetries where there is a mean. */
+static void search_begin(search *s, const weft_covariance *usual, double caution, bool powers)
+{
+    s->usual = *usual;
+    s->caution = caution;
+    for (int k = 0; k < WEFT_COVARIANCE_NUMBERS; k++)
+        s->is_searched[k] = k < WEFT_INCIDENCE_POWER || (k < WEFT_RECIPROCITY ? powers : usual->is_of_mean);
+}
+
 static weft_code search_run(const search *s, const weft_progress *progress, weft_covariance *best, double *least,
                             weft_error *error)
 {
     static const double step[] = {2, 1, 0.5};
     enum { STEPS = sizeof step / sizeof *step };
+    *best = s->usual;
     WEFT_TRY(try_each(s, best, 1, least, error));
     for (int i = 0; i < STEPS; i++) {
         bool moved = true;
         for (int round = 0; round < MOST_ROUNDS && moved; round++) {
             moved = false;
-            for (int number = 0; number < s->number_count; number++)
-                WEFT_TRY(move(s, number, step[i], best, least, &moved, error));
+            for (int number = 0; number < WEFT_COVARIANCE_NUMBERS; number++) {
+                if (s->is_searched[number])
+                    WEFT_TRY(move(s, number, step[i], best, least, &moved, error));
+            }
         }
         weft_progress_report(progress, "leaving images out", i + 1, STEPS);
     }
     return try_each(s, best, 1, least, error);
 }
 
-weft_code weft_kriging_choose(const weft_kriging_samples *set, int set_count, const weft_progress *progress,
-                              weft_covariance *covariance, double *error_of, weft_error *error)
+static weft_code search_all(const weft_kriging_samples *set, int set_count, const weft_covariance *usual,
+                            double caution, bool powers, const weft_progress *progress, weft_covariance *covariance,
+                            double *error_of, weft_error *error)
 {
     search s;
     double least = 0;
-    int images = 0;
-    for (int i = 0; i < set_count; i++)
-        images = set[i].places.count > images ? set[i].places.count : images;
-    bool enough = images >= WEFT_KRIGING_LEAST_IMAGES;
-    *covariance = enough ? weft_covariance_usual() : weft_covariance_diffuse();
     weft_code code = search_create(set, set_count, &s, error);
-    s.number_count = images < WEFT_KRIGING_LEAST_FOR_POWERS ? WEFT_INCIDENCE_POWER : WEFT_COVARIANCE_NUMBERS;
+    search_begin(&s, usual, caution, powers);
     if (code == WEFT_OK)
-        code =
-            enough ? search_run(&s, progress, covariance, &least, error) : try_each(&s, covariance, 1, &least, error);
+        code = search_run(&s, progress, covariance, &least, error);
     *error_of = sqrt(least);
     search_free(&s);
     return code;
+}
+
+weft_code weft_kriging_leave_out(const weft_kriging_samples *set, int set_count, const weft_covariance *covariance,
+                                 double *error_of, weft_error *error)
+{
+    search s;
+    double share = 0;
+    weft_code code = search_create(set, set_count, &s, error);
+    if (code == WEFT_OK)
+        code = try_each(&s, covariance, 1, &share, error);
+    *error_of = sqrt(share);
+    search_free(&s);
+    return code;
+}
+
+weft_code weft_kriging_choose(const weft_kriging_samples *set, int set_count, const weft_progress *progress,
+                              weft_covariance *covariance, double *error_of, weft_error *error)
+{
+    static const double caution = 0.03;
+    weft_covariance usual = weft_covariance_usual();
+    int images = 0;
+    for (int i = 0; i < set_count; i++)
+        images = set[i].places.count > images ? set[i].places.count : images;
+    *covariance = weft_covariance_diffuse();
+    return images < WEFT_KRIGING_LEAST_IMAGES
+               ? weft_kriging_leave_out(set, set_count, covariance, error_of, error)
+               : search_all(set, set_count, &usual, caution, images >= WEFT_KRIGING_LEAST_FOR_POWERS, progress,
+                            covariance, error_of, error);
+}
+
+weft_code weft_kriging_choose_mean(const weft_kriging_samples *set, const weft_progress *progress,
+                                   weft_covariance *covariance, double *error_of, weft_error *error)
+{
+    static const double caution = 1;
+    weft_covariance usual = weft_covariance_usual_of_mean();
+    *covariance = weft_covariance_diffuse();
+    return set->places.count < WEFT_KRIGING_LEAST_IMAGES
+               ? weft_kriging_leave_out(set, 1, covariance, error_of, error)
+               : search_all(set, 1, &usual, caution, false, progress, covariance, error_of, error);
 }

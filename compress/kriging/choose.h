@@ -31,4 +31,14 @@ enum { WEFT_KRIGING_LEAST_FOR_POWERS = 20 };
 weft_code weft_kriging_choose(const weft_kriging_samples *set, int set_count, const weft_progress *progress,
                               weft_covariance *covariance, double *error_of, weft_error *error);
 
+/* The same for the mean over the texels, whose set has one series a channel. So few series say little: they must gain
+ * more for each step away from what is usual, and powers stay as they usually are. *covariance is not of a mean where
+ * there are too few images to decide. */
+weft_code weft_kriging_choose_mean(const weft_kriging_samples *set, const weft_progress *progress,
+                                   weft_covariance *covariance, double *error_of, weft_error *error);
+
+/* *error_of a covariance that is given. */
+weft_code weft_kriging_leave_out(const weft_kriging_samples *set, int set_count, const weft_covariance *covariance,
+                                 double *error_of, weft_error *error);
+
 #endif

@@ -3,6 +3,7 @@
 #include "btf/direction/direction.h"
 #include "compress/layers/dots.h"
 #include "compress/layers/known.h"
+#include "compress/layers/mean_texel.h"
 
 #include <omp.h>
 #include <stdlib.h>
@@ -65,6 +66,8 @@ static weft_code choose_far(const weft_layer_images *images, const weft_training
     weft_kriging_samples set = {weft_known_places(&k), k.series_count, k.sample};
     c->left_out_count = k.count;
     weft_code code = weft_kriging_choose(&set, 1, progress, &c->covariance, &c->left_out_error, error);
+    if (code == WEFT_OK)
+        code = weft_mean_texel_choose(&k, &c->covariance, progress, &c->mean, c->mean_error, error);
     weft_known_free(&k);
     return code;
 }
@@ -182,10 +185,18 @@ static weft_code complete_known(const weft_known *k, weft_completion *c, weft_er
 {
     weft_kriging kriging;
     weft_kriging_places places = weft_known_places(k);
-    WEFT_TRY(weft_kriging_create(&c->covariance, &places, &kriging, error));
-    weft_kriging_solve(&kriging, k->sample, k->series_count);
-    weft_kriging_free(&kriging);
-    return predict_far(k, c, error);
+    double *mean;
+    WEFT_TRY(weft_mean_texel_take(k, &mean, error));
+    weft_code code = weft_kriging_create(&c->covariance, &places, &kriging, error);
+    if (code == WEFT_OK) {
+        weft_kriging_solve(&kriging, k->sample, k->series_count);
+        weft_kriging_free(&kriging);
+        code = predict_far(k, c, error);
+    }
+    if (code == WEFT_OK && c->mean.is_of_mean)
+        code = weft_mean_texel_impose(k, mean, &c->mean, &c->images, &c->training, error);
+    free(mean);
+    return code;
 }
 
 static weft_code complete_far(const weft_layer_images *images, weft_training *training, const weft_progress *progress,

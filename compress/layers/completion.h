@@ -16,6 +16,8 @@ typedef struct weft_completion {
     weft_covariance covariance;
     int left_out_count;    /* images of a texel that decided the covariance */
     double left_out_error; /* relative RMSE of these, each predicted by the others of them */
+    weft_covariance mean;  /* of the mean texel, where it is of a mean: far images alone have one */
+    double mean_error[2];  /* of the mean texel, by `covariance` and by `mean` */
     double noise;          /* mean square of what is noise in a sample */
 } weft_completion;
 

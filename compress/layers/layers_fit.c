@@ -60,6 +60,9 @@ static weft_code learn_from_scattered(fitting *work, weft_layers_report *report,
     report->left_out_count = completion->left_out_count;
     report->left_out_error = completion->left_out_error;
     report->covariance = completion->covariance;
+    report->mean = completion->mean;
+    report->mean_error[0] = completion->mean_error[0];
+    report->mean_error[1] = completion->mean_error[1];
     weft_progress_report(work->progress, "learning layers", 1, 2);
     WEFT_TRY(weft_components_find(&completion->training, work->options->layer_count, &work->components, error));
     work->components.noise += completion->noise;

@@ -35,6 +35,8 @@ typedef struct weft_layers_report {
     weft_covariance covariance; /* of scattered images, chosen by leaving out each of some images ... */
     int left_out_count;         /* ... how many these are in a texel ... */
     double left_out_error;      /* ... and their relative RMSE, each predicted by the others of them */
+    weft_covariance mean;       /* of the mean texel, where it is of a mean */
+    double mean_error[2];       /* of the mean texel, without this and with it */
     double
         rounding_step; /* for weft_layers_round: what that adds is hidden by what the layers leave; 0 where none is */
     int training_texels;

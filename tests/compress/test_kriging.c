@@ -30,7 +30,7 @@ static void the_covariance_is_the_sum_that_is_documented(void **state)
 {
     (void)state;
     uint64_t seed = 11;
-    const weft_covariance covariance = {{-3, 0.7, -0.4, 0.9, 1.3, -1.6, 0.2, -0.8, -2.1, -1.4, 2.2, -0.6}};
+    const weft_covariance covariance = {.number = {-3, 0.7, -0.4, 0.9, 1.3, -1.6, 0.2, -0.8, -2.1, -1.4, 2.2, -0.6}};
     weft_covariance_terms terms = weft_covariance_terms_of(&covariance);
     for (int i = 0; i < 200; i++) {
         weft_vec3 l = any_direction(&seed), v = any_direction(&seed), m = any_direction(&seed),
@@ -46,6 +46,45 @@ static void the_covariance_is_the_sum_that_is_documented(void **state)
         weft_direction_pair a = weft_direction_pair_of(l, v), b = weft_direction_pair_of(m, w);
         assert_float_equal(weft_covariance_between(&terms, &a, &b), expected, 1e-6 * expected);
         assert_float_equal(weft_covariance_between(&terms, &b, &a), expected, 1e-6 * expected);
+    }
+}
+
+static weft_vec3 half_turned(weft_vec3 a)
+{
+    return weft_vec3_of(-a.x, -a.y, a.z);
+}
+
+/* c(x, x') of the light l and the view v, and the light m and the view w. */
+static double reciprocal_part(const weft_covariance_terms *terms, double r, weft_vec3 l, weft_vec3 v, weft_vec3 m,
+                              weft_vec3 w)
+{
+    weft_direction_pair a = weft_direction_pair_of(l, v), b = weft_direction_pair_of(m, w),
+                        c = weft_direction_pair_of(v, l), d = weft_direction_pair_of(w, m);
+    double both[2] = {1, l.z / v.z}, others[2] = {1, m.z / w.z}, sum = 0;
+    const weft_direction_pair *first[2] = {&a, &c}, *second[2] = {&b, &d};
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++)
+            sum += both[i] * others[j] * weft_covariance_between(terms, first[i], second[j]);
+    return (1 - r) * weft_covariance_between(terms, &a, &b) + r / 2 * sum;
+}
+
+static void the_covariance_of_a_mean_is_the_sum_that_is_documented(void **state)
+{
+    (void)state;
+    uint64_t seed = 12;
+    weft_covariance covariance = {.number = {-3, 0.7, -0.4, 0.9, 1.3, -1.6, 0.2, -0.8, -2.1, -1.4, 2.2, -0.6, 1, -0.5}};
+    weft_covariance_terms of_texels = weft_covariance_terms_of(&covariance);
+    covariance.is_of_mean = true;
+    weft_covariance_terms of_mean = weft_covariance_terms_of(&covariance);
+    double r = 2.0 / 3, t = sqrt(0.5) / (1 + sqrt(0.5));
+    for (int i = 0; i < 200; i++) {
+        weft_vec3 l = any_direction(&seed), v = any_direction(&seed), m = any_direction(&seed),
+                  w = any_direction(&seed);
+        double expected = reciprocal_part(&of_texels, r, l, v, m, w) +
+                          t * reciprocal_part(&of_texels, r, l, v, half_turned(m), half_turned(w));
+        weft_direction_pair a = weft_direction_pair_of(l, v), b = weft_direction_pair_of(m, w);
+        assert_float_equal(weft_covariance_between(&of_mean, &a, &b), expected, 1e-5 * expected);
+        assert_float_equal(weft_covariance_between(&of_mean, &b, &a), expected, 1e-5 * expected);
     }
 }
 
@@ -206,6 +245,45 @@ static void nineteen_images_decide_no_powers_and_forty_do(void **state)
         assert_true(covariance.number[k] == usual.number[k]);
 }
 
+/* Tilted highlights: without symmetries, and with both. */
+static double tilted(weft_vec3 l, weft_vec3 v, bool symmetric)
+{
+    weft_vec3 h = weft_unit(weft_add(l, v));
+    double along = symmetric ? fabs(h.x) : h.x, seen = symmetric ? 1 : 0.3 + v.z * v.z;
+    return l.z * seen * (0.2 + pow(fmax(0, 0.89 * h.z + 0.45 * along), 12));
+}
+
+static void a_mean_has_the_symmetries_that_its_samples_have(void **state)
+{
+    (void)state;
+    double odds[2][2], errors[2][2];
+    for (int symmetric = 0; symmetric < 2; symmetric++) {
+        samples s = make(21, 0);
+        weft_covariance covariance, usual = weft_covariance_usual_of_mean();
+        for (int i = 0; i < COUNT; i++) {
+            const double *l = s.pair[i].light, *v = s.pair[i].view;
+            s.sample[i] = tilted(weft_vec3_of(l[0], l[1], l[2]), weft_vec3_of(v[0], v[1], v[2]), symmetric == 1);
+        }
+        weft_kriging_samples set = {places_of(&s, COUNT), 1, s.sample};
+        assert_int_equal(weft_kriging_choose_mean(&set, NULL, &covariance, &errors[symmetric][0], NULL), WEFT_OK);
+        assert_true(covariance.is_of_mean);
+        assert_int_equal(weft_kriging_leave_out(&set, 1, &usual, &errors[symmetric][1], NULL), WEFT_OK);
+        assert_true(errors[symmetric][0] < errors[symmetric][1]);
+        for (int k = 0; k < 2; k++)
+            odds[symmetric][k] = covariance.number[WEFT_RECIPROCITY + k];
+        for (int k = WEFT_INCIDENCE_POWER; k < WEFT_RECIPROCITY; k++)
+            assert_true(covariance.number[k] == usual.number[k]);
+        set.places.count = WEFT_KRIGING_LEAST_IMAGES - 1;
+        assert_int_equal(weft_kriging_choose_mean(&set, NULL, &covariance, &errors[symmetric][1], NULL), WEFT_OK);
+        assert_false(covariance.is_of_mean);
+    }
+    print_message("odds of reciprocity and half turn: 2^%.1f 2^%.1f; without: 2^%.1f 2^%.1f; errors %.3f %.3f\n",
+                  odds[1][0], odds[1][1], odds[0][0], odds[0][1], errors[1][0], errors[0][0]);
+    for (int k = 0; k < 2; k++)
+        assert_true(odds[1][k] > odds[0][k] + 1);
+    assert_true(errors[1][0] < errors[0][0]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -215,6 +293,8 @@ int main(void)
         cmocka_unit_test(many_texels_decide_as_their_products_do),
         cmocka_unit_test(three_images_are_diffuse),
         cmocka_unit_test(nineteen_images_decide_no_powers_and_forty_do),
+        cmocka_unit_test(the_covariance_of_a_mean_is_the_sum_that_is_documented),
+        cmocka_unit_test(a_mean_has_the_symmetries_that_its_samples_have),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
