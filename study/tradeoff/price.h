@@ -22,23 +22,31 @@ typedef struct weft_price {
 /* A shop that fits all of the texels of a dataset, or the middle ones. */
 typedef struct weft_price_shop weft_price_shop;
 
-/* A dataset of at most side x side texels is fitted whole; of a larger one a block of as many, with bytes and times in
- * proportion. Files are written to the folder of `scratch_path`, and are gone afterwards. Both arguments must outlive
- * the shop. The caller frees it. Errors: those of reading and writing. */
-weft_code weft_price_shop_open(weft_dataset *dataset, int side, const char *scratch_path, const weft_progress *progress,
-                               weft_price_shop **result, weft_error *error);
+/* How many texels are fitted at most, along each side. Lobes are fitted to each texel alone and take as many bytes at
+ * each, so that few of them tell as much as many; layers are learned from all together, and what rounding and packing
+ * make of them depends on how many there are. */
+typedef struct weft_price_sides {
+    int layers, lobes;
+} weft_price_sides;
+
+/* A dataset of no more texels is fitted whole; of a larger one a block of as many, with bytes and times in
+ * proportion. Raw and cloth have the block of layers. Files are written to the folder of `scratch_path`, and are gone
+ * afterwards. Both arguments must outlive the shop. The caller frees it. Errors: those of reading and writing. */
+weft_code weft_price_shop_open(weft_dataset *dataset, weft_price_sides sides, const char *scratch_path,
+                               const weft_progress *progress, weft_price_shop **result, weft_error *error);
 void weft_price_shop_close(weft_price_shop *shop);
 
-/* Texels that are fitted. */
-long weft_price_shop_texels(const weft_price_shop *shop);
+/* Texels that are fitted: at most as many along each side as given when it was opened. */
+long weft_price_shop_texels(const weft_price_shop *shop, bool of_lobes);
 
 /* Why nothing is drawn, or "". */
 const char *weft_price_shop_why_not_drawn(const weft_price_shop *shop);
 /* Who draws, or "". */
 const char *weft_price_shop_renderer(const weft_price_shop *shop);
 
-/* Fits the model, unless the one before has the same fit, and weighs and times it. *has_parts is false where the
- * dataset did not carry what the options ask for. Errors: those of weft_compress, of writing and drawing. */
+/* Fits the model, unless the one before has the same fit, and weighs and times it. What differs from the one before in
+ * the numbers alone, by rounding, is drawn in the same time: it is that of the one before. *has_parts is false where
+ * the dataset did not carry what the options ask for. Errors: those of weft_compress, of writing and drawing. */
 weft_code weft_price_ask(weft_price_shop *shop, const weft_priced_model *model, weft_price *price, bool *has_parts,
                          weft_error *error);
 
