@@ -389,7 +389,7 @@ static void bytes_are_those_of_the_file(void **state)
 {
     (void)state;
     weft_dataset *dataset;
-    weft_price_shop *whole, *part;
+    weft_price_shop *whole, *part, *lobes;
     weft_priced_model model[WEFT_PRICED_MOST];
     weft_material material;
     weft_error error = {0};
@@ -411,6 +411,9 @@ static void bytes_are_those_of_the_file(void **state)
     assert_int_equal(weft_price_shop_texels(part, true), 16 * 16);
     assert_int_equal(weft_price_shop_texels(part, false), 20 * 20);
     assert_float_equal(ask(part, wanted).bytes, price.bytes, 0.15 * price.bytes);
+    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){16, 16}, scratch, NULL, &lobes, &error), &error);
+    assert_float_equal(ask(part, wanted).bytes, ask(lobes, wanted).bytes, 0);
+    weft_price_shop_close(lobes);
     weft_price_shop_close(whole);
     weft_price_shop_close(part);
     weft_material_free(&material);
