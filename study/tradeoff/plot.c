@@ -158,7 +158,7 @@ static weft_code draw_front(weft_page *page, const weft_plot *plot, const log_ax
 }
 
 /* What labels must not cover: the rings of marked points, and the labels that are there already. What they had better
- * not: the other points, as far as there is room for them here. */
+ * not: the numbers of the axis at the left, and the other points, as far as there is room for them here. */
 typedef struct taken_boxes {
     weft_label_box box[2 * MOST_MARKED], disc[MOST_DISCS];
     size_t count, disc_count;
@@ -171,7 +171,7 @@ static weft_label_box box_around(double x, double y, double radius)
 
 static taken_boxes points_of(const weft_plot *plot, const log_axis *x, const log_axis *y)
 {
-    taken_boxes taken = {.count = 0};
+    taken_boxes taken = {.disc = {{0, 0, LEFT, HEIGHT}}, .disc_count = 1};
     for (int i = 0; i < plot->point_count; i++) {
         const weft_plot_point *point = &plot->point[i];
         if (!is_shown(point))
