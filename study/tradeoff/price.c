@@ -29,7 +29,7 @@ typedef struct fitted_block {
     double share; /* of the texels */
 } fitted_block;
 
-enum { BLOCK_OF_LAYERS, BLOCK_OF_LOBES, BLOCKS };
+enum { BLOCK_USUAL, BLOCK_OF_COSTLY, BLOCKS };
 
 struct weft_price_shop {
     weft_dataset *dataset; /* the whole */
@@ -50,7 +50,7 @@ struct weft_price_shop {
 
 static const fitted_block *block_of(const weft_price_shop *shop, const weft_priced_model *model)
 {
-    return &shop->block[weft_priced_model_is_of_lobes(model) ? BLOCK_OF_LOBES : BLOCK_OF_LAYERS];
+    return &shop->block[weft_priced_model_is_costly(model) ? BLOCK_OF_COSTLY : BLOCK_USUAL];
 }
 
 /* The middle of the dataset, without some images (left_out [image_count]; NULL: all). */
@@ -90,8 +90,8 @@ static weft_code prepare(weft_price_shop *shop, weft_price_sides sides, weft_err
         shop->material_path = NULL;
         return weft_fail_memory(error, "path", strlen(shop->scratch_path));
     }
-    WEFT_TRY(prepare_block(shop, sides.layers, &shop->block[BLOCK_OF_LAYERS], error));
-    WEFT_TRY(prepare_block(shop, sides.lobes, &shop->block[BLOCK_OF_LOBES], error));
+    WEFT_TRY(prepare_block(shop, sides.usual, &shop->block[BLOCK_USUAL], error));
+    WEFT_TRY(prepare_block(shop, sides.costly, &shop->block[BLOCK_OF_COSTLY], error));
     return weft_frame_timer_open(&shop->timer, error);
 }
 
@@ -126,9 +126,9 @@ void weft_price_shop_close(weft_price_shop *shop)
     free(shop);
 }
 
-long weft_price_shop_texels(const weft_price_shop *shop, bool of_lobes)
+long weft_price_shop_texels(const weft_price_shop *shop, bool of_costly)
 {
-    return texels_of(shop->block[of_lobes ? BLOCK_OF_LOBES : BLOCK_OF_LAYERS].dataset);
+    return texels_of(shop->block[of_costly ? BLOCK_OF_COSTLY : BLOCK_USUAL].dataset);
 }
 
 const char *weft_price_shop_why_not_drawn(const weft_price_shop *shop)
@@ -276,8 +276,8 @@ static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_pri
     price->bytes = price->bits_a_texel / 8 * layout->width * layout->height;
     price->fetches = weft_fetches_of_raw(through_heights);
     WEFT_TRY(evaluate(weft_dataset_path(shop->dataset), through_heights, price, error));
-    WEFT_TRY(weft_frame_timer_of_dataset(shop->timer, shop->block[BLOCK_OF_LAYERS].dataset, through_heights,
-                                         shop->progress, &price->frame_ms, error));
+    WEFT_TRY(weft_frame_timer_of_dataset(shop->timer, shop->block[BLOCK_USUAL].dataset, through_heights, shop->progress,
+                                         &price->frame_ms, error));
     return weft_frame_timer_again_large(shop->timer, &price->large_frame_ms, error);
 }
 
@@ -294,7 +294,7 @@ static weft_code price_opened_cloth(weft_price_shop *shop, const char *given, we
                                     weft_price *price, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
-    WEFT_TRY(weft_priced_cloth_fit(cloth, shop->block[BLOCK_OF_LAYERS].dataset, error));
+    WEFT_TRY(weft_priced_cloth_fit(cloth, shop->block[BLOCK_USUAL].dataset, error));
     if (!cloth->is_threads)
         WEFT_TRY(weft_priced_cloth_write(cloth, shop->material_path, error));
     const char *path = cloth->is_threads ? given : shop->material_path;

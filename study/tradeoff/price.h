@@ -22,22 +22,21 @@ typedef struct weft_price {
 /* A shop that fits all of the texels of a dataset, or the middle ones. */
 typedef struct weft_price_shop weft_price_shop;
 
-/* How many texels are fitted at most, along each side. Lobes are fitted to each texel alone and take as many bytes at
- * each, so that few of them tell as much as many; layers are learned from all together, and what rounding and packing
- * make of them depends on how many there are. */
+/* How many texels are fitted at most, along each side: of a model, and of one that takes long. Files are packed, so
+ * that bytes of few texels are not quite in proportion. */
 typedef struct weft_price_sides {
-    int layers, lobes;
+    int usual, costly;
 } weft_price_sides;
 
 /* A dataset of no more texels is fitted whole; of a larger one a block of as many, with bytes and times in
- * proportion. Raw and cloth have the block of layers. Files are written to the folder of `scratch_path`, and are gone
+ * proportion. Raw and cloth have the usual block. Files are written to the folder of `scratch_path`, and are gone
  * afterwards. Both arguments must outlive the shop. The caller frees it. Errors: those of reading and writing. */
 weft_code weft_price_shop_open(weft_dataset *dataset, weft_price_sides sides, const char *scratch_path,
                                const weft_progress *progress, weft_price_shop **result, weft_error *error);
 void weft_price_shop_close(weft_price_shop *shop);
 
-/* Texels that are fitted: at most as many along each side as given when it was opened. */
-long weft_price_shop_texels(const weft_price_shop *shop, bool of_lobes);
+/* Texels that are fitted. */
+long weft_price_shop_texels(const weft_price_shop *shop, bool of_costly);
 
 /* Why nothing is drawn, or "". */
 const char *weft_price_shop_why_not_drawn(const weft_price_shop *shop);

@@ -301,6 +301,13 @@ bool weft_priced_model_is_of_lobes(const weft_priced_model *model)
     return weft_priced_model_is_fit(model) && model->options.layer_count == 0;
 }
 
+bool weft_priced_model_is_costly(const weft_priced_model *model)
+{
+    const weft_compress_options *options = &model->options;
+    return weft_priced_model_is_of_lobes(model) &&
+           (options->light_table || options->table_components > 0 || model->photographs != WEFT_PHOTOGRAPHS_ALL);
+}
+
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other)
 {
     const weft_compress_options *a = &model->options, *b = &other->options;

@@ -66,6 +66,9 @@ bool weft_priced_model_is_fit(const weft_priced_model *model);
 /* Whether it is such a fit of each texel alone: of lobes and tables, not of layers. Pure. */
 bool weft_priced_model_is_of_lobes(const weft_priced_model *model);
 
+/* Whether its fit takes long for what it tells: S, T by components, or T of fewer photographs. Pure. */
+bool weft_priced_model_is_costly(const weft_priced_model *model);
+
 /* Whether the model is made from the same fit as the other. Pure. */
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other);
 

@@ -13,7 +13,7 @@
 
 enum { PICTURE_SIDE = 32 };
 
-static const weft_price_sides fitted_sides = {.layers = 64, .lobes = 32};
+static const weft_price_sides fitted_sides = {.usual = 64, .costly = 32};
 
 /* Texels that lie spread are other ones for layers, which need more of them. */
 enum { TEXELS_OF_LOBES, TEXELS_OF_LAYERS, TEXELS_OF_END };
@@ -150,7 +150,7 @@ static void describe(studying *work)
     result->measured_texels = texels_of(work, TEXELS_OF_LAYERS);
     result->lobe_texels = texels_of(work, TEXELS_OF_LOBES);
     result->fitted_texels = weft_price_shop_texels(work->shop, false);
-    result->fitted_lobe_texels = weft_price_shop_texels(work->shop, true);
+    result->costly_texels = weft_price_shop_texels(work->shop, true);
     result->texels = (long)layout->width * layout->height;
     result->threads = omp_get_max_threads();
     snprintf(result->why_not_drawn, sizeof result->why_not_drawn, "%s", weft_price_shop_why_not_drawn(work->shop));
