@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/clock.h"
 #include "btf/direction/direction.h"
+#include "btf/material/metadata.h"
 #include "compress/compress.h"
 #include "study/bard/texels.h"
 #include "study/hold_out/excerpt.h"
@@ -269,6 +270,13 @@ static weft_code price_material(weft_price_shop *shop, const weft_priced_model *
     return draw_material(shop, model, material, price, error);
 }
 
+/* That of the whole dataset, which a block of it does not have: it is the larger part of the metadata. */
+static weft_code give_provenance(const weft_price_shop *shop, weft_material *material, weft_error *error)
+{
+    const char *provenance = weft_dataset_get_layout(shop->dataset)->provenance;
+    return weft_material_put_metadata(material, "provenance", json_loads(provenance, 0, NULL), error);
+}
+
 static weft_code price_raw(weft_price_shop *shop, bool through_heights, weft_price *price, weft_error *error)
 {
     const weft_dataset_layout *layout = weft_dataset_get_layout(shop->dataset);
@@ -336,7 +344,9 @@ static weft_code price_model(weft_price_shop *shop, const weft_priced_model *mod
         return WEFT_OK;
     weft_material material;
     WEFT_TRY(weft_variant_make(&shop->fitted, model, shop->rounding_step, shop->material_path, &material, error));
-    weft_code code = price_material(shop, model, &material, price, error);
+    weft_code code = give_provenance(shop, &material, error);
+    if (code == WEFT_OK)
+        code = price_material(shop, model, &material, price, error);
     weft_material_free(&material);
     return code;
 }
