@@ -31,6 +31,7 @@ struct weft_held_bench {
     weft_splits splits;
     int split_count; /* that are measured: the first ones */
     bool has_pictures;
+    bool for_pictures_alone;     /* nothing but these is asked of the model at work */
     uint8_t *kinds;              /* [texel][image] bits 1 << weft_sample_kind */
     uint8_t *known[MOST_SPLITS]; /* [texel][image] by split: held out, and known through the surface of the excerpt, so
                                     that all models are asked for the same; NULL where there is none */
@@ -164,13 +165,20 @@ static const weft_excerpt *fitted_excerpt(const weft_held_bench *bench, const we
     return is_fitted_alone(bench, model) ? &bench->alone : &bench->excerpt;
 }
 
+/* Fewer texels come from there. */
+static bool has_levels(const weft_held_bench *bench, const weft_priced_model *model)
+{
+    return bench->has_pictures && model->options.budget_bytes == 0 &&
+           (model->gives_fewer || !bench->for_pictures_alone);
+}
+
 static weft_code fit_split(weft_held_bench *bench, const weft_priced_model *model, int split, const uint8_t *unseen,
                            weft_error *error)
 {
     weft_dataset *others;
     weft_compress_report report;
     weft_compress_options options = model->options;
-    options.levels = bench->has_pictures && options.budget_bytes == 0; /* fewer texels come from there */
+    options.levels = has_levels(bench, model);
     options.heights = false; /* those of the whole dataset are given afterwards */
     options.rounded = false; /* and so are layers rounded */
     WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(bench->dataset), &fitted_excerpt(bench, model)->layout,
@@ -439,6 +447,8 @@ static weft_code measure_split(weft_held_bench *bench, const weft_priced_model *
         code = weft_trial_create(&bench->excerpt, weft_splits_held(&bench->splits, split), masks.next, &trial, error);
     trial.asked = bench->asked;
     trial.predicts_asked = is_fitted_alone(bench, model);
+    if (code == WEFT_OK && bench->for_pictures_alone)
+        weft_held_pictures_keep(&trial);
     if (code == WEFT_OK)
         code = ask_model(bench, model, split, &trial, masks.unseen, &answer, &measured->weight, error);
     if (code == WEFT_OK)
@@ -459,6 +469,8 @@ static weft_code measure_splits(weft_held_bench *bench, const weft_priced_model 
     for (int split = 0; split < bench->split_count; split++)
         WEFT_TRY(measure_split(bench, model, split, all, measured, error));
     measured->fit_s = bench->fit_s;
+    if (bench->for_pictures_alone)
+        return WEFT_OK;
     WEFT_TRY(summarise(bench, &all->held, measured->held, error));
     WEFT_TRY(summarise(bench, &all->fitted, measured->fitted, error));
     if (measured->held[WEFT_SAMPLES_ALL].count == 0)
@@ -466,8 +478,8 @@ static weft_code measure_splits(weft_held_bench *bench, const weft_priced_model 
     return find_interval(bench, &all->held, &measured->interval_width, error);
 }
 
-weft_code weft_held_bench_measure(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
-                                  weft_error *error)
+static weft_code measure(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
+                         weft_error *error)
 {
     said all = {0};
     *measured = (weft_held_error){0};
@@ -487,4 +499,18 @@ weft_code weft_held_bench_measure(weft_held_bench *bench, const weft_priced_mode
         weft_held_error_free(measured);
     }
     return code;
+}
+
+weft_code weft_held_bench_measure(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
+                                  weft_error *error)
+{
+    bench->for_pictures_alone = false;
+    return measure(bench, model, measured, error);
+}
+
+weft_code weft_held_bench_picture(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
+                                  weft_error *error)
+{
+    bench->for_pictures_alone = true;
+    return measure(bench, model, measured, error);
 }

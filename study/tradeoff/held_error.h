@@ -50,6 +50,12 @@ void weft_held_bench_free(weft_held_bench *bench);
 long weft_held_bench_texels(const weft_held_bench *bench);
 const weft_splits *weft_held_bench_splits(const weft_held_bench *bench);
 
+/* The pictures alone, by the first split, of a bench that has them: errors and the interval stay 0. The fit is that of
+ * weft_held_bench_measure, which may be asked before and after. The caller frees *measured. Errors: those of
+ * weft_compress. */
+weft_code weft_held_bench_picture(weft_held_bench *bench, const weft_priced_model *model, weft_held_error *measured,
+                                  weft_error *error);
+
 /* Fits the model without what is held out, and measures it there. The fit of the model before is used again where it is
  * the same. The caller frees *measured. Errors: those of weft_compress; WEFT_BAD_USAGE where all that is held out is
  * masked. */

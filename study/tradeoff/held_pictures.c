@@ -37,6 +37,19 @@ int weft_held_pictures_choose(const weft_trial *trial, int image[WEFT_HELD_PICTU
     return count;
 }
 
+void weft_held_pictures_keep(weft_trial *trial)
+{
+    int image[WEFT_HELD_PICTURES], count = weft_held_pictures_choose(trial, image), kept = 0;
+    for (int i = 0; i < trial->held_count && kept < count; i++) {
+        if (trial->image[i] != image[kept])
+            continue;
+        trial->flags[kept] = trial->flags[i];
+        trial->image[kept++] = trial->image[i];
+    }
+    trial->held_count = kept;
+    trial->fitted_count = 0;
+}
+
 /* Red, green and blue of a sample follow each other. */
 static void fill(const weft_trial *trial, const weft_asked_samples *said, weft_image_pair *pair)
 {

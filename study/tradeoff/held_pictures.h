@@ -10,6 +10,10 @@ enum { WEFT_HELD_PICTURES = 64 };
  * image and returns how many. Reads the held-out images of the trial and their flags alone. Pure. */
 int weft_held_pictures_choose(const weft_trial *trial, int image[WEFT_HELD_PICTURES]);
 
+/* Lets the trial ask for these images alone, and for no fitted ones; weft_held_pictures_choose chooses the same again.
+ */
+void weft_held_pictures_keep(weft_trial *trial);
+
 /* Compares some images that a trial holds out, of those with the most reasons to be, with what is said of them, under
  * the exposure that the photograph needs. Masked texels are black in both and do not count. `kinds` are those of the
  * samples of the excerpt (study/tradeoff/sample_kind.h). Sets the pictures and their quality in `measured`. Errors:

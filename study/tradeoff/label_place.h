@@ -1,4 +1,4 @@
-/* Where the labels of a plot stand, so that none lies on another. */
+/* Where the labels of a plot stand, so that none lies on another, and on as few points as can be. */
 #ifndef WEFT_STUDY_TRADEOFF_LABEL_PLACE_H
 #define WEFT_STUDY_TRADEOFF_LABEL_PLACE_H
 
@@ -16,10 +16,17 @@ typedef struct weft_label_place {
     weft_label_box box;
 } weft_label_place;
 
+/* What a label must not lie on, and what it had better not. Not owned. */
+typedef struct weft_label_obstacles {
+    const weft_label_box *taken, *disc;
+    size_t taken_count, disc_count;
+} weft_label_obstacles;
+
 /* The place for a text of so many letters beside a disc of `radius` at (x, y), in a plot of `width`, whose axis lies at
- * `height`: below or above the disc, towards the middle of the plot or away from it, else further below: the first that
- * lies on none of taken [count] and within the plot; the first of all where there is none. Pure. */
+ * `height`: below or above the disc, towards the middle of the plot or away from it, else further below or above: of
+ * those that lie on nothing that is taken and within the plot the first that lies on the fewest discs; the first of all
+ * where there is none. Pure. */
 weft_label_place weft_label_place_choose(double x, double y, double radius, size_t letters, double width, double height,
-                                         const weft_label_box *taken, size_t count);
+                                         const weft_label_obstacles *obstacles);
 
 #endif

@@ -82,10 +82,11 @@ static void put_summary(weft_page *page, const weft_tradeoff *tradeoff)
             tradeoff->row_count, tradeoff->width, tradeoff->height, tradeoff->image_count, held);
     put_choices(page, tradeoff);
     put_texels(page, tradeoff);
-    if (tradeoff->fitted_texels < tradeoff->texels)
+    if (tradeoff->costly_texels < tradeoff->texels)
         fprintf(page->html,
-                "; bytes and times of fits are those of %ld texels, and the rest in proportion; frames show these",
-                tradeoff->fitted_texels);
+                "; bytes and times of fits are those of %ld texels, with S, T by components or T of fewer photographs "
+                "of %ld, and the rest in proportion; frames show these",
+                tradeoff->fitted_texels, tradeoff->costly_texels);
     fprintf(page->html, ". Times are those of this machine, with %d threads, while this page was made in %.0f s. ",
             tradeoff->threads, tradeoff->seconds);
     if (tradeoff->why_not_drawn[0])

@@ -16,7 +16,8 @@ enum {
     RADIUS = 9,
     MARK_RADIUS = RADIUS + 4,
     THUMBNAIL = 96,
-    MOST_MARKED = 16
+    MOST_MARKED = 16,
+    MOST_DISCS = 64
 };
 
 /* ---- Axes ---- */
@@ -156,30 +157,39 @@ static weft_code draw_front(weft_page *page, const weft_plot *plot, const log_ax
     return WEFT_OK;
 }
 
-/* What labels must not cover: the rings of marked points, and the labels that are there already. */
+/* What labels must not cover: the rings of marked points, and the labels that are there already. What they had better
+ * not: the numbers of the axis at the left, and the other points, as far as there is room for them here. */
 typedef struct taken_boxes {
-    weft_label_box box[2 * MOST_MARKED];
-    size_t count;
+    weft_label_box box[2 * MOST_MARKED], disc[MOST_DISCS];
+    size_t count, disc_count;
 } taken_boxes;
 
-static taken_boxes rings_of(const weft_plot *plot, const log_axis *x, const log_axis *y)
+static weft_label_box box_around(double x, double y, double radius)
 {
-    taken_boxes taken = {.count = 0};
-    for (int i = 0; i < plot->point_count && taken.count < MOST_MARKED; i++) {
+    return (weft_label_box){x - radius, y - radius, x + radius, y + radius};
+}
+
+static taken_boxes points_of(const weft_plot *plot, const log_axis *x, const log_axis *y)
+{
+    taken_boxes taken = {.disc = {{0, 0, LEFT, HEIGHT}}, .disc_count = 1};
+    for (int i = 0; i < plot->point_count; i++) {
         const weft_plot_point *point = &plot->point[i];
-        if (!is_shown(point) || !point->is_marked)
+        if (!is_shown(point))
             continue;
         double at_x = place_on(x, point->x), at_y = place_on(y, point->y);
-        taken.box[taken.count++] =
-            (weft_label_box){at_x - MARK_RADIUS, at_y - MARK_RADIUS, at_x + MARK_RADIUS, at_y + MARK_RADIUS};
+        if (point->is_marked && taken.count < MOST_MARKED)
+            taken.box[taken.count++] = box_around(at_x, at_y, MARK_RADIUS);
+        else if (!point->is_marked && taken.disc_count < MOST_DISCS)
+            taken.disc[taken.disc_count++] = box_around(at_x, at_y, RADIUS);
     }
     return taken;
 }
 
 static void draw_label(weft_page *page, const weft_plot_point *point, double x, double y, taken_boxes *taken)
 {
+    const weft_label_obstacles obstacles = {taken->box, taken->disc, taken->count, taken->disc_count};
     weft_label_place place =
-        weft_label_place_choose(x, y, RADIUS, strlen(point->label), WIDTH, HEIGHT - BOTTOM, taken->box, taken->count);
+        weft_label_place_choose(x, y, RADIUS, strlen(point->label), WIDTH, HEIGHT - BOTTOM, &obstacles);
     if (taken->count < sizeof taken->box / sizeof *taken->box)
         taken->box[taken->count++] = place.box;
     fprintf(page->html, "<text class=\"label\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", place.x, place.y,
@@ -219,7 +229,7 @@ static void draw_point(weft_page *page, const weft_plot_point *point, double x, 
 /* The marked ones lie above the others. */
 static void draw_points(weft_page *page, const weft_plot *plot, const log_axis *x, const log_axis *y, bool marked)
 {
-    taken_boxes taken = rings_of(plot, x, y);
+    taken_boxes taken = points_of(plot, x, y);
     for (int i = 0; i < plot->point_count; i++) {
         const weft_plot_point *point = &plot->point[i];
         if (is_shown(point) && point->is_marked == marked)

@@ -261,6 +261,15 @@ bool weft_priced_heights_are_kept(double without, double through)
     return through <= WEFT_HOLD_OUT_HEIGHTS_GAIN * without;
 }
 
+static void mark_what_gives_fewer(model_list *list)
+{
+    for (int i = 0; i < list->count; i++) {
+        for (int later = i + 1; later < list->count; later++)
+            list->model[i].gives_fewer |=
+                list->model[later].fewer_texels && weft_priced_models_share_fit(&list->model[i], &list->model[later]);
+    }
+}
+
 int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced_dataset *dataset,
                             weft_priced_model *model)
 {
@@ -278,12 +287,25 @@ int weft_priced_models_list(const weft_dataset_layout *layout, const weft_priced
     if (dataset->cloth)
         add_alone(&list, WEFT_PRICED_CLOTH, "analytic cloth");
     add_photographs(&list);
+    mark_what_gives_fewer(&list);
     return list.count;
 }
 
 bool weft_priced_model_is_fit(const weft_priced_model *model)
 {
     return model->family < WEFT_PRICED_RAW;
+}
+
+bool weft_priced_model_is_of_lobes(const weft_priced_model *model)
+{
+    return weft_priced_model_is_fit(model) && model->options.layer_count == 0;
+}
+
+bool weft_priced_model_is_costly(const weft_priced_model *model)
+{
+    const weft_compress_options *options = &model->options;
+    return weft_priced_model_is_of_lobes(model) &&
+           (options->light_table || options->table_components > 0 || model->photographs != WEFT_PHOTOGRAPHS_ALL);
 }
 
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other)

@@ -36,6 +36,7 @@ typedef struct weft_priced_model {
     const char *cloth; /* file of a WEFT_PRICED_CLOTH; not owned */
     int first_layers;  /* these of the layers alone, the most important; 0: all */
     bool fewer_texels; /* half of them along each side */
+    bool gives_fewer;  /* a later one with fewer texels is made from its fit */
     int work;          /* of a fit, beside that of others */
 } weft_priced_model;
 
@@ -61,6 +62,12 @@ bool weft_priced_heights_are_kept(double without, double through);
 
 /* Whether the model is what weft_compress fits; else it is raw, BARD or analytic cloth. Pure. */
 bool weft_priced_model_is_fit(const weft_priced_model *model);
+
+/* Whether it is such a fit of each texel alone: of lobes and tables, not of layers. Pure. */
+bool weft_priced_model_is_of_lobes(const weft_priced_model *model);
+
+/* Whether its fit takes long for what it tells: S, T by components, or T of fewer photographs. Pure. */
+bool weft_priced_model_is_costly(const weft_priced_model *model);
 
 /* Whether the model is made from the same fit as the other. Pure. */
 bool weft_priced_models_share_fit(const weft_priced_model *model, const weft_priced_model *other);

@@ -11,7 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PICTURE_SIDE = 32, FITTED_SIDE = 64 };
+enum { PICTURE_SIDE = 32 };
+
+static const weft_price_sides fitted_sides = {.usual = 64, .costly = 32};
 
 /* Texels that lie spread are other ones for layers, which need more of them. */
 enum { TEXELS_OF_LOBES, TEXELS_OF_LAYERS, TEXELS_OF_END };
@@ -34,21 +36,20 @@ typedef struct studying {
 /* NULL: the model needs neighbours. */
 static weft_held_bench *spread_bench_of(const studying *work, const weft_priced_model *model)
 {
-    bool is_of_lobes = weft_priced_model_is_fit(model) && model->options.layer_count == 0;
     if (model->fewer_texels || model->family == WEFT_PRICED_CLOTH)
         return NULL;
-    return work->spread[is_of_lobes ? TEXELS_OF_LOBES : TEXELS_OF_LAYERS];
+    return work->spread[weft_priced_model_is_of_lobes(model) ? TEXELS_OF_LOBES : TEXELS_OF_LAYERS];
 }
 
-/* Pictures are of neighbours. So are errors at first; then those of spread texels take their place. */
+/* Pictures are of neighbours, and where no texels lie spread errors are, too. */
 static weft_code measure_model(const studying *work, weft_tradeoff_row *row, weft_error *error)
 {
     weft_held_error spread;
     weft_held_bench *bench = spread_bench_of(work, &row->model);
-    WEFT_TRY(weft_held_bench_measure(work->pictures, &row->model, &row->measured, error));
     row->is_of_neighbours = !bench;
     if (!bench)
-        return WEFT_OK;
+        return weft_held_bench_measure(work->pictures, &row->model, &row->measured, error);
+    WEFT_TRY(weft_held_bench_picture(work->pictures, &row->model, &row->measured, error));
     weft_code code = weft_held_bench_measure(bench, &row->model, &spread, error);
     if (code != WEFT_OK) {
         weft_held_error_free(&row->measured);
@@ -148,7 +149,8 @@ static void describe(studying *work)
     result->neighbours = weft_held_bench_texels(work->pictures);
     result->measured_texels = texels_of(work, TEXELS_OF_LAYERS);
     result->lobe_texels = texels_of(work, TEXELS_OF_LOBES);
-    result->fitted_texels = weft_price_shop_texels(work->shop);
+    result->fitted_texels = weft_price_shop_texels(work->shop, false);
+    result->costly_texels = weft_price_shop_texels(work->shop, true);
     result->texels = (long)layout->width * layout->height;
     result->threads = omp_get_max_threads();
     snprintf(result->why_not_drawn, sizeof result->why_not_drawn, "%s", weft_price_shop_why_not_drawn(work->shop));
@@ -198,7 +200,7 @@ static weft_code study(studying *work, const char *dataset_path, const char *fol
         return weft_fail_memory(error, "path", strlen(folder));
     }
     WEFT_TRY(open_benches(work, error));
-    WEFT_TRY(weft_price_shop_open(work->dataset, FITTED_SIDE, work->scratch_path, work->progress, &work->shop, error));
+    WEFT_TRY(weft_price_shop_open(work->dataset, fitted_sides, work->scratch_path, work->progress, &work->shop, error));
     describe(work);
     WEFT_TRY(study_models(work, error));
     choose(work->result);

@@ -25,11 +25,13 @@ typedef struct weft_tradeoff {
     int width, height, image_count, view_count; /* of the dataset */
     weft_split_kind kind;
     int view_held_count, light_held_count, light_count, image_held_count;
-    int split_count;            /* of errors; those of neighbours are of the first split alone */
-    long measured_texels;       /* whose error is measured: of layers and photographs, ... */
-    long lobe_texels;           /* ... of lobes, ... */
-    long neighbours;            /* ... and of pictures */
-    long fitted_texels, texels; /* that are fitted for prices; of the dataset */
+    int split_count;      /* of errors; those of neighbours are of the first split alone */
+    long measured_texels; /* whose error is measured: of layers and photographs, ... */
+    long lobe_texels;     /* ... of lobes, ... */
+    long neighbours;      /* ... and of pictures */
+    long fitted_texels;   /* for prices, ... */
+    long costly_texels;   /* ... and of what takes long */
+    long texels;          /* of the dataset */
     int threads;
     double seconds;
     char why_not_drawn[WEFT_MESSAGE_SIZE], renderer[128];
@@ -40,7 +42,8 @@ typedef struct weft_tradeoff {
  * folder/tradeoff.csv; the page appears when it is complete. Errors are measured on the texels and the splits of
  * weft_hold_out_measure, as weft compress says them of a material; pictures on a block of at most 32 x 32 neighbouring
  * texels, and so are the errors of what needs neighbours: fewer texels, cloth, and all where the dataset has a surface,
- * near lights or a handful of photographs. Prices are of a block of at most 64 x 64.
+ * near lights or a handful of photographs. Prices are of a block of at most 64 x 64, of what
+ * takes long 32 x 32.
  * Errors: WEFT_BAD_USAGE for a dataset of one image; those of weft_compress, of reading, writing and drawing. */
 weft_code weft_tradeoff_study(const char *dataset_path, const char *cloth, const char *folder,
                               const weft_progress *progress, weft_tradeoff *result, weft_error *error);

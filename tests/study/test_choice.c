@@ -162,7 +162,8 @@ static void labels_do_not_lie_on_each_other(void **state)
     for (; count < POINTS; count++)
         box[count] = (weft_label_box){at[count][0] - 13, at[count][1] - 13, at[count][0] + 13, at[count][1] + 13};
     for (int i = 0; i < POINTS; i++) {
-        weft_label_place place = weft_label_place_choose(at[i][0], at[i][1], 9, LETTERS, WIDTH, HEIGHT, box, count);
+        const weft_label_obstacles taken = {.taken = box, .taken_count = count};
+        weft_label_place place = weft_label_place_choose(at[i][0], at[i][1], 9, LETTERS, WIDTH, HEIGHT, &taken);
         assert_true(place.box.left >= 0 && place.box.right <= WIDTH && place.box.top >= 0 &&
                     place.box.bottom <= HEIGHT);
         assert_true(place.ends_there);
@@ -172,9 +173,38 @@ static void labels_do_not_lie_on_each_other(void **state)
         for (size_t j = 0; j < i; j++)
             assert_true(box[i].right <= box[j].left || box[j].right <= box[i].left || box[i].bottom <= box[j].top ||
                         box[j].bottom <= box[i].top);
-    weft_label_place alone = weft_label_place_choose(100, 100, 9, LETTERS, WIDTH, HEIGHT, NULL, 0);
+    const weft_label_obstacles none = {0};
+    weft_label_place alone = weft_label_place_choose(100, 100, 9, LETTERS, WIDTH, HEIGHT, &none);
     assert_false(alone.ends_there);
     assert_true(alone.y > 100 && alone.x > 100);
+}
+
+static bool lies_on(const weft_label_box *a, const weft_label_box *b)
+{
+    return a->left < b->right && b->left < a->right && a->top < b->bottom && b->top < a->bottom;
+}
+
+/* Discs are below and above on the near side: the label goes where there is none. Where they are everywhere it lies on
+ * one rather than on two, and still on no other label. */
+static void labels_avoid_discs_where_there_is_room(void **state)
+{
+    (void)state;
+    enum { WIDTH = 760, HEIGHT = 382, LETTERS = 20, ROWS = 26, LOWER = 150 };
+    const weft_label_box near[2] = {{150, 110, 168, 128}, {190, 80, 208, 98}};
+    const weft_label_obstacles some = {.disc = near, .disc_count = 2};
+    weft_label_place place = weft_label_place_choose(100, 100, 9, LETTERS, WIDTH, HEIGHT, &some);
+    assert_false(lies_on(&place.box, &near[0]) || lies_on(&place.box, &near[1]));
+    weft_label_box everywhere[2 * ROWS];
+    for (int i = 0; i < ROWS; i++) { /* a column in all rows of text, and another one in the upper ones */
+        double right = 15 * i < LOWER ? 180 : 500;
+        everywhere[2 * i] = (weft_label_box){150, 15 * i, 168, 15 * i + 15};
+        everywhere[2 * i + 1] = (weft_label_box){right, 15 * i, right + 18, 15 * i + 15};
+    }
+    const weft_label_obstacles all = {
+        .taken = &near[0], .taken_count = 1, .disc = everywhere, .disc_count = sizeof everywhere / sizeof *everywhere};
+    place = weft_label_place_choose(100, 100, 9, LETTERS, WIDTH, HEIGHT, &all);
+    assert_true(place.box.top >= LOWER);
+    assert_false(lies_on(&place.box, &near[0]));
 }
 
 /* ---- The page ---- */
@@ -219,6 +249,7 @@ int main(void)
         cmocka_unit_test(frames_that_are_too_slow_are_not_chosen),
         cmocka_unit_test(points_lie_on_logarithmic_axes),
         cmocka_unit_test(labels_do_not_lie_on_each_other),
+        cmocka_unit_test(labels_avoid_discs_where_there_is_room),
         cmocka_unit_test(page_names_a_chosen_model_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -322,7 +322,7 @@ static double priced_bytes(weft_dataset *dataset, const weft_priced_model *model
     weft_price price;
     bool has_parts;
     weft_error error = {0};
-    expect_ok(weft_price_shop_open(dataset, side, scratch, NULL, &shop, &error), &error);
+    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){side, side}, scratch, NULL, &shop, &error), &error);
     expect_ok(weft_price_ask(shop, model, &price, &has_parts, &error), &error);
     weft_price_shop_close(shop);
     return price.bytes;

@@ -305,6 +305,40 @@ static void variants_are_made_of_the_same_fit(void **state)
     forget_grid();
 }
 
+/* The pictures of a bench that is asked for these alone: the same, by the same fit, and fewer texels after it. */
+static void pictures_alone_are_those_beside_errors(void **state)
+{
+    (void)state;
+    weft_dataset *dataset, *again;
+    weft_held_error alone;
+    weft_priced_model model[WEFT_PRICED_MOST];
+    weft_error error = {0};
+    write_grid(4, rough);
+    weft_held_bench *bench = open_bench(&dataset), *other = open_bench(&again);
+    int count = weft_priced_models_list(&grid, &flat, model);
+    expect_ok(weft_held_bench_picture(bench, find(model, count, "2 lobes, T"), &alone, &error), &error);
+    weft_held_error coarse = measure(bench, "2 lobes, T, half the texels a side"), both = measure(other, "2 lobes, T"),
+                    coarse_of_both = measure(other, "2 lobes, T, half the texels a side");
+    size_t bytes = 3 * (size_t)both.sample.width * (size_t)both.sample.height * sizeof *both.sample.pixels;
+    assert_int_equal(alone.held[0].count, 0);
+    assert_int_equal(alone.picture_count, both.picture_count);
+    assert_memory_equal(alone.quality, both.quality, sizeof both.quality);
+    assert_memory_equal(alone.picture_pixels, both.picture_pixels, sizeof both.picture_pixels);
+    assert_int_equal(alone.worst_image, both.worst_image);
+    assert_memory_equal(alone.sample.pixels, both.sample.pixels, bytes);
+    assert_memory_equal(alone.predicted.pixels, both.predicted.pixels, bytes);
+    assert_memory_equal(coarse.held, coarse_of_both.held, sizeof coarse.held);
+    weft_held_error_free(&alone);
+    weft_held_error_free(&both);
+    weft_held_error_free(&coarse);
+    weft_held_error_free(&coarse_of_both);
+    weft_held_bench_free(bench);
+    weft_held_bench_free(other);
+    weft_dataset_close(dataset);
+    weft_dataset_close(again);
+    forget_grid();
+}
+
 /* One brightness a texel under one reflectance is rank 1: two layers say all of it. Of as many colours as texels they
  * say less than four. */
 static weft_rgb tinted(int x, int y, weft_vec3 light, weft_vec3 view)
@@ -355,15 +389,15 @@ static void bytes_are_those_of_the_file(void **state)
 {
     (void)state;
     weft_dataset *dataset;
-    weft_price_shop *whole, *part;
+    weft_price_shop *whole, *part, *small;
     weft_priced_model model[WEFT_PRICED_MOST];
     weft_material material;
     weft_error error = {0};
     fixture_far_dataset(path, 24, 24, 4, rough, FIXTURE_MASK_NONE);
     expect_ok(weft_dataset_open(path, &dataset, &error), &error);
-    const weft_priced_model *wanted =
-        find(model, weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model), "1 lobe, T");
-    expect_ok(weft_price_shop_open(dataset, 64, scratch, NULL, &whole, &error), &error);
+    int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model);
+    const weft_priced_model *wanted = find(model, count, "1 lobe, T");
+    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){64, 64}, scratch, NULL, &whole, &error), &error);
     weft_price price = ask(whole, wanted);
     expect_ok(weft_compress(dataset, &wanted->options, NULL, &material, NULL, &error), &error);
     expect_ok(weft_material_write("tradeoff.weft", &material, &error), &error);
@@ -373,9 +407,15 @@ static void bytes_are_those_of_the_file(void **state)
     assert_true(price.evaluations_a_second > 100);
     assert_int_equal(price.fetches.reads, 8 * (1 + 2 + 3));
     assert_true((price.frame_ms > 0) != (weft_price_shop_why_not_drawn(whole)[0] != 0));
-    expect_ok(weft_price_shop_open(dataset, 16, scratch, NULL, &part, &error), &error);
-    assert_int_equal(weft_price_shop_texels(part), 256);
+    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){20, 16}, scratch, NULL, &part, &error), &error);
+    assert_int_equal(weft_price_shop_texels(part, false), 20 * 20);
+    assert_int_equal(weft_price_shop_texels(part, true), 16 * 16);
     assert_float_equal(ask(part, wanted).bytes, price.bytes, 0.15 * price.bytes);
+    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){16, 20}, scratch, NULL, &small, &error), &error);
+    const weft_priced_model *costly = find(model, count, "2 lobes, T by 4 components");
+    assert_true(ask(part, wanted).bytes < ask(small, wanted).bytes);
+    assert_true(ask(part, costly).bytes > ask(small, costly).bytes);
+    weft_price_shop_close(small);
     weft_price_shop_close(whole);
     weft_price_shop_close(part);
     weft_material_free(&material);
@@ -383,6 +423,34 @@ static void bytes_are_those_of_the_file(void **state)
     unlink("tradeoff.weft");
     unlink(path);
     assert_int_not_equal(access(scratch, F_OK), 0);
+}
+
+/* What differs in its numbers alone takes as long to draw; half of the texels are drawn by themselves. */
+static void rounded_numbers_are_drawn_once(void **state)
+{
+    (void)state;
+    weft_dataset *dataset;
+    weft_price_shop *shop;
+    weft_priced_model model[WEFT_PRICED_MOST];
+    weft_error error = {0};
+    fixture_far_dataset(path, 8, 8, 4, rough, FIXTURE_MASK_NONE);
+    expect_ok(weft_dataset_open(path, &dataset, &error), &error);
+    int count = weft_priced_models_list(weft_dataset_get_layout(dataset), &flat, model);
+    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){8, 8}, scratch, NULL, &shop, &error), &error);
+    bool draws = weft_price_shop_why_not_drawn(shop)[0] == 0;
+    weft_price exact = ask(shop, find(model, count, "2 lobes, T")),
+               rounded = ask(shop, find(model, count, "2 lobes, T in 4 bits")),
+               coarse = ask(shop, find(model, count, "2 lobes, T, half the texels a side")),
+               other = ask(shop, find(model, count, "4 layers"));
+    assert_memory_equal(&rounded.frame_ms, &exact.frame_ms, sizeof exact.frame_ms);
+    assert_memory_equal(&rounded.large_frame_ms, &exact.large_frame_ms, sizeof exact.large_frame_ms);
+    if (draws) {
+        assert_memory_not_equal(&coarse.large_frame_ms, &exact.large_frame_ms, sizeof exact.large_frame_ms);
+        assert_memory_not_equal(&other.large_frame_ms, &coarse.large_frame_ms, sizeof coarse.large_frame_ms);
+    }
+    weft_price_shop_close(shop);
+    weft_dataset_close(dataset);
+    unlink(path);
 }
 
 /* ---- Rounded layers ---- */
@@ -428,7 +496,7 @@ static void rounded_layers_are_those_of_the_command(void **state)
     expect_same_layers(variant.layers, made.layers);
     expect_ok(weft_material_write("tradeoff.weft", &made, &error), &error);
     double bytes = (double)weft_file_bytes("tradeoff.weft");
-    expect_ok(weft_price_shop_open(dataset, 64, scratch, NULL, &shop, &error), &error);
+    expect_ok(weft_price_shop_open(dataset, (weft_price_sides){64, 64}, scratch, NULL, &shop, &error), &error);
     weft_price of_exact = ask(shop, exact), of_rounded = ask(shop, rounded);
     print_message("%.0f bytes, rounded %.0f, as the command makes it %.0f\n", of_exact.bytes, of_rounded.bytes, bytes);
     assert_true(of_rounded.fit_s <= of_exact.fit_s && of_rounded.fit_s >= of_exact.fit_s);
@@ -452,8 +520,10 @@ int main(void)
         cmocka_unit_test(fewer_photographs_are_spread),
         cmocka_unit_test(errors_are_told_apart_where_eyes_look),
         cmocka_unit_test(variants_are_made_of_the_same_fit),
+        cmocka_unit_test(pictures_alone_are_those_beside_errors),
         cmocka_unit_test(two_layers_are_the_first_of_four),
         cmocka_unit_test(bytes_are_those_of_the_file),
+        cmocka_unit_test(rounded_numbers_are_drawn_once),
         cmocka_unit_test(rounded_layers_are_those_of_the_command),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
