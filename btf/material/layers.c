@@ -7,8 +7,6 @@
 
 enum { CEILING_STEPS = 8, CEILING_OF_ONE = 192, LEAST_SIDE = 4, MOST_SIDE = 64, HEADER_WORDS = 16 };
 
-/* A floor is a float of 4 bits of mantissa, whose exponent begins here: the lower bits of a float cut off. */
-
 /* ---- Memory ---- */
 
 static weft_code allocate(void *array, size_t count, size_t size, weft_error *error)

@@ -101,7 +101,7 @@ uint8_t weft_ceiling_code(float value);
  * 2^(floor(code / 16) - 13) (1 + (code mod 16) / 16), about 1.3e-4 .. 7.8. Pure. */
 float weft_floor_of_code(uint8_t code);
 
-/* The codes are the exponent and the first four bits of the fraction of a float. */
+/* A floor is a float of 4 bits of mantissa, whose exponent begins here: the lower bits of a float cut off. */
 enum { WEFT_FLOOR_SHIFT = 19, WEFT_FLOOR_FIRST = (127 - 13) << 4 };
 
 /* The largest code whose floor is at most `value`; 0 of what is no number. Here, so that loops over all samples become
