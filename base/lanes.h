@@ -99,18 +99,27 @@ WEFT_INLINE lane_bits lane_bits_load(const int32_t *from)
     return *(const lane_bits *)__builtin_assume_aligned(from, 4 * LANES);
 }
 
-/* Half and half, which vectors do in few steps. */
+/* Half and half, from the whole vector to the first element of four. Shuffles keep it in registers: parts of an array
+ * are stored and waited for. */
+typedef float weft_four_lanes __attribute__((vector_size(16)));
+
 WEFT_INLINE float lanes_sum(lanes x)
 {
-    float part[LANES];
-    memcpy(part, &x, sizeof part);
-#pragma GCC unroll 4
-    for (int half = LANES / 2; half > 0; half /= 2) {
-#pragma GCC unroll 8
-        for (int i = 0; i < half; i++)
-            part[i] += part[i + half];
-    }
-    return part[0];
+#if defined(__AVX512F__)
+    typedef float eight_lanes __attribute__((vector_size(32)));
+    eight_lanes eight = __builtin_shufflevector(x, x, 0, 1, 2, 3, 4, 5, 6, 7) +
+                        __builtin_shufflevector(x, x, 8, 9, 10, 11, 12, 13, 14, 15);
+#elif defined(__AVX2__)
+    lanes eight = x;
+#endif
+#if defined(__AVX2__)
+    weft_four_lanes four =
+        __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+#else
+    weft_four_lanes four = x;
+#endif
+    weft_four_lanes two = four + __builtin_shufflevector(four, four, 2, 3, 0, 1);
+    return two[0] + two[1];
 }
 
 /* Several vectors in step, so that the long chain of one hides behind the others: the processor looks ahead too little
