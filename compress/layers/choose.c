@@ -56,19 +56,11 @@ static void split_free(split *s)
 
 static weft_code split_allocate(const weft_layer_images *images, split *s, weft_error *error)
 {
-    size_t count = (size_t)images->image_count, views = (size_t)images->view_count;
+    size_t count = (size_t)images->image_count;
     *s = (split){.held = malloc(count * sizeof *s->held), .held_view = malloc(count * sizeof *s->held_view)};
-    s->fitted.image = malloc(count * sizeof *s->fitted.image);
-    s->fitted.first = calloc(views + 1, sizeof *s->fitted.first);
-    s->fitted.light = malloc(count * sizeof *s->fitted.light);
-    s->fitted.view = malloc(views * sizeof *s->fitted.view);
-    s->fitted.cosine = malloc(count * sizeof *s->fitted.cosine);
-    s->fitted.weight = malloc(count * sizeof *s->fitted.weight);
-    if (s->held && s->held_view && s->fitted.image && s->fitted.first && s->fitted.light && s->fitted.view &&
-        s->fitted.cosine && s->fitted.weight)
-        return WEFT_OK;
-    split_free(s);
-    return weft_fail_memory(error, "images of layers", count * sizeof(weft_vec3));
+    WEFT_TRY(weft_layer_images_allocate(images->image_count, images->view_count, &s->fitted, error));
+    return s->held && s->held_view ? WEFT_OK
+                                   : weft_fail_memory(error, "images of layers", count * sizeof *s->held_view);
 }
 
 static void add_view(const weft_layer_images *images, int view, bool held_view, const weft_vec3 *lights,
@@ -107,6 +99,10 @@ static weft_code split_create(const weft_layer_images *images, split *s, weft_er
 
 /* ---- One kind ---- */
 
+typedef struct squares {
+    double error, sample;
+} squares;
+
 typedef struct trial {
     const weft_layer_images *images;
     const weft_training *whole, *part;
@@ -114,6 +110,7 @@ typedef struct trial {
     const split *split;
     float *factor;      /* [layer][fitted length] */
     float *coefficient; /* [texel][layer] */
+    squares *sum;       /* [held_count] over the texels */
 } trial;
 
 static weft_code find_coefficients(const trial *t, weft_error *error)
@@ -121,21 +118,32 @@ static weft_code find_coefficients(const trial *t, weft_error *error)
     weft_projector projector;
     int texels = t->part->texel_count, count = t->components->count;
     WEFT_TRY(weft_projector_create(t->components, t->factor, t->split->fitted.image_count, &projector, error));
-    weft_code code = WEFT_OK;
-    for (int i = 0; i < texels && code == WEFT_OK; i++) {
+    weft_code result = WEFT_OK;
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int i = 0; i < texels; i++) {
         const float *vector = t->part->vector + (size_t)i * t->part->length;
         const uint8_t *valid = t->part->valid + (size_t)i * t->part->image_count;
-        code = weft_projector_solve(&projector, &vector, &valid, 1, t->coefficient + (size_t)i * (size_t)count, error);
+        weft_error own = {0};
+        weft_code code =
+            weft_projector_solve(&projector, &vector, &valid, 1, t->coefficient + (size_t)i * (size_t)count, &own);
+        if (code == WEFT_OK)
+            continue;
+#pragma omp critical(weft_find_coefficients)
+        {
+            result = code;
+            *error = own;
+        }
     }
     weft_projector_free(&projector);
-    return code;
+    return result;
 }
 
 /* Sums over the texels for one image that was held out. */
-static void add_errors(const trial *t, const weft_layer_maps *maps, int held, double *square, double *energy)
+static squares squares_of(const trial *t, const weft_layer_maps *maps, int held)
 {
     int image = t->split->held[held], count = t->components->count;
     float factor[3 * WEFT_LAYERS_MAX] = {0}, weight = t->images->weight[image];
+    squares sum = {0};
     weft_layer_factors(maps, t->images->light[image], t->split->held_view[held], factor);
     for (int texel = 0; texel < t->whole->texel_count; texel++) {
         const float *own = t->coefficient + (size_t)texel * (size_t)count;
@@ -147,10 +155,25 @@ static void add_errors(const trial *t, const weft_layer_maps *maps, int held, do
             for (int k = 0; k < count; k++)
                 value += own[k] * factor[3 * k + c];
             double difference = (double)(weight * fmaxf(value, 0) - sample[c]);
-            *square += difference * difference;
-            *energy += (double)sample[c] * (double)sample[c];
+            sum.error += difference * difference;
+            sum.sample += (double)sample[c] * (double)sample[c];
         }
     }
+    return sum;
+}
+
+/* Relative RMSE of the images that were held out. Images are added in their order, however many threads there are. */
+static double error_of_held(const trial *t, const weft_layer_maps *maps)
+{
+    squares all = {0};
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int i = 0; i < t->split->held_count; i++)
+        t->sum[i] = squares_of(t, maps, i);
+    for (int i = 0; i < t->split->held_count; i++) {
+        all.error += t->sum[i].error;
+        all.sample += t->sum[i].sample;
+    }
+    return all.sample > 0 ? sqrt(all.error / all.sample) : 0;
 }
 
 static weft_code try_kind(const trial *t, weft_layers_kind kind, double *error_of, weft_error *error)
@@ -163,10 +186,7 @@ static weft_code try_kind(const trial *t, weft_layers_kind kind, double *error_o
         weft_layer_model_factors(&maps, &t->split->fitted, t->factor);
         code = find_coefficients(t, error);
     }
-    double square = 0, energy = 0;
-    for (int i = 0; i < t->split->held_count && code == WEFT_OK; i++)
-        add_errors(t, &maps, i, &square, &energy);
-    *error_of = energy > 0 ? sqrt(square / energy) : 0;
+    *error_of = code == WEFT_OK ? error_of_held(t, &maps) : 0;
     weft_layer_maps_free(&maps);
     weft_layers_free(layers);
     return code;
@@ -177,13 +197,15 @@ static weft_code try_all(trial *t, double error_of[WEFT_LAYERS_KINDS], weft_erro
     size_t factors = (size_t)t->components->count * t->part->length;
     t->factor = aligned_alloc(ALIGNMENT, factors * sizeof *t->factor);
     t->coefficient = calloc((size_t)t->part->texel_count * (size_t)t->components->count, sizeof *t->coefficient);
-    weft_code code = t->factor && t->coefficient
+    t->sum = malloc((size_t)t->split->held_count * sizeof *t->sum);
+    weft_code code = t->factor && t->coefficient && t->sum
                          ? WEFT_OK
                          : weft_fail_memory(error, "factors of layers", factors * sizeof *t->factor);
     for (int kind = 0; kind < WEFT_LAYERS_KINDS && code == WEFT_OK; kind++)
         code = try_kind(t, (weft_layers_kind)kind, &error_of[kind], error);
     free(t->factor);
     free(t->coefficient);
+    free(t->sum);
     return code;
 }
 
@@ -195,9 +217,8 @@ weft_code weft_layer_model_choose(const weft_layer_images *images, const weft_tr
     weft_components components = {0};
     *kind = WEFT_LAYERS_OF_LIGHT;
     memset(error_of, 0, WEFT_LAYERS_KINDS * sizeof *error_of);
-    WEFT_TRY(split_create(images, &s, error));
-    weft_code code = WEFT_OK;
-    if (s.held_count > 0 && s.fitted.image_count > 0) {
+    weft_code code = split_create(images, &s, error);
+    if (code == WEFT_OK && s.held_count > 0 && s.fitted.image_count > 0) {
         code = weft_training_subset(training, &s.fitted, s.fitted.image, &part, error);
         if (code == WEFT_OK)
             code = weft_components_find(&part, layer_count, &components, error);

@@ -37,6 +37,7 @@ static void add_grid_view(weft_layer_images *images, weft_vec3 view)
         int i = images->image_count++;
         images->image[i] = i;
         images->light[i] = weft_direction_of_angles(weft_ubo81_angles(light));
+        images->height[i] = (float)images->light[i].z;
         images->cosine[i] = images->weight[i] = 1;
     }
     images->view[images->view_count++] = view;

@@ -1,5 +1,6 @@
 #include "compress/layers/darkest.h"
 
+#include "base/real.h"
 #include "btf/material/layers.h"
 
 enum { CODES = 256, WHOLE = 1000, RUN = 64 };
@@ -14,12 +15,12 @@ static uint8_t code_above(const int count[CODES], int below)
 }
 
 /* The codes of so many images. */
-static void find_codes(const weft_layer_images *images, const float *vector, size_t first, size_t length,
-                       uint8_t code[3 * RUN])
+WEFT_HOT static void find_codes(const weft_layer_images *images, const float *vector, size_t first, size_t length,
+                                uint8_t code[3 * RUN])
 {
     float divisor[3 * RUN];
     for (size_t i = 0; i < length; i++) {
-        float of_image = images->weight[first + i] * (float)images->light[first + i].z;
+        float of_image = images->weight[first + i] * images->height[first + i];
         divisor[3 * i] = divisor[3 * i + 1] = divisor[3 * i + 2] = of_image;
     }
     for (size_t i = 0; i < 3 * length; i++)

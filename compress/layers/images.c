@@ -17,9 +17,11 @@ weft_code weft_layer_images_allocate(int image_count, int view_count, weft_layer
     images->first = malloc((views + 1) * sizeof *images->first);
     images->light = malloc(count * sizeof *images->light);
     images->view = malloc(views * sizeof *images->view);
+    images->height = malloc(count * sizeof *images->height);
     images->cosine = malloc(count * sizeof *images->cosine);
     images->weight = calloc(count, sizeof *images->weight);
-    if (images->image && images->first && images->light && images->view && images->cosine && images->weight) {
+    if (images->image && images->first && images->light && images->view && images->height && images->cosine &&
+        images->weight) {
         images->first[0] = 0;
         return WEFT_OK;
     }
@@ -39,9 +41,18 @@ weft_code weft_layer_images_copy(const weft_layer_images *images, weft_layer_ima
     memcpy(copy->first, images->first, (views + 1) * sizeof *copy->first);
     memcpy(copy->light, images->light, count * sizeof *copy->light);
     memcpy(copy->view, images->view, views * sizeof *copy->view);
+    memcpy(copy->height, images->height, count * sizeof *copy->height);
     memcpy(copy->cosine, images->cosine, count * sizeof *copy->cosine);
     memcpy(copy->weight, images->weight, count * sizeof *copy->weight);
     return WEFT_OK;
+}
+
+/* What follows from the direction of the light. */
+static void light_from(const weft_dataset_layout *layout, weft_vec3 light, int i, weft_layer_images *images)
+{
+    images->light[i] = light;
+    images->height[i] = (float)light.z;
+    images->cosine[i] = layout->values == WEFT_REFLECTANCE ? (float)light.z : 1.0f;
 }
 
 void weft_layer_images_look_from(const weft_dataset_layout *layout, int x, int y, weft_layer_images *images)
@@ -50,10 +61,8 @@ void weft_layer_images_look_from(const weft_dataset_layout *layout, int x, int y
         int first = images->image[images->first[view]];
         images->view[view] = weft_dataset_view_direction(layout, layout->view_of_image[first], x, y);
     }
-    for (int i = 0; i < images->image_count; i++) {
-        images->light[i] = weft_dataset_light_direction(layout, images->image[i], x, y);
-        images->cosine[i] = layout->values == WEFT_REFLECTANCE ? (float)images->light[i].z : 1.0f;
-    }
+    for (int i = 0; i < images->image_count; i++)
+        light_from(layout, weft_dataset_light_direction(layout, images->image[i], x, y), i, images);
 }
 
 void weft_layer_images_free(weft_layer_images *images)
@@ -62,6 +71,7 @@ void weft_layer_images_free(weft_layer_images *images)
     free(images->first);
     free(images->light);
     free(images->view);
+    free(images->height);
     free(images->cosine);
     free(images->weight);
     *images = (weft_layer_images){0};
@@ -84,11 +94,10 @@ static double weight_of(const weft_dataset_layout *layout, int image)
 
 static void add_image(weft_layer_images *images, const weft_dataset_layout *layout, int image)
 {
-    weft_vec3 light = weft_unit(layout->light[image]);
-    images->image[images->image_count] = image;
-    images->light[images->image_count] = light;
-    images->weight[images->image_count] = (float)sqrt(weight_of(layout, image));
-    images->cosine[images->image_count++] = layout->values == WEFT_REFLECTANCE ? (float)light.z : 1.0f;
+    int i = images->image_count++;
+    light_from(layout, weft_unit(layout->light[image]), i, images);
+    images->image[i] = image;
+    images->weight[i] = (float)sqrt(weight_of(layout, image));
 }
 
 static void add_view(weft_layer_images *images, const weft_dataset_layout *layout, const uint8_t *held_out, int view)
@@ -139,10 +148,12 @@ weft_code weft_layer_images_create(const weft_dataset_layout *layout, const uint
 
 void weft_layer_images_add(weft_layer_images *images, const weft_layer_images *from, int index, int image)
 {
-    images->image[images->image_count] = image;
-    images->light[images->image_count] = from->light[index];
-    images->weight[images->image_count] = from->weight[index];
-    images->cosine[images->image_count++] = from->cosine[index];
+    int i = images->image_count++;
+    images->image[i] = image;
+    images->light[i] = from->light[index];
+    images->height[i] = from->height[index];
+    images->weight[i] = from->weight[index];
+    images->cosine[i] = from->cosine[index];
 }
 
 int weft_layer_images_gather(const weft_layer_images *images, const weft_half *samples, const uint8_t *mask,
@@ -156,13 +167,14 @@ int weft_layer_images_gather(const weft_layer_images *images, const weft_half *s
     memset(valid, 0, count);
     for (int view = 0; view < images->view_count; view++)
         for (size_t i = images->first[view]; i < images->first[view + 1]; i++) {
-            const float *sample = scratch + 3 * (size_t)images->image[i];
-            if (!(known[images->image[i]] > 0 && images->light[i].z > 0 && images->view[view].z > 0))
+            size_t image = (size_t)images->image[i];
+            if (!(known[image] > 0 && images->height[i] > 0 && images->view[view].z > 0))
                 continue;
+            float factor = images->weight[i] * images->cosine[i];
             valid[i] = 1;
             valid_count++;
             for (size_t c = 0; c < 3; c++)
-                vector[3 * i + c] = images->weight[i] * images->cosine[i] * sample[c];
+                vector[3 * i + c] = factor * scratch[3 * image + c];
         }
     return valid_count;
 }

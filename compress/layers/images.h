@@ -14,6 +14,7 @@ typedef struct weft_layer_images {
     uint32_t *first;  /* [view_count + 1] into image */
     weft_vec3 *light; /* [image_count] unit */
     weft_vec3 *view;  /* [view_count] unit */
+    float *height;    /* [image_count] z of the light: what every sample is gathered by */
     float *cosine;    /* [image_count] what makes a sample reflectance times cosine */
     float *weight;    /* [image_count] root of what the square of an error counts for; its mean square is 1 at first */
 } weft_layer_images;

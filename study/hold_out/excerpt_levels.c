@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LARGEST_SIDE = 1 << WEFT_EXCERPT_LAST_LEVEL, FEWEST = 4 };
+enum { LARGEST_SIDE = 1 << WEFT_EXCERPT_LAST_LEVEL, FEWEST = 4, RUN = 64 };
 
 /* ---- Which texels ---- */
 
@@ -65,22 +65,33 @@ static weft_code choose_texels(const weft_dataset_layout *layout, int side, leve
 
 /* ---- Means ---- */
 
+/* Images first .. end - 1 of all texels, texel by texel, as they lie in memory. */
+static void average_run(const weft_half *samples, const uint8_t *mask, size_t texels, size_t images, size_t first,
+                        size_t end, weft_half *mean, uint8_t *mean_mask)
+{
+    double sum[RUN][3] = {{0}};
+    int count[RUN] = {0};
+    for (size_t texel = 0; texel < texels; texel++)
+        for (size_t image = first; image < end; image++) {
+            size_t at = texel * images + image;
+            for (size_t c = 0; c < 3 && !mask[at]; c++)
+                sum[image - first][c] += (double)weft_float_of_half(samples[3 * at + c]);
+            count[image - first] += !mask[at];
+        }
+    for (size_t image = first; image < end; image++) {
+        mean_mask[image] = count[image - first] == 0;
+        for (size_t c = 0; c < 3; c++)
+            mean[3 * image + c] =
+                weft_half_of_float((float)(sum[image - first][c] / weft_larger(1, count[image - first])));
+    }
+}
+
 static void average_samples(const weft_half *samples, const uint8_t *mask, size_t texels, size_t images,
                             weft_half *mean, uint8_t *mean_mask)
 {
-    for (size_t image = 0; image < images; image++) {
-        double sum[3] = {0};
-        int count = 0;
-        for (size_t texel = 0; texel < texels; texel++) {
-            size_t at = texel * images + image;
-            for (size_t c = 0; c < 3 && !mask[at]; c++)
-                sum[c] += (double)weft_float_of_half(samples[3 * at + c]);
-            count += !mask[at];
-        }
-        mean_mask[image] = count == 0;
-        for (size_t c = 0; c < 3; c++)
-            mean[3 * image + c] = weft_half_of_float((float)(sum[c] / weft_larger(1, count)));
-    }
+#pragma omp parallel for
+    for (size_t first = 0; first < images; first += RUN)
+        average_run(samples, mask, texels, images, first, first + RUN < images ? first + RUN : images, mean, mean_mask);
 }
 
 static weft_code read_samples(weft_dataset *dataset, const level_texels *all, weft_excerpt *excerpt, weft_error *error)
