@@ -171,6 +171,24 @@ static void say_layers(const weft_common_options *common, const weft_compress_op
                      has_layers_alone(options) ? "diffuse term" : "lobes");
 }
 
+/* The last code of a ceiling stands for all that is above: a sample in photons or counts, not reflectance, is cut. */
+static void say_ceiling(const weft_compressed *done)
+{
+    const weft_layers *layers = done->material->layers;
+    if (!layers)
+        return;
+    const weft_layers_level *finest = &layers->level[0];
+    size_t count = weft_ceiling_count(finest->width, finest->height), cut = 0;
+    for (size_t i = 0; i < count; i++)
+        cut += finest->ceiling[i] == UINT8_MAX;
+    if (cut > 0)
+        weft_command_say(
+            done->common,
+            "layers say no more than %.0f, and samples come near that or above it in %zu of %zu squares of "
+            "%d x %d texels: is a white diffuser 1 in them? else divide them, or fit lobes (--lobes 2)",
+            (double)weft_ceiling_of_code(UINT8_MAX), cut, count, WEFT_CEILING_SIDE, WEFT_CEILING_SIDE);
+}
+
 static void say_sizes(const weft_compressed *done)
 {
     const weft_compress_report *report = done->report;
@@ -261,6 +279,7 @@ weft_code weft_say_compressed(const weft_compressed *done, weft_error *error)
         WEFT_TRY(say_hold_out(done->common, done->held_out, error));
     say_layers(done->common, done->options, done->report);
     say_errors(done->common, done->material);
+    say_ceiling(done);
     say_sizes(done);
     say_prediction(done);
     return WEFT_OK;

@@ -41,6 +41,20 @@ static int count_present(const weft_collection *collection)
     return count;
 }
 
+/* Why none of a collection's photographs is there: each is missing, or there is no collection at all. */
+static weft_code say_none_is_present(const weft_collection *collection, const char *folder, weft_error *error)
+{
+    if (collection->count > 0)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' holds none of the %d photographs that are listed, as '%s' is; read are JPEG, PNG, TIFF, "
+                         "EXR and camera raw",
+                         folder, collection->count, collection->photograph[0].name);
+    return weft_fail(error, WEFT_BAD_INPUT,
+                     "'%s' holds no photograph: neither positions, nor directions.csv, nor an .lp file, nor names like "
+                     "%s",
+                     folder, "tv045_pv090/tl030_pl120_tv045_pv090.png");
+}
+
 weft_code weft_collection_open(const char *folder, const char *lights, weft_collection *collection, weft_error *error)
 {
     *collection = (weft_collection){0};
@@ -48,10 +62,7 @@ weft_code weft_collection_open(const char *folder, const char *lights, weft_coll
     if (code == WEFT_OK)
         code = list_photographs(folder, lights, collection, error);
     if (code == WEFT_OK && count_present(collection) == 0)
-        code = weft_fail(
-            error, WEFT_BAD_INPUT,
-            "'%s' holds no photograph: neither positions, nor directions.csv, nor an .lp file, nor names like %s",
-            folder, "tv045_pv090/tl030_pl120_tv045_pv090.png");
+        code = say_none_is_present(collection, folder, error);
     if (code != WEFT_OK)
         weft_collection_free(collection);
     return code;

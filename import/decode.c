@@ -166,7 +166,7 @@ weft_code weft_photograph_decode(const weft_decoding *decoding, const char *path
 {
     weft_image image;
     weft_image_kind kind;
-    WEFT_TRY(weft_image_read(path, &image, &kind, error));
+    WEFT_TRY(weft_image_read_shown(path, &image, &kind, error));
     weft_code code = convert(decoding, path, photograph, &image, kind, samples, mask, error);
     weft_image_free(&image);
     *saturated = 0;

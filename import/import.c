@@ -42,7 +42,7 @@ static weft_code probe_size(const weft_collection *collection, const char *folde
             continue;
         char *path = weft_join_path(folder, collection->photograph[i].name);
         weft_image image;
-        code = path ? weft_image_read(path, &image, NULL, error) : weft_fail_memory(error, "path", 0);
+        code = path ? weft_image_read_shown(path, &image, NULL, error) : weft_fail_memory(error, "path", 0);
         free(path);
         if (code == WEFT_OK) {
             decoding->source_width = image.width;

@@ -27,10 +27,19 @@ typedef enum weft_image_kind {
 weft_code weft_image_create(int width, int height, weft_image *image, weft_error *error);
 void weft_image_free(weft_image *image);
 
-/* Reads any format OpenImageIO knows; one channel is repeated, alpha is dropped. Camera raw comes as the sensor
+/* Reads any format OpenImageIO knows; one channel is repeated. Alpha is dropped and
+ * darkens nothing. Camera raw comes as the sensor
  * counted, from black to white level: linear, without white balance, its colour filters interpolated. `kind` may be
  * NULL. Errors: WEFT_BAD_INPUT for a missing, truncated or unreadable file, or one over 2^28 pixels. Thread-safe. */
 weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error);
+
+/* The same, turned as a viewer shows it: by the Exif orientation of the file. For pictures whose directions were noted
+ * by people who looked at them. Where a lens is looked for, the pixels must stay as the sensor read them. */
+weft_code weft_image_read_shown(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error);
+
+/* Turns a picture as Exif says that it is shown: 1 leaves it, 2 to 8 mirror and turn it, and 5 to 8 exchange width and
+ * height. Any other number leaves it. Errors: WEFT_SYSTEM for memory; then the picture is as it was. */
+weft_code weft_image_turn(weft_image *image, int orientation, weft_error *error);
 
 /* Writes atomically; the format follows the extension: .png 8 bit (values clamped to 0..1),
  * .exr half floats, .tif float. `description` (may be NULL) goes into the file's metadata.

@@ -34,10 +34,12 @@ weft_code unreadable(weft_error *error, const char *path, const std::string &why
 
 /* Camera raw as the sensor counted: no curve, no white balance, no brightness of each picture's own. The shape of the
  * colour filters is interpolated all the same. */
-OIIO::ImageSpec raw_hints()
+OIIO::ImageSpec input_hints()
 {
     const float even[4] = {1, 1, 1, 1};
     OIIO::ImageSpec hints;
+    /* Else what is half transparent comes half as bright. */
+    hints["oiio:UnassociatedAlpha"] = 1;
     hints["raw:ColorSpace"] = "raw";
     hints["raw:auto_bright"] = 0;
     hints["raw:use_camera_wb"] = 0;
@@ -49,7 +51,7 @@ OIIO::ImageSpec raw_hints()
 
 std::unique_ptr<OIIO::ImageInput> open_input(const char *path, weft_code *code, weft_error *error)
 {
-    const OIIO::ImageSpec hints = raw_hints();
+    const OIIO::ImageSpec hints = input_hints();
     auto input = OIIO::ImageInput::open(path, &hints);
     *code = input ? WEFT_OK : unreadable(error, path, OIIO::geterror());
     return input;

@@ -10,6 +10,17 @@ weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *
     return library->image_read(path, image, kind, error);
 }
 
+weft_code weft_image_read_shown(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
+{
+    weft_exif exif;
+    WEFT_TRY(weft_exif_read(path, &exif, error));
+    WEFT_TRY(weft_image_read(path, image, kind, error));
+    weft_code code = weft_image_turn(image, exif.orientation, error);
+    if (code != WEFT_OK)
+        weft_image_free(image);
+    return code;
+}
+
 weft_code weft_image_write(const char *path, const weft_image *image, const char *description, weft_error *error)
 {
     return weft_image_write_settings(path, image, description, NULL, error);
