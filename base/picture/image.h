@@ -27,10 +27,10 @@ typedef enum weft_image_kind {
 weft_code weft_image_create(int width, int height, weft_image *image, weft_error *error);
 void weft_image_free(weft_image *image);
 
-/* Reads any format OpenImageIO knows; one channel is repeated. Alpha is dropped and
- * darkens nothing. Camera raw comes as the sensor
- * counted, from black to white level: linear, without white balance, its colour filters interpolated. `kind` may be
- * NULL. Errors: WEFT_BAD_INPUT for a missing, truncated or unreadable file, or one over 2^28 pixels. Thread-safe. */
+/* Reads any format OpenImageIO knows; one channel is repeated. Alpha is dropped and darkens nothing. Camera raw comes
+ * as the sensor counted, from black to white level: linear, without white balance, its colour filters interpolated.
+ * `kind` may be NULL. Errors: WEFT_BAD_INPUT for a missing, truncated or unreadable file, or one over 2^28 pixels.
+ * Thread-safe. */
 weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error);
 
 /* The same, turned as a viewer shows it: by the Exif orientation of the file. For pictures whose directions were noted
