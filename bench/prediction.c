@@ -3,9 +3,10 @@
  * bytes of the file, metadata and all, and the error on directions that are not fitted. The presets predict the models
  * that they choose in the same way. */
 #include "bench/measure.h"
+#include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "compress/compress.h"
-#include "study/hold_out/record.h"
+#include "study/hold_out/hold_out.h"
 #include "study/tradeoff/preset.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* What a picture that has just come to rest lacks, part by part: 365 x 200 in the studio, the frames that a window
- * draws at rest, against many. FLIP and RMSE of what the screen shows, and processor time of a frame. Usage: bench_rest
- * NAME.weft|CLOTH.wv [FRAMES...] */
+ * draws at rest, against many. FLIP and RMSE of what the screen shows, and processor time of a frame. 0 frames: one
+ * that moves. Usage: bench_rest NAME.weft|CLOTH.wv [FRAMES...] */
 #include "bench/measure.h"
 #include "player/draw/resting.h"
 #include "player/gl/context.h"
@@ -33,13 +33,15 @@ static weft_image shown(weft_player *player, const weft_scene *scene, weft_canva
     weft_image image;
     double start = bench_now_ms(CLOCK_PROCESS_CPUTIME_ID);
     weft_canvas_clear(canvas);
-    for (int i = 0; i < frames; i++) {
+    for (int i = 0; i < (frames > 0 ? frames : 1); i++) {
+        weft_sampling moving = {.frame = -1, .hurry = true};
         weft_canvas_begin_frame(canvas);
-        stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, weft_sampling_at_rest(i), &error), &error);
+        stop_on(weft_player_draw(player, scene, WIDTH, HEIGHT, frames > 0 ? weft_sampling_at_rest(i) : moving, &error),
+                &error);
         weft_canvas_end_frame(canvas);
     }
     stop_on(weft_canvas_read(canvas, &image, &error), &error);
-    *ms = (bench_now_ms(CLOCK_PROCESS_CPUTIME_ID) - start) / frames;
+    *ms = (bench_now_ms(CLOCK_PROCESS_CPUTIME_ID) - start) / (frames > 0 ? frames : 1);
     weft_scene_show(scene, &image);
     return image;
 }
@@ -175,7 +177,7 @@ static bool read_counts(int argc, char **argv, frame_counts *counts)
         counts->count = argc;
     for (int i = 0; i < argc; i++) {
         counts->frames[i] = atoi(argv[i]);
-        if (counts->frames[i] < 1)
+        if (counts->frames[i] < 0)
             return false;
     }
     return true;

@@ -1,9 +1,10 @@
 #include "compress/compress.h"
 #include "base/atomic_file.h"
+#include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "cli/command/arguments.h"
 #include "cli/compress_words.h"
-#include "study/hold_out/record.h"
+#include "study/hold_out/hold_out.h"
 #include "study/inspect/model_report.h"
 
 #include <limits.h>

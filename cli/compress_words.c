@@ -1,9 +1,9 @@
 #include "cli/compress_words.h"
 
 #include "base/atomic_file.h"
+#include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "cli/command/describe.h"
-#include "study/hold_out/record.h"
 #include "study/tradeoff/frame_timer.h"
 
 #include <math.h>

@@ -10,12 +10,24 @@ enum { HURRIED_LAYERS = 16 };
 
 static const double golden_ratio = 0.6180339887498949;
 
+/* A frame has the shadows of few directions of the environment. A fold that sees none of them is not black: it sees
+ * this share of all. */
+static const double seen_of_none = 0.12;
+
 static weft_lighting lighting_of(const weft_player *p, const weft_scene *scene, const weft_sampling *sampling)
 {
     weft_lighting lighting = weft_lighting_of(scene, p->environment, sampling->frame);
     if (!sampling->neighbours_differ)
         weft_lighting_keep_one_kind(&lighting);
     return lighting;
+}
+
+/* Alone they would show it: a frame that moves, and the first one at rest. Of a mean it is a part
+ * that falls as the frames become more. Saved pictures have none of it. */
+static double least_fill(const weft_sampling *sampling)
+{
+    bool is_alone = sampling->frame < 0 || (sampling->frame == 0 && sampling->neighbours_differ);
+    return is_alone ? seen_of_none : 0;
 }
 
 static void set_lights(const weft_player *p, GLuint program, const weft_scene *scene, const weft_sampling *sampling)
@@ -29,6 +41,7 @@ static void set_lights(const weft_player *p, GLuint program, const weft_scene *s
     weft_gl_set_int(program, "set_count", lighting.set_count);
     weft_gl_set_int(program, "key_count", lighting.key_count);
     weft_gl_set_int(program, "fill_count", lighting.fill_count);
+    weft_gl_set_float(program, "fill_least", least_fill(sampling));
     /* What moves under many lights has no time for more. */
     weft_gl_set_int(program, "shadow_taps", sampling->frame < 0 && lighting.fill_count > 0 ? 1 : 4);
     for (int i = 0; i < lighting.fill_count; i++) {

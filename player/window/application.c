@@ -1,6 +1,7 @@
 #include "player/window/panel.h"
 
 #include "base/clock.h"
+#include "player/window/held_out_words.h"
 #include "player/window/keys.h"
 #include "player/window/ui/ui_bridge.h"
 
@@ -202,34 +203,39 @@ static void turn_by_itself(weft_application *a)
     a->stepped_s = now;
 }
 
-/* ---- The loop ---- */
+/* ---- What the material says of itself ---- */
 
-/* The certificate is of all layers or, where there are none, of all lobes with their tables. */
-static bool is_as_certified(const weft_application *a)
+/* NULL where it says nothing, or not all of it is drawn. */
+static const weft_hold_out *what_holds(const weft_application *a)
 {
-    const weft_scene *scene = &a->interaction.scene;
-    int layers = weft_player_layer_count(a->player);
-    bool is_whole = scene->view_table && scene->light_table && scene->table_bits == 8;
-    for (int lobe = 0; lobe < WEFT_SCENE_MAX_LOBES; lobe++)
-        is_whole = is_whole && scene->lobe[lobe];
-    return a->probe.mode == WEFT_MODE_COMPRESSED && (layers > 0 ? scene->layers >= layers : is_whole);
+    bool is_whole =
+        weft_draws_whole_material(&a->interaction.scene, weft_player_layer_count(a->player), a->interaction.has_relief);
+    return is_whole ? weft_scene_loader_held_out(a->loader) : NULL;
+}
+
+static void say_what_holds(weft_application *a)
+{
+    const weft_hold_out *held_out = what_holds(a);
+    a->held_out[0] = 0;
+    if (held_out)
+        weft_held_out_words(held_out, a->held_out);
 }
 
 /* What the material says of the texel under the pointer, and how sure it is of that. */
 static weft_code evaluate_probe(weft_application *a, weft_error *error)
 {
-    const weft_certificate *certificate = weft_scene_loader_certificate(a->loader);
     const weft_probe *p = &a->probe;
+    const weft_hold_out *held_out = what_holds(a);
+    bool is_certified = held_out && held_out->has_certificate && p->mode == WEFT_MODE_COMPRESSED;
+    const weft_certificate *certificate = is_certified ? &held_out->certificate : NULL;
     WEFT_TRY(weft_probe_value(&a->plots, a->player, &a->interaction.scene, p, a->reflectance, error));
-    a->half_width_probability = certificate && is_as_certified(a) ? certificate->probability : 0;
+    a->half_width_probability = certificate ? certificate->probability : 0;
     a->half_width_levels = certificate ? certificate->measured_levels : 0;
     a->half_width_is_measured = certificate && weft_certificate_is_measured(certificate, p->level);
     for (int c = 0; c < 3; c++) {
         a->reflectance[c] *= fmax(0, (double)p->light.z);
         a->half_width[c] =
-            a->half_width_probability > 0
-                ? weft_certificate_half_width(certificate, p->level, a->reflectance[c], p->light, p->view)
-                : 0;
+            certificate ? weft_certificate_half_width(certificate, p->level, a->reflectance[c], p->light, p->view) : 0;
     }
     return WEFT_OK;
 }
@@ -251,6 +257,8 @@ static weft_code probe(weft_application *a, weft_error *error)
     WEFT_TRY(evaluate_probe(a, error));
     return weft_probe_plots_draw(&a->plots, a->player, &i->scene, &a->probe, error);
 }
+
+/* ---- The loop ---- */
 
 static void show(weft_application *a, int width, int height)
 {
@@ -323,6 +331,7 @@ static weft_code step(weft_application *a, weft_error *error)
     if (is_at_rest(a))
         return WEFT_OK;
     find_modes(a);
+    say_what_holds(a);
     /* A window that would stay empty closes, and says why. */
     if (!weft_application_has_something(a) && a->progress < 0 && a->failure.code != WEFT_OK)
         return weft_fail(error, a->failure.code, "%s", a->failure.message);

@@ -61,6 +61,7 @@ struct weft_application {
     weft_error failure;                 /* of reading, last */
     char errors[WEFT_NOTE_SIZE];        /* of what is shown, "" until it rests */
     char unmeasured[WEFT_MESSAGE_SIZE]; /* how much of it was, the same */
+    char held_out[WEFT_HOLD_OUT_LINE];  /* what the material says of its error; "" unless all of it is drawn */
     bool is_exposed;                    /* once, when all files have arrived */
     char note[WEFT_NOTE_SIZE];          /* told to the user */
     bool note_is_error;

@@ -346,6 +346,7 @@ static void facts_section(const weft_application *a)
     weft_ui_value("Picture", text);
     size_rows(a);
     weft_ui_gap();
+    weft_ui_dim_text(a->held_out);
     weft_ui_dim_text(a->errors[0] ? a->errors
                      : a->interaction.available[WEFT_MODE_RAW]
                          ? "The errors of what is visible are measured once the picture rests."

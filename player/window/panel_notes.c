@@ -69,16 +69,29 @@ static void show_colours(const weft_scene *scene, double left, double bottom, do
     weft_ui_panel_end();
 }
 
-/* How far what is compared is from raw. */
-static void show_errors(const weft_application *a, double right, double bottom)
+/* How far what is compared is from raw; else what the compressed material says of itself. Not both: the one is of what
+ * is visible, the other of directions. What is compared with raw says nothing until it rests. */
+static const char *errors_of(const weft_application *a)
 {
     const weft_scene *scene = &a->interaction.scene;
+    bool shows_compressed = false;
+    int panes = weft_scene_panes(scene);
+    if (panes > 1 && a->interaction.available[WEFT_MODE_RAW])
+        return a->errors;
+    for (int pane = 0; pane < panes; pane++)
+        shows_compressed |= scene->pane[pane] == WEFT_MODE_COMPRESSED;
+    return shows_compressed ? a->held_out : "";
+}
+
+static void show_errors(const weft_application *a, double right, double bottom)
+{
+    const char *text = errors_of(a);
     bool fits = a->canvas.width >= NARROWEST_WITH_ERRORS * a->scale;
-    if (!a->errors[0] || !fits || weft_scene_panes(scene) < 2)
+    if (!text[0] || !fits)
         return;
     weft_ui_note_begin("errors", right - 12 * a->scale, bottom - 12 * a->scale, 1, 1);
     weft_ui_wrap_within(a->canvas.width - 24 * a->scale);
-    weft_ui_text(a->errors);
+    weft_ui_text(text);
     weft_ui_panel_end();
 }
 

@@ -201,10 +201,10 @@ double weft_scene_loader_progress(weft_scene_loader *l)
     return weft_loader_progress(l->loader);
 }
 
-const weft_certificate *weft_scene_loader_certificate(const weft_scene_loader *l)
+const weft_hold_out *weft_scene_loader_held_out(const weft_scene_loader *l)
 {
-    bool is_shown = l->stage.player && weft_player_has(l->stage.player, WEFT_MODE_COMPRESSED);
-    return is_shown && l->stage.is_certified ? &l->stage.certificate : NULL;
+    bool is_there = l->stage.player && weft_player_has(l->stage.player, WEFT_MODE_COMPRESSED);
+    return is_there && l->stage.is_measured ? &l->stage.held_out : NULL;
 }
 
 /* ---- Files that replace others ---- */

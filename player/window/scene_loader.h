@@ -2,7 +2,7 @@
 #ifndef WEFT_PLAYER_WINDOW_SCENE_LOADER_H
 #define WEFT_PLAYER_WINDOW_SCENE_LOADER_H
 
-#include "btf/material/certificate.h"
+#include "btf/material/held_out.h"
 #include "player/settings/scene_options.h"
 
 typedef struct weft_scene_loader weft_scene_loader;
@@ -33,8 +33,9 @@ weft_code weft_scene_load(weft_scene_request *request, weft_player *player, cons
 /* Share of the file that is being read; -1: none. */
 double weft_scene_loader_progress(weft_scene_loader *loader);
 
-/* What the material that is shown says of its error; NULL where it says nothing, or there is none. */
-const weft_certificate *weft_scene_loader_certificate(const weft_scene_loader *loader);
+/* What the material that is there says of its error; NULL where it says nothing, or there is none. Its contents change
+ * with the material, the place does not. */
+const weft_hold_out *weft_scene_loader_held_out(const weft_scene_loader *loader);
 
 /* Begins to read a file that replaces the one of its kind; a picture with settings replaces all there is. Errors:
  * WEFT_BAD_INPUT for a file of no such kind; WEFT_SYSTEM. */

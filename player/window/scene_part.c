@@ -21,8 +21,8 @@ typedef struct part {
     double width_mm, tiles[2];
     bool knows_measured;
     weft_measured measured; /* of a material or a dataset */
-    bool is_certified;
-    weft_certificate certificate; /* of a material */
+    bool is_measured;
+    weft_hold_out held_out; /* of a material */
     weft_woven woven;
     char note[WEFT_MESSAGE_SIZE];
     /* One of these */
@@ -54,7 +54,7 @@ static weft_code read_material(part *p, weft_error *error)
     WEFT_TRY(weft_material_read(p->path, &p->material, error));
     p->width_mm = p->material.level[0].width * p->material.texel_pitch_mm;
     WEFT_TRY(weft_measured_parse(p->material.metadata, &p->knows_measured, &p->measured, error));
-    WEFT_TRY(weft_certificate_read(p->material.metadata, &p->is_certified, &p->certificate, error));
+    WEFT_TRY(weft_hold_out_read(p->material.metadata, &p->is_measured, &p->held_out, error));
     free(p->stage->metadata);
     p->stage->metadata = p->material.metadata;
     p->material.metadata = NULL;
@@ -228,8 +228,8 @@ static weft_code show_part(void *data, weft_error *error)
     stage->width_mm[p->slot] = p->width_mm;
     note_measured(p);
     if (p->slot == WEFT_SLOT_MATERIAL) {
-        stage->is_certified = p->is_certified;
-        stage->certificate = p->certificate;
+        stage->is_measured = p->is_measured;
+        stage->held_out = p->held_out;
     }
     stage->slot = p->slot;
     stage->by_user = p->by_user;

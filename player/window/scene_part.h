@@ -2,7 +2,7 @@
 #ifndef WEFT_PLAYER_WINDOW_SCENE_PART_H
 #define WEFT_PLAYER_WINDOW_SCENE_PART_H
 
-#include "btf/material/certificate.h"
+#include "btf/material/held_out.h"
 #include "player/settings/scene_options.h"
 #include "player/window/loader.h"
 #include "reflectance/weave/weave.h"
@@ -28,8 +28,8 @@ typedef struct weft_scene_stage {
     weft_player *player;              /* must be set before a dataset is started, and before anything is shown */
     char *metadata;                   /* of the material read last; the reader's alone */
     double width_mm[WEFT_SLOT_COUNT]; /* of a measured model; 0: unknown */
-    bool is_certified;                /* the material that is shown */
-    weft_certificate certificate;     /* of it */
+    bool is_measured;                 /* the material that is shown, on directions that were held out */
+    weft_hold_out held_out;           /* of it */
     weft_woven woven;                 /* of the weave that is shown */
     weft_mesh mesh;                   /* that is shown, without its vertices */
     bool by_user;                     /* of the part shown last: it was asked for while playing */

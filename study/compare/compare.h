@@ -3,12 +3,12 @@
 #define WEFT_STUDY_COMPARE_COMPARE_H
 
 #include "base/progress.h"
+#include "btf/material/held_out.h"
 #include "study/compare/leave_one_out.h"
 #include "study/compare/scenes.h"
 #include "study/compare/slices.h"
 #include "study/error/measurement.h"
 #include "study/fit_weave/fit_weave.h"
-#include "study/hold_out/record.h"
 #include "study/truth/comparison.h"
 
 typedef struct weft_compare_options {

@@ -3,13 +3,7 @@
 #define WEFT_STUDY_HOLD_OUT_SPLIT_H
 
 #include "btf/dataset/dataset.h"
-
-/* What is left out. */
-typedef enum weft_split_kind {
-    WEFT_SPLIT_DIRECTIONS,  /* views and lights of a grid, each with all of its images */
-    WEFT_SPLIT_PHOTOGRAPHS, /* a tenth of a list of images that is no grid */
-    WEFT_SPLIT_EACH         /* of a handful of images each in turn */
-} weft_split_kind;
+#include "btf/material/held_out.h"
 
 /* Why an image is held out (bits); 0 is an image that is fitted. */
 enum { WEFT_HELD_VIEW = 1, WEFT_HELD_LIGHT = 2, WEFT_HELD_IMAGE = 4 };

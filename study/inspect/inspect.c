@@ -6,12 +6,12 @@
 #include "btf/dataset/dataset.h"
 #include "btf/direction/direction.h"
 #include "btf/file_kind.h"
+#include "btf/material/held_out.h"
 #include "btf/material/models.h"
 #include "btf/session/camera_list.h"
 #include "geometry/yarn/tile_mesh.h"
 #include "reflectance/microcylinder/file.h"
 #include "reflectance/weave/weave.h"
-#include "study/hold_out/record.h"
 #include "study/inspect/verify.h"
 
 #include <limits.h>

@@ -2,11 +2,11 @@
 
 #include "base/integers.h"
 #include "base/text/json_text.h"
+#include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "compress/compress.h"
 #include "compress/run/memory.h"
 #include "study/hold_out/excerpt.h"
-#include "study/hold_out/record.h"
 #include "study/tradeoff/expected_record.h"
 #include "study/tradeoff/weight.h"
 

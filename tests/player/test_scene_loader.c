@@ -28,6 +28,19 @@ static void write_material(const char *path, int size)
     weft_material_free(&material);
 }
 
+/* One that says how far it is off where it was not fitted. */
+static void write_measured_material(const char *path, double relative_rmse)
+{
+    weft_material material = {0};
+    weft_error error = {0};
+    weft_hold_out held_out = {.split_count = 1};
+    held_out.material.all = (weft_error_summary){.relative_rmse = relative_rmse, .count = 1};
+    stage_material(8, 8, 2, 7, 0, &material);
+    expect_ok(weft_hold_out_store(&held_out, &material, &error), &error);
+    expect_ok(weft_material_write(path, &material, &error), &error);
+    weft_material_free(&material);
+}
+
 static void write_text(const char *path, const char *text)
 {
     FILE *file = fopen(path, "w");
@@ -232,6 +245,28 @@ static void a_dropped_material_replaces_the_one_shown(void **state)
     close_scene(f);
 }
 
+static void what_a_material_says_of_its_error_goes_with_it(void **state)
+{
+    (void)state;
+    weft_error error = {0};
+    write_measured_material("scene_load/fifth.weft", 0.2);
+    write_measured_material("scene_load/tenth.weft", 0.1);
+    fixture *f = open_scene("scene_load/fifth.weft", NULL);
+    weft_player_clear(f->stage->player, WEFT_MODE_COMPRESSED);
+    assert_null(weft_scene_loader_held_out(f->loader));
+    expect_ok(finish(f, &error), &error);
+    const weft_hold_out *held_out = weft_scene_loader_held_out(f->loader);
+    assert_non_null(held_out);
+    assert_float_equal(held_out->material.all.relative_rmse, 0.2, 1e-9);
+    assert_int_equal(drop(f, "scene_load/corrupt.weft", &error), WEFT_BAD_INPUT);
+    assert_float_equal(weft_scene_loader_held_out(f->loader)->material.all.relative_rmse, 0.2, 1e-9);
+    expect_ok(drop(f, "scene_load/tenth.weft", &error), &error);
+    assert_float_equal(weft_scene_loader_held_out(f->loader)->material.all.relative_rmse, 0.1, 1e-9);
+    expect_ok(drop(f, "scene_load/a.weft", &error), &error);
+    assert_null(weft_scene_loader_held_out(f->loader));
+    close_scene(f);
+}
+
 static void a_corrupt_file_leaves_what_was_shown(void **state)
 {
     (void)state;
@@ -392,6 +427,7 @@ int main(void)
         cmocka_unit_test(samples_are_kept_in_the_format_that_the_settings_name),
         cmocka_unit_test(panes_that_were_chosen_while_files_arrive_stay),
         cmocka_unit_test(a_dropped_material_replaces_the_one_shown),
+        cmocka_unit_test(what_a_material_says_of_its_error_goes_with_it),
         cmocka_unit_test(a_corrupt_file_leaves_what_was_shown),
         cmocka_unit_test(a_file_may_arrive_while_another_fails),
         cmocka_unit_test(files_that_cannot_be_shown_are_refused),

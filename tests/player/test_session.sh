@@ -179,6 +179,20 @@ shoot_when is "$last"
 xdotool key 2
 shoot_when is_not "$last"
 
+# It was measured when it was made, and says so over the picture where that is wide enough.
+tells_its_error() {
+    import -window root told.png
+    [ "$(mean told.png 200x20+770+560)" -lt 300 ] && [ "$(convert told.png -crop 200x20+770+560 +repage -colorspace gray \
+        -format '%[fx:round(1000*maxima)]' info:)" -gt 700 ]
+}
+! tells_its_error || fail "a note where there is no room for it"
+xdotool windowsize "$window" 1000 600
+for _ in $(seq 50); do
+    ! tells_its_error || break
+    sleep 0.2
+done
+tells_its_error || fail "the material does not say its error"
+
 xdotool key q
 for _ in $(seq 300); do
     kill -0 $player 2>/dev/null || break

@@ -3,6 +3,7 @@
 #include "player/draw/canvas.h"
 #include "player/draw/ground_shadow.h"
 #include "player/draw/lighting.h"
+#include "player/draw/resting.h"
 #include "player/scene/surroundings.h"
 #include "stage.h"
 
@@ -598,6 +599,56 @@ static void another_light_casts_another_shadow_on_the_ground(void **state)
     weft_image_free(&again);
 }
 
+static weft_image frame_of(weft_player *player, const weft_scene *scene, weft_sampling sampling)
+{
+    weft_error error = {0};
+    weft_canvas canvas;
+    weft_image image;
+    expect_ok(weft_canvas_create(WIDTH, HEIGHT, &canvas, &error), &error);
+    weft_canvas_begin_frame(&canvas);
+    expect_ok(weft_player_draw(player, scene, WIDTH, HEIGHT, sampling, &error), &error);
+    weft_canvas_end_frame(&canvas);
+    expect_ok(weft_canvas_read(&canvas, &image, &error), &error);
+    weft_canvas_free(&canvas);
+    return image;
+}
+
+/* Green of 255 that the darkest hundredth of the pixels shows whose middle and whose neighbours lie on cloth. */
+static double dark_on_screen(weft_player *player, const weft_scene *scene, weft_image *image)
+{
+    weft_error error = {0};
+    weft_surface_sample *at;
+    float dark[PIXELS];
+    size_t count = 0;
+    expect_ok(weft_player_read_surface(player, scene, WEFT_MODE_COMPRESSED, WIDTH, HEIGHT, &at, &error), &error);
+    weft_scene_show(scene, image);
+    for (int k = WIDTH; k < PIXELS - WIDTH; k++) {
+        bool is_inside = at[k].covered > 0 && at[k - 1].covered > 0 && at[k + 1].covered > 0 &&
+                         at[k - WIDTH].covered > 0 && at[k + WIDTH].covered > 0;
+        if (is_inside)
+            dark[count++] = image->pixels[3 * k + 1];
+    }
+    free(at);
+    weft_image_free(image);
+    return 255 * (double)weft_quantile_of_floats(dark, count, 0.01);
+}
+
+/* Before the means of many frames: few directions of the environment cast shadows, and a fold may see none of them. */
+static void folds_are_not_black_in_the_frames_that_stand_alone(void **state)
+{
+    stage *s = *state;
+    show(s->player, "drape");
+    weft_scene scene = studio(s->player, "studio", WEFT_ENVIRONMENT_SMOOTH_REGIONS);
+    scene.light_count = 0;
+    weft_image moving = frame_of(s->player, &scene, (weft_sampling){.frame = -1, .hurry = true}),
+               first = frame_of(s->player, &scene, weft_sampling_at_rest(0)), whole = picture_of(s->player, &scene);
+    double of_moving = dark_on_screen(s->player, &scene, &moving), of_first = dark_on_screen(s->player, &scene, &first),
+           of_whole = dark_on_screen(s->player, &scene, &whole);
+    print_message("the darkest hundredth: %.0f moving, %.0f of the first frame, %.0f of the whole picture\n", of_moving,
+                  of_first, of_whole);
+    assert_true(of_moving > 12 && of_first > 12);
+}
+
 /* On the screen, of 255: deep in a fold, facing away from every lamp. */
 static void unlit_folds_are_not_black_and_lit_ones_not_white(void **state)
 {
@@ -645,6 +696,7 @@ int main(void)
         cmocka_unit_test(the_ground_is_whole_when_a_camera_comes_to_rest),
         cmocka_unit_test(another_light_casts_another_shadow_on_the_ground),
         cmocka_unit_test(neighbouring_pixels_are_lit_from_other_places),
+        cmocka_unit_test(folds_are_not_black_in_the_frames_that_stand_alone),
         cmocka_unit_test(unlit_folds_are_not_black_and_lit_ones_not_white),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);

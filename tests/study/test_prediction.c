@@ -1,10 +1,11 @@
 /* What weft compress predicts of a model that a preset chooses, or that was asked for. */
 #include "fixture.h"
 
+#include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "compress/compress.h"
 #include "compress/run/memory.h"
-#include "study/hold_out/record.h"
+#include "study/hold_out/hold_out.h"
 #include "study/tradeoff/frame_timer.h"
 #include "study/tradeoff/preset.h"
 

@@ -3,10 +3,11 @@
 
 #include "base/atomic_file.h"
 #include "btf/direction/direction.h"
+#include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "compress/compress.h"
 #include "compress/run/memory.h"
-#include "study/hold_out/record.h"
+#include "study/hold_out/hold_out.h"
 #include "study/tradeoff/frame_timer.h"
 #include "study/tradeoff/plot.h"
 #include "study/tradeoff/preset.h"

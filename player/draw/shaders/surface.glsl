@@ -19,6 +19,7 @@ uniform int key_count;   // places in the first light from which shadows fall: 0
 uniform int scene_count; // the first of them; the others are the environment
 uniform int set_count;   // of which each kind of pixels has others
 uniform int fill_count;  // 0: the environment casts no shadows
+uniform float fill_least; // share of the environment that is seen from anywhere
 uniform int light_count;
 uniform vec3 light_direction[MAX_LIGHTS];  // world, unit, toward the light
 uniform vec3 light_irradiance[MAX_LIGHTS]; // on a surface that faces it, over pi
@@ -136,7 +137,7 @@ float fill_share(vec3 position, vec3 normal)
         all_of_it += cosine;
         seen += cosine * unshadowed_share(position, normal, KEY_PLACES + i, 1);
     }
-    return seen / all_of_it;
+    return max(seen / all_of_it, fill_least);
 }
 
 void find_shadows(vec3 position, inout SurfacePoint point)

@@ -482,6 +482,7 @@ bool weft_ui_whole_input(const char *label, int *value, int low, int high)
     put_label(label);
     bool edited = ImGui::InputInt("##whole", &typed);
     ImGui::PopID();
+    show_hint(label);
     typed = std::min(std::max(typed, low), high);
     if (!edited || typed == *value)
         return false;
@@ -529,6 +530,7 @@ bool weft_ui_colour(const char *label, double rgb[3])
     bool changed = ImGui::ColorEdit3(
         "##colour", value, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_NoOptions);
     ImGui::PopID();
+    show_hint(label);
     for (int i = 0; changed && i < 3; i++)
         rgb[i] = std::max(0.0, (double)value[i]);
     return changed;

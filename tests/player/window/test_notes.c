@@ -74,6 +74,55 @@ static void a_note_in_place_of_a_shorter_one_is_whole(void **state)
     free(a);
 }
 
+static void let(weft_application *a, int panes, weft_mode first, weft_mode second)
+{
+    a->interaction.scene.pane_count = panes;
+    a->interaction.scene.pane[0] = first;
+    a->interaction.scene.pane[1] = second;
+}
+
+static bool tells_errors(const weft_application *a)
+{
+    return note_after(a, "errors", SETTLES).width > 0;
+}
+
+/* Of a wide enough picture. */
+static void a_material_says_its_error_where_it_is_shown(void **state)
+{
+    (void)state;
+    weft_application *a = with_nothing_to_say();
+    a->canvas.width = WIDTH - LEFT;
+    let(a, 1, WEFT_MODE_COMPRESSED, WEFT_MODE_RAW);
+    assert_false(tells_errors(a));
+    snprintf(a->held_out, sizeof a->held_out, "error on directions that were not fitted: compressed 20.2 %%");
+    assert_true(tells_errors(a));
+    let(a, 1, WEFT_MODE_ANALYTIC, WEFT_MODE_COMPRESSED);
+    assert_false(tells_errors(a));
+    let(a, 2, WEFT_MODE_ANALYTIC, WEFT_MODE_COMPRESSED);
+    assert_true(tells_errors(a));
+    a->canvas.width = 300;
+    assert_false(tells_errors(a));
+    free(a);
+}
+
+/* One figure at a time: beside raw it is that of what is visible, when it is there. */
+static void beside_raw_it_is_silent(void **state)
+{
+    (void)state;
+    weft_application *a = with_nothing_to_say();
+    a->canvas.width = WIDTH - LEFT;
+    snprintf(a->held_out, sizeof a->held_out, "error on directions that were not fitted: compressed 20.2 %%");
+    a->interaction.available[WEFT_MODE_RAW] = true;
+    let(a, 2, WEFT_MODE_RAW, WEFT_MODE_COMPRESSED);
+    assert_false(tells_errors(a));
+    snprintf(a->errors, sizeof a->errors, "from raw: compressed 4.2 %%");
+    double beside_raw = note_after(a, "errors", SETTLES).width;
+    let(a, 1, WEFT_MODE_COMPRESSED, WEFT_MODE_RAW);
+    double alone = note_after(a, "errors", SETTLES).width;
+    assert_true(beside_raw > 0 && alone > 1.5 * beside_raw);
+    free(a);
+}
+
 static int open_frames(void **state)
 {
     (void)state;
@@ -93,6 +142,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_read_has_room_to_the_end),
         cmocka_unit_test(a_note_in_place_of_a_shorter_one_is_whole),
+        cmocka_unit_test(a_material_says_its_error_where_it_is_shown),
+        cmocka_unit_test(beside_raw_it_is_silent),
     };
     return cmocka_run_group_tests(tests, open_frames, close_frames);
 }

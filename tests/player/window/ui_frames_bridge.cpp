@@ -25,6 +25,11 @@ void ui_frames_begin(void)
     ImGui::NewFrame();
 }
 
+void ui_frames_point(double x, double y)
+{
+    ImGui::GetIO().MousePos = ImVec2((float)x, (float)y);
+}
+
 void ui_frames_end(const char *name, double *width, double *height)
 {
     const ImGuiWindow *window = ImGui::FindWindowByName(name);

@@ -9,6 +9,8 @@ extern "C" {
 void ui_frames_open(double width, double height);
 void ui_frames_close(void);
 void ui_frames_begin(void);
+/* Where the pointer is from now on. */
+void ui_frames_point(double x, double y);
 /* `name`: of a panel or note of this frame; 0 and 0 where there is none. */
 void ui_frames_end(const char *name, double *width, double *height);
 

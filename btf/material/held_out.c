@@ -1,4 +1,4 @@
-#include "study/hold_out/record.h"
+#include "btf/material/held_out.h"
 
 #include "base/text/json_text.h"
 #include "btf/direction/direction.h"

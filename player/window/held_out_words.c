@@ -1,0 +1,24 @@
+#include "player/window/held_out_words.h"
+
+#include <stdio.h>
+
+bool weft_draws_whole_material(const weft_scene *scene, int layers, bool has_heights)
+{
+    if (has_heights && !scene->relief)
+        return false;
+    if (layers > 0)
+        return scene->layers >= layers;
+    bool is_whole = scene->view_table && scene->light_table && scene->table_bits == 8;
+    for (int lobe = 0; lobe < WEFT_SCENE_MAX_LOBES; lobe++)
+        is_whole = is_whole && scene->lobe[lobe];
+    return is_whole;
+}
+
+void weft_held_out_words(const weft_hold_out *h, char line[WEFT_HOLD_OUT_LINE])
+{
+    int used = snprintf(line, WEFT_HOLD_OUT_LINE, "error %s: compressed %.1f %%", weft_hold_out_about(h),
+                        100 * h->material.all.relative_rmse);
+    if (h->photographs.all.count > 0)
+        snprintf(line + used, WEFT_HOLD_OUT_LINE - (size_t)used, ", the photographs interpolated %.1f %%",
+                 100 * h->photographs.all.relative_rmse);
+}
