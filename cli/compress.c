@@ -3,6 +3,7 @@
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "cli/command/arguments.h"
+#include "cli/compress_held_out.h"
 #include "cli/compress_words.h"
 #include "study/hold_out/hold_out.h"
 #include "study/inspect/model_report.h"
@@ -243,36 +244,16 @@ static weft_compress_options resolve(const compress_command *command, const weft
     return weft_compress_settle(&options, dataset);
 }
 
-/* Where it cannot be measured, for want of memory say, or because the texels that were chosen are holes, the user is
- * told: what concerns the whole, too, its fit will say. The options learn how much is added to the file. */
-static weft_code measure_hold_out(const compress_command *command, weft_dataset *dataset,
-                                  weft_compress_options *options, const weft_progress *progress, weft_hold_out *result,
-                                  weft_error *error)
+/* Lobes that nobody has asked for, in place of layers that nobody has asked for. */
+static weft_code ask_lobes(const compress_command *command, const weft_held_out_job *job, weft_dataset *dataset,
+                           const weft_compress_options *options, const weft_hold_out *held_out, weft_error *error)
 {
-    char scratch_path[PATH_MAX];
-    weft_error own = {0};
-    *result = (weft_hold_out){0};
-    int splits = command->hold_out;
-    if (splits == 0)
-        return WEFT_OK;
-    snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", command->output);
-    weft_code code = WEFT_OK;
-    if (splits == NOT_GIVEN)
-        code = weft_hold_out_enough_splits(weft_dataset_get_layout(dataset), &splits, &own);
-    if (code == WEFT_OK)
-        code = weft_hold_out_measure(dataset, options, splits, scratch_path, progress, result, &own);
-    if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT) {
-        weft_command_say(&command->common, "error on directions that were not fitted: not measured: %s", own.message);
-        *result = (weft_hold_out){0};
-        return WEFT_OK;
-    }
-    if (code == WEFT_OK && result->heights.asked)
-        options->heights = result->heights.used;
-    if (code == WEFT_OK)
-        code = weft_hold_out_bytes(result, &options->added_bytes, &own);
-    if (code != WEFT_OK)
-        *error = own;
-    return code;
+    compress_command other = *command;
+    bool by_default = command->layers == NOT_GIVEN && options->layer_count > 0 &&
+                      wish_of(command).preset == WEFT_PRESET_NONE && !chooses_by_texel(options);
+    other.lobes = 1;
+    const weft_compress_options lobes = resolve(&other, dataset);
+    return by_default ? weft_ask_lobes(job, dataset, &lobes, held_out, error) : WEFT_OK;
 }
 
 /* What is predicted is told before the work. Of what was asked for, nothing need be: where no image can be held out, or
@@ -330,8 +311,11 @@ static weft_code compress_dataset(const compress_command *command, const char *p
         options = resolve(command, dataset);
         code = predict(command, dataset, &options, &progress, &prediction, error);
     }
+    const weft_held_out_job job = {&command->common, command->output, command->hold_out, &progress};
     if (code == WEFT_OK)
-        code = measure_hold_out(command, dataset, &options, &progress, &held_out, error);
+        code = weft_measure_held_out(&job, dataset, &options, &held_out, error);
+    if (code == WEFT_OK)
+        code = ask_lobes(command, &job, dataset, &options, &held_out, error);
     if (code == WEFT_OK)
         code = reserve(&prediction, &options, error);
     if (code == WEFT_OK) {

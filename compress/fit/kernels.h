@@ -43,6 +43,9 @@ struct weft_fit_kernels {
      * table [view_stride] leaves of them. */
     void (*compare)(const weft_bundle *bundle, const weft_samples *samples, int channel, const float *model,
                     const float *table, weft_error_sums *sums);
+    /* The same of all channels, where the model is but a diffuse term and T is 1. */
+    void (*compare_flat)(const weft_bundle *bundle, const weft_samples *samples, const float diffuse[WEFT_CHANNELS],
+                         weft_error_sums *sums);
     /* The largest sample r of a channel, r / cos(theta_light), and the largest such cosine, of samples that count. */
     void (*brightest)(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r, float *f,
                       float *cosine);
@@ -80,6 +83,8 @@ struct weft_fit_kernels {
     void weft_gather_weigh_##set(const weft_bundle *bundle, weft_samples *samples);                                    \
     void weft_gather_compare_##set(const weft_bundle *bundle, const weft_samples *samples, int channel,                \
                                    const float *model, const float *table, weft_error_sums *sums);                     \
+    void weft_gather_compare_flat_##set(const weft_bundle *bundle, const weft_samples *samples,                        \
+                                        const float diffuse[WEFT_CHANNELS], weft_error_sums *sums);                    \
     void weft_gather_brightest_##set(const weft_bundle *bundle, const weft_samples *samples, int channel, float *r,    \
                                      float *f, float *cosine);                                                         \
     void weft_gram_evaluate_##set(const weft_bundle *bundle, const float *cosine, const weft_gram_point *point,        \

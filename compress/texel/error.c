@@ -59,13 +59,35 @@ double weft_texel_weighted_error(weft_texel_fitter *fitter)
     return sum;
 }
 
+/* Whether all channels are but a diffuse term, as beside layers: that is compared in one go. */
+static bool is_flat(const weft_texel_fitter *fitter, float diffuse[WEFT_CHANNELS])
+{
+    static const uint8_t one = 255;
+    size_t codes = WEFT_CHANNELS * (size_t)fitter->bundle.view_count;
+    for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
+        if (fitter->now.as_read[channel].lobe_count > 0)
+            return false;
+        diffuse[channel] = (float)fitter->now.as_read[channel].diffuse;
+    }
+    for (size_t i = 0; i < codes; i++) {
+        if (fitter->now.code[i] != one)
+            return false;
+    }
+    return fitter->light_count == 0;
+}
+
 weft_error_sums weft_texel_measure(weft_texel_fitter *fitter, bool tallied)
 {
     const weft_bundle *bundle = &fitter->bundle;
     weft_error_sums sums = {0};
-    for (int channel = 0; channel < WEFT_CHANNELS; channel++) {
+    float diffuse[WEFT_CHANNELS];
+    bool flat = is_flat(fitter, diffuse);
+    if (flat)
+        fitter->kernels->compare_flat(bundle, &fitter->samples, diffuse, &sums);
+    for (int channel = 0; channel < WEFT_CHANNELS && (tallied || !flat); channel++) {
         const float *model = predict(fitter, channel);
-        fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, &sums);
+        if (!flat)
+            fitter->kernels->compare(bundle, &fitter->samples, channel, model, fitter->decoded, &sums);
         if (tallied)
             tally_channel(fitter, channel, model, fitter->decoded);
     }

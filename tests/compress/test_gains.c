@@ -150,6 +150,7 @@ static void the_file_says_the_error_of_its_reader_at_every_gain(void **state)
         write_dataset(SIDE, SIDE);
         compress_and_read("");
         compress_and_read("--table off --lobes 3");
+        compress_and_read("--table off --lobes 0");
         compress_and_read("--light-table on");
         compress_and_read("--weights screen --lobes 1");
         compress_and_read("--tables pca:4");

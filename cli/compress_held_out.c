@@ -1,0 +1,64 @@
+#include "cli/compress_held_out.h"
+
+#include <limits.h>
+#include <stdio.h>
+
+/* Layers that leave more have missed what the material is; and lobes are worth a word that leave at most this share. */
+static const double layers_fail = 0.5, clearly_less = 0.75;
+
+static weft_code measure(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *options,
+                         weft_hold_out *result, weft_error *error)
+{
+    char scratch_path[PATH_MAX];
+    int splits = job->split_count;
+    snprintf(scratch_path, sizeof scratch_path, "%s.held-out.btf.h5", job->output);
+    if (splits == WEFT_ENOUGH_SPLITS)
+        WEFT_TRY(weft_hold_out_enough_splits(weft_dataset_get_layout(dataset), &splits, error));
+    return weft_hold_out_measure(dataset, options, splits, scratch_path, job->progress, result, error);
+}
+
+weft_code weft_measure_held_out(const weft_held_out_job *job, weft_dataset *dataset, weft_compress_options *options,
+                                weft_hold_out *result, weft_error *error)
+{
+    weft_error own = {0};
+    *result = (weft_hold_out){0};
+    if (job->split_count == 0)
+        return WEFT_OK;
+    weft_code code = measure(job, dataset, options, result, &own);
+    if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT) {
+        weft_command_say(job->common, "error on directions that were not fitted: not measured: %s", own.message);
+        *result = (weft_hold_out){0};
+        return WEFT_OK;
+    }
+    if (code == WEFT_OK && result->heights.asked)
+        options->heights = result->heights.used;
+    if (code == WEFT_OK)
+        code = weft_hold_out_bytes(result, &options->added_bytes, &own);
+    if (code != WEFT_OK)
+        *error = own;
+    return code;
+}
+
+weft_code weft_ask_lobes(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *lobes,
+                         const weft_hold_out *of_layers, weft_error *error)
+{
+    weft_hold_out of_lobes = {0};
+    weft_error own = {0};
+    double layers_error = of_layers->material.all.relative_rmse;
+    if (of_layers->split_count == 0 || !(layers_error > layers_fail))
+        return WEFT_OK;
+    weft_code code = measure(job, dataset, lobes, &of_lobes, &own);
+    if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT)
+        return WEFT_OK;
+    if (code != WEFT_OK) {
+        *error = own;
+        return code;
+    }
+    double lobes_error = of_lobes.material.all.relative_rmse;
+    if (lobes_error < clearly_less * layers_error)
+        weft_command_say(job->common,
+                         "layers leave %.1f %% on directions that were not fitted, one lobe and its tables %.1f %%: "
+                         "try --lobes 1, 2 or 3, or --preset best",
+                         100 * layers_error, 100 * lobes_error);
+    return WEFT_OK;
+}

@@ -1,0 +1,31 @@
+/* `weft compress` measures its error on directions that were not fitted, before the work. */
+#ifndef WEFT_CLI_COMPRESS_HELD_OUT_H
+#define WEFT_CLI_COMPRESS_HELD_OUT_H
+
+#include "cli/command/arguments.h"
+#include "compress/compress.h"
+#include "study/hold_out/hold_out.h"
+
+enum { WEFT_ENOUGH_SPLITS = -1 };
+
+typedef struct weft_held_out_job {
+    const weft_common_options *common;
+    const char *output;
+    int split_count; /* 0: nothing is measured; WEFT_ENOUGH_SPLITS: as many as the dataset asks for */
+    const weft_progress *progress;
+} weft_held_out_job;
+
+/* Where it cannot be measured, for want of memory say, or because the texels that were chosen are holes, the user is
+ * told, and `result` has no splits: what concerns the whole, too, its fit will say. The options learn how much is added
+ * to the file, and whether layers are seen through heights. Errors: those of weft_hold_out_measure but WEFT_BAD_USAGE
+ * and WEFT_BAD_INPUT. */
+weft_code weft_measure_held_out(const weft_held_out_job *job, weft_dataset *dataset, weft_compress_options *options,
+                                weft_hold_out *result, weft_error *error);
+
+/* Layers of which more than half is wrong where they were not fitted, as of a cloth that shines back in a beam narrower
+ * than the photographs are apart: then the same directions are asked of `lobes`, too, and the user is told where they
+ * leave clearly less. Errors: as above. */
+weft_code weft_ask_lobes(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *lobes,
+                         const weft_hold_out *of_layers, weft_error *error);
+
+#endif
