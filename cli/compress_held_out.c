@@ -57,8 +57,7 @@ weft_code weft_ask_lobes(const weft_held_out_job *job, weft_dataset *dataset, co
     double lobes_error = of_lobes.material.all.relative_rmse;
     if (lobes_error < clearly_less * layers_error)
         weft_command_say(job->common,
-                         "layers leave %.1f %% on directions that were not fitted, one lobe and its tables %.1f %%: "
-                         "try --lobes 1, 2 or 3, or --preset best",
-                         100 * layers_error, 100 * lobes_error);
+                         "layers leave %.1f %% %s, one lobe %.1f %%: try --lobes 1, 2 or 3, or --preset best",
+                         100 * layers_error, weft_hold_out_about(of_layers), 100 * lobes_error);
     return WEFT_OK;
 }
