@@ -34,8 +34,8 @@ static const weft_option option_table[] = {
     {"linear", .help = "8- and 16-bit photographs hold linear values, not sRGB", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(import_command, options.linear)},
     WEFT_HEIGHTS_OPTION(import_command, heights),
-    {"skip-bad", .help = "Mask photographs that cannot be used instead of stopping", .kind = WEFT_OPTION_FLAG,
-     .offset = offsetof(import_command, options.skip_bad)},
+    {"skip-bad", .help = "Mask photographs that cannot be used, and leave out doubled ones, instead of stopping",
+     .kind = WEFT_OPTION_FLAG, .offset = offsetof(import_command, options.skip_bad)},
     {0},
 };
 

@@ -17,7 +17,8 @@ typedef struct weft_photograph {
 
 /* Freed with weft_collection_free. */
 typedef struct weft_collection {
-    const char *kind; /* in words, for the report */
+    const char *kind;        /* in words, for the report */
+    bool leaves_out_doubles; /* of photographs of one light and view all but one; else they are an error */
     weft_distance distance;
     double side_mm; /* width of what a photograph shows; 0 = not said */
     int count, capacity;

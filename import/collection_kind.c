@@ -55,9 +55,10 @@ static weft_code say_none_is_present(const weft_collection *collection, const ch
                      folder, "tv045_pv090/tl030_pl120_tv045_pv090.png");
 }
 
-weft_code weft_collection_open(const char *folder, const char *lights, weft_collection *collection, weft_error *error)
+weft_code weft_collection_open(const char *folder, const char *lights, bool leaves_out_doubles,
+                               weft_collection *collection, weft_error *error)
 {
-    *collection = (weft_collection){0};
+    *collection = (weft_collection){.leaves_out_doubles = leaves_out_doubles};
     weft_code code = check_folder(folder, error);
     if (code == WEFT_OK)
         code = list_photographs(folder, lights, collection, error);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 weft_code weft_collection_add_far(weft_collection *collection, const char *name, int missing,
                                   const weft_named_angles *angles, weft_error *error)
@@ -44,20 +45,54 @@ static int by_direction(const void *a, const void *b)
     return compare_directions(*(const weft_vec3 *)a, *(const weft_vec3 *)b);
 }
 
+/* Of one light and view those come first that are there, then by name. */
+static int in_order(const void *a, const void *b)
+{
+    const weft_photograph *p = a, *q = b;
+    int order = by_view_then_light(p, q);
+    if (order == 0)
+        order = p->missing - q->missing;
+    return order ? order : strcmp(p->name, q->name);
+}
+
+/* Takes `doubled` out of the collection, or fails: it has the light and view of `kept`. */
+static weft_code leave_out(weft_collection *collection, const char *folder, const weft_photograph *kept,
+                           weft_photograph *doubled, weft_error *error)
+{
+    if (!collection->leaves_out_doubles)
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s': '%s' and '%s' have the same light and view (--skip-bad keeps one)", folder, kept->name,
+                         doubled->name);
+    WEFT_TRY(weft_lines_add(&collection->notes, error, "left out '%s': it has the light and view of '%s'",
+                            doubled->name, kept->name));
+    free(doubled->name);
+    doubled->name = NULL;
+    return WEFT_OK;
+}
+
 weft_code weft_collection_sort_far(weft_collection *collection, const char *folder, weft_error *error)
 {
     weft_photograph *photograph = collection->photograph;
     if (collection->count == 0)
         return WEFT_OK;
-    qsort(photograph, (size_t)collection->count, sizeof *photograph, by_view_then_light);
+    qsort(photograph, (size_t)collection->count, sizeof *photograph, in_order);
+    int kept = 0;
     for (int i = 1; i < collection->count; i++) {
-        if (by_view_then_light(&photograph[i - 1], &photograph[i]) == 0)
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': '%s' and '%s' have the same light and view", folder,
-                             photograph[i - 1].name, photograph[i].name);
+        const weft_photograph *last = &photograph[kept];
+        if (by_view_then_light(last, &photograph[i]) == 0) {
+            WEFT_TRY(leave_out(collection, folder, last, &photograph[i], error));
+            continue;
+        }
         /* One view, also where one name says 0 and another 360 degrees. */
-        if (compare_directions(photograph[i - 1].view, photograph[i].view) == 0)
-            photograph[i].view = photograph[i - 1].view;
+        if (compare_directions(last->view, photograph[i].view) == 0)
+            photograph[i].view = last->view;
+        kept++;
+        if (kept < i) {
+            photograph[kept] = photograph[i];
+            photograph[i].name = NULL;
+        }
     }
+    collection->count = kept + 1;
     return WEFT_OK;
 }
 

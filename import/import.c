@@ -196,7 +196,7 @@ weft_code weft_import(const char *source, const char *output, const weft_import_
 {
     *report = (weft_import_report){0};
     weft_collection collection;
-    WEFT_TRY(weft_collection_open(source, options->lights, &collection, error));
+    WEFT_TRY(weft_collection_open(source, options->lights, options->skip_bad, &collection, error));
     import_run run = {
         .source = source, .options = options, .progress = progress, .report = report, .collection = &collection};
     report->notes = collection.notes;

@@ -23,8 +23,9 @@ typedef struct weft_import_options {
     weft_values values;
     bool linear; /* integer images hold linear values, not sRGB */
     const char
-        *lights;   /* a list of lamps (base/text/light_list.h) for photographs of one view; NULL: as the folder says */
-    bool skip_bad; /* mask photographs that cannot be used, instead of failing */
+        *lights; /* a list of lamps (base/text/light_list.h) for photographs of one view; NULL: as the folder says */
+    /* Mask photographs that cannot be used, and leave out doubled ones, instead of failing. */
+    bool skip_bad;
 } weft_import_options;
 
 /* What came of it. Freed with weft_import_report_free. */

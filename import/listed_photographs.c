@@ -57,7 +57,7 @@ static weft_code add_rows(const char *folder, const weft_csv *table, weft_collec
     WEFT_TRY(find_columns(table, column, error));
     for (int row = 0; row < table->row_count; row++)
         WEFT_TRY(add_row(folder, table, row, column, collection, error));
-    return weft_collection_sort_far(collection, folder, error);
+    return WEFT_OK;
 }
 
 static int by_text(const void *a, const void *b)
@@ -99,5 +99,7 @@ weft_code weft_collection_of_table(const char *folder, weft_collection *collecti
     WEFT_TRY(code);
     code = add_rows(folder, &table, collection, error);
     weft_csv_free(&table);
-    return code == WEFT_OK ? note_unlisted(folder, collection, error) : code;
+    WEFT_TRY(code);
+    WEFT_TRY(note_unlisted(folder, collection, error));
+    return weft_collection_sort_far(collection, folder, error);
 }

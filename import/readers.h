@@ -5,10 +5,11 @@
 #include "import/collection.h"
 
 /* Recognises the kind of collection that a folder holds and lists its photographs; with a list of
- * lamps `lights` (else NULL) it is one of photographs from one place. The caller frees with
- * weft_collection_free. Errors: WEFT_BAD_INPUT for a folder that holds none, or whose tables or names contradict
- * themselves. */
-weft_code weft_collection_open(const char *folder, const char *lights, weft_collection *collection, weft_error *error);
+ * lamps `lights` (else NULL) it is one of photographs from one place. Of photographs with the
+ * same light and view one is kept where `leaves_out_doubles`. The caller frees with weft_collection_free. Errors:
+ * WEFT_BAD_INPUT for a folder that holds none, or whose tables or names contradict themselves. */
+weft_code weft_collection_open(const char *folder, const char *lights, bool leaves_out_doubles,
+                               weft_collection *collection, weft_error *error);
 
 /* ---- One function for every kind of collection; `collection` starts empty ---- */
 

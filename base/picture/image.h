@@ -29,7 +29,8 @@ void weft_image_free(weft_image *image);
 
 /* Reads any format OpenImageIO knows; one channel is repeated. Alpha is dropped and darkens nothing. Camera raw comes
  * as the sensor counted, from black to white level: linear, without white balance, its colour filters interpolated.
- * `kind` may be NULL. Errors: WEFT_BAD_INPUT for a missing, truncated or unreadable file, or one over 2^28 pixels.
+ * Of EXR the display window and the channels R, G, B of no layer, or of the only layer. `kind` may be NULL. Errors:
+ * WEFT_BAD_INPUT for a missing, truncated or unreadable file, one over 2^28 pixels, or an EXR without such channels.
  * Thread-safe. */
 weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error);
 

@@ -1,4 +1,5 @@
 #include "base/atomic_file.h"
+#include "base/picture/exr_bridge.h"
 #include "base/picture/image_library.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -57,20 +58,34 @@ std::unique_ptr<OIIO::ImageInput> open_input(const char *path, weft_code *code, 
     return input;
 }
 
+bool is_exr(const OIIO::ImageInput &input)
+{
+    return strcmp(input.format_name(), "openexr") == 0;
+}
+
 weft_code read_floats(OIIO::ImageInput &input, const char *path, weft_image *image, weft_error *error)
 {
     const OIIO::ImageSpec &spec = input.spec();
-    int channels = spec.nchannels < 3 ? 1 : 3;
+    int first = 0, channels = spec.nchannels < 3 ? 1 : 3;
+    if (channels == 3 && is_exr(input))
+        WEFT_TRY(weft_exr_colour_channels(spec, path, &first, error));
     size_t pixel_count = size_t(spec.width) * size_t(spec.height);
     WEFT_TRY(weft_image_create(spec.width, spec.height, image, error));
-    if (input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, image->pixels, 3 * sizeof(float)))
-        for (size_t i = 0; channels == 1 && i < pixel_count; i++)
-            image->pixels[3 * i + 1] = image->pixels[3 * i + 2] = image->pixels[3 * i];
-    else {
+    weft_code code = WEFT_OK;
+    if (!input.read_image(0, 0, first, first + channels, OIIO::TypeDesc::FLOAT, image->pixels, 3 * sizeof(float)))
+        code = unreadable(error, path, input.geterror());
+    for (size_t i = 0; code == WEFT_OK && channels == 1 && i < pixel_count; i++)
+        image->pixels[3 * i + 1] = image->pixels[3 * i + 2] = image->pixels[3 * i];
+    if (code == WEFT_OK && is_exr(input))
+        code = weft_exr_show_window(spec, image, error);
+    if (code != WEFT_OK)
         weft_image_free(image);
-        return unreadable(error, path, input.geterror());
-    }
-    return WEFT_OK;
+    return code;
+}
+
+bool is_usable(int width, int height)
+{
+    return width >= 1 && height >= 1 && (long long)width * height <= max_pixels;
 }
 
 weft_code read_image(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
@@ -79,8 +94,10 @@ weft_code read_image(const char *path, weft_image *image, weft_image_kind *kind,
     auto input = open_input(path, &code, error);
     WEFT_TRY(code);
     const OIIO::ImageSpec &spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.depth > 1 ||
-        (long long)spec.width * spec.height > max_pixels)
+    if (is_exr(*input) && !is_usable(spec.full_width, spec.full_height))
+        return weft_fail(error, WEFT_BAD_INPUT, "image '%s' has an unusable display window: %d x %d", path,
+                         spec.full_width, spec.full_height);
+    if (!is_usable(spec.width, spec.height) || spec.nchannels < 1 || spec.depth > 1)
         return weft_fail(error, WEFT_BAD_INPUT, "image '%s' has an unusable size: %d x %d x %d, %d channels", path,
                          spec.width, spec.height, spec.depth, spec.nchannels);
     bool linear = spec.format.is_floating_point() || strcmp(input->format_name(), "raw") == 0;

@@ -82,19 +82,26 @@ static weft_code allocate(weft_light_list *list, size_t rows, weft_error *error)
 
 /* ---- .lp files ---- */
 
-/* Cuts the last word off a line; NULL where there is none. */
-static char *cut_last_word(char *line)
+static bool separates(char letter)
 {
-    char *end = line + strlen(line);
-    while (end > line && isspace((unsigned char)end[-1]))
-        *--end = 0;
-    while (end > line && !isspace((unsigned char)end[-1]))
-        end--;
-    if (!*end)
+    return isspace((unsigned char)letter) || letter == ',' || letter == ';';
+}
+
+/* Cuts the last word off a line, and the gap before it; NULL where there is none. The gap is of blanks, or of one kind
+ * of mark and blanks: *mark is that, or ' '. */
+static char *cut_last_word(char *line, char *mark)
+{
+    char *word = line + strlen(line);
+    while (word > line && !separates(word[-1]))
+        word--;
+    if (!*word)
         return NULL;
-    if (end > line)
-        end[-1] = 0;
-    return end;
+    *mark = ' ';
+    for (char *gap = word; gap > line && separates(gap[-1]); *gap = 0) {
+        if (!isspace((unsigned char)*--gap))
+            *mark = *gap;
+    }
+    return word;
 }
 
 static bool read_number(const char *text, double *value)
@@ -116,13 +123,15 @@ static char *trimmed(char *text)
     return text;
 }
 
-/* Name and three numbers; a name may hold blanks, so the line is read from its end. */
+/* Name and three numbers; a name may hold blanks, so the line is read from its end. All gaps are of one kind: where
+ * some are blanks or semicolons and some are commas, a comma is that of a decimal. */
 static weft_code read_lp_row(weft_light_list *list, char *line, int number, weft_error *error)
 {
     double value[3];
+    char mark[3];
     for (int i = 2; i >= 0; i--) {
-        char *word = cut_last_word(line);
-        if (!word || !read_number(word, &value[i]))
+        char *word = cut_last_word(line, &mark[i]);
+        if (!word || !read_number(word, &value[i]) || mark[i] != mark[2])
             return weft_fail(error, WEFT_BAD_INPUT, "%s:%d: not a name and three numbers", list->path, number);
         if (word == line) /* nothing stands before it */
             *line = 0;

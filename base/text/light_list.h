@@ -1,8 +1,9 @@
 /* Lists of lamps, one for each photograph: .lp files of reflectance transformation imaging, and tables.
  *
- * An .lp file holds the number of photographs, then a line for each: its name and x, y, z of the lamp, apart by blanks.
- * x points to the right of the picture, y up, z to the camera (docs/reference/light-lists.md). A table has a header and
- * holds file, then x, y, z or theta_light_deg, phi_light_deg, or theta_view_deg, phi_view_deg, or both. */
+ * An .lp file holds the number of photographs, then a line for each: its name and x, y, z of the lamp, apart by blanks,
+ * or by commas or semicolons. x points to the right of the picture, y up, z to the camera
+ * (docs/reference/light-lists.md). A table has a header and holds file, then x, y, z or theta_light_deg, phi_light_deg,
+ * or theta_view_deg, phi_view_deg, or both. */
 #ifndef WEFT_BASE_TEXT_LIGHT_LIST_H
 #define WEFT_BASE_TEXT_LIGHT_LIST_H
 

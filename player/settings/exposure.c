@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { WIDTH = 160, HEIGHT = 100 };
 
@@ -12,6 +13,9 @@ static const double white = 1, dimmest_white = 0.7, dimmest_mean = 0.1, brightes
 
 /* What is darker than this share of the brightest counts as so dark: it looks black either way. */
 static const double black = 0.01;
+
+/* Of a cone: within it all directions are one. */
+static const double one_direction_rad = WEFT_PI / 180;
 
 /* What the request shows first, small, alone, and as bright as reflectance. */
 static weft_scene small_scene(const weft_scene *scene)
@@ -97,6 +101,23 @@ weft_code weft_expose(const weft_scene_request *request, weft_player *player, we
     return code;
 }
 
+/* Where all photographs share one direction nearly everything lies beyond them, whatever the picture shows. */
+static bool is_one_direction(const weft_cone *cone)
+{
+    return cone->angle_rad < one_direction_rad;
+}
+
+/* Of view or light: every one but that of the photographs, or what share of the cloth `does`. */
+static void describe_share(const weft_cone *cone, const char *every, const char *does, long beyond, long covered,
+                           char text[WEFT_MESSAGE_SIZE])
+{
+    size_t used = strlen(text);
+    if (is_one_direction(cone))
+        snprintf(text + used, WEFT_MESSAGE_SIZE - used, "every %s but one", every);
+    else
+        snprintf(text + used, WEFT_MESSAGE_SIZE - used, "%.0f %% %s", 100.0 * (double)beyond / (double)covered, does);
+}
+
 weft_code weft_describe_unmeasured(const weft_scene_request *request, weft_player *player, const weft_scene *scene,
                                    char text[WEFT_MESSAGE_SIZE], weft_error *error)
 {
@@ -117,9 +138,14 @@ weft_code weft_describe_unmeasured(const weft_scene_request *request, weft_playe
         lit += scene->light_count > 0 && !weft_cone_holds(&measured->light, weft_vec3_of(l[0], l[1], l[2]));
     }
     free(surface);
-    if (covered > 0 && 100 * (seen > lit ? seen : lit) >= covered)
-        snprintf(text, WEFT_MESSAGE_SIZE,
-                 "beyond the photographs: %.0f %% of the lit cloth is seen, %.0f %% is lit from where none was taken",
-                 100.0 * (double)seen / (double)covered, 100.0 * (double)lit / (double)covered);
+    if (covered == 0 || 100 * (seen > lit ? seen : lit) < covered)
+        return WEFT_OK;
+    snprintf(text, WEFT_MESSAGE_SIZE, "beyond the photographs: ");
+    describe_share(&measured->view, "view", "of the lit cloth is seen", seen, covered, text);
+    strcat(text, ", ");
+    describe_share(&measured->light, "light",
+                   is_one_direction(&measured->view) ? "of the lit cloth is lit from where none was taken"
+                                                     : "is lit from where none was taken",
+                   lit, covered, text);
     return WEFT_OK;
 }

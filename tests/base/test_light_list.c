@@ -78,6 +78,25 @@ static void two_rows_of_one_stem_are_told_by_their_ending_alone(void **state)
     weft_light_list_free(&list);
 }
 
+/* Spreadsheets write commas, or semicolons where a comma is that of decimals. */
+static void commas_and_semicolons_separate_too(void **state)
+{
+    (void)state;
+    weft_light_list list;
+    assert_int_equal(read_text("commas.lp", "3\na.jpg,0.6,0,0.8\n\"my stone, left.jpg\" , 0 ,-0.6, 0.8\nb.jpg;0;0; 1\n",
+                               &list, NULL),
+                     WEFT_OK);
+    assert_int_equal(list.count, 3);
+    assert_light(&list, "a.jpg", 0.6, 0, 0.8);
+    assert_light(&list, "my stone, left.jpg", 0, -0.6, 0.8);
+    assert_light(&list, "b.jpg", 0, 0, 1);
+    weft_light_list_free(&list);
+    assert_refused("decimal.lp", "1\na.jpg 0,6 0,0 0,8\n", "decimal.lp:2: not a name and three numbers");
+    assert_refused("decimal.lp", "1\na.jpg;0,6;0,0;0,8\n", "decimal.lp:2: not a name and three numbers");
+    assert_refused("commas.lp", "1\na.jpg,1,0\n", "commas.lp:2: not a name");
+    assert_refused("commas.lp", "1\n,1,0,0\n", "commas.lp:2: no name");
+}
+
 static void a_bad_lp_file_is_refused_with_its_line(void **state)
 {
     (void)state;
@@ -132,6 +151,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_lp_file_of_another_computer_is_read),
         cmocka_unit_test(two_rows_of_one_stem_are_told_by_their_ending_alone),
+        cmocka_unit_test(commas_and_semicolons_separate_too),
         cmocka_unit_test(a_bad_lp_file_is_refused_with_its_line),
         cmocka_unit_test(lights_far_from_one_are_positions),
         cmocka_unit_test(a_table_holds_lamps_views_or_both),

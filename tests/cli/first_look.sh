@@ -95,4 +95,10 @@ grep -q "errors_of: diffuse term beside the layers" out.log || fail "info does n
 echo "30,0,0,0" | photograph alone "30%"
 grep -q "a photograph alone tells nothing of other directions" out.log || fail "a photograph alone is said to be predicted: $(cat out.log)"
 grep -q "by the others" out.log && fail "there are no others"
+# All of one view, and all of one light: nearly everything lies beyond, and the share tells nothing.
+expect_says "beyond the photographs: every view but one, every light but one" render alone.weft --size 60x40 --samples 1 -o alone.png
+printf '10,0,0,0\n40,0,0,0\n40,120,0,0\n40,240,0,0\n' | photograph above "30%"
+expect_says "beyond the photographs: every view but one, [0-9]* % of the lit cloth is lit" render above.weft --size 60x40 --samples 1 -o above.png
+printf '10,0,0,0\n10,0,40,0\n10,0,40,120\n10,0,40,240\n' | photograph below "30%"
+expect_says "beyond the photographs: [0-9]* % of the lit cloth is seen, every light but one" render below.weft --size 60x40 --samples 1 -o below.png
 echo "first_look.sh: $passed checks"

@@ -268,6 +268,37 @@ static void two_photographs_of_one_pair_of_directions_are_refused(void **state)
     folder_remove(&folder);
 }
 
+/* Of the doubled ones the first by its name stays, a listed one that is not there never. */
+static void doubled_photographs_are_left_out_on_demand(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    folder_put_grey(&folder, "b.png", 2, 2, 1);
+    folder_put_grey(&folder, "c.png", 2, 2, 0);
+    folder_put_grey(&folder, "d.png", 2, 2, 0.5f);
+    folder_put_text(&folder, "directions.csv",
+                    "file,theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\n"
+                    "c.png,10,0,0,0\na.png,10,0,0,0\nd.png,20,0,0,0\nb.png,10,360,0,0\n");
+    expect_refusal(&folder, "'b.png' and 'c.png' have the same light and view", "--skip-bad");
+    weft_import_options options = weft_import_defaults();
+    options.skip_bad = options.linear = true;
+    options.saturated_at = 2;
+    options.texel_pitch_mm = 1;
+    weft_import_report report;
+    assert_int_equal(weft_import(folder.path, folder.dataset, &options, NULL, &report, NULL), WEFT_OK);
+    assert_int_equal(report.image_count, 2);
+    for (int i = 2; i < report.notes.count; i++)
+        fail_msg("%s", report.notes.line[i]);
+    assert_string_equal(report.notes.line[0], "left out 'c.png': it has the light and view of 'b.png'");
+    assert_string_equal(report.notes.line[1], "left out 'a.png': it has the light and view of 'b.png'");
+    weft_import_report_free(&report);
+    imported import = folder_open(&folder);
+    assert_float_equal(imported_sample(&import, 0, 0, imported_image(&import, 10, 0, 0, 0), 0), 1, 1e-3);
+    assert_float_equal(imported_sample(&import, 0, 0, imported_image(&import, 20, 0, 0, 0), 0), 0.5, 2e-3);
+    imported_close(&import);
+    folder_remove(&folder);
+}
+
 static void a_view_below_the_horizon_is_refused(void **state)
 {
     (void)state;
@@ -321,6 +352,7 @@ int main(void)
         cmocka_unit_test(a_photograph_of_another_size_is_named_with_both_sizes),
         cmocka_unit_test(a_photograph_with_nan_is_named_with_the_pixel),
         cmocka_unit_test(two_photographs_of_one_pair_of_directions_are_refused),
+        cmocka_unit_test(doubled_photographs_are_left_out_on_demand),
         cmocka_unit_test(a_view_below_the_horizon_is_refused),
         cmocka_unit_test(an_empty_folder_and_a_file_are_refused),
         cmocka_unit_test(more_texels_than_pixels_are_refused),

@@ -1,0 +1,84 @@
+#include "base/picture/exr_bridge.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+namespace
+{
+
+bool is_named(const std::string &channel, const char *name)
+{
+    return strcasecmp(channel.c_str(), name) == 0;
+}
+
+bool is_colour(const OIIO::ImageSpec &spec, int first)
+{
+    static const char *const letters[] = {"R", "G", "B"}, *const words[] = {"red", "green", "blue"};
+    bool found = first + 3 <= spec.nchannels;
+    for (int c = 0; found && c < 3; c++) {
+        const std::string &name = spec.channelnames[size_t(first + c)];
+        const std::string letter = name.substr(name.rfind('.') + 1);
+        found = is_named(letter, letters[c]) || is_named(letter, words[c]);
+    }
+    return found;
+}
+
+/* "diffuse.R" is of the layer "diffuse", "R" of none. */
+std::string layer_of(const std::string &channel)
+{
+    size_t dot = channel.rfind('.');
+    return dot == std::string::npos ? std::string() : channel.substr(0, dot);
+}
+
+/* The first of three channels that are red, green and blue, or -1: those of no layer, else those of the only layer. */
+int first_of_colour(const OIIO::ImageSpec &spec)
+{
+    int found = -1, count = 0;
+    for (int c = 0; c < spec.nchannels; c++) {
+        if (!is_colour(spec, c))
+            continue;
+        if (layer_of(spec.channelnames[size_t(c)]).empty())
+            return c;
+        found = c;
+        count++;
+    }
+    return count == 1 ? found : -1;
+}
+
+std::string names_of(const OIIO::ImageSpec &spec)
+{
+    std::string names;
+    for (const std::string &name : spec.channelnames)
+        names += (names.empty() ? "" : ", ") + name;
+    return names;
+}
+
+} // namespace
+
+weft_code weft_exr_colour_channels(const OIIO::ImageSpec &spec, const char *path, int *first, weft_error *error)
+{
+    *first = first_of_colour(spec);
+    return *first >= 0 ? WEFT_OK
+                       : weft_fail(error, WEFT_BAD_INPUT,
+                                   "image '%s' has no channels R, G, B, or more than one layer of them: %s", path,
+                                   names_of(spec).c_str());
+}
+
+weft_code weft_exr_show_window(const OIIO::ImageSpec &spec, weft_image *image, weft_error *error)
+{
+    int left = spec.x - spec.full_x, top = spec.y - spec.full_y;
+    if (left == 0 && top == 0 && spec.full_width == spec.width && spec.full_height == spec.height)
+        return WEFT_OK;
+    weft_image shown;
+    WEFT_TRY(weft_image_create(spec.full_width, spec.full_height, &shown, error));
+    int begin = std::max(0, left), end = std::min(spec.full_width, left + spec.width);
+    int last = std::min(spec.full_height, top + spec.height);
+    for (int y = std::max(0, top); begin < end && y < last; y++)
+        memcpy(shown.pixels + 3 * (size_t(y) * size_t(shown.width) + size_t(begin)),
+               image->pixels + 3 * (size_t(y - top) * size_t(image->width) + size_t(begin - left)),
+               3 * size_t(end - begin) * sizeof(float));
+    weft_image_free(image);
+    *image = shown;
+    return WEFT_OK;
+}
