@@ -245,15 +245,16 @@ static weft_compress_options resolve(const compress_command *command, const weft
 }
 
 /* Lobes that nobody has asked for, in place of layers that nobody has asked for. */
-static weft_code ask_lobes(const compress_command *command, const weft_held_out_job *job, weft_dataset *dataset,
-                           const weft_compress_options *options, const weft_hold_out *held_out, weft_error *error)
+static void ask_lobes(const compress_command *command, const weft_held_out_job *job, weft_dataset *dataset,
+                      const weft_compress_options *options, const weft_hold_out *held_out)
 {
     compress_command other = *command;
     bool by_default = command->layers == NOT_GIVEN && options->layer_count > 0 &&
                       wish_of(command).preset == WEFT_PRESET_NONE && !chooses_by_texel(options);
     other.lobes = 1;
     const weft_compress_options lobes = resolve(&other, dataset);
-    return by_default ? weft_ask_lobes(job, dataset, &lobes, held_out, error) : WEFT_OK;
+    if (by_default)
+        weft_ask_lobes(job, dataset, &lobes, held_out);
 }
 
 /* What is predicted is told before the work. Of what was asked for, nothing need be: where no image can be held out, or
@@ -315,7 +316,7 @@ static weft_code compress_dataset(const compress_command *command, const char *p
     if (code == WEFT_OK)
         code = weft_measure_held_out(&job, dataset, &options, &held_out, error);
     if (code == WEFT_OK)
-        code = ask_lobes(command, &job, dataset, &options, &held_out, error);
+        ask_lobes(command, &job, dataset, &options, &held_out);
     if (code == WEFT_OK)
         code = reserve(&prediction, &options, error);
     if (code == WEFT_OK) {

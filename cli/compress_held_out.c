@@ -39,25 +39,19 @@ weft_code weft_measure_held_out(const weft_held_out_job *job, weft_dataset *data
     return code;
 }
 
-weft_code weft_ask_lobes(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *lobes,
-                         const weft_hold_out *of_layers, weft_error *error)
+void weft_ask_lobes(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *lobes,
+                    const weft_hold_out *of_layers)
 {
     weft_hold_out of_lobes = {0};
     weft_error own = {0};
     double layers_error = of_layers->material.all.relative_rmse;
     if (of_layers->split_count == 0 || !(layers_error > layers_fail))
-        return WEFT_OK;
-    weft_code code = measure(job, dataset, lobes, &of_lobes, &own);
-    if (code == WEFT_BAD_USAGE || code == WEFT_BAD_INPUT)
-        return WEFT_OK;
-    if (code != WEFT_OK) {
-        *error = own;
-        return code;
-    }
+        return;
+    if (measure(job, dataset, lobes, &of_lobes, &own) != WEFT_OK)
+        return;
     double lobes_error = of_lobes.material.all.relative_rmse;
     if (lobes_error < clearly_less * layers_error)
         weft_command_say(job->common,
                          "layers leave %.1f %% %s, one lobe %.1f %%: try --lobes 1, 2 or 3, or --preset best",
                          100 * layers_error, weft_hold_out_about(of_layers), 100 * lobes_error);
-    return WEFT_OK;
 }

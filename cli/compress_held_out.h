@@ -24,8 +24,8 @@ weft_code weft_measure_held_out(const weft_held_out_job *job, weft_dataset *data
 
 /* Layers of which more than half is wrong where they were not fitted, as of a cloth that shines back in a beam narrower
  * than the photographs are apart: then the same directions are asked of `lobes`, too, and the user is told where they
- * leave clearly less. Errors: as above. */
-weft_code weft_ask_lobes(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *lobes,
-                         const weft_hold_out *of_layers, weft_error *error);
+ * leave clearly less. Nobody asked for it: where it fails nothing is said. */
+void weft_ask_lobes(const weft_held_out_job *job, weft_dataset *dataset, const weft_compress_options *lobes,
+                    const weft_hold_out *of_layers);
 
 #endif

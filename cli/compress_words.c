@@ -4,10 +4,18 @@
 #include "btf/material/held_out.h"
 #include "btf/material/metadata.h"
 #include "cli/command/describe.h"
+#include "study/blend/blend.h"
 #include "study/tradeoff/frame_timer.h"
 
 #include <math.h>
 #include <stdio.h>
+
+/* Of the pairs of texels across the border of a material so many differ visibly, where one in a hundred would; or they
+ * differ so much more than neighbours do in the mean. */
+static const double visible_share = 0.1, visible_difference = 1.5;
+
+/* Of more no seam is looked for: it would take more memory than the fit. */
+static const long most_texels_of_seam = 1L << 20;
 
 /* What a model for few images, or layers, make nothing of. */
 static void say_idle(const weft_common_options *common, const weft_compress_options *given, const char *why)
@@ -189,6 +197,28 @@ static void say_ceiling(const weft_compressed *done)
             (double)weft_ceiling_of_code(UINT8_MAX), cut, count, WEFT_CEILING_SIDE, WEFT_CEILING_SIDE);
 }
 
+/* Whoever lays the cloth larger than the sample sees where it is repeated, unless it tiles. */
+static void say_seam(const weft_compressed *done)
+{
+    const weft_material_level *finest = &done->material->level[0];
+    weft_seam seam;
+    weft_error ignored;
+    char event[192];
+    if (done->options->memory_bytes > 0 || (long)finest->width * finest->height > most_texels_of_seam ||
+        weft_seam_of_material(done->material, &seam, &ignored) != WEFT_OK)
+        return;
+    if (seam.above_99th >= visible_share || seam.mean_difference >= visible_difference)
+        weft_command_say(
+            done->common,
+            "where it is repeated its ends do not meet: texels there differ %.1f times as much as neighbours do "
+            "(`weft tile %s --blend -o TILE.weft` makes them meet)",
+            seam.mean_difference, done->output);
+    snprintf(event, sizeof event,
+             "{\"event\":\"seam\",\"pairs\":%ld,\"above_99th\":%.4g,\"strongest\":%.4g,\"mean_difference\":%.4g}",
+             seam.pair_count, seam.above_99th, seam.strongest, seam.mean_difference);
+    weft_command_event(done->common, event);
+}
+
 static void say_sizes(const weft_compressed *done)
 {
     const weft_compress_report *report = done->report;
@@ -280,6 +310,7 @@ weft_code weft_say_compressed(const weft_compressed *done, weft_error *error)
     say_layers(done->common, done->options, done->report);
     say_errors(done->common, done->material);
     say_ceiling(done);
+    say_seam(done);
     say_sizes(done);
     say_prediction(done);
     return WEFT_OK;

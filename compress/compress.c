@@ -344,8 +344,10 @@ static weft_code fit_material(fitting *work, weft_material *material, weft_compr
         WEFT_TRY(fit_sparse(work, material, report, error));
     else
         WEFT_TRY(fit_dense(work, material, report, error));
-    if (work->counts.empty == work->counts.texels && !work->options->held_out)
+    if (work->counts.empty == work->counts.texels && !work->options->held_out) {
+        weft_checkpoint_forget(work->checkpoint);
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds no valid sample", weft_dataset_path(work->dataset));
+    }
     WEFT_TRY(fit_layers(work, material, report, error));
     if (work->options->heights)
         WEFT_TRY(weft_compress_take_heights(work->dataset, material, error));

@@ -228,6 +228,12 @@ weft_code weft_checkpoint_open(const char *path, const weft_checkpoint_identity 
     return code;
 }
 
+void weft_checkpoint_forget(weft_checkpoint *checkpoint)
+{
+    if (checkpoint)
+        checkpoint->count = 0;
+}
+
 void weft_checkpoint_close(weft_checkpoint *checkpoint)
 {
     if (!checkpoint)

@@ -39,6 +39,9 @@ weft_code weft_checkpoint_read(weft_checkpoint *checkpoint, weft_record *record,
 /* Appends a record after all have been read. On failure (a full disk) the records before stay. Errors: WEFT_SYSTEM. */
 weft_code weft_checkpoint_append(weft_checkpoint *checkpoint, const weft_record *record, weft_error *error);
 
+/* Says that the records are of no use: closing removes the file. NULL is fine. */
+void weft_checkpoint_forget(weft_checkpoint *checkpoint);
+
 /* Closes the file and leaves it for the next time; removes it where it holds no record. NULL is fine. */
 void weft_checkpoint_close(weft_checkpoint *checkpoint);
 

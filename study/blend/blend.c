@@ -133,15 +133,31 @@ static weft_code choose_mix(const weft_material *material, weft_blend_report *re
     return code;
 }
 
-weft_code weft_blend(const weft_material *material, weft_material *tile, weft_blend_report *report, weft_error *error)
+static weft_code check_size(const weft_material *material, weft_error *error)
 {
     const weft_material_level *level = &material->level[0];
-    *tile = (weft_material){0};
-    *report = (weft_blend_report){0};
     if (level->width < WEFT_CUT_LEAST_SIDE || level->height < WEFT_CUT_LEAST_SIDE)
         return weft_fail(error, WEFT_BAD_INPUT,
                          "the material has %d x %d texels; at least %d x %d are needed to cut it", level->width,
                          level->height, WEFT_CUT_LEAST_SIDE, WEFT_CUT_LEAST_SIDE);
+    return WEFT_OK;
+}
+
+weft_code weft_seam_of_material(const weft_material *material, weft_seam *seam, weft_error *error)
+{
+    weft_blend_pictures pictures;
+    WEFT_TRY(check_size(material, error));
+    WEFT_TRY(weft_blend_pictures_make(material, WEFT_BLEND_JUDGES, &pictures, error));
+    weft_code code = weft_seam_measure(&pictures, &pictures, NULL, seam, error);
+    weft_blend_pictures_free(&pictures);
+    return code;
+}
+
+weft_code weft_blend(const weft_material *material, weft_material *tile, weft_blend_report *report, weft_error *error)
+{
+    *tile = (weft_material){0};
+    *report = (weft_blend_report){0};
+    WEFT_TRY(check_size(material, error));
     weft_texel_mix *mix = NULL;
     weft_code code = choose_mix(material, report, &mix, error);
     if (code == WEFT_OK)

@@ -23,6 +23,10 @@ typedef struct weft_blend_report {
     weft_seam before, after;  /* repeated as it is, and as a tile */
 } weft_blend_report;
 
+/* How well the ends of a material meet where it is repeated as it is. Errors: WEFT_BAD_INPUT for a material of fewer
+ * than 16 texels a side, WEFT_SYSTEM: it takes 128 bytes a texel. */
+weft_code weft_seam_of_material(const weft_material *material, weft_seam *seam, weft_error *error);
+
 /* Makes the tile: at least half as wide and high as the material, of a size at which its ends meet well. Layers are
  * blended over three texels beside the cut; lobes and tables are cut. Then layers, normals and the brightness of lobes
  * and diffuse term become as alike on both sides of the seam as the material is beside it. Mip levels are those that

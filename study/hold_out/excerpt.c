@@ -263,6 +263,15 @@ weft_code weft_excerpt_crop(const weft_excerpt *excerpt, const weft_texel_block 
 
 /* ---- The surface ---- */
 
+bool weft_excerpt_is_masked(const weft_excerpt *excerpt)
+{
+    const weft_dataset_layout *layout = &excerpt->layout;
+    size_t count = (size_t)layout->width * (size_t)layout->height * (size_t)layout->image_count, masked = 0;
+    while (masked < count && excerpt->mask[masked])
+        masked++;
+    return masked == count;
+}
+
 bool weft_excerpt_has_surface(const weft_excerpt *excerpt)
 {
     return excerpt->surface.value != NULL;

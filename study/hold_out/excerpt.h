@@ -47,6 +47,9 @@ weft_code weft_excerpt_crop(const weft_excerpt *excerpt, const weft_texel_block 
 /* Whether the excerpt is seen through heights. Pure. */
 bool weft_excerpt_has_surface(const weft_excerpt *excerpt);
 
+/* Whether every sample is masked. Pure. */
+bool weft_excerpt_is_masked(const weft_excerpt *excerpt);
+
 /* Gives a material of these texels the heights of the whole dataset, for weft_predictor_of_window. Errors: those of
  * weft_material_heights_create. */
 weft_code weft_excerpt_give_heights(const weft_excerpt *excerpt, weft_material *material, weft_error *error);

@@ -315,8 +315,10 @@ static weft_code measure_texels(const weft_dataset *dataset, measuring *work, co
                                 weft_error *error)
 {
     static const char step[] = "fitting without some images";
-    WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(dataset),
-                                        &weft_measured_texels_fitted(&work->texels)->layout, false, work->given,
+    const weft_excerpt *fitted = weft_measured_texels_fitted(&work->texels);
+    if (weft_excerpt_is_masked(fitted))
+        return weft_fail(error, WEFT_BAD_USAGE, "every sample of the texels that were tried is masked");
+    WEFT_TRY(weft_compress_share_budget(weft_dataset_get_layout(dataset), &fitted->layout, false, work->given,
                                         &work->options.budget_bytes, error));
     for (int s = 0; s < work->measured_count; s++) {
         weft_progress_report(progress, step, s, work->measured_count);

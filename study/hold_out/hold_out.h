@@ -21,8 +21,8 @@
  *
  * Writes a dataset of those texels to the folder of `scratch_path`, nameless once it is complete. The result does
  * not depend on the number of threads, nor on how large the limit is.
- * Errors: WEFT_BAD_USAGE for a dataset of one image, where all that was held out is masked, or as weft_compress; those
- * of reading; WEFT_SYSTEM. */
+ * Errors: WEFT_BAD_USAGE for a dataset of one image, where all that was tried or held out is masked, or as
+ * weft_compress; those of reading; WEFT_SYSTEM. */
 weft_code weft_hold_out_measure(weft_dataset *dataset, const weft_compress_options *options, int split_count,
                                 const char *scratch_path, const weft_progress *progress, weft_hold_out *result,
                                 weft_error *error);

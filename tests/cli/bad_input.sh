@@ -116,6 +116,19 @@ limited 8 render good.weft --size 400x400 -o full.png
 expect_no_file full.png
 limited 4 compare good.btf.h5 good.weft --size 64 -o full-report
 
+# Photographs of which all is clipped: named as the user knows them, and nothing is kept of work that is of no use.
+mkdir white
+echo "file,theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg" >white/directions.csv
+for theta in 10 20 30 40; do
+    convert -size 8x8 "xc:#ffffff" -type TrueColor "white/$theta.png"
+    echo "$theta.png,$theta,0,0,0" >>white/directions.csv
+done
+expect_ok import white -o white.btf.h5
+expect_error 1 "'white.btf.h5' holds no valid sample" compress white.btf.h5 -o white.weft
+grep -q "held-out.btf.h5" out.log err.log && fail "a file that nobody knows is named: $(cat out.log err.log)"
+expect_no_file white.weft
+expect_no_file white.weft.partial
+
 # Weaves and plans.
 sed 's/tileWidth = /tileWidht = /' "$weave" >typo.wv
 expect_error 1 typo.wv capture --sample typo.wv --plan plan.csv -o typo

@@ -20,6 +20,8 @@ photograph() {
     done
     expect_says "^no heights: " import "$1" -o "$1.btf.h5"
     expect_ok compress "$1.btf.h5" -o "$1.weft"
+    grep -q "do not meet" out.log && fail "grey paper is said to have a seam: $(cat out.log)"
+    true
 }
 
 # Largest value of the middle of a picture, 0 to 255; nothing of the background is there.
@@ -95,6 +97,15 @@ grep -q "errors_of: diffuse term beside the layers" out.log || fail "info does n
 echo "30,0,0,0" | photograph alone "30%"
 grep -q "a photograph alone tells nothing of other directions" out.log || fail "a photograph alone is said to be predicted: $(cat out.log)"
 grep -q "by the others" out.log && fail "there are no others"
+# Paper that is brighter on the right: where it is repeated a line is seen.
+mkdir slope
+cp alone/directions.csv slope/directions.csv
+convert -size 16x16 -define gradient:angle=90 gradient:gray30-gray50 -depth 16 -type TrueColor "slope/30_0_0_0.png"
+expect_ok import slope -o slope.btf.h5
+expect_says "its ends do not meet: .*(.weft tile slope.weft --blend -o TILE.weft. makes them meet)" compress slope.btf.h5 -o slope.weft
+expect_says '{"event":"seam","pairs":32,"above_99th":0.5,' compress slope.btf.h5 --json -o slope.weft
+expect_ok tile slope.weft --blend -o tile.weft
+
 # All of one view, and all of one light: nearly everything lies beyond, and the share tells nothing.
 expect_says "beyond the photographs: every view but one, every light but one" render alone.weft --size 60x40 --samples 1 -o alone.png
 printf '10,0,0,0\n40,0,0,0\n40,120,0,0\n40,240,0,0\n' | photograph above "30%"

@@ -296,10 +296,12 @@ static void a_dataset_without_valid_samples_is_refused_by_name(void **state)
     weft_dataset *dataset = synthetic_dataset_open("missing.btf.h5");
     weft_compress_options options = weft_compress_default_options();
     options.layer_count = 0;
+    options.checkpoint_path = "missing.partial";
     weft_material material;
     weft_error error = {0};
     assert_int_equal(weft_compress(dataset, &options, NULL, &material, NULL, &error), WEFT_BAD_INPUT);
     assert_string_equal(error.message, "'missing.btf.h5' holds no valid sample");
+    assert_int_not_equal(access(options.checkpoint_path, F_OK), 0); /* it would be of no use */
     weft_dataset_close(dataset);
 }
 

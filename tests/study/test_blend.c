@@ -155,6 +155,9 @@ static void what_never_repeats_tiles_all_the_same(void **state)
     (void)state;
     weft_material material = material_of(80, 64, blots), tile;
     weft_blend_report report = blended(&material, &tile);
+    weft_seam seam;
+    expect_ok(weft_seam_of_material(&material, &seam, NULL), NULL);
+    assert_memory_equal(&seam, &report.before, sizeof seam);
     assert_true(report.before.mean_difference > 2);
     assert_true(report.after.mean_difference < 1.15);
     assert_true(report.after.above_99th <= 0.01 && report.after.strongest <= 1);
