@@ -23,6 +23,8 @@ draw raw "$demo/gabardine.weft" --raw "$demo/gabardine.btf.h5"
 draw compressed "$demo/gabardine.weft"
 draw analytic --weave "$source_dir/assets/weaves/wool_gabardine.wv"
 
+# ImageMagick's own font is a file of Ghostscript, which need not be there; this one comes with the packages.
+font=$(fc-match -f '%{file}' Roboto)
 label() { # X TEXT
     echo "text $1,$((height - 14)) '$2'"
 }
@@ -35,7 +37,7 @@ for frame in $(seq 0 $((frames - 1))); do
     convert "compressed-$number.png" \
         \( "raw-$number.png" -crop "${first}x$height+0+0" +repage \) -geometry +0+0 -composite \
         \( "analytic-$number.png" -crop "$((width - second))x$height+$second+0" +repage \) -geometry "+$second+0" -composite \
-        -stroke white -draw "line $first,0 $first,$height line $second,0 $second,$height" -stroke none -fill white -pointsize 13 \
+        -stroke white -draw "line $first,0 $first,$height line $second,0 $second,$height" -stroke none -fill white -font "$font" -pointsize 13 \
         -draw "$(label 12 photographs)" -draw "$(label $((first + 12)) compressed)" -draw "$(label $((second + 12)) 'woven model')" \
         "frame-$number.png"
 done
