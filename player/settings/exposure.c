@@ -2,7 +2,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { WIDTH = 160, HEIGHT = 100 };
 
@@ -107,15 +106,16 @@ static bool is_one_direction(const weft_cone *cone)
     return cone->angle_rad < one_direction_rad;
 }
 
+enum { SHARE_SIZE = 80 };
+
 /* Of view or light: every one but that of the photographs, or what share of the cloth `does`. */
 static void describe_share(const weft_cone *cone, const char *every, const char *does, long beyond, long covered,
-                           char text[WEFT_MESSAGE_SIZE])
+                           char text[SHARE_SIZE])
 {
-    size_t used = strlen(text);
     if (is_one_direction(cone))
-        snprintf(text + used, WEFT_MESSAGE_SIZE - used, "every %s but one", every);
+        snprintf(text, SHARE_SIZE, "every %s but one", every);
     else
-        snprintf(text + used, WEFT_MESSAGE_SIZE - used, "%.0f %% %s", 100.0 * (double)beyond / (double)covered, does);
+        snprintf(text, SHARE_SIZE, "%.0f %% %s", 100.0 * (double)beyond / (double)covered, does);
 }
 
 weft_code weft_describe_unmeasured(const weft_scene_request *request, weft_player *player, const weft_scene *scene,
@@ -140,12 +140,11 @@ weft_code weft_describe_unmeasured(const weft_scene_request *request, weft_playe
     free(surface);
     if (covered == 0 || 100 * (seen > lit ? seen : lit) < covered)
         return WEFT_OK;
-    snprintf(text, WEFT_MESSAGE_SIZE, "beyond the photographs: ");
-    describe_share(&measured->view, "view", "of the lit cloth is seen", seen, covered, text);
-    strcat(text, ", ");
-    describe_share(&measured->light, "light",
-                   is_one_direction(&measured->view) ? "of the lit cloth is lit from where none was taken"
-                                                     : "is lit from where none was taken",
-                   lit, covered, text);
+    char of_views[SHARE_SIZE], of_lights[SHARE_SIZE];
+    const char *of_cloth = is_one_direction(&measured->view) ? "of the lit cloth is lit from where none was taken"
+                                                             : "is lit from where none was taken";
+    describe_share(&measured->view, "view", "of the lit cloth is seen", seen, covered, of_views);
+    describe_share(&measured->light, "light", of_cloth, lit, covered, of_lights);
+    snprintf(text, WEFT_MESSAGE_SIZE, "beyond the photographs: %s, %s", of_views, of_lights);
     return WEFT_OK;
 }
