@@ -1,6 +1,7 @@
 #include "player/window/panel.h"
 
 #include "base/clock.h"
+#include "player/gl/label.h"
 #include "player/scene/false_colour.h"
 #include "player/window/keys.h"
 #include "player/window/ui/ui_bridge.h"
@@ -95,11 +96,19 @@ static void show_errors(const weft_application *a, double right, double bottom)
     weft_ui_panel_end();
 }
 
+/* Below the labels of what is compared, which lie in the corners. */
+static double top_of(const weft_application *a)
+{
+    const weft_scene *scene = &a->interaction.scene;
+    bool is_labelled = scene->labels && scene->layout != WEFT_LAYOUT_DIFFERENCE && weft_scene_panes(scene) > 1;
+    return 12 * a->scale + (is_labelled ? 2.0 * weft_label_size(a->canvas.height) : 0);
+}
+
 static void show_unmeasured(const weft_application *a, double left)
 {
     if (!a->unmeasured[0])
         return;
-    weft_ui_note_begin("unmeasured", left + 12 * a->scale, 12 * a->scale, 0, 0);
+    weft_ui_note_begin("unmeasured", left + 12 * a->scale, top_of(a), 0, 0);
     weft_ui_wrap_within(a->canvas.width - 24 * a->scale);
     weft_ui_text(a->unmeasured);
     weft_ui_panel_end();

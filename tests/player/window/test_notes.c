@@ -1,5 +1,6 @@
 /* The notes over the picture: one that grows is as large at once as its new text, however long the next frame takes. */
 #include "base/clock.h"
+#include "player/gl/label.h"
 #include "player/window/panel.h"
 #include "tests/player/window/ui_frames_bridge.h"
 #include "tests/support/expect_ok.h"
@@ -123,6 +124,29 @@ static void beside_raw_it_is_silent(void **state)
     free(a);
 }
 
+/* A label is twice as high as its letters, with what is above it. */
+static void what_lies_beyond_hides_no_label(void **state)
+{
+    (void)state;
+    weft_application *a = with_nothing_to_say();
+    a->canvas.width = WIDTH - LEFT;
+    a->canvas.height = HEIGHT;
+    snprintf(a->unmeasured, sizeof a->unmeasured, "beyond the photographs: 14 %% of the lit cloth is seen");
+    let(a, 1, WEFT_MODE_COMPRESSED, WEFT_MODE_RAW);
+    note_after(a, "unmeasured", SETTLES);
+    assert_true(ui_frames_top("unmeasured") < 20);
+    let(a, 2, WEFT_MODE_RAW, WEFT_MODE_COMPRESSED);
+    for (int layout = WEFT_LAYOUT_PANES; layout <= WEFT_LAYOUT_WIPE; layout++) {
+        a->interaction.scene.layout = (weft_layout)layout;
+        note_after(a, "unmeasured", SETTLES);
+        assert_true(ui_frames_top("unmeasured") > 2 * weft_label_size(HEIGHT));
+    }
+    a->interaction.scene.labels = false;
+    note_after(a, "unmeasured", SETTLES);
+    assert_true(ui_frames_top("unmeasured") < 20);
+    free(a);
+}
+
 static int open_frames(void **state)
 {
     (void)state;
@@ -144,6 +168,7 @@ int main(void)
         cmocka_unit_test(a_note_in_place_of_a_shorter_one_is_whole),
         cmocka_unit_test(a_material_says_its_error_where_it_is_shown),
         cmocka_unit_test(beside_raw_it_is_silent),
+        cmocka_unit_test(what_lies_beyond_hides_no_label),
     };
     return cmocka_run_group_tests(tests, open_frames, close_frames);
 }

@@ -38,3 +38,8 @@ void ui_frames_end(const char *name, double *width, double *height)
     *height = is_there ? (double)window->Size.y : 0;
     ImGui::EndFrame();
 }
+
+double ui_frames_top(const char *name)
+{
+    return (double)ImGui::FindWindowByName(name)->Pos.y;
+}

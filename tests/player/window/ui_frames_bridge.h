@@ -13,6 +13,8 @@ void ui_frames_begin(void);
 void ui_frames_point(double x, double y);
 /* `name`: of a panel or note of this frame; 0 and 0 where there is none. */
 void ui_frames_end(const char *name, double *width, double *height);
+/* Where its upper end was in the frame that ended last. */
+double ui_frames_top(const char *name);
 
 #ifdef __cplusplus
 }
