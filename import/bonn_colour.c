@@ -51,92 +51,113 @@ weft_code weft_bonn_colour_check(const weft_bonn_colour *colour, const char *pat
     return WEFT_OK;
 }
 
-static void rgb_of_yuv(float colour[3])
+/* Channels of a run of texels: they become red, green and blue in place. */
+typedef struct run {
+    float *a, *b, *c;
+    size_t count;
+} run;
+
+static void rgb_of_yuv(run r)
 {
-    float y = colour[0], u = colour[1], v = colour[2];
-    colour[0] = y + 1.13983f * v;
-    colour[1] = y - 0.39465f * u - 0.5806f * v;
-    colour[2] = y + 2.03211f * u;
+    for (size_t i = 0; i < r.count; i++) {
+        float y = r.a[i], u = r.b[i], v = r.c[i];
+        r.a[i] = y + 1.13983f * v;
+        r.b[i] = y - 0.39465f * u - 0.5806f * v;
+        r.c[i] = y + 2.03211f * u;
+    }
 }
 
-static void rgb_of_axes(const weft_bonn_colour *model, float colour[3])
+static void rgb_of_axes(const weft_bonn_colour *model, run r)
 {
-    float along[3] = {colour[0], colour[1], colour[2]};
-    for (int c = 0; c < 3; c++)
-        colour[c] =
-            model->mean[c] + along[0] * model->axis[0][c] + along[1] * model->axis[1][c] + along[2] * model->axis[2][c];
+    const float(*axis)[3] = model->axis;
+    for (size_t i = 0; i < r.count; i++) {
+        float a = r.a[i], b = r.b[i], c = r.c[i];
+        r.a[i] = model->mean[0] + a * axis[0][0] + b * axis[1][0] + c * axis[2][0];
+        r.b[i] = model->mean[1] + a * axis[0][1] + b * axis[1][1] + c * axis[2][1];
+        r.c[i] = model->mean[2] + a * axis[0][2] + b * axis[1][2] + c * axis[2][2];
+    }
 }
 
-static void rgb_of_ycocg(float colour[3])
+static void rgb_of_ycocg(run r)
 {
-    float y = colour[0], orange = colour[1], green = colour[2];
-    colour[0] = y + orange - green;
-    colour[1] = y + green;
-    colour[2] = y - orange - green;
+    for (size_t i = 0; i < r.count; i++) {
+        float y = r.a[i], orange = r.b[i], green = r.c[i];
+        r.a[i] = y + orange - green;
+        r.b[i] = y + green;
+        r.c[i] = y - orange - green;
+    }
 }
 
-static void rgb_of_sum(float colour[3])
+static void rgb_of_sum(run r)
 {
-    float sum = colour[0], green = colour[1], blue = colour[2];
-    colour[0] = sum * (1 - green - blue);
-    colour[1] = sum * green;
-    colour[2] = sum * blue;
+    for (size_t i = 0; i < r.count; i++) {
+        float sum = r.a[i], green = r.b[i], blue = r.c[i];
+        r.a[i] = sum * (1 - green - blue);
+        r.b[i] = sum * green;
+        r.c[i] = sum * blue;
+    }
+}
+
+static void without_log(float *value, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        value[i] = expf(value[i]) - offset;
 }
 
 /* A logarithm on either side of 0: what is nearer to 0 than the offset cannot be told from it. */
-static float without_signed_log(float value)
+static void without_signed_log(float *value, size_t count)
 {
-    return value == 0 ? 0 : copysignf(offset * expf(fabsf(value)), value);
+    for (size_t i = 0; i < count; i++)
+        value[i] = value[i] == 0 ? 0 : copysignf(offset * expf(fabsf(value[i])), value[i]);
 }
 
-static void restore(const weft_bonn_colour *model, float colour[3])
+/* The ratios are to Y with the offset, as the logarithm is of it. */
+static void yuv_of_ratios(run r)
 {
-    switch (model->model) {
-    case WEFT_BONN_YUV:
-        rgb_of_yuv(colour);
-        break;
-    case WEFT_BONN_PCA:
-        rgb_of_axes(model, colour);
-        break;
-    case WEFT_BONN_YCOCG:
-        rgb_of_ycocg(colour);
-        break;
-    case WEFT_BONN_SUM:
-        rgb_of_sum(colour);
-        break;
-    case WEFT_BONN_LOG_Y:
-        colour[0] = expf(colour[0]) - offset;
-        rgb_of_yuv(colour);
-        break;
-    case WEFT_BONN_LOG_YUV:
-        colour[0] = expf(colour[0]) - offset;
-        colour[1] = without_signed_log(colour[1]);
-        colour[2] = without_signed_log(colour[2]);
-        rgb_of_yuv(colour);
-        break;
-    case WEFT_BONN_LOG_Y_RATIO: {
-        float raised = expf(colour[0]);
-        colour[0] = raised - offset;
-        colour[1] *= raised;
-        colour[2] *= raised;
-        rgb_of_yuv(colour);
-        break;
-    }
-    case WEFT_BONN_LOG_RGB:
-        for (int c = 0; c < 3; c++)
-            colour[c] = expf(colour[c]) - offset;
-        break;
-    default:
-        break;
+    for (size_t i = 0; i < r.count; i++) {
+        float raised = expf(r.a[i]);
+        r.a[i] = raised - offset;
+        r.b[i] *= raised;
+        r.c[i] *= raised;
     }
 }
 
 void weft_bonn_colour_restore(const weft_bonn_colour *colour, float *channels, size_t stride, size_t count)
 {
-    for (size_t i = 0; colour->model != WEFT_BONN_RGB && i < count; i++) {
-        float rgb[3] = {channels[i], channels[stride + i], channels[2 * stride + i]};
-        restore(colour, rgb);
-        for (size_t c = 0; c < 3; c++)
-            channels[c * stride + i] = rgb[c];
+    run r = {channels, channels + stride, channels + 2 * stride, count};
+    switch (colour->model) {
+    case WEFT_BONN_YUV:
+        rgb_of_yuv(r);
+        break;
+    case WEFT_BONN_PCA:
+        rgb_of_axes(colour, r);
+        break;
+    case WEFT_BONN_YCOCG:
+        rgb_of_ycocg(r);
+        break;
+    case WEFT_BONN_SUM:
+        rgb_of_sum(r);
+        break;
+    case WEFT_BONN_LOG_Y:
+        without_log(r.a, count);
+        rgb_of_yuv(r);
+        break;
+    case WEFT_BONN_LOG_YUV:
+        without_log(r.a, count);
+        without_signed_log(r.b, count);
+        without_signed_log(r.c, count);
+        rgb_of_yuv(r);
+        break;
+    case WEFT_BONN_LOG_Y_RATIO:
+        yuv_of_ratios(r);
+        rgb_of_yuv(r);
+        break;
+    case WEFT_BONN_LOG_RGB:
+        without_log(r.a, count);
+        without_log(r.b, count);
+        without_log(r.c, count);
+        break;
+    default:
+        break;
     }
 }

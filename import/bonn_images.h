@@ -6,7 +6,7 @@
 #include "import/bonn_file.h"
 
 /* Images that are made together: what is unpacked of the texels serves all of them. */
-enum { WEFT_BONN_GROUP = 8 };
+enum { WEFT_BONN_GROUP = 16 };
 
 /* How many images to make at a time so that they take no more than some 64 MB: 1 to WEFT_BONN_GROUP. Pure. */
 int weft_bonn_group_size(const weft_bonn_file *file);

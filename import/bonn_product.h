@@ -12,6 +12,7 @@ typedef struct weft_bonn_kernels {
     /* values [row_count, up to a multiple of WEFT_BONN_TOGETHER][WEFT_BONN_BLOCK] = row [row_count][component_count]
      * times texels [component_count][WEFT_BONN_BLOCK]; texels and values begin at multiples of 64 bytes. */
     void (*multiply)(const float *const *row, int row_count, const float *texels, int component_count, float *values);
+    /* Of a whole number of eights. */
     void (*widen)(const weft_half *half, size_t count, float *single);
 } weft_bonn_kernels;
 

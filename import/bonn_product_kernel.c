@@ -52,8 +52,13 @@ static void multiply(const float *const *row, int row_count, const float *texels
 
 static void widen(const weft_half *half, size_t count, float *single)
 {
+#if defined(__F16C__)
+    for (size_t i = 0; i < count; i += 8)
+        _mm256_storeu_ps(single + i, _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(half + i))));
+#else
     for (size_t i = 0; i < count; i++)
         single[i] = weft_float_of_half(half[i]);
+#endif
 }
 
 WEFT_DECLARE_BONN_KERNELS_OF(WEFT_INSTRUCTION_SET);

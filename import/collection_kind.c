@@ -10,7 +10,7 @@ static weft_code check_folder(const char *folder, weft_error *error)
         return weft_fail(error, WEFT_BAD_INPUT, "there is no folder '%s'", folder);
     if (!S_ISDIR(status.st_mode))
         return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' is neither a folder of photographs nor a BTF of Bonn (unpack an archive first)", folder);
+                         "'%s' is not a folder of photographs, nor a BTF of Bonn (unpack an archive first)", folder);
     if (weft_folder_holds(folder, "session.json"))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a session of `weft capture`: use `weft register`", folder);
     return WEFT_OK;

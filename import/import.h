@@ -48,7 +48,7 @@ weft_import_options weft_import_defaults(void);
 
 /* Reads the collection in the folder or file `source` and writes the dataset `output` atomically. Photographs are
  * decoded in parallel (OpenMP); memory holds one photograph a thread. Of a file of Bonn it holds the matrices, and up
- * to eight images a thread.
+ * to 16 images a thread.
  *
  * Integer images are decoded from sRGB unless they are linear, float images are linear. A smaller width averages exact
  * areas in linear light; a texel with any clipped pixel under it is masked WEFT_MASK_SATURATED. A near light of radiant

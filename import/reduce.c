@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double largest_half = 65504;
 
@@ -77,14 +78,19 @@ static uint8_t any_in(const uint8_t *flagged, int source_width, const span *sx, 
     return any;
 }
 
-weft_code weft_reduce(const weft_image *image, const uint8_t *flagged, int width, int height, weft_half *samples,
-                      uint8_t *touched, weft_error *error)
+/* What is not reduced is only rounded. */
+static void copy(const weft_image *image, const uint8_t *flagged, weft_half *samples, uint8_t *touched)
 {
-    span *sx = malloc((size_t)width * sizeof *sx);
-    if (!sx)
-        return weft_fail_memory(error, "spans", (size_t)width * sizeof *sx);
-    for (int x = 0; x < width; x++)
-        sx[x] = span_of(x, image->width, width);
+    size_t count = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < 3 * count; i++)
+        samples[i] = weft_half_of_float(image->pixels[i]);
+    if (flagged)
+        memcpy(touched, flagged, count);
+}
+
+static void reduce(const weft_image *image, const uint8_t *flagged, int width, int height, const span *sx,
+                   weft_half *samples, uint8_t *touched)
+{
     for (int y = 0; y < height; y++) {
         span sy = span_of(y, image->height, height);
         for (int x = 0; x < width; x++) {
@@ -94,6 +100,21 @@ weft_code weft_reduce(const weft_image *image, const uint8_t *flagged, int width
                 touched[at] = any_in(flagged, image->width, &sx[x], &sy);
         }
     }
+}
+
+weft_code weft_reduce(const weft_image *image, const uint8_t *flagged, int width, int height, weft_half *samples,
+                      uint8_t *touched, weft_error *error)
+{
+    if (width == image->width && height == image->height) {
+        copy(image, flagged, samples, touched);
+        return WEFT_OK;
+    }
+    span *sx = malloc((size_t)width * sizeof *sx);
+    if (!sx)
+        return weft_fail_memory(error, "spans", (size_t)width * sizeof *sx);
+    for (int x = 0; x < width; x++)
+        sx[x] = span_of(x, image->width, width);
+    reduce(image, flagged, width, height, sx, samples, touched);
     free(sx);
     return WEFT_OK;
 }
