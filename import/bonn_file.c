@@ -33,17 +33,6 @@ static const struct signature *signature_of(const char *head)
     return NULL;
 }
 
-bool weft_bonn_file_is(const char *path)
-{
-    char head[11] = "";
-    weft_bonn_reader reader;
-    if (weft_bonn_reader_open(path, &reader, NULL) != WEFT_OK)
-        return false;
-    size_t size = fread(head, 1, sizeof head - 1, reader.stream);
-    fclose(reader.stream);
-    return size > 0 && signature_of(head);
-}
-
 /* What the file holds, and whether frames of the texels follow. */
 static weft_code read_signature(weft_bonn_reader *reader, const struct signature **signature, bool *has_frames,
                                 weft_error *error)
@@ -53,7 +42,8 @@ static weft_code read_signature(weft_bonn_reader *reader, const struct signature
     WEFT_TRY(weft_bonn_reader_take(reader, head, size, error));
     *signature = signature_of(head);
     if (!*signature)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no BTF of Bonn", reader->path);
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' begins with '%s': read are !DFMF08FC, !FMF06FC and !FMF12FCE",
+                         reader->path, head);
     if ((*signature)->kind == NOT_READ)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' holds %s, which are not read: DFMF and FMF are", reader->path,
                          (*signature)->words);

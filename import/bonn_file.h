@@ -29,9 +29,6 @@ typedef struct weft_bonn_file {
     weft_lines notes;            /* what of the file is left out */
 } weft_bonn_file;
 
-/* Whether a regular file begins as those of Bonn do, also where it is of a kind that is not read. */
-bool weft_bonn_file_is(const char *path);
-
 /* The caller frees with weft_bonn_file_close. Errors: WEFT_BAD_INPUT naming the file and what is wrong or not read;
  * WEFT_SYSTEM. */
 weft_code weft_bonn_file_open(const char *path, weft_bonn_file *file, weft_error *error);

@@ -1,6 +1,7 @@
 #include "import/import.h"
 
 #include "base/picture/image.h"
+#include "btf/file_kind.h"
 #include "import/dataset_description.h"
 #include "import/readers.h"
 #include "import/reduce.h"
@@ -123,7 +124,7 @@ static weft_code import_collection(weft_import_run *run, const weft_bonn_file *b
 static weft_code open_source(const char *source, const weft_import_options *options, weft_collection *collection,
                              weft_bonn_file **bonn, weft_error *error)
 {
-    if (!weft_bonn_file_is(source)) {
+    if (!weft_file_is_bonn(source)) {
         *bonn = NULL;
         return weft_collection_open(source, options->lights, options->skip_bad, collection, error);
     }

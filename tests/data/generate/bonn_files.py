@@ -3,7 +3,7 @@
 
     bonn_files.py FOLDER        writes good/ and bad/ below FOLDER
     bonn_files.py               makes them, and compares them with the golden files; exit code 1 where they differ
-    bonn_files.py --cloth FILE  writes a larger file that can be compressed: 13 views, 13 lights, 24 x 16 texels
+    bonn_files.py --cloth FILE  writes a larger file that can be compressed: 13 views, 13 lights, 16 x 16 texels
 
 All good files hold the same images, which a formula gives; the matrices are made of the images, by a singular value
 decomposition or so that their product is exact. So what a reader must find is known before there is a file, and is
@@ -321,6 +321,7 @@ def bad_files():
         "header_unknown": header(b"\3" + bytes(8)),
         "heights_many": header(b"\2" + struct.pack("<3I", 0, 2 ** 32 - 1, 2 ** 32 - 1)),
         "joint_sizes": header(b"\0" + struct.pack("<I", 1)) + [decomposed(joint(rgb)[:3], 4)],
+        "newer_signature": [b"!DFMF09FCR", *good()[1:]],
         "cut_signature": [b"!DFMF"],
         "cut_description": cut(good(), 2),
         "cut_directions": cut(good(), 3),
@@ -335,10 +336,10 @@ def bad_files():
 
 
 def cloth():
-    """A weave of 8 x 8 texels with threads that shine, a red corner at the top left, a blue one at the bottom right."""
+    """A weave of shining threads, 4 texels wide, with a red corner at the top left and a blue one at the bottom right."""
     ring = lambda theta, count: [(theta, 360 * i / count) for i in range(count)]
     places = [(0, 0)] + ring(30, 4) + ring(60, 8)
-    width, height = 24, 16
+    width, height = 16, 16
     y, x = np.mgrid[0:height, 0:width]
     warp = (x // 4 + y // 4) % 2
     rgb = np.zeros((len(places), len(places), height, width, 3))
