@@ -34,8 +34,10 @@ done
 # Reduced, told what it holds, and refused where it does not belong.
 expect_ok import cloth.btf --heights off --size 4 --pitch 3 --values reflectance_cosine -o small.btf.h5
 expect_says "texel_pitch_mm: 3" info small.btf.h5
-expect_error 2 "--lights" import cloth.btf --lights cloth.btf -o small.btf.h5
-expect_error 2 "5 texels wide" import cloth.btf --size 5 -o five.btf.h5
+echo "1" >dirs.lp
+echo "a.png 0 0 1" >>dirs.lp
+expect_error 2 "--lights" import cloth.btf --lights dirs.lp -o small.btf.h5
+expect_error 2 "17 texels asked for" import cloth.btf --size 17 -o five.btf.h5
 expect_error 1 "weft import" compress cloth.btf -o small.weft
 expect_error 1 "weft import" info cloth.btf
 expect_no_file five.btf.h5
