@@ -1,5 +1,6 @@
 #include "import/bonn_reader.h"
 
+#include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -7,6 +8,8 @@ weft_code weft_bonn_reader_open(const char *path, weft_bonn_reader *reader, weft
 {
     struct stat status;
     *reader = (weft_bonn_reader){.path = path, .stream = fopen(path, "rbe"), .section = "first bytes"};
+    if (!reader->stream && errno == ENOMEM)
+        return weft_fail_memory(error, "file", BUFSIZ);
     if (!reader->stream)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' cannot be opened", path);
     if (fstat(fileno(reader->stream), &status) == 0 && S_ISREG(status.st_mode)) {

@@ -1,9 +1,9 @@
 #!/bin/sh
-# A file of Bonn from the laboratory to the picture: import, compress, render. Usage: bonn.sh WEFT ASSETS PYTHON
+# A file of Bonn from the laboratory to the picture: import, compress, render. Usage: bonn.sh WEFT PYTHON
 set -eu
 weft=$1
-python=$3
-. "$(dirname "$0")/expect.sh"
+python=$2
+. "$(dirname "$0")/../cli/expect.sh"
 generate=$(cd "$(dirname "$0")/../data/generate" && pwd)/bonn_files.py
 scratch=$(mktemp -d "$PWD/bonn-XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
