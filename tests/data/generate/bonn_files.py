@@ -52,6 +52,12 @@ def wide_images():
     return np.stack([first, first[::-1] / 2 + first])[None]
 
 
+def many_images():
+    """Two texels of more images than are made at once, each another."""
+    place = np.arange(5 * 7 * 2).reshape(5, 7, 1, 2)
+    return np.stack([1 + place, 100 - place, 3 + 7 * place % 64], -1) / 64
+
+
 def direction(theta_deg, phi_deg):
     """As a reader finds it who takes the angles of the file, which are single precision."""
     theta, phi = (float(np.float32(np.radians(a))) for a in (theta_deg, phi_deg))
@@ -208,6 +214,7 @@ def leaning_frames():
 
 
 WIDE_VIEWS, WIDE_LIGHTS = [(20, 45)], [(50, 200), (10, 100)]
+MANY_VIEWS, MANY_LIGHTS = [(9 * (i + 1), 80 * i) for i in range(5)], [(80 - 10 * i, 50 * i) for i in range(7)]
 
 
 def good_files():
@@ -221,6 +228,7 @@ def good_files():
         "rgb_transposed": dfmf(make=transposed),
         "rgb_frames": dfmf(frames=leaning_frames()),
         "wide": dfmf(rgb=wide_images(), places=directions(WIDE_VIEWS, WIDE_LIGHTS), extents=extent(13, 11, ())),
+        "many": dfmf(rgb=many_images(), places=directions(MANY_VIEWS, MANY_LIGHTS), extents=extent(2, 1, ())),
         "yuv": dfmf(1),
         "axes": dfmf(3),
         "ycocg": dfmf(4),
@@ -264,6 +272,7 @@ def texts():
         "rgb_cosine.values": values_text(images(), cosine=True),
         "rgb_frames.values": values_text(images(), frames=leaning_frames()),
         "wide.values": values_text(wide_images(), WIDE_VIEWS, WIDE_LIGHTS),
+        "many.values": values_text(many_images(), MANY_VIEWS, MANY_LIGHTS),
     }
 
 
