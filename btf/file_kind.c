@@ -91,15 +91,37 @@ static bool kind_of_word(const char *head, weft_file_kind *kind)
     return false;
 }
 
-static bool kind_of_content(const char *path, weft_file_kind *kind)
+/* The first bytes and a NUL; how many they are, 0 where the file cannot be read. */
+static size_t read_head(const char *path, char head[HEAD_SIZE + 1])
 {
-    char head[HEAD_SIZE + 1] = "";
+    memset(head, 0, HEAD_SIZE + 1);
     int file = open(path, O_RDONLY | O_CLOEXEC);
     if (file < 0)
-        return false;
+        return 0;
     ssize_t size = read(file, head, HEAD_SIZE);
     close(file);
-    return size > 0 && (kind_of_bytes(head, (size_t)size, kind) || kind_of_word(head, kind));
+    return size > 0 ? (size_t)size : 0;
+}
+
+static bool kind_of_content(const char *path, weft_file_kind *kind)
+{
+    char head[HEAD_SIZE + 1];
+    size_t size = read_head(path, head);
+    return size > 0 && (kind_of_bytes(head, size, kind) || kind_of_word(head, kind));
+}
+
+bool weft_file_is_bonn(const char *path)
+{
+    static const char *const starts[] = {"!DFMF", "!FMF", "!PVF", "!BDIF"};
+    char head[HEAD_SIZE + 1];
+    struct stat status;
+    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode) || read_head(path, head) == 0)
+        return false;
+    for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
+        if (strncmp(head, starts[i], strlen(starts[i])) == 0)
+            return true;
+    }
+    return false;
 }
 
 weft_code weft_file_kind_of(const char *path, weft_file_kind *kind, weft_error *error)
@@ -112,6 +134,8 @@ weft_code weft_file_kind_of(const char *path, weft_file_kind *kind, weft_error *
         return WEFT_OK;
     if (S_ISREG(status.st_mode) && (kind_of_content(path, kind) || kind_of_name(path, kind)))
         return WEFT_OK;
+    if (weft_file_is_bonn(path))
+        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a BTF of Bonn: weft import makes a dataset of it", path);
     return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no dataset, material, weave, mesh, picture or session folder",
                      path);
 }

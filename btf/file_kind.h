@@ -4,6 +4,8 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
+
 typedef enum weft_file_kind {
     WEFT_FILE_SESSION,       /* a folder */
     WEFT_FILE_DATASET,       /* NAME.btf.h5 */
@@ -19,5 +21,9 @@ typedef enum weft_file_kind {
 /* By the first bytes, or the first word that is no comment; where they say nothing, by the name, so that whoever reads
  * the file can say what is wrong in it. Errors: WEFT_BAD_INPUT where there is no such file, or neither says it. */
 weft_code weft_file_kind_of(const char *path, weft_file_kind *kind, weft_error *error);
+
+/* Whether a regular file begins as the binary BTF files of the University of Bonn do, of which `weft import` makes
+ * datasets. */
+bool weft_file_is_bonn(const char *path);
 
 #endif

@@ -27,7 +27,8 @@ static const weft_option option_table[] = {
      .help = "Mask samples of 8-bit photographs from this level of 255; 256 masks none (default: 250)",
      .kind = WEFT_OPTION_NUMBER, .offset = offsetof(import_command, options.saturated_at), .low = 1, .high = 256,
      .divisor = 255},
-    {"values", .argument = "WHAT", .help = "What a sample holds: reflectance_cosine (default) or reflectance",
+    {"values", .argument = "WHAT",
+     .help = "What a sample holds: reflectance_cosine or reflectance (default: what the file says, else the first)",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(import_command, options.values), .words = value_words},
     {"lights", .argument = "FILE.lp", .help = "Direction of the lamp of every photograph; all have one view",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(import_command, options.lights)},
@@ -72,14 +73,15 @@ const weft_command weft_command_import = {
     .summary = "turn foreign photographs into a dataset",
     .usage = "SOURCE -o NAME.btf.h5",
     .documentation = "Example: weft import photographs/ -o cloth.btf.h5 --size 256\n\n"
-                     "Turns a folder of photographs that others made into a dataset. The folder holds "
+                     "Turns a folder of photographs that others made, or a .btf file of the University of Bonn "
+                     "(UBO2014), into a dataset. The folder holds "
                      "camera_pos.txt, light_pos.txt, image_size.txt and "
                      "light_power.txt beside NN.png (near light and camera), or a directions.csv, or "
                      "an .lp file (one view, many lamps), or "
                      "files named by their angles, such as "
                      "tv045_pv090/tl030_pl120_tv045_pv090.png (light and camera far away).",
     .options = option_table,
-    .needs = "a folder of photographs and -o NAME.btf.h5",
-    .surplus = "one folder at a time",
+    .needs = "a folder of photographs or a .btf file, and -o NAME.btf.h5",
+    .surplus = "one folder or file at a time",
     .run = run,
 };

@@ -10,6 +10,7 @@
 typedef struct weft_photograph {
     char *name; /* of the file, relative to the folder; where it is missing, what it should be called */
     int missing;
+    int number;            /* of an image in one file of many: its place there */
     weft_vec3 light, view; /* directions, or positions in mm */
     /* Of a near light: the pixel value of a surface with BRDF x cosine = 1 / sr at a distance of 1 mm. */
     weft_rgb intensity;
@@ -20,7 +21,8 @@ typedef struct weft_collection {
     const char *kind;        /* in words, for the report */
     bool leaves_out_doubles; /* of photographs of one light and view all but one; else they are an error */
     weft_distance distance;
-    double side_mm; /* width of what a photograph shows; 0 = not said */
+    weft_values values; /* of a far light: what the collection says of itself */
+    double side_mm;     /* width of what a photograph shows; 0 = not said */
     int count, capacity;
     weft_photograph *photograph; /* [count] */
     weft_lines notes;

@@ -9,8 +9,8 @@ static weft_code check_folder(const char *folder, weft_error *error)
     if (stat(folder, &status) != 0)
         return weft_fail(error, WEFT_BAD_INPUT, "there is no folder '%s'", folder);
     if (!S_ISDIR(status.st_mode))
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s' is not a folder of photographs (unpack an archive first)",
-                         folder);
+        return weft_fail(error, WEFT_BAD_INPUT,
+                         "'%s' is not a folder of photographs, nor a BTF of Bonn (unpack an archive first)", folder);
     if (weft_folder_holds(folder, "session.json"))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a session of `weft capture`: use `weft register`", folder);
     return WEFT_OK;

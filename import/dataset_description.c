@@ -58,14 +58,22 @@ static void copy_directions(const weft_collection *collection, const int32_t *vi
 static weft_code choose_pitch(const weft_collection *collection, const weft_import_options *options,
                               weft_dataset_layout *layout, weft_lines *notes, weft_error *error)
 {
-    layout->texel_pitch_mm = options->texel_pitch_mm;
-    if (collection->side_mm > 0)
+    /* The places of near lights are told in the length of the side. */
+    layout->texel_pitch_mm = collection->distance == WEFT_FAR ? options->texel_pitch_mm : 0;
+    if (layout->texel_pitch_mm == 0 && collection->side_mm > 0)
         layout->texel_pitch_mm = collection->side_mm / layout->width;
     if (layout->texel_pitch_mm > 0)
         return WEFT_OK;
     layout->texel_pitch_mm = assumed_pitch_mm;
     return weft_lines_add(notes, error, "the photographs do not say how large a texel is: %g mm assumed",
                           assumed_pitch_mm);
+}
+
+static weft_values choose_values(const weft_collection *collection, const weft_import_options *options)
+{
+    if (collection->distance == WEFT_NEAR)
+        return WEFT_REFLECTANCE_COSINE;
+    return options->values == WEFT_VALUES_OF_SOURCE ? collection->values : (weft_values)options->values;
 }
 
 weft_code weft_import_layout(const weft_collection *collection, const weft_import_options *options,
@@ -75,12 +83,11 @@ weft_code weft_import_layout(const weft_collection *collection, const weft_impor
     size_t count = (size_t)collection->count;
     int32_t *view_of_image = malloc(count * sizeof *view_of_image);
     const weft_photograph **sorted = malloc(count * sizeof *sorted);
-    *layout =
-        (weft_dataset_layout){.width = decoding->width,
-                              .height = decoding->height,
-                              .image_count = collection->count,
-                              .distance = collection->distance,
-                              .values = collection->distance == WEFT_FAR ? options->values : WEFT_REFLECTANCE_COSINE};
+    *layout = (weft_dataset_layout){.width = decoding->width,
+                                    .height = decoding->height,
+                                    .image_count = collection->count,
+                                    .distance = collection->distance,
+                                    .values = choose_values(collection, options)};
     weft_code code = WEFT_OK;
     if (!view_of_image || !sorted)
         code = weft_fail_memory(error, "views", count * sizeof *sorted);
@@ -126,14 +133,40 @@ static json_t *photograph_names(const weft_collection *collection)
     return names;
 }
 
-char *weft_import_provenance(const char *source, const weft_collection *collection, const weft_import_options *options,
-                             const weft_decoding *decoding, const weft_import_report *report)
+static json_t *words_of(const char *words)
 {
-    json_t *root = json_pack("{s:s, s:o, s:s, s:[ii], s:f, s:i, s:i, s:f, s:o}", "program", "weft import " WEFT_VERSION,
-                             "source", folder_name(source), "kind", collection->kind, "photograph_size",
-                             decoding->source_width, decoding->source_height, "saturated_at", options->saturated_at,
-                             "missing", report->missing_count, "skipped", report->skipped_count, "saturated_fraction",
-                             report->saturated_fraction, "photographs", photograph_names(collection));
+    return weft_json_text(words, strlen(words));
+}
+
+/* What a file of Bonn says of itself, in the place of the names of photographs. */
+static void put_bonn(json_t **root, const weft_bonn_file *file)
+{
+    json_t *scale = json_array(), *components = json_array();
+    for (int c = 0; c < WEFT_BONN_CHANNELS; c++) {
+        weft_json_append(&scale, weft_json_number((double)file->rgb_scale[c]));
+        weft_json_append(&components, json_integer(file->matrices.channel[c].component_count));
+    }
+    weft_json_put(root, "setup", words_of(file->setup));
+    weft_json_put(root, "sensor", words_of(file->sensor));
+    weft_json_put(root, "lamp", words_of(file->lamp));
+    weft_json_put(root, "rgb_scale", scale);
+    weft_json_put(root, "colour_model", json_integer(file->colour.model));
+    weft_json_put(root, "components", components);
+}
+
+char *weft_import_provenance(const char *source, const weft_collection *collection, const weft_bonn_file *bonn,
+                             const weft_import_options *options, const weft_decoding *decoding,
+                             const weft_import_report *report)
+{
+    json_t *root =
+        json_pack("{s:s, s:o, s:s, s:[ii], s:f, s:i, s:i, s:f}", "program", "weft import " WEFT_VERSION, "source",
+                  folder_name(source), "kind", collection->kind, "photograph_size", decoding->source_width,
+                  decoding->source_height, "saturated_at", options->saturated_at, "missing", report->missing_count,
+                  "skipped", report->skipped_count, "saturated_fraction", report->saturated_fraction);
+    if (bonn)
+        put_bonn(&root, bonn);
+    else
+        weft_json_put(&root, "photographs", photograph_names(collection));
     char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
     json_decref(root);
     return text;

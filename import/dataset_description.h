@@ -2,6 +2,7 @@
 #ifndef WEFT_IMPORT_DATASET_DESCRIPTION_H
 #define WEFT_IMPORT_DATASET_DESCRIPTION_H
 
+#include "import/bonn_file.h"
 #include "import/decode.h"
 #include "import/import.h"
 
@@ -12,8 +13,9 @@ weft_code weft_import_layout(const weft_collection *collection, const weft_impor
                              weft_error *error);
 
 /* JSON text in new memory: program, source, kind, conversion, and "photographs": the file of every image in order (null
- * where it is missing). NULL where memory is short. */
-char *weft_import_provenance(const char *source, const weft_collection *collection, const weft_import_options *options,
-                             const weft_decoding *decoding, const weft_import_report *report);
+ * where it is missing), or what a file of Bonn says of itself (else NULL). NULL where memory is short. */
+char *weft_import_provenance(const char *source, const weft_collection *collection, const weft_bonn_file *bonn,
+                             const weft_import_options *options, const weft_decoding *decoding,
+                             const weft_import_report *report);
 
 #endif

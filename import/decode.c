@@ -2,12 +2,11 @@
 
 #include "base/picture/colour.h"
 #include "base/picture/image.h"
+#include "import/reduce.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double largest_half = 65504;
 
 /* ---- Colour and light of a pixel ---- */
 
@@ -50,92 +49,12 @@ static void divide_by_near_light(const weft_decoding *decoding, const weft_photo
 
 static weft_code check_finite(const weft_image *image, const char *path, weft_error *error)
 {
-    size_t count = 3 * (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < count; i++) {
-        if (!(fabs((double)image->pixels[i]) <= largest_half)) {
-            size_t pixel = i / 3, width = (size_t)image->width;
-            return weft_fail(error, WEFT_BAD_INPUT, "'%s': value %g at pixel (%zu, %zu)", path,
-                             (double)image->pixels[i], pixel % width, pixel / width);
-        }
-    }
-    return WEFT_OK;
-}
-
-/* ---- Reduction to texels by exact area averaging ---- */
-
-/* The part of an axis under one pixel of the result: pixels first..last with weights that are 1 inside. */
-typedef struct span {
-    int first, last;
-    double first_weight, last_weight;
-} span;
-
-static span span_of(int index, int source_count, int result_count)
-{
-    /* Bounds as whole numbers over result_count, so that equal ratios give exactly whole spans. */
-    long begin = (long)index * source_count, end = begin + source_count;
-    int first = (int)(begin / result_count), last = (int)((end - 1) / result_count);
-    double first_end = fmin((double)end, (double)(first + 1) * result_count);
-    double last_begin = fmax((double)begin, (double)last * result_count);
-    return (span){first, last, (first_end - (double)begin) / result_count, ((double)end - last_begin) / result_count};
-}
-
-static double weight_in(const span *s, int index)
-{
-    return index == s->first ? s->first_weight : index == s->last ? s->last_weight : 1;
-}
-
-static void average_pixel(const weft_image *image, const uint8_t *flagged, const span *sx, const span *sy, float *pixel,
-                          uint8_t *touched)
-{
-    double sum[3] = {0}, area = 0;
-    *touched = 0;
-    for (int y = sy->first; y <= sy->last; y++) {
-        for (int x = sx->first; x <= sx->last; x++) {
-            size_t at = (size_t)y * (size_t)image->width + (size_t)x;
-            double weight = weight_in(sx, x) * weight_in(sy, y);
-            for (int c = 0; c < 3; c++)
-                sum[c] += weight * (double)image->pixels[3 * at + (size_t)c];
-            area += weight;
-            *touched |= flagged[at];
-        }
-    }
-    for (int c = 0; c < 3; c++)
-        pixel[c] = (float)(sum[c] / area);
-}
-
-/* Every pixel of `result` (allocated, no larger than `image`) becomes the mean of `image` over the area it covers;
- * pixels that are covered in part count by that part. touched [result height][width] = whether any pixel with flagged
- * [image height][width] != 0 took part. */
-static weft_code area_average(const weft_image *image, const uint8_t *flagged, weft_image *result, uint8_t *touched,
-                              weft_error *error)
-{
-    span *sx = malloc((size_t)result->width * sizeof *sx);
-    if (!sx)
-        return weft_fail_memory(error, "spans", (size_t)result->width * sizeof *sx);
-    for (int x = 0; x < result->width; x++)
-        sx[x] = span_of(x, image->width, result->width);
-    for (int y = 0; y < result->height; y++) {
-        span sy = span_of(y, image->height, result->height);
-        for (int x = 0; x < result->width; x++) {
-            size_t at = (size_t)y * (size_t)result->width + (size_t)x;
-            average_pixel(image, flagged, &sx[x], &sy, result->pixels + 3 * at, touched + at);
-        }
-    }
-    free(sx);
-    return WEFT_OK;
-}
-
-static weft_code average_texels(const weft_decoding *decoding, const weft_image *image, const uint8_t *clipped,
-                                weft_half *samples, uint8_t *mask, weft_error *error)
-{
-    weft_image texels;
-    WEFT_TRY(weft_image_create(decoding->width, decoding->height, &texels, error));
-    weft_code code = area_average(image, clipped, &texels, mask, error);
-    size_t count = 3 * (size_t)decoding->width * (size_t)decoding->height;
-    for (size_t i = 0; code == WEFT_OK && i < count; i++)
-        samples[i] = weft_half_of_float(texels.pixels[i]);
-    weft_image_free(&texels);
-    return code;
+    size_t index;
+    if (!weft_find_unstorable(image, &index))
+        return WEFT_OK;
+    size_t pixel = index / 3, width = (size_t)image->width;
+    return weft_fail(error, WEFT_BAD_INPUT, "'%s': value %g at pixel (%zu, %zu)", path, (double)image->pixels[index],
+                     pixel % width, pixel / width);
 }
 
 /* ---- A photograph ---- */
@@ -156,7 +75,7 @@ static weft_code convert(const weft_decoding *decoding, const char *path, const 
         divide_by_near_light(decoding, photograph, image);
     weft_code code = check_finite(image, path, error);
     if (code == WEFT_OK)
-        code = average_texels(decoding, image, clipped, samples, mask, error);
+        code = weft_reduce(image, clipped, decoding->width, decoding->height, samples, mask, error);
     free(clipped);
     return code;
 }

@@ -1,30 +1,17 @@
 #include "import/import.h"
 
 #include "base/picture/image.h"
+#include "btf/file_kind.h"
 #include "import/dataset_description.h"
-#include "import/decode.h"
 #include "import/readers.h"
+#include "import/reduce.h"
+#include "import/run.h"
 
 #include <stdlib.h>
 
-/* One run of weft_import: what the parallel workers share. */
-typedef struct import_run {
-    const char *source;
-    const weft_import_options *options;
-    const weft_progress *progress;
-    weft_import_report *report;
-    const weft_collection *collection;
-    weft_decoding decoding;
-    weft_dataset_writer *writer;
-    weft_code code; /* of the first failure; guarded, with everything below, by the critical section */
-    weft_error error;
-    long done;
-    size_t saturated, samples;
-} import_run;
-
 weft_import_options weft_import_defaults(void)
 {
-    return (weft_import_options){.saturated_at = 250.0 / 255, .values = WEFT_REFLECTANCE_COSINE};
+    return (weft_import_options){.saturated_at = 250.0 / 255, .values = WEFT_VALUES_OF_SOURCE};
 }
 
 void weft_import_report_free(weft_import_report *report)
@@ -55,96 +42,22 @@ static weft_code probe_size(const weft_collection *collection, const char *folde
     return code;
 }
 
-static weft_code choose_size(const weft_import_options *options, weft_decoding *decoding, weft_error *error)
+static weft_code put_images(weft_import_run *run, const weft_bonn_file *bonn)
 {
-    int width = decoding->source_width, height = decoding->source_height;
-    decoding->width = options->width ? options->width : width;
-    if (decoding->width < 1 || decoding->width > width)
-        return weft_fail(error, WEFT_BAD_USAGE, "%d texels asked for, but the photographs are %d pixels wide",
-                         decoding->width, width);
-    if ((long)height * decoding->width % width != 0)
-        return weft_fail(error, WEFT_BAD_USAGE,
-                         "photographs of %d x %d pixels cannot become %d texels wide: that is %g high", width, height,
-                         decoding->width, (double)height * decoding->width / width);
-    decoding->height = (int)((long)height * decoding->width / width);
-    return WEFT_OK;
-}
-
-/* Names a missing or skipped photograph; the user is told of the first ten. */
-static weft_code note_photograph(import_run *run, int count, const char *what, const char *name, const char *why)
-{
-    if (count <= 10)
-        return weft_lines_add(&run->report->notes, &run->error, "%s '%s'%s%s", what, name, *why ? ": " : "", why);
-    return WEFT_OK;
-}
-
-/* Called in the critical section. */
-static void count_photograph(import_run *run, int index, weft_code code, const weft_error *error, size_t saturated)
-{
-    const weft_photograph *photograph = &run->collection->photograph[index];
-    weft_import_report *report = run->report;
-    if (photograph->missing) {
-        run->code = note_photograph(run, ++report->missing_count, "missing, masked:", photograph->name, "");
-    } else if (code == WEFT_BAD_INPUT && run->options->skip_bad) {
-        run->code = note_photograph(run, ++report->skipped_count, "skipped, masked:", photograph->name, error->message);
-    } else if (code != WEFT_OK) {
-        run->code = code;
-        run->error = *error;
-    } else {
-        run->saturated += saturated;
-        run->samples += (size_t)run->decoding.width * (size_t)run->decoding.height;
-    }
-    weft_progress_report(run->progress, "reading photographs", ++run->done, run->collection->count);
-}
-
-static weft_code read_photograph(const import_run *run, int index, size_t *saturated, weft_error *error)
-{
-    const weft_photograph *photograph = &run->collection->photograph[index];
-    size_t texels = (size_t)run->decoding.width * (size_t)run->decoding.height;
-    weft_half *samples = malloc(3 * texels * sizeof *samples);
-    uint8_t *mask = malloc(texels);
-    char *path = weft_join_path(run->source, photograph->name);
-    weft_code code = WEFT_OK;
-    if (!samples || !mask || !path)
-        code = weft_fail_memory(error, "photograph", 3 * texels * sizeof *samples);
-    if (code == WEFT_OK)
-        code = weft_photograph_decode(&run->decoding, path, photograph, samples, mask, saturated, error);
-    if (code == WEFT_OK)
-        code = weft_dataset_writer_put_image(run->writer, index, samples, mask, error);
-    free(samples);
-    free(mask);
-    free(path);
-    return code;
-}
-
-static weft_code read_photographs(import_run *run)
-{
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < run->collection->count; i++) {
-        weft_code stopped;
-#pragma omp atomic read
-        stopped = run->code;
-        if (stopped != WEFT_OK)
-            continue;
-        weft_error error = {0};
-        size_t saturated = 0;
-        weft_code code = WEFT_OK;
-        if (!run->collection->photograph[i].missing)
-            code = read_photograph(run, i, &saturated, &error);
-#pragma omp critical
-        if (run->code == WEFT_OK)
-            count_photograph(run, i, code, &error, saturated);
-    }
+    if (bonn)
+        weft_import_bonn_images(run, bonn);
+    else
+        weft_import_photographs(run);
     if (run->code == WEFT_OK && run->samples == 0)
         return weft_fail(&run->error, WEFT_BAD_INPUT, "'%s': no photograph could be used", run->source);
     return run->code;
 }
 
-static weft_code finish(import_run *run, weft_error *error)
+static weft_code finish(weft_import_run *run, const weft_bonn_file *bonn, weft_error *error)
 {
     weft_import_report *report = run->report;
     report->saturated_fraction = (double)run->saturated / (double)run->samples;
-    char *provenance = weft_import_provenance(run->source, run->collection, run->options, &run->decoding, report);
+    char *provenance = weft_import_provenance(run->source, run->collection, bonn, run->options, &run->decoding, report);
     if (!provenance)
         return weft_fail_memory(error, "provenance", 0);
     weft_progress_report(run->progress, "writing the dataset", 0, 1);
@@ -156,7 +69,7 @@ static weft_code finish(import_run *run, weft_error *error)
     return code;
 }
 
-static weft_code write_dataset(import_run *run, const char *output, weft_error *error)
+static weft_code write_dataset(weft_import_run *run, const weft_bonn_file *bonn, const char *output, weft_error *error)
 {
     weft_dataset_layout layout = {0};
     WEFT_TRY(weft_import_layout(run->collection, run->options, &run->decoding, &layout, &run->report->notes, error));
@@ -169,26 +82,62 @@ static weft_code write_dataset(import_run *run, const char *output, weft_error *
     weft_code code = weft_dataset_writer_create(output, &layout, &run->writer, error);
     weft_dataset_layout_free(&layout);
     if (code == WEFT_OK) {
-        code = read_photographs(run);
+        code = put_images(run, bonn);
         if (code != WEFT_OK && error)
             *error = run->error;
     }
+    if (code == WEFT_OK && bonn)
+        code = weft_import_bonn_frames(run, bonn, error);
     if (code == WEFT_OK)
-        code = finish(run, error);
+        code = finish(run, bonn, error);
     weft_dataset_writer_abandon(run->writer);
     return code;
 }
 
-static weft_code import_collection(import_run *run, const char *output, weft_error *error)
+/* The size of what is read, and of what is written. */
+static weft_code choose_size(weft_import_run *run, const weft_bonn_file *bonn, weft_error *error)
+{
+    weft_decoding *decoding = &run->decoding;
+    if (bonn) {
+        decoding->source_width = bonn->width;
+        decoding->source_height = bonn->height;
+    } else {
+        WEFT_TRY(probe_size(run->collection, run->source, run->options->skip_bad, decoding, error));
+    }
+    return weft_reduced_size(decoding->source_width, decoding->source_height, run->options->width, &decoding->width,
+                             &decoding->height, error);
+}
+
+static weft_code import_collection(weft_import_run *run, const weft_bonn_file *bonn, const char *output,
+                                   weft_error *error)
 {
     weft_decoding *decoding = &run->decoding;
     decoding->saturated_at = run->options->saturated_at;
     decoding->linear = run->options->linear;
     decoding->distance = run->collection->distance;
-    WEFT_TRY(probe_size(run->collection, run->source, run->options->skip_bad, decoding, error));
-    WEFT_TRY(choose_size(run->options, decoding, error));
+    WEFT_TRY(choose_size(run, bonn, error));
     decoding->pixel_pitch_mm = run->collection->side_mm / decoding->source_width;
-    return write_dataset(run, output, error);
+    return write_dataset(run, bonn, output, error);
+}
+
+/* The collection in a folder, or in a file of Bonn (else NULL), which is then open. */
+static weft_code open_source(const char *source, const weft_import_options *options, weft_collection *collection,
+                             weft_bonn_file **bonn, weft_error *error)
+{
+    if (!weft_file_is_bonn(source)) {
+        *bonn = NULL;
+        return weft_collection_open(source, options->lights, options->skip_bad, collection, error);
+    }
+    if (options->lights)
+        return weft_fail(error, WEFT_BAD_USAGE, "--lights is of a folder of photographs: '%s' says its lights", source);
+    *collection = (weft_collection){.leaves_out_doubles = options->skip_bad};
+    WEFT_TRY(weft_bonn_file_open(source, *bonn, error));
+    weft_code code = weft_collection_of_bonn(source, *bonn, collection, error);
+    if (code == WEFT_OK)
+        return WEFT_OK;
+    weft_collection_free(collection);
+    weft_bonn_file_close(*bonn);
+    return code;
 }
 
 weft_code weft_import(const char *source, const char *output, const weft_import_options *options,
@@ -196,13 +145,15 @@ weft_code weft_import(const char *source, const char *output, const weft_import_
 {
     *report = (weft_import_report){0};
     weft_collection collection;
-    WEFT_TRY(weft_collection_open(source, options->lights, options->skip_bad, &collection, error));
-    import_run run = {
+    weft_bonn_file file = {0}, *bonn = &file;
+    WEFT_TRY(open_source(source, options, &collection, &bonn, error));
+    weft_import_run run = {
         .source = source, .options = options, .progress = progress, .report = report, .collection = &collection};
     report->notes = collection.notes;
     collection.notes = (weft_lines){0};
-    weft_code code = import_collection(&run, output, error);
+    weft_code code = import_collection(&run, bonn, output, error);
     weft_collection_free(&collection);
+    weft_bonn_file_close(&file);
     if (code != WEFT_OK)
         weft_import_report_free(report);
     return code;

@@ -4,7 +4,9 @@
  *     (a near light and a near camera);
  *   - a folder of photographs named by their angles, in the layouts of UTIA (tv045_pv090/tl030_pl120_tv045_pv090.png)
  * and UBO2003 ("00008 tl000 pl000 tv030 pv030.jpg"), or listed in a directions.csv (far light and camera);
- *   - a folder with an .lp file: one view, many lamps (far light and camera). */
+ *   - a folder with an .lp file: one view, many lamps (far light and camera);
+ *   - a binary BTF file of the University of Bonn (UBO2014): all images as products of matrices (far light and camera).
+ */
 #ifndef WEFT_IMPORT_IMPORT_H
 #define WEFT_IMPORT_IMPORT_H
 
@@ -14,13 +16,16 @@
 
 #include <stdbool.h>
 
+enum { WEFT_VALUES_OF_SOURCE = 2 };
+
 typedef struct weft_import_options {
     int width;             /* of the dataset, texels; 0 = as photographed */
     double texel_pitch_mm; /* of the dataset; 0 = what the collection says, else 1 mm */
     /* Encoded value in 0..1 from which a sample of an integer image counts as clipped; > 1 = never. */
     double saturated_at;
-    /* What photographs of a far light hold; those of a near light always give reflectance times cosine. */
-    weft_values values;
+    /* What photographs of a far light hold, a weft_values, or what the source says, else reflectance times cosine;
+     * those of a near light always give reflectance times cosine. */
+    int values;
     bool linear; /* integer images hold linear values, not sRGB */
     const char
         *lights; /* a list of lamps (base/text/light_list.h) for photographs of one view; NULL: as the folder says */
@@ -41,8 +46,9 @@ typedef struct weft_import_report {
 /* Size as photographed, saturated from 250/255, reflectance times cosine, no bad photograph skipped. */
 weft_import_options weft_import_defaults(void);
 
-/* Reads the collection in folder `source` and writes the dataset `output` atomically. Photographs are decoded in
- * parallel (OpenMP); memory holds one photograph a thread.
+/* Reads the collection in the folder or file `source` and writes the dataset `output` atomically. Photographs are
+ * decoded in parallel (OpenMP); memory holds one photograph a thread. Of a file of Bonn it holds the matrices, and up
+ * to 16 images a thread.
  *
  * Integer images are decoded from sRGB unless they are linear, float images are linear. A smaller width averages exact
  * areas in linear light; a texel with any clipped pixel under it is masked WEFT_MASK_SATURATED. A near light of radiant

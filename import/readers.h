@@ -2,6 +2,7 @@
 #ifndef WEFT_IMPORT_READERS_H
 #define WEFT_IMPORT_READERS_H
 
+#include "import/bonn_file.h"
 #include "import/collection.h"
 
 /* Recognises the kind of collection that a folder holds and lists its photographs; with a list of
@@ -22,6 +23,10 @@ weft_code weft_collection_of_lights(const char *folder, const char *lights, weft
                                     weft_error *error);
 /* Photographs named by their angles, in the folder or one below. */
 weft_code weft_collection_of_names(const char *folder, weft_collection *collection, weft_error *error);
+
+/* The images of a file of Bonn, `path`, which must stay open while they are made. */
+weft_code weft_collection_of_bonn(const char *path, const weft_bonn_file *file, weft_collection *collection,
+                                  weft_error *error);
 
 /* The path of an .lp file in the folder, in new memory, NULL where there is none, and how many there are. Errors:
  * WEFT_SYSTEM. */

@@ -101,6 +101,8 @@ weft_code weft_argument_belongs(const char *argument, const char *path, weft_err
         bool belongs = is_kind(argument, argument + strlen(argument), kind);
         return belongs ? WEFT_OK : refuse(path, kinds[kind].name, argument, error);
     }
+    if (weft_file_is_bonn(path))
+        return refuse(path, "a BTF of Bonn, of which weft import makes a dataset", argument, error);
     if (!all_known || strstr(argument, ".jpg"))
         return WEFT_OK;
     return refuse(path, status.st_size == 0 ? "empty" : "neither dataset nor material, weave, mesh or picture",

@@ -86,6 +86,21 @@ static void folders_are_sessions_and_the_rest_is_refused(void **state)
     assert_int_equal(weft_file_kind_of("/dev/null", &kind, &error), WEFT_BAD_INPUT);
 }
 
+static void a_file_of_bonn_is_told_what_to_do_with(void **state)
+{
+    (void)state;
+    weft_file_kind kind;
+    weft_error error = {0};
+    write_bytes("carpet.btf", "!DFMF08FCR....", 14);
+    assert_true(weft_file_is_bonn("carpet.btf"));
+    assert_int_equal(weft_file_kind_of("carpet.btf", &kind, &error), WEFT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "weft import"));
+    write_bytes("carpet.btf", "DFMF08FCR....", 13);
+    assert_false(weft_file_is_bonn("carpet.btf"));
+    assert_false(weft_file_is_bonn("there_is_none.btf"));
+    assert_false(weft_file_is_bonn("."));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -94,6 +109,7 @@ int main(void)
         cmocka_unit_test(content_counts_more_than_the_name),
         cmocka_unit_test(a_damaged_file_is_what_its_name_says),
         cmocka_unit_test(folders_are_sessions_and_the_rest_is_refused),
+        cmocka_unit_test(a_file_of_bonn_is_told_what_to_do_with),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 
 #define CLOTH WEFT_ASSETS "/microcylinder/plain_matte.mc"
+#define BONN WEFT_ASSETS "/../tests/golden/good/bonn/"
 
 const short_memory_job short_memory_inputs[] = {
     {"session",
@@ -74,6 +75,8 @@ const short_memory_job short_memory_jobs[] = {
     {"import-listed", ALL_OR_NOTHING, 1, {"import", IN "listed", "-o", "card.btf.h5"}},
     {"import-placed", ALL_OR_NOTHING, 1, {"import", IN "placed", "-o", "card.btf.h5"}},
     {"import-lit", ALL_OR_NOTHING, 1, {"import", IN "lit", "-o", "card.btf.h5"}},
+    {"import-bonn", ALL_OR_NOTHING, 1, {"import", BONN "rgb_frames.btf", "-o", "card.btf.h5", "--size", "2"}},
+    {"import-joint", ALL_OR_NOTHING, 1, {"import", BONN "joint_log.btf", "-o", "card.btf.h5"}},
     {"target", ALL_OR_NOTHING, 1, {"target", "-o", "target.svg"}},
     {"target-pdf", ALL_OR_NOTHING, 1, {"target", "-o", "target.pdf"}},
     {"hand",

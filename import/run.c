@@ -1,0 +1,43 @@
+#include "import/run.h"
+
+/* Names a missing or skipped photograph; the user is told of the first ten. */
+static weft_code note_photograph(weft_import_run *run, int count, const char *what, const char *name, const char *why)
+{
+    if (count <= 10)
+        return weft_lines_add(&run->report->notes, &run->error, "%s '%s'%s%s", what, name, *why ? ": " : "", why);
+    return WEFT_OK;
+}
+
+/* Called in the critical section. */
+static void count_image(weft_import_run *run, int index, weft_code code, const weft_error *error, size_t saturated)
+{
+    const weft_photograph *photograph = &run->collection->photograph[index];
+    weft_import_report *report = run->report;
+    if (photograph->missing) {
+        run->code = note_photograph(run, ++report->missing_count, "missing, masked:", photograph->name, "");
+    } else if (code == WEFT_BAD_INPUT && run->options->skip_bad) {
+        run->code = note_photograph(run, ++report->skipped_count, "skipped, masked:", photograph->name, error->message);
+    } else if (code != WEFT_OK) {
+        run->code = code;
+        run->error = *error;
+    } else {
+        run->saturated += saturated;
+        run->samples += (size_t)run->decoding.width * (size_t)run->decoding.height;
+    }
+    weft_progress_report(run->progress, "reading photographs", ++run->done, run->collection->count);
+}
+
+bool weft_import_has_stopped(const weft_import_run *run)
+{
+    weft_code stopped;
+#pragma omp atomic read
+    stopped = run->code;
+    return stopped != WEFT_OK;
+}
+
+void weft_import_count(weft_import_run *run, int index, weft_code code, const weft_error *error, size_t saturated)
+{
+#pragma omp critical(weft_import)
+    if (run->code == WEFT_OK)
+        count_image(run, index, code, error, saturated);
+}
