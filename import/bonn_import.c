@@ -1,6 +1,6 @@
 /* A file of Bonn as a collection of photographs, and its images put into the dataset. */
-#include "import/bonn_frames.h"
-#include "import/bonn_images.h"
+#include "import/bonn/frames.h"
+#include "import/bonn/images.h"
 #include "import/far_photograph.h"
 #include "import/readers.h"
 #include "import/reduce.h"

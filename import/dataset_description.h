@@ -2,7 +2,7 @@
 #ifndef WEFT_IMPORT_DATASET_DESCRIPTION_H
 #define WEFT_IMPORT_DATASET_DESCRIPTION_H
 
-#include "import/bonn_file.h"
+#include "import/bonn/file.h"
 #include "import/decode.h"
 #include "import/import.h"
 

@@ -2,7 +2,7 @@
 #ifndef WEFT_IMPORT_READERS_H
 #define WEFT_IMPORT_READERS_H
 
-#include "import/bonn_file.h"
+#include "import/bonn/file.h"
 #include "import/collection.h"
 
 /* Recognises the kind of collection that a folder holds and lists its photographs; with a list of

@@ -1,6 +1,6 @@
 #include "base/integers.h"
-#include "import/bonn_frames.h"
-#include "import/bonn_images.h"
+#include "import/bonn/frames.h"
+#include "import/bonn/images.h"
 #include "tests/support/fuzz.h"
 #include "tests/support/scratch_folder.h"
 

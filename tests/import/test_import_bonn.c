@@ -1,6 +1,6 @@
 /* Files of Bonn: what the options do to them, and files that end too early. What they hold is the golden files' to say
  * (tests/golden/bonn.sh). */
-#include "import/bonn_file.h"
+#include "import/bonn/file.h"
 #include "import/import.h"
 #include "tests/support/scratch_folder.h"
 

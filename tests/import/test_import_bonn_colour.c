@@ -1,6 +1,6 @@
 /* The colour models of the files of Bonn, from nearly black to far above white: what three colours are encoded as here,
  * in double, is decoded. */
-#include "import/bonn_colour.h"
+#include "import/bonn/colour.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* The inner loops of the images of Bonn for every instruction set, against plain sums in double. */
 #include "base/processor.h"
-#include "import/bonn_product.h"
+#include "import/bonn/product.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

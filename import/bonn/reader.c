@@ -1,4 +1,4 @@
-#include "import/bonn_reader.h"
+#include "import/bonn/reader.h"
 
 #include <errno.h>
 #include <string.h>

@@ -1,13 +1,13 @@
 /* The binary BTF files of the University of Bonn (UBO2014): every image of a material as a product of two matrices. A
- * file is read from end to end and checked; import/bonn_images.h makes images of it. The layout is told in
+ * file is read from end to end and checked; import/bonn/images.h makes images of it. The layout is told in
  * docs/reference/import-layouts.md. */
 #ifndef WEFT_IMPORT_BONN_FILE_H
 #define WEFT_IMPORT_BONN_FILE_H
 
 #include "base/text/lines.h"
 #include "base/vector.h"
-#include "import/bonn_colour.h"
-#include "import/bonn_matrix.h"
+#include "import/bonn/colour.h"
+#include "import/bonn/matrix.h"
 
 #include <stdbool.h>
 

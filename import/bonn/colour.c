@@ -1,4 +1,4 @@
-#include "import/bonn_colour.h"
+#include "import/bonn/colour.h"
 
 #include <math.h>
 

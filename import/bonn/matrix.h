@@ -3,7 +3,7 @@
 #define WEFT_IMPORT_BONN_MATRIX_H
 
 #include "base/half.h"
-#include "import/bonn_reader.h"
+#include "import/bonn/reader.h"
 
 #include <stddef.h>
 

@@ -1,4 +1,4 @@
-#include "import/bonn_matrix.h"
+#include "import/bonn/matrix.h"
 
 #include <math.h>
 #include <stdbool.h>

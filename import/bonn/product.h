@@ -1,9 +1,9 @@
 /* The inner loops of making images of a file of Bonn, compiled for every instruction set. Private to
- * import/bonn_images.c. */
+ * import/bonn/images.c. */
 #ifndef WEFT_IMPORT_BONN_PRODUCT_H
 #define WEFT_IMPORT_BONN_PRODUCT_H
 
-#include "import/bonn_matrix.h"
+#include "import/bonn/matrix.h"
 
 /* Images whose products are added up together; there is a place for as many in `values`. */
 enum { WEFT_BONN_TOGETHER = 4 };

@@ -1,4 +1,4 @@
-#include "import/bonn_frames.h"
+#include "import/bonn/frames.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
-#include "import/bonn_images.h"
+#include "import/bonn/images.h"
 
 #include "base/integers.h"
 #include "base/processor.h"
-#include "import/bonn_product.h"
+#include "import/bonn/product.h"
 
 #include <stdlib.h>
 

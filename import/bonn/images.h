@@ -3,7 +3,7 @@
 #define WEFT_IMPORT_BONN_IMAGES_H
 
 #include "base/picture/image.h"
-#include "import/bonn_file.h"
+#include "import/bonn/file.h"
 
 /* Images that are made together: what is unpacked of the texels serves all of them. */
 enum { WEFT_BONN_GROUP = 16 };

@@ -2,7 +2,7 @@
 #ifndef WEFT_IMPORT_BONN_FRAMES_H
 #define WEFT_IMPORT_BONN_FRAMES_H
 
-#include "import/bonn_file.h"
+#include "import/bonn/file.h"
 
 /* frames [height][width][2][3], unit normal and tangent: the means over the texels of the file whose centres lie in
  * each. False where one of the file is no frame above the surface, or a mean has no direction. Pure. */

@@ -1,5 +1,5 @@
-/* import/bonn_product.h, for every instruction set. */
-#include "import/bonn_product.h"
+/* import/bonn/product.h, for every instruction set. */
+#include "import/bonn/product.h"
 
 #include "base/lanes.h"
 

@@ -1,4 +1,4 @@
-#include "import/bonn_file.h"
+#include "import/bonn/file.h"
 
 #include "btf/direction/direction.h"
 
