@@ -71,6 +71,8 @@ static weft_code check_files(const weft_settings *s, weft_error *error)
             return weft_fail(error, WEFT_BAD_INPUT, "there is no file '%s'", file[i]);
     weft_file_kind kind;
     struct stat mesh;
+    if (s->material && weft_file_is_bonn(s->material))
+        return weft_file_kind_of(s->material, &kind, error); /* which says what to do with it */
     if (s->material && (weft_file_kind_of(s->material, &kind, NULL) != WEFT_OK || kind != WEFT_FILE_MATERIAL))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is no .weft file, dataset or cloth", s->material);
     if (!weft_mesh_is_built_in(s->mesh) && (stat(s->mesh, &mesh) != 0 || S_ISDIR(mesh.st_mode)))

@@ -40,6 +40,7 @@ expect_error 2 "--lights" import cloth.btf --lights dirs.lp -o small.btf.h5
 expect_error 2 "17 texels asked for" import cloth.btf --size 17 -o five.btf.h5
 expect_error 1 "weft import" compress cloth.btf -o small.weft
 expect_error 1 "weft import" info cloth.btf
+expect_error 1 "weft import" render cloth.btf -o small.png
 expect_no_file five.btf.h5
 head -c 10000 cloth.btf >cut.btf
 expect_error 1 "'cut.btf' ends in its channel" import cut.btf -o cut.btf.h5
