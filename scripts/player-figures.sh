@@ -100,11 +100,10 @@ convert weights-raw.png weights-even.png weights-screen.png +append -strip -defi
 
 export weft demo weave images
 xvfb-run -a -s '-screen 0 1280x800x24' sh -eu -c '
-    "$weft" play "$demo/gabardine.weft" --raw "$demo/gabardine.btf.h5" --weave "$weave" --light 42,-115,1.6,1.5,1.4 \
-        --light 60,10,0.6,0.7,1 --shadows --exposure 1.3 --tone soft --camera -75,24,3.4 --layout wipe --mode raw,compressed --quiet &
+    "$weft" play "$demo/gabardine.weft" --raw "$demo/gabardine.btf.h5" --weave "$weave" --layout wipe --mode raw,compressed --quiet &
     player=$!
     window=$(xdotool search --sync --onlyvisible --name "^Weft" | head -n 1)
-    xdotool windowmove --sync "$window" 0 0 windowfocus --sync "$window" mousemove 905 330
+    xdotool windowmove --sync "$window" 0 0 windowfocus --sync "$window" mousemove 880 250
     sleep 40 # until the mean of its frames is finished, and its error measured
     import -window root window.png
     kill $player'
