@@ -129,11 +129,13 @@ static json_t *photograph_names(const weft_collection *collection)
 char *weft_import_provenance(const char *source, const weft_collection *collection, const weft_import_options *options,
                              const weft_decoding *decoding, const weft_import_report *report)
 {
-    json_t *root = json_pack("{s:s, s:o, s:s, s:[ii], s:f, s:i, s:i, s:f, s:o}", "program", "weft import " WEFT_VERSION,
-                             "source", folder_name(source), "kind", collection->kind, "photograph_size",
-                             decoding->source_width, decoding->source_height, "saturated_at", options->saturated_at,
-                             "missing", report->missing_count, "skipped", report->skipped_count, "saturated_fraction",
-                             report->saturated_fraction, "photographs", photograph_names(collection));
+    static const char *const colours[] = {"file", "sRGB", "gamma 2.2", "Adobe RGB", "Display P3", "CIE XYZ"};
+    json_t *root =
+        json_pack("{s:s, s:o, s:s, s:[ii], s:s, s:f, s:i, s:i, s:f, s:o}", "program", "weft import " WEFT_VERSION,
+                  "source", folder_name(source), "kind", collection->kind, "photograph_size", decoding->source_width,
+                  decoding->source_height, "colours", colours[options->colours], "saturated_at", options->saturated_at,
+                  "missing", report->missing_count, "skipped", report->skipped_count, "saturated_fraction",
+                  report->saturated_fraction, "photographs", photograph_names(collection));
     char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
     json_decref(root);
     return text;

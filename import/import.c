@@ -1,6 +1,7 @@
 #include "import/import.h"
 
 #include "base/picture/image.h"
+#include "import/colour_remarks.h"
 #include "import/dataset_description.h"
 #include "import/decode.h"
 #include "import/readers.h"
@@ -19,7 +20,8 @@ typedef struct import_run {
     weft_code code; /* of the first failure; guarded, with everything below, by the critical section */
     weft_error error;
     long done;
-    size_t saturated, samples;
+    size_t saturated, outside, samples;
+    weft_colour_remarks remarks;
 } import_run;
 
 weft_import_options weft_import_defaults(void)
@@ -79,7 +81,8 @@ static weft_code note_photograph(import_run *run, int count, const char *what, c
 }
 
 /* Called in the critical section. */
-static void count_photograph(import_run *run, int index, weft_code code, const weft_error *error, size_t saturated)
+static void count_photograph(import_run *run, int index, weft_code code, const weft_error *error,
+                             const weft_decoded *decoded)
 {
     const weft_photograph *photograph = &run->collection->photograph[index];
     weft_import_report *report = run->report;
@@ -91,13 +94,15 @@ static void count_photograph(import_run *run, int index, weft_code code, const w
         run->code = code;
         run->error = *error;
     } else {
-        run->saturated += saturated;
+        weft_colour_remarks_add(&run->remarks, index, photograph->name, decoded);
+        run->saturated += decoded->saturated;
+        run->outside += decoded->outside;
         run->samples += (size_t)run->decoding.width * (size_t)run->decoding.height;
     }
     weft_progress_report(run->progress, "reading photographs", ++run->done, run->collection->count);
 }
 
-static weft_code read_photograph(const import_run *run, int index, size_t *saturated, weft_error *error)
+static weft_code read_photograph(const import_run *run, int index, weft_decoded *decoded, weft_error *error)
 {
     const weft_photograph *photograph = &run->collection->photograph[index];
     size_t texels = (size_t)run->decoding.width * (size_t)run->decoding.height;
@@ -108,7 +113,7 @@ static weft_code read_photograph(const import_run *run, int index, size_t *satur
     if (!samples || !mask || !path)
         code = weft_fail_memory(error, "photograph", 3 * texels * sizeof *samples);
     if (code == WEFT_OK)
-        code = weft_photograph_decode(&run->decoding, path, photograph, samples, mask, saturated, error);
+        code = weft_photograph_decode(&run->decoding, path, photograph, samples, mask, decoded, error);
     if (code == WEFT_OK)
         code = weft_dataset_writer_put_image(run->writer, index, samples, mask, error);
     free(samples);
@@ -127,13 +132,13 @@ static weft_code read_photographs(import_run *run)
         if (stopped != WEFT_OK)
             continue;
         weft_error error = {0};
-        size_t saturated = 0;
+        weft_decoded decoded = {0};
         weft_code code = WEFT_OK;
         if (!run->collection->photograph[i].missing)
-            code = read_photograph(run, i, &saturated, &error);
+            code = read_photograph(run, i, &decoded, &error);
 #pragma omp critical
         if (run->code == WEFT_OK)
-            count_photograph(run, i, code, &error, saturated);
+            count_photograph(run, i, code, &error, &decoded);
     }
     if (run->code == WEFT_OK && run->samples == 0)
         return weft_fail(&run->error, WEFT_BAD_INPUT, "'%s': no photograph could be used", run->source);
@@ -144,6 +149,8 @@ static weft_code finish(import_run *run, weft_error *error)
 {
     weft_import_report *report = run->report;
     report->saturated_fraction = (double)run->saturated / (double)run->samples;
+    report->outside_fraction = (double)run->outside / (double)run->samples;
+    WEFT_TRY(weft_colour_remarks_note(&run->remarks, run->collection, run->options->colours, &report->notes, error));
     char *provenance = weft_import_provenance(run->source, run->collection, run->options, &run->decoding, report);
     if (!provenance)
         return weft_fail_memory(error, "provenance", 0);
@@ -183,6 +190,7 @@ static weft_code import_collection(import_run *run, const char *output, weft_err
 {
     weft_decoding *decoding = &run->decoding;
     decoding->saturated_at = run->options->saturated_at;
+    decoding->colours = run->options->colours;
     decoding->linear = run->options->linear;
     decoding->distance = run->collection->distance;
     WEFT_TRY(probe_size(run->collection, run->source, run->options->skip_bad, decoding, error));

@@ -14,6 +14,16 @@
 
 #include <stdbool.h>
 
+/* What the numbers in photographs mean. */
+typedef enum weft_import_colours {
+    WEFT_IMPORT_AS_SAID, /* by each file itself, else sRGB */
+    WEFT_IMPORT_SRGB,    /* from here on in the order of weft_known_colours (base/picture/colour_space.h) */
+    WEFT_IMPORT_GAMMA_22,
+    WEFT_IMPORT_ADOBE_RGB,
+    WEFT_IMPORT_DISPLAY_P3,
+    WEFT_IMPORT_XYZ
+} weft_import_colours;
+
 typedef struct weft_import_options {
     int width;             /* of the dataset, texels; 0 = as photographed */
     double texel_pitch_mm; /* of the dataset; 0 = what the collection says, else 1 mm */
@@ -21,7 +31,8 @@ typedef struct weft_import_options {
     double saturated_at;
     /* What photographs of a far light hold; those of a near light always give reflectance times cosine. */
     weft_values values;
-    bool linear; /* integer images hold linear values, not sRGB */
+    weft_import_colours colours;
+    bool linear; /* integer images hold linear values, whatever their colours */
     const char
         *lights; /* a list of lamps (base/text/light_list.h) for photographs of one view; NULL: as the folder says */
     /* Mask photographs that cannot be used, and leave out doubled ones, instead of failing. */
@@ -35,6 +46,7 @@ typedef struct weft_import_report {
     int missing_count;         /* photographs that the collection should hold but does not */
     int skipped_count;         /* photographs that skip_bad masked */
     double saturated_fraction; /* of the samples of the photographs that were read */
+    double outside_fraction;   /* of the same: colours outside sRGB, with a negative channel */
     weft_lines notes;          /* what the user should know, a line each */
 } weft_import_report;
 
@@ -44,8 +56,9 @@ weft_import_options weft_import_defaults(void);
 /* Reads the collection in folder `source` and writes the dataset `output` atomically. Photographs are decoded in
  * parallel (OpenMP); memory holds one photograph a thread.
  *
- * Integer images are decoded from sRGB unless they are linear, float images are linear. A smaller width averages exact
- * areas in linear light; a texel with any clipped pixel under it is masked WEFT_MASK_SATURATED. A near light of radiant
+ * Integer images are decoded by the curve of their colours unless they are linear, float images are linear. Colours
+ * become linear sRGB; those outside of it keep a negative channel. A smaller width averages exact areas in linear
+ * light; a texel with any clipped pixel under it is masked WEFT_MASK_SATURATED. A near light of radiant
  * intensity I at distance d gives reflectance times cosine = pi p d^2 / I for a linear pixel value p = BRDF cos(theta)
  * I / d^2.
  *
