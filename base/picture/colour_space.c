@@ -216,7 +216,10 @@ void weft_colour_space_round(weft_colour_space *space)
 
 bool weft_colour_space_has_srgb_primaries(const weft_colour_space *space)
 {
-    return memcmp(space->matrix, identity, sizeof identity) == 0;
+    bool is = true;
+    for (int i = 0; i < 9; i++)
+        is = is && space->matrix[i / 3][i % 3] == identity[i / 3][i % 3];
+    return is;
 }
 
 bool weft_colour_space_is_srgb(const weft_colour_space *space)

@@ -20,6 +20,16 @@ static bool ends_in(const char *name, const char *const *extension)
     return *extension != NULL;
 }
 
+/* What file systems, servers and other systems keep in a folder of their own: thumbnails, deleted files. */
+static bool is_of_a_system(const char *folder)
+{
+    static const char *const name[] = {"@eaDir", "#recycle", "$RECYCLE.BIN", "__MACOSX", "lost+found", NULL};
+    bool is = folder[0] == '.';
+    for (int i = 0; name[i]; i++)
+        is = is || strcasecmp(folder, name[i]) == 0;
+    return is;
+}
+
 /* ---- The files of a folder and of the folders in it ---- */
 
 /* What is done with a file, whose name is relative. */
@@ -40,7 +50,8 @@ static weft_code visit_tree(FTS *tree, size_t folder_length, visitor visit, void
                              strerror(entry->fts_errno));
         if (entry->fts_info == FTS_F && is_folder_itself)
             return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a file, not a folder", entry->fts_path);
-        if (entry->fts_info == FTS_D && entry->fts_level > 1)
+        if (entry->fts_info == FTS_D &&
+            (entry->fts_level > 1 || (!is_folder_itself && is_of_a_system(entry->fts_name))))
             fts_set(tree, entry, FTS_SKIP);
         if (entry->fts_info == FTS_F)
             WEFT_TRY(visit(into, entry->fts_path + folder_length + 1, error));

@@ -34,6 +34,30 @@ static void images_are_listed_by_name_one_folder_deep(void **state)
     weft_lines_free(&names);
 }
 
+static void what_systems_leave_behind_is_no_photograph(void **state)
+{
+    (void)state;
+    static const char *const folder[] = {"left",          "left/@eaDir",   "left/.thumbnails", "left/__MACOSX",
+                                         "left/#recycle", "left/view@eaD", "left/$Recycle.bin"};
+    static const char *const file[] = {"a.jpg",          "._a.jpg",           "Thumbs.db",      ".DS_Store",
+                                       "@eaDir/a.jpg",   ".thumbnails/a.jpg", "__MACOSX/a.jpg", "#recycle/a.jpg",
+                                       "view@eaD/b.jpg", "$Recycle.bin/a.jpg"};
+    char path[64];
+    for (size_t i = 0; i < sizeof folder / sizeof *folder; i++)
+        assert_int_equal(mkdir(folder[i], 0755), 0);
+    for (size_t i = 0; i < sizeof file / sizeof *file; i++) {
+        snprintf(path, sizeof path, "left/%s", file[i]);
+        touch(path);
+    }
+    weft_lines names;
+    weft_error error = {0};
+    expect_ok(weft_images_list("left", &names, &error), &error);
+    assert_int_equal(names.count, 2);
+    assert_string_equal(names.line[0], "a.jpg");
+    assert_string_equal(names.line[1], "view@eaD/b.jpg");
+    weft_lines_free(&names);
+}
+
 static void assert_refused(weft_code code, const weft_error *error, const char *words)
 {
     assert_int_equal(code, WEFT_BAD_INPUT);
@@ -69,6 +93,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(images_are_listed_by_name_one_folder_deep),
+        cmocka_unit_test(what_systems_leave_behind_is_no_photograph),
         cmocka_unit_test(what_is_no_folder_is_refused),
         cmocka_unit_test(a_folder_without_images_is_described),
     };
