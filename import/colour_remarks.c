@@ -30,6 +30,8 @@ void weft_colour_remarks_add(weft_colour_remarks *remarks, int index, const char
 {
     remarks->read++;
     remarks->unsaid_exr += decoded->claim == WEFT_CLAIM_NONE && is_exr(name);
+    if (decoded->has_more && (remarks->more++ == 0 || index < remarks->first_of_more))
+        remarks->first_of_more = index;
     weft_colour_remark *remark = decoded->words[0] ? find(remarks, decoded, index) : NULL;
     if (!remark)
         return;
@@ -70,6 +72,10 @@ static weft_code ask_for_xyz(const weft_colour_remarks *remarks, const weft_coll
 weft_code weft_colour_remarks_note(weft_colour_remarks *remarks, const weft_collection *collection,
                                    weft_import_colours colours, weft_lines *notes, weft_error *error)
 {
+    if (remarks->more > 0)
+        WEFT_TRY(weft_lines_add(notes, error,
+                                "'%s' holds more than one picture: the first is taken (%d of %d photographs)",
+                                collection->photograph[remarks->first_of_more].name, remarks->more, remarks->read));
     if (colours != WEFT_IMPORT_AS_SAID)
         return WEFT_OK;
     qsort(remarks->remark, (size_t)remarks->count, sizeof *remarks->remark, by_first);

@@ -17,14 +17,15 @@ typedef struct weft_colour_remark {
 typedef struct weft_colour_remarks {
     int count;
     weft_colour_remark remark[WEFT_COLOUR_REMARKS];
-    int read, unsaid_exr; /* photographs; and EXR files of them that say nothing */
+    int read, unsaid_exr;    /* photographs; and EXR files of them that say nothing */
+    int more, first_of_more; /* files of more than one picture, and the lowest index of them */
 } weft_colour_remarks;
 
 /* Adds what photograph `index` says; in any order. */
 void weft_colour_remarks_add(weft_colour_remarks *remarks, int index, const char *name, const weft_decoded *decoded);
 
-/* A line for each kind, that of the lowest index first; and a question where EXR files that are named by their angles
- * say nothing. */
+/* A line for files of more than one picture, and one for each kind, that of the lowest index first; and a question
+ * where EXR files that are named by their angles say nothing. */
 weft_code weft_colour_remarks_note(weft_colour_remarks *remarks, const weft_collection *collection,
                                    weft_import_colours colours, weft_lines *notes, weft_error *error);
 

@@ -219,7 +219,10 @@ weft_code weft_photograph_decode(const weft_decoding *decoding, const char *path
     weft_image_free(&image);
     WEFT_TRY(code);
     decoded->claim = claim.kind;
-    memcpy(decoded->words, claim.words, sizeof decoded->words);
+    decoded->has_more = claim.has_more;
+    /* Whoever says that all are linear has answered. */
+    if (!(claim.kind == WEFT_CLAIM_NONE && decoding->linear))
+        memcpy(decoded->words, claim.words, sizeof decoded->words);
     count_texels(decoding, &claim.space, samples, mask, decoded);
     return WEFT_OK;
 }

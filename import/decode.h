@@ -23,6 +23,7 @@ typedef struct weft_decoding {
 typedef struct weft_decoded {
     size_t saturated; /* texels that are masked */
     size_t outside;   /* texels that are not, and have colours outside sRGB */
+    bool has_more;    /* the file holds more pictures than the one that was read */
     weft_claim_kind claim;
     char words[200]; /* what the file says of its colours; "" where there is nothing to tell */
 } weft_decoded;

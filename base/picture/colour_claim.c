@@ -58,10 +58,20 @@ static void of_gamma(double gamma, weft_colour_claim *claim)
     snprintf(claim->words, sizeof claim->words, "it says gamma %.3g", gamma);
 }
 
+/* Programs write 16 bits for linear values, and for others. */
+static void say_nothing(const weft_colour_tags *tags, weft_colour_claim *claim)
+{
+    take_by_custom(WEFT_CLAIM_NONE, claim);
+    if (tags->bits >= 16 && !tags->is_float)
+        snprintf(claim->words, sizeof claim->words,
+                 "it has %d bits and says no tone curve: if it is linear say --linear", tags->bits);
+}
+
 void weft_colour_claim_of(const weft_colour_tags *tags, weft_colour_claim *claim)
 {
     claim->words[0] = 0;
     claim->is_grey = tags->is_grey;
+    claim->has_more = tags->has_more;
     if (tags->is_raw)
         unclear(claim, "it is camera raw, in the colours of the camera and without white balance");
     else if (tags->model[0])
@@ -70,12 +80,12 @@ void weft_colour_claim_of(const weft_colour_tags *tags, weft_colour_claim *claim
         of_profile(tags, claim);
     else if (tags->has_primaries)
         of_primaries(tags, claim);
-    else if (tags->gamma > 0.1 && tags->gamma < 10)
+    else if (tags->gamma > 0.1 && tags->gamma < 10 && !tags->is_float)
         of_gamma(tags->gamma, claim);
     else if (tags->is_uncalibrated)
         unclear(claim, "its Exif says that it is not sRGB: often it is Adobe RGB");
     else
-        take_by_custom(WEFT_CLAIM_NONE, claim);
+        say_nothing(tags, claim);
     if (tags->is_float || tags->is_raw)
         weft_colour_space_make_linear(&claim->space);
     if (tags->is_grey)

@@ -14,12 +14,14 @@ typedef enum weft_claim_kind {
 /* The space is sRGB by custom, linear where samples are floats or camera raw. */
 typedef struct weft_colour_claim {
     weft_claim_kind kind;
-    char words[200]; /* "its ICC profile says Display P3"; "" where there is nothing to tell, as of sRGB */
+    char words[200]; /* "its ICC profile says Display P3"; "" where there is nothing to tell, as of sRGB; of what
+                      * says nothing, that it well may be linear */
+    bool has_more;   /* the file holds more pictures than the one that is read */
     bool is_grey;    /* the file has one channel */
     weft_colour_space space;
 } weft_colour_claim;
 
-/* An ICC profile counts before a gamma. Floats are linear, whatever curve their profile has. Pure. */
+/* An ICC profile counts before a gamma. Floats are linear, whatever curve or gamma is named. Pure. */
 void weft_colour_claim_of(const weft_colour_tags *tags, weft_colour_claim *claim);
 
 /* Of the file of a picture. Errors: as of weft_colour_tags_read, and WEFT_BAD_INPUT for CIE L*a*b*. Thread-safe. */

@@ -21,6 +21,8 @@ typedef struct weft_colour_tags {
     bool is_uncalibrated;  /* Exif: not sRGB; cameras say so of Adobe RGB */
     bool is_grey;          /* one channel */
     bool is_float, is_raw; /* half or float samples; camera raw */
+    bool has_more;         /* pictures than the first, which is the one that is read */
+    int bits;              /* of a sample in memory */
     char model[16];        /* of what is neither RGB nor grey: "CMYK", "CIELAB" */
 } weft_colour_tags;
 

@@ -57,9 +57,12 @@ weft_code read_tags(const char *path, weft_colour_tags *tags, weft_error *error)
     tags->is_grey = spec.nchannels < 3;
     tags->is_uncalibrated = spec.get_int_attribute("Exif:ColorSpace", 0) == uncalibrated;
     tags->gamma = double(spec.get_float_attribute("oiio:Gamma", 0));
+    tags->bits = int(8 * spec.format.size());
     copy_primaries(spec, tags);
     copy_model(spec, tags);
-    return copy_profile(spec, path, tags, error);
+    WEFT_TRY(copy_profile(spec, path, tags, error));
+    tags->has_more = input->seek_subimage(1, 0); /* the head is that of the second then */
+    return WEFT_OK;
 }
 
 } // namespace

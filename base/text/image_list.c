@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const image_extension[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".dng", ".cr2", ".cr3",
-                                              ".nef", ".arw", ".raf",  ".orf", ".rw2", ".pef",  ".srw", NULL};
+static const char *const image_extension[] = {".png",  ".jpg", ".jpeg", ".exr", ".hdr", ".bmp", ".tif",
+                                              ".tiff", ".dng", ".cr2",  ".cr3", ".nef", ".arw", ".raf",
+                                              ".orf",  ".rw2", ".pef",  ".srw", NULL};
 static const char *const film_extension[] = {".mov", ".mp4", ".m4v", ".avi", ".mkv", ".mts", ".3gp", ".webm", NULL};
 static const char *const heif_extension[] = {".heic", ".heif", ".hif", ".avif", NULL};
 
@@ -53,7 +54,8 @@ static weft_code visit_tree(FTS *tree, size_t folder_length, visitor visit, void
         if (entry->fts_info == FTS_D &&
             (entry->fts_level > 1 || (!is_folder_itself && is_of_a_system(entry->fts_name))))
             fts_set(tree, entry, FTS_SKIP);
-        if (entry->fts_info == FTS_F)
+        /* A link to nowhere is a photograph that is missing: whoever reads it says so. */
+        if (entry->fts_info == FTS_F || (entry->fts_info == FTS_SLNONE && !is_folder_itself))
             WEFT_TRY(visit(into, entry->fts_path + folder_length + 1, error));
     }
     return WEFT_OK;
@@ -114,7 +116,7 @@ static weft_code count_file(void *into, const char *name, weft_error *error)
 
 weft_code weft_images_missing(const char *folder, weft_error *error)
 {
-    static const char *const holds = "holds no photograph (JPEG, PNG, TIFF, EXR or camera raw)";
+    static const char *const holds = "holds no photograph (JPEG, PNG, TIFF, BMP, EXR, HDR or camera raw)";
     census seen = {0};
     WEFT_TRY(visit_files(folder, count_file, &seen, error));
     if (seen.files == 0)

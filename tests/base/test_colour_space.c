@@ -227,7 +227,13 @@ static void what_a_file_says_is_weighed(void **state)
     assert_true(claim.kind == WEFT_CLAIM_UNCLEAR && claim.space.curve[0].kind == WEFT_CURVE_LINEAR);
     claim = claim_of((weft_colour_tags){.model = "CMYK"});
     assert_true(claim.kind == WEFT_CLAIM_UNCLEAR && claim.words[0]);
-    claim = claim_of((weft_colour_tags){0});
+    claim = claim_of((weft_colour_tags){.gamma = 0.45, .is_float = true});
+    assert_true(claim.kind == WEFT_CLAIM_NONE && !claim.words[0]);
+    claim = claim_of((weft_colour_tags){.bits = 16});
+    assert_true(claim.kind == WEFT_CLAIM_NONE && strstr(claim.words, "--linear"));
+    claim = claim_of((weft_colour_tags){.bits = 16, .is_float = true});
+    assert_true(claim.kind == WEFT_CLAIM_NONE && !claim.words[0]);
+    claim = claim_of((weft_colour_tags){.bits = 8});
     assert_true(claim.kind == WEFT_CLAIM_NONE && weft_colour_space_is_srgb(&claim.space) && !claim.words[0]);
 }
 

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static void touch(const char *path)
 {
@@ -49,12 +50,15 @@ static void what_systems_leave_behind_is_no_photograph(void **state)
         snprintf(path, sizeof path, "left/%s", file[i]);
         touch(path);
     }
+    /* A link that is broken is a photograph that was meant to be there. */
+    assert_int_equal(symlink("nowhere", "left/to-nowhere.png"), 0);
     weft_lines names;
     weft_error error = {0};
     expect_ok(weft_images_list("left", &names, &error), &error);
-    assert_int_equal(names.count, 2);
+    assert_int_equal(names.count, 3);
     assert_string_equal(names.line[0], "a.jpg");
-    assert_string_equal(names.line[1], "view@eaD/b.jpg");
+    assert_string_equal(names.line[1], "to-nowhere.png");
+    assert_string_equal(names.line[2], "view@eaD/b.jpg");
     weft_lines_free(&names);
 }
 
