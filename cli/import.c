@@ -37,6 +37,8 @@ static const weft_option option_table[] = {
      .help = "What the photographs hold: srgb, gamma-2.2, adobe-rgb, display-p3 or xyz (default: file, as each file "
              "says, else srgb)",
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(import_command, options.colours), .words = colour_words},
+    {"white", .argument = "LEVEL", .help = "Linear value of a perfect white diffuser in the photographs (default: 1)",
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(import_command, options.white), .low = 1e-6, .high = 65504},
     {"linear", .help = "8- and 16-bit photographs hold linear values, without a tone curve", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(import_command, options.linear)},
     WEFT_HEIGHTS_OPTION(import_command, heights),

@@ -130,12 +130,12 @@ char *weft_import_provenance(const char *source, const weft_collection *collecti
                              const weft_decoding *decoding, const weft_import_report *report)
 {
     static const char *const colours[] = {"file", "sRGB", "gamma 2.2", "Adobe RGB", "Display P3", "CIE XYZ"};
-    json_t *root =
-        json_pack("{s:s, s:o, s:s, s:[ii], s:s, s:f, s:i, s:i, s:f, s:o}", "program", "weft import " WEFT_VERSION,
-                  "source", folder_name(source), "kind", collection->kind, "photograph_size", decoding->source_width,
-                  decoding->source_height, "colours", colours[options->colours], "saturated_at", options->saturated_at,
-                  "missing", report->missing_count, "skipped", report->skipped_count, "saturated_fraction",
-                  report->saturated_fraction, "photographs", photograph_names(collection));
+    json_t *root = json_pack("{s:s, s:o, s:s, s:[ii], s:s, s:f, s:f, s:i, s:i, s:f, s:o}", "program",
+                             "weft import " WEFT_VERSION, "source", folder_name(source), "kind", collection->kind,
+                             "photograph_size", decoding->source_width, decoding->source_height, "colours",
+                             colours[options->colours], "white", options->white, "saturated_at", options->saturated_at,
+                             "missing", report->missing_count, "skipped", report->skipped_count, "saturated_fraction",
+                             report->saturated_fraction, "photographs", photograph_names(collection));
     char *text = root ? json_dumps(root, JSON_COMPACT) : NULL;
     json_decref(root);
     return text;

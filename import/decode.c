@@ -42,6 +42,14 @@ static void linearise(weft_image *image, const weft_decoding *decoding, const we
     }
 }
 
+/* Before the range of half floats is looked at. */
+static void divide_by_white(const weft_decoding *decoding, weft_image *image)
+{
+    size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count && decoding->white != 1; i++)
+        image->pixels[i] = (float)((double)image->pixels[i] / decoding->white);
+}
+
 /* Squared distance from the centre of a pixel to the light, mm^2. */
 static double squared_distance(const weft_decoding *decoding, weft_vec3 light, int x, int y)
 {
@@ -177,11 +185,18 @@ static weft_code convert(const weft_decoding *decoding, const char *path, const 
     if (decoding->distance == WEFT_NEAR)
         divide_by_near_light(decoding, photograph, image);
     weft_colour_space_to_srgb(space, image->pixels, count);
+    divide_by_white(decoding, image);
     weft_code code = check_finite(image, path, error);
     if (code == WEFT_OK)
         code = average_texels(decoding, image, clipped, samples, mask, error);
     free(clipped);
     return code;
+}
+
+static double sum_of(const weft_half sample[3])
+{
+    return (double)weft_float_of_half(sample[0]) + (double)weft_float_of_half(sample[1]) +
+           (double)weft_float_of_half(sample[2]);
 }
 
 static bool has_negative(const weft_half sample[3])
@@ -201,6 +216,7 @@ static void count_texels(const weft_decoding *decoding, const weft_colour_space 
     for (size_t i = 0; i < count; i++) {
         mask[i] = mask[i] ? WEFT_MASK_SATURATED : 0;
         decoded->saturated += mask[i] != 0;
+        decoded->sum += mask[i] ? 0 : sum_of(samples + 3 * i);
         decoded->outside += is_turned && !mask[i] && has_negative(samples + 3 * i);
     }
 }

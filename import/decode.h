@@ -14,7 +14,8 @@ typedef struct weft_decoding {
     int width, height;               /* texels */
     double saturated_at;             /* encoded, integer images only */
     weft_import_colours colours;
-    bool linear; /* integer images hold linear values */
+    double white; /* what is 1 in the dataset */
+    bool linear;  /* integer images hold linear values */
     weft_distance distance;
     double pixel_pitch_mm; /* of the photograph; near light only */
 } weft_decoding;
@@ -22,6 +23,7 @@ typedef struct weft_decoding {
 /* What became of a photograph. */
 typedef struct weft_decoded {
     size_t saturated; /* texels that are masked */
+    double sum;       /* of the others: of all channels */
     size_t outside;   /* texels that are not, and have colours outside sRGB */
     bool has_more;    /* the file holds more pictures than the one that was read */
     weft_claim_kind claim;

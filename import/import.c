@@ -6,6 +6,7 @@
 #include "import/decode.h"
 #include "import/readers.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* One run of weft_import: what the parallel workers share. */
@@ -21,12 +22,13 @@ typedef struct import_run {
     weft_error error;
     long done;
     size_t saturated, outside, samples;
+    double sum;
     weft_colour_remarks remarks;
 } import_run;
 
 weft_import_options weft_import_defaults(void)
 {
-    return (weft_import_options){.saturated_at = 250.0 / 255, .values = WEFT_REFLECTANCE_COSINE};
+    return (weft_import_options){.saturated_at = 250.0 / 255, .white = 1, .values = WEFT_REFLECTANCE_COSINE};
 }
 
 void weft_import_report_free(weft_import_report *report)
@@ -97,6 +99,7 @@ static void count_photograph(import_run *run, int index, weft_code code, const w
         weft_colour_remarks_add(&run->remarks, index, photograph->name, decoded);
         run->saturated += decoded->saturated;
         run->outside += decoded->outside;
+        run->sum += decoded->sum;
         run->samples += (size_t)run->decoding.width * (size_t)run->decoding.height;
     }
     weft_progress_report(run->progress, "reading photographs", ++run->done, run->collection->count);
@@ -145,11 +148,25 @@ static weft_code read_photographs(import_run *run)
     return run->code;
 }
 
+/* Only highlights are above 1, so a mean is well below it. */
+static weft_code note_scale(weft_import_report *report, weft_error *error)
+{
+    const double implausible = 2;
+    if (report->mean < implausible)
+        return WEFT_OK;
+    return weft_lines_add(&report->notes, error,
+                          "the samples are %.3g in the mean, but a perfect white diffuser is 1: if it is 100 in the "
+                          "photographs say --white 100",
+                          report->mean);
+}
+
 static weft_code finish(import_run *run, weft_error *error)
 {
     weft_import_report *report = run->report;
     report->saturated_fraction = (double)run->saturated / (double)run->samples;
     report->outside_fraction = (double)run->outside / (double)run->samples;
+    report->mean = run->sum / (3 * fmax(1, (double)(run->samples - run->saturated)));
+    WEFT_TRY(note_scale(report, error));
     WEFT_TRY(weft_colour_remarks_note(&run->remarks, run->collection, run->options->colours, &report->notes, error));
     char *provenance = weft_import_provenance(run->source, run->collection, run->options, &run->decoding, report);
     if (!provenance)
@@ -191,6 +208,7 @@ static weft_code import_collection(import_run *run, const char *output, weft_err
     weft_decoding *decoding = &run->decoding;
     decoding->saturated_at = run->options->saturated_at;
     decoding->colours = run->options->colours;
+    decoding->white = run->options->white;
     decoding->linear = run->options->linear;
     decoding->distance = run->collection->distance;
     WEFT_TRY(probe_size(run->collection, run->source, run->options->skip_bad, decoding, error));

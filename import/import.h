@@ -32,7 +32,8 @@ typedef struct weft_import_options {
     /* What photographs of a far light hold; those of a near light always give reflectance times cosine. */
     weft_values values;
     weft_import_colours colours;
-    bool linear; /* integer images hold linear values, whatever their colours */
+    double white; /* linear value of a perfect white diffuser in the photographs */
+    bool linear;  /* integer images hold linear values, whatever their colours */
     const char
         *lights; /* a list of lamps (base/text/light_list.h) for photographs of one view; NULL: as the folder says */
     /* Mask photographs that cannot be used, and leave out doubled ones, instead of failing. */
@@ -46,11 +47,12 @@ typedef struct weft_import_report {
     int missing_count;         /* photographs that the collection should hold but does not */
     int skipped_count;         /* photographs that skip_bad masked */
     double saturated_fraction; /* of the samples of the photographs that were read */
+    double mean;               /* of the same: over all channels */
     double outside_fraction;   /* of the same: colours outside sRGB, with a negative channel */
     weft_lines notes;          /* what the user should know, a line each */
 } weft_import_report;
 
-/* Size as photographed, saturated from 250/255, reflectance times cosine, no bad photograph skipped. */
+/* Size as photographed, saturated from 250/255, reflectance times cosine, white 1, no bad photograph skipped. */
 weft_import_options weft_import_defaults(void);
 
 /* Reads the collection in folder `source` and writes the dataset `output` atomically. Photographs are decoded in

@@ -273,6 +273,24 @@ static void exr_files_that_may_be_xyz_are_asked_about(void **state)
     folder_remove(&folder);
 }
 
+static void white_can_be_another_value_than_1(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    put_flat(&folder, exr_name, (const float[3]){40, 30, 20});
+    outcome said = import_as(&folder, WEFT_IMPORT_SRGB);
+    assert_float_equal(said.rgb[1], 30, 0.02);
+    assert_note(&said, "the samples are 30 in the mean");
+    weft_import_options options = weft_import_defaults();
+    options.colours = WEFT_IMPORT_SRGB;
+    options.white = 100;
+    outcome told = import_with(&folder, options);
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(told.rgb[c], 0.4 - 0.1 * c, 0.001);
+    assert_null(strstr(told.notes, "in the mean"));
+    folder_remove(&folder);
+}
+
 /* One pixel of grey, 128, and its gAMA chunk: 1. */
 static const uint8_t grey_png[] = {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48,
                                    0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00,
@@ -381,6 +399,7 @@ int main(void)
         cmocka_unit_test(a_profile_that_is_not_read_is_named),
         cmocka_unit_test(chromaticities_are_honoured),
         cmocka_unit_test(xyz_is_turned_and_what_is_outside_srgb_is_kept_and_counted),
+        cmocka_unit_test(white_can_be_another_value_than_1),
         cmocka_unit_test(exr_files_that_may_be_xyz_are_asked_about),
         cmocka_unit_test(a_second_picture_is_told),
         cmocka_unit_test(sixteen_bits_may_be_linear),
