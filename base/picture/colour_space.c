@@ -1,7 +1,6 @@
 #include "base/picture/colour_space.h"
 
 #include "base/picture/cie.h"
-#include "base/picture/colour.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,13 +21,11 @@ static double table_at(const weft_curve *curve, double x)
     return low + (place - below) * (high - low);
 }
 
-float weft_curve_decode(const weft_curve *curve, float encoded)
+float weft_curve_compute(const weft_curve *curve, float encoded)
 {
-    if (curve->kind == WEFT_CURVE_LINEAR || !isfinite(encoded))
-        return encoded;
-    if (curve->kind == WEFT_CURVE_SRGB)
-        return weft_linear_of_srgb(encoded);
     double size = fabs((double)encoded);
+    if (!isfinite(size))
+        return encoded;
     double light = curve->kind == WEFT_CURVE_FORMULA ? formula_at(curve, size) : table_at(curve, size);
     return (float)copysign(light, (double)encoded);
 }

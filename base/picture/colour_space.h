@@ -2,6 +2,8 @@
 #ifndef WEFT_BASE_PICTURE_COLOUR_SPACE_H
 #define WEFT_BASE_PICTURE_COLOUR_SPACE_H
 
+#include "base/picture/colour.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -64,8 +66,16 @@ void weft_colour_space_round(weft_colour_space *space);
 bool weft_colour_space_has_srgb_primaries(const weft_colour_space *space);
 bool weft_colour_space_is_srgb(const weft_colour_space *space);
 
-/* Linear light of an encoded value. Below 0 the curve is odd; a table ends at 1. Pure. */
-float weft_curve_decode(const weft_curve *curve, float encoded);
+/* Linear light of an encoded value by a formula or a table. Below 0 the curve is odd; a table ends at 1. Pure. */
+float weft_curve_compute(const weft_curve *curve, float encoded);
+
+/* The same by any curve. Pure. */
+static inline float weft_curve_decode(const weft_curve *curve, float encoded)
+{
+    if (curve->kind == WEFT_CURVE_LINEAR)
+        return encoded;
+    return curve->kind == WEFT_CURVE_SRGB ? weft_linear_of_srgb(encoded) : weft_curve_compute(curve, encoded);
+}
 
 /* Turns linear values [count][3] into linear sRGB in place. Colours outside sRGB are below 0 or above 1. Pure. */
 void weft_colour_space_to_srgb(const weft_colour_space *space, float *rgb, size_t count);
