@@ -19,7 +19,8 @@ static void images_are_listed_by_name_one_folder_deep(void **state)
 {
     (void)state;
     assert_int_equal(mkdir("deep", 0755) + mkdir("deep/below", 0755) + mkdir("deep/below/lower", 0755), 0);
-    const char *const file[] = {"b.JPG", "a.nef", ".hidden.jpg", "note.txt", "jpg", "below/c.tif", "below/lower/d.jpg"};
+    const char *const file[] = {
+        "b.JPG", "e.HDR", "d.bmp", "a.nef", ".hidden.jpg", "note.txt", "jpg", "below/c.tif", "below/lower/d.jpg"};
     char path[64];
     for (size_t i = 0; i < sizeof file / sizeof *file; i++) {
         snprintf(path, sizeof path, "deep/%s", file[i]);
@@ -28,10 +29,10 @@ static void images_are_listed_by_name_one_folder_deep(void **state)
     weft_lines names;
     weft_error error = {0};
     expect_ok(weft_images_list("deep//", &names, &error), &error);
-    assert_int_equal(names.count, 3);
-    assert_string_equal(names.line[0], "a.nef");
-    assert_string_equal(names.line[1], "b.JPG");
-    assert_string_equal(names.line[2], "below/c.tif");
+    static const char *const expected[] = {"a.nef", "b.JPG", "below/c.tif", "d.bmp", "e.HDR"};
+    assert_int_equal(names.count, 5);
+    for (int i = 0; i < names.count; i++)
+        assert_string_equal(names.line[i], expected[i]);
     weft_lines_free(&names);
 }
 
