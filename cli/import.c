@@ -13,6 +13,8 @@ typedef struct import_command {
     weft_import_options options;
 } import_command;
 
+/* In the order of weft_import_colours. */
+static const char *const colour_words[] = {"file", "srgb", "gamma-2.2", "adobe-rgb", "display-p3", "xyz", NULL};
 static const char *const value_words[] = {"reflectance_cosine", "reflectance", NULL};
 
 static const weft_option option_table[] = {
@@ -32,7 +34,13 @@ static const weft_option option_table[] = {
      .kind = WEFT_OPTION_CHOICE, .offset = offsetof(import_command, options.values), .words = value_words},
     {"lights", .argument = "FILE.lp", .help = "Direction of the lamp of every photograph; all have one view",
      .kind = WEFT_OPTION_INPUT, .offset = offsetof(import_command, options.lights)},
-    {"linear", .help = "8- and 16-bit photographs hold linear values, not sRGB", .kind = WEFT_OPTION_FLAG,
+    {"colours", .argument = "SPACE",
+     .help = "What the photographs hold: srgb, gamma-2.2, adobe-rgb, display-p3 or xyz (default: file, as each file "
+             "says, else srgb)",
+     .kind = WEFT_OPTION_CHOICE, .offset = offsetof(import_command, options.colours), .words = colour_words},
+    {"white", .argument = "LEVEL", .help = "Linear value of a perfect white diffuser in the photographs (default: 1)",
+     .kind = WEFT_OPTION_NUMBER, .offset = offsetof(import_command, options.white), .low = 1e-6, .high = 65504},
+    {"linear", .help = "8- and 16-bit photographs hold linear values, without a tone curve", .kind = WEFT_OPTION_FLAG,
      .offset = offsetof(import_command, options.linear)},
     WEFT_HEIGHTS_OPTION(import_command, heights),
     {"skip-bad", .help = "Mask photographs that cannot be used, and leave out doubled ones, instead of stopping",
@@ -49,6 +57,9 @@ static void say_report(const import_command *command, const weft_import_report *
                      report->width, report->height, report->image_count, report->view_count);
     weft_command_say(common, "masked: %d missing, %d skipped, %.2f %% of the samples saturated", report->missing_count,
                      report->skipped_count, 100 * report->saturated_fraction);
+    if (report->outside_fraction > 0)
+        weft_command_say(common, "colours outside sRGB: %.2f %% of the samples, kept with a negative channel",
+                         100 * report->outside_fraction);
 }
 
 static int run(int argc, char **argv)

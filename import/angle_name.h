@@ -15,6 +15,10 @@ typedef struct weft_named_angles {
  * twice. Pure. */
 bool weft_angle_name_parse(const char *name, weft_named_angles *angles);
 
+/* Why the angles in a name may be misread, in words for the user; NULL where they are clear. Four digits without a
+ * point may be tenths of degrees, and digits that stand alone behind an angle may be its decimals. Pure. */
+const char *weft_angle_name_doubt(const char *name);
+
 /* The UTIA name "tlTTT_plPPP_tvTTT_pvPPP" of four angles. Pure. */
 void weft_angle_name_write(const weft_named_angles *angles, char name[64]);
 

@@ -53,10 +53,11 @@ weft_code weft_collection_of_bonn(const char *path, const weft_bonn_file *file, 
 
 /* ---- The images ---- */
 
-static weft_code put_image(const weft_import_run *run, int index, const weft_image *image, weft_half *samples,
+static weft_code put_image(const weft_import_run *run, int index, weft_image *image, weft_half *samples,
                            weft_error *error)
 {
     size_t at, width = (size_t)image->width;
+    weft_divide_by_white(run->decoding.white, image);
     if (weft_find_unstorable(image, &at))
         return weft_fail(error, WEFT_BAD_INPUT, "'%s': value %g at texel (%zu, %zu) of %s", run->source,
                          (double)image->pixels[at], at / 3 % width, at / 3 / width,
@@ -64,6 +65,9 @@ static weft_code put_image(const weft_import_run *run, int index, const weft_ima
     WEFT_TRY(weft_reduce(image, NULL, run->decoding.width, run->decoding.height, samples, NULL, error));
     return weft_dataset_writer_put_image(run->writer, index, samples, NULL, error);
 }
+
+/* Colours and masks of such a file tell nothing: they are known, and there are none. */
+static const weft_decoded nothing_to_tell = {.claim = WEFT_CLAIM_CLEAR};
 
 /* Images first .. first + count of the collection, into `image` [count] and, reduced, into `samples`. */
 static void put_group(weft_import_run *run, const weft_bonn_file *file, int first, int count, weft_image *image,
@@ -76,7 +80,7 @@ static void put_group(weft_import_run *run, const weft_bonn_file *file, int firs
     weft_code made = weft_bonn_images_make(file, number, count, image, &error);
     for (int i = 0; i < count && !weft_import_has_stopped(run); i++) {
         weft_code code = made == WEFT_OK ? put_image(run, first + i, &image[i], samples, &error) : made;
-        weft_import_count(run, first + i, code, &error, 0);
+        weft_import_count(run, first + i, code, &error, &nothing_to_tell);
     }
 }
 
@@ -104,7 +108,7 @@ void weft_import_bonn_images(weft_import_run *run, const weft_bonn_file *file)
 #pragma omp for schedule(dynamic)
         for (int first = 0; first < total; first += size) {
             if (code != WEFT_OK)
-                weft_import_count(run, first, code, &error, 0);
+                weft_import_count(run, first, code, &error, &nothing_to_tell);
             else if (!weft_import_has_stopped(run))
                 put_group(run, file, first, weft_smaller(size, total - first), image, samples);
         }

@@ -45,3 +45,34 @@ bool weft_folder_holds(const char *folder, const char *name)
     snprintf(path, sizeof path, "%s/%s", folder, name);
     return access(path, F_OK) == 0;
 }
+
+static FILE *open_file(const char *folder, const char *name)
+{
+    char path[PATH_MAX];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return fopen(path, "rb");
+}
+
+static bool hold_the_same(FILE *a, FILE *b)
+{
+    char block[2][16384];
+    size_t count[2];
+    do {
+        count[0] = fread(block[0], 1, sizeof block[0], a);
+        count[1] = fread(block[1], 1, sizeof block[1], b);
+        if (count[0] != count[1] || memcmp(block[0], block[1], count[0]) != 0)
+            return false;
+    } while (count[0] > 0);
+    return !ferror(a) && !ferror(b);
+}
+
+bool weft_folder_holds_copies(const char *folder, const char *name, const char *other)
+{
+    FILE *a = open_file(folder, name), *b = open_file(folder, other);
+    bool same = a && b && hold_the_same(a, b);
+    if (a)
+        fclose(a);
+    if (b)
+        fclose(b);
+    return same;
+}

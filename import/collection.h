@@ -37,6 +37,9 @@ weft_code weft_collection_add(weft_collection *collection, const char *name, wef
 /* Whether there is a file of that name in the folder. */
 bool weft_folder_holds(const char *folder, const char *name);
 
+/* Whether two files of the folder can be read and hold the same bytes. */
+bool weft_folder_holds_copies(const char *folder, const char *name, const char *other);
+
 /* "FOLDER/NAME" in new memory. NULL where memory is short. */
 char *weft_join_path(const char *folder, const char *name);
 

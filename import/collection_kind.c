@@ -45,10 +45,11 @@ static int count_present(const weft_collection *collection)
 static weft_code say_none_is_present(const weft_collection *collection, const char *folder, weft_error *error)
 {
     if (collection->count > 0)
-        return weft_fail(error, WEFT_BAD_INPUT,
-                         "'%s' holds none of the %d photographs that are listed, as '%s' is; read are JPEG, PNG, TIFF, "
-                         "EXR and camera raw",
-                         folder, collection->count, collection->photograph[0].name);
+        return weft_fail(
+            error, WEFT_BAD_INPUT,
+            "'%s' holds none of the %d photographs that are listed, as '%s' is; read are JPEG, PNG, TIFF, BMP, "
+            "EXR, HDR and camera raw",
+            folder, collection->count, collection->photograph[0].name);
     return weft_fail(error, WEFT_BAD_INPUT,
                      "'%s' holds no photograph: neither positions, nor directions.csv, nor an .lp file, nor names like "
                      "%s",

@@ -158,11 +158,13 @@ char *weft_import_provenance(const char *source, const weft_collection *collecti
                              const weft_import_options *options, const weft_decoding *decoding,
                              const weft_import_report *report)
 {
+    static const char *const colours[] = {"file", "sRGB", "gamma 2.2", "Adobe RGB", "Display P3", "CIE XYZ"};
     json_t *root =
-        json_pack("{s:s, s:o, s:s, s:[ii], s:f, s:i, s:i, s:f}", "program", "weft import " WEFT_VERSION, "source",
-                  folder_name(source), "kind", collection->kind, "photograph_size", decoding->source_width,
-                  decoding->source_height, "saturated_at", options->saturated_at, "missing", report->missing_count,
-                  "skipped", report->skipped_count, "saturated_fraction", report->saturated_fraction);
+        json_pack("{s:s, s:o, s:s, s:[ii], s:s, s:f, s:f, s:i, s:i, s:f}", "program", "weft import " WEFT_VERSION,
+                  "source", folder_name(source), "kind", collection->kind, "photograph_size", decoding->source_width,
+                  decoding->source_height, "colours", colours[options->colours], "white", options->white,
+                  "saturated_at", options->saturated_at, "missing", report->missing_count, "skipped",
+                  report->skipped_count, "saturated_fraction", report->saturated_fraction);
     if (bonn)
         put_bonn(&root, bonn);
     else

@@ -1,6 +1,6 @@
 #include "import/decode.h"
 
-#include "base/picture/colour.h"
+#include "base/picture/colour_claim.h"
 #include "base/picture/image.h"
 #include "import/reduce.h"
 
@@ -10,16 +10,34 @@
 
 /* ---- Colour and light of a pixel ---- */
 
-/* Linear light in place; marks clipped pixels. Float images have no known clipping level. */
-static void linearise(weft_image *image, const weft_decoding *decoding, uint8_t *clipped)
+/* What the numbers mean: as the user says, else as the file does. Floats are linear. */
+static weft_code find_colours(const weft_decoding *decoding, const char *path, weft_image_kind kind,
+                              weft_colour_claim *claim, weft_error *error)
+{
+    WEFT_TRY(weft_colour_claim_read(path, claim, error));
+    if (decoding->colours != WEFT_IMPORT_AS_SAID) {
+        claim->kind = WEFT_CLAIM_CLEAR;
+        claim->words[0] = 0;
+        weft_colour_space_make((weft_known_colours)(decoding->colours - WEFT_IMPORT_SRGB), &claim->space);
+        if (claim->is_grey)
+            weft_colour_space_make_grey(&claim->space);
+    }
+    if (decoding->linear || kind == WEFT_IMAGE_FLOAT)
+        weft_colour_space_make_linear(&claim->space);
+    return WEFT_OK;
+}
+
+/* Linear light in place; marks clipped pixels. */
+static void linearise(weft_image *image, const weft_decoding *decoding, const weft_colour_space *space,
+                      uint8_t *clipped)
 {
     size_t count = (size_t)image->width * (size_t)image->height;
     for (size_t i = 0; i < count; i++) {
         float *pixel = image->pixels + 3 * i;
         double brightest = fmax(fmax((double)pixel[0], (double)pixel[1]), (double)pixel[2]);
         clipped[i] = brightest >= decoding->saturated_at;
-        for (int c = 0; c < 3 && !decoding->linear; c++)
-            pixel[c] = weft_linear_of_srgb(pixel[c]);
+        for (int c = 0; c < 3; c++)
+            pixel[c] = weft_curve_decode(&space->curve[c], pixel[c]);
     }
 }
 
@@ -59,8 +77,11 @@ static weft_code check_finite(const weft_image *image, const char *path, weft_er
 
 /* ---- A photograph ---- */
 
+/* The power of a near light is one of the colours of the file, and white stays white, so it goes before the primaries.
+ */
 static weft_code convert(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
-                         weft_image *image, weft_image_kind kind, weft_half *samples, uint8_t *mask, weft_error *error)
+                         const weft_colour_space *space, weft_image *image, weft_image_kind kind, weft_half *samples,
+                         uint8_t *mask, weft_error *error)
 {
     if (image->width != decoding->source_width || image->height != decoding->source_height)
         return weft_fail(error, WEFT_BAD_INPUT, "'%s' is %d x %d pixels, but the first photograph %d x %d", path,
@@ -69,10 +90,13 @@ static weft_code convert(const weft_decoding *decoding, const char *path, const 
     uint8_t *clipped = calloc(count, 1);
     if (!clipped)
         return weft_fail_memory(error, "mask", count);
+    /* Float images have no known clipping level. */
     if (kind == WEFT_IMAGE_INTEGER)
-        linearise(image, decoding, clipped);
+        linearise(image, decoding, space, clipped);
     if (decoding->distance == WEFT_NEAR)
         divide_by_near_light(decoding, photograph, image);
+    weft_colour_space_to_srgb(space, image->pixels, count);
+    weft_divide_by_white(decoding->white, image);
     weft_code code = check_finite(image, path, error);
     if (code == WEFT_OK)
         code = weft_reduce(image, clipped, decoding->width, decoding->height, samples, mask, error);
@@ -80,19 +104,52 @@ static weft_code convert(const weft_decoding *decoding, const char *path, const 
     return code;
 }
 
+static double sum_of(const weft_half sample[3])
+{
+    return (double)weft_float_of_half(sample[0]) + (double)weft_float_of_half(sample[1]) +
+           (double)weft_float_of_half(sample[2]);
+}
+
+static bool has_negative(const weft_half sample[3])
+{
+    bool is = false;
+    for (int c = 0; c < 3; c++)
+        is = is || weft_float_of_half(sample[c]) < 0;
+    return is;
+}
+
+/* Negative samples of a file in sRGB are its noise. */
+static void count_texels(const weft_decoding *decoding, const weft_colour_space *space, const weft_half *samples,
+                         uint8_t *mask, weft_decoded *decoded)
+{
+    bool is_turned = !weft_colour_space_has_srgb_primaries(space);
+    size_t count = (size_t)decoding->width * (size_t)decoding->height;
+    for (size_t i = 0; i < count; i++) {
+        mask[i] = mask[i] ? WEFT_MASK_SATURATED : 0;
+        decoded->saturated += mask[i] != 0;
+        decoded->sum += mask[i] ? 0 : sum_of(samples + 3 * i);
+        decoded->outside += is_turned && !mask[i] && has_negative(samples + 3 * i);
+    }
+}
+
 weft_code weft_photograph_decode(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
-                                 weft_half *samples, uint8_t *mask, size_t *saturated, weft_error *error)
+                                 weft_half *samples, uint8_t *mask, weft_decoded *decoded, weft_error *error)
 {
     weft_image image;
     weft_image_kind kind;
+    weft_colour_claim claim;
+    *decoded = (weft_decoded){0};
     WEFT_TRY(weft_image_read_shown(path, &image, &kind, error));
-    weft_code code = convert(decoding, path, photograph, &image, kind, samples, mask, error);
+    weft_code code = find_colours(decoding, path, kind, &claim, error);
+    if (code == WEFT_OK)
+        code = convert(decoding, path, photograph, &claim.space, &image, kind, samples, mask, error);
     weft_image_free(&image);
-    *saturated = 0;
-    size_t count = (size_t)decoding->width * (size_t)decoding->height;
-    for (size_t i = 0; code == WEFT_OK && i < count; i++) {
-        mask[i] = mask[i] ? WEFT_MASK_SATURATED : 0;
-        *saturated += mask[i] != 0;
-    }
-    return code;
+    WEFT_TRY(code);
+    decoded->claim = claim.kind;
+    decoded->has_more = claim.has_more;
+    /* Whoever says that all are linear has answered. */
+    if (!(claim.kind == WEFT_CLAIM_NONE && decoding->linear))
+        memcpy(decoded->words, claim.words, sizeof decoded->words);
+    count_texels(decoding, &claim.space, samples, mask, decoded);
+    return WEFT_OK;
 }

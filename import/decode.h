@@ -2,7 +2,9 @@
 #ifndef WEFT_IMPORT_DECODE_H
 #define WEFT_IMPORT_DECODE_H
 
+#include "base/picture/colour_claim.h"
 #include "import/collection.h"
+#include "import/import.h"
 
 #include <stddef.h>
 
@@ -11,15 +13,26 @@ typedef struct weft_decoding {
     int source_width, source_height; /* pixels */
     int width, height;               /* texels */
     double saturated_at;             /* encoded, integer images only */
-    bool linear;                     /* integer images hold linear values */
+    weft_import_colours colours;
+    double white; /* what is 1 in the dataset */
+    bool linear;  /* integer images hold linear values */
     weft_distance distance;
     double pixel_pitch_mm; /* of the photograph; near light only */
 } weft_decoding;
 
-/* Decodes one photograph (weft_import says how) into samples [height][width][3] and mask [height][width]; *saturated is
- * the number of masked texels. Thread-safe. Errors: WEFT_BAD_INPUT naming the file: unreadable, of another size, NaN or
- * infinite values. */
+/* What became of a photograph. */
+typedef struct weft_decoded {
+    size_t saturated; /* texels that are masked */
+    double sum;       /* of the others: of all channels */
+    size_t outside;   /* texels that are not, and have colours outside sRGB */
+    bool has_more;    /* the file holds more pictures than the one that was read */
+    weft_claim_kind claim;
+    char words[200]; /* what the file says of its colours; "" where there is nothing to tell */
+} weft_decoded;
+
+/* Decodes one photograph (weft_import says how) into samples [height][width][3] and mask [height][width].
+ * Thread-safe. Errors: WEFT_BAD_INPUT naming the file: unreadable, of another size, NaN or infinite values. */
 weft_code weft_photograph_decode(const weft_decoding *decoding, const char *path, const weft_photograph *photograph,
-                                 weft_half *samples, uint8_t *mask, size_t *saturated, weft_error *error);
+                                 weft_half *samples, uint8_t *mask, weft_decoded *decoded, weft_error *error);
 
 #endif

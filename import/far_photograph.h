@@ -10,8 +10,8 @@ weft_code weft_collection_add_far(weft_collection *collection, const char *name,
                                   const weft_named_angles *angles, weft_error *error);
 
 /* Sorts the photographs by view, then light. Of those with the same light and view it keeps one that is there, the
- * first by its name, and notes the others, where the collection leaves out doubles. Errors: WEFT_BAD_INPUT for such
- * photographs where it does not. */
+ * first by its name, and notes the others, where the collection leaves out doubles, or they are copies byte for byte.
+ * Errors: WEFT_BAD_INPUT for such photographs where it does not. */
 weft_code weft_collection_sort_far(weft_collection *collection, const char *folder, weft_error *error);
 
 /* Appends what a grid lacks: where at least nine tenths of all pairs of a light and a view that occur were

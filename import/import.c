@@ -7,11 +7,12 @@
 #include "import/reduce.h"
 #include "import/run.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 weft_import_options weft_import_defaults(void)
 {
-    return (weft_import_options){.saturated_at = 250.0 / 255, .values = WEFT_VALUES_OF_SOURCE};
+    return (weft_import_options){.saturated_at = 250.0 / 255, .white = 1, .values = WEFT_VALUES_OF_SOURCE};
 }
 
 void weft_import_report_free(weft_import_report *report)
@@ -53,10 +54,26 @@ static weft_code put_images(weft_import_run *run, const weft_bonn_file *bonn)
     return run->code;
 }
 
+/* Only highlights are above 1, so a mean is well below it. */
+static weft_code note_scale(weft_import_report *report, weft_error *error)
+{
+    const double implausible = 2;
+    if (report->mean < implausible)
+        return WEFT_OK;
+    return weft_lines_add(&report->notes, error,
+                          "the samples are %.3g in the mean, but a perfect white diffuser is 1: if it is 100 in the "
+                          "photographs say --white 100",
+                          report->mean);
+}
+
 static weft_code finish(weft_import_run *run, const weft_bonn_file *bonn, weft_error *error)
 {
     weft_import_report *report = run->report;
     report->saturated_fraction = (double)run->saturated / (double)run->samples;
+    report->outside_fraction = (double)run->outside / (double)run->samples;
+    report->mean = run->sum / (3 * fmax(1, (double)(run->samples - run->saturated)));
+    WEFT_TRY(note_scale(report, error));
+    WEFT_TRY(weft_colour_remarks_note(&run->remarks, run->collection, run->options->colours, &report->notes, error));
     char *provenance = weft_import_provenance(run->source, run->collection, bonn, run->options, &run->decoding, report);
     if (!provenance)
         return weft_fail_memory(error, "provenance", 0);
@@ -113,6 +130,8 @@ static weft_code import_collection(weft_import_run *run, const weft_bonn_file *b
 {
     weft_decoding *decoding = &run->decoding;
     decoding->saturated_at = run->options->saturated_at;
+    decoding->colours = run->options->colours;
+    decoding->white = run->options->white;
     decoding->linear = run->options->linear;
     decoding->distance = run->collection->distance;
     WEFT_TRY(choose_size(run, bonn, error));
@@ -130,6 +149,8 @@ static weft_code open_source(const char *source, const weft_import_options *opti
     }
     if (options->lights)
         return weft_fail(error, WEFT_BAD_USAGE, "--lights is of a folder of photographs: '%s' says its lights", source);
+    if (options->colours != WEFT_IMPORT_AS_SAID)
+        return weft_fail(error, WEFT_BAD_USAGE, "--colours is of photographs: '%s' says its colours", source);
     *collection = (weft_collection){.leaves_out_doubles = options->skip_bad};
     WEFT_TRY(weft_bonn_file_open(source, *bonn, error));
     weft_code code = weft_collection_of_bonn(source, *bonn, collection, error);

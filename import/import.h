@@ -18,6 +18,16 @@
 
 enum { WEFT_VALUES_OF_SOURCE = 2 };
 
+/* What the numbers in photographs mean. */
+typedef enum weft_import_colours {
+    WEFT_IMPORT_AS_SAID, /* by each file itself, else sRGB */
+    WEFT_IMPORT_SRGB,    /* from here on in the order of weft_known_colours (base/picture/colour_space.h) */
+    WEFT_IMPORT_GAMMA_22,
+    WEFT_IMPORT_ADOBE_RGB,
+    WEFT_IMPORT_DISPLAY_P3,
+    WEFT_IMPORT_XYZ
+} weft_import_colours;
+
 typedef struct weft_import_options {
     int width;             /* of the dataset, texels; 0 = as photographed */
     double texel_pitch_mm; /* of the dataset; 0 = what the collection says, else 1 mm */
@@ -26,7 +36,9 @@ typedef struct weft_import_options {
     /* What photographs of a far light hold, a weft_values, or what the source says, else reflectance times cosine;
      * those of a near light always give reflectance times cosine. */
     int values;
-    bool linear; /* integer images hold linear values, not sRGB */
+    weft_import_colours colours;
+    double white; /* linear value of a perfect white diffuser in the photographs */
+    bool linear;  /* integer images hold linear values, whatever their colours */
     const char
         *lights; /* a list of lamps (base/text/light_list.h) for photographs of one view; NULL: as the folder says */
     /* Mask photographs that cannot be used, and leave out doubled ones, instead of failing. */
@@ -40,18 +52,21 @@ typedef struct weft_import_report {
     int missing_count;         /* photographs that the collection should hold but does not */
     int skipped_count;         /* photographs that skip_bad masked */
     double saturated_fraction; /* of the samples of the photographs that were read */
+    double mean;               /* of the same: over all channels */
+    double outside_fraction;   /* of the same: colours outside sRGB, with a negative channel */
     weft_lines notes;          /* what the user should know, a line each */
 } weft_import_report;
 
-/* Size as photographed, saturated from 250/255, reflectance times cosine, no bad photograph skipped. */
+/* Size as photographed, saturated from 250/255, reflectance times cosine, white 1, no bad photograph skipped. */
 weft_import_options weft_import_defaults(void);
 
 /* Reads the collection in the folder or file `source` and writes the dataset `output` atomically. Photographs are
  * decoded in parallel (OpenMP); memory holds one photograph a thread. Of a file of Bonn it holds the matrices, and up
  * to 16 images a thread.
  *
- * Integer images are decoded from sRGB unless they are linear, float images are linear. A smaller width averages exact
- * areas in linear light; a texel with any clipped pixel under it is masked WEFT_MASK_SATURATED. A near light of radiant
+ * Integer images are decoded by the curve of their colours unless they are linear, float images are linear. Colours
+ * become linear sRGB; those outside of it keep a negative channel. A smaller width averages exact areas in linear
+ * light; a texel with any clipped pixel under it is masked WEFT_MASK_SATURATED. A near light of radiant
  * intensity I at distance d gives reflectance times cosine = pi p d^2 / I for a linear pixel value p = BRDF cos(theta)
  * I / d^2.
  *

@@ -65,7 +65,17 @@ static int by_text(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* Says which photographs the table does not list. */
+/* Names [count] in order: one that stands there twice has two lights or two views. */
+static weft_code check_once(char *const *listed, size_t count, weft_error *error)
+{
+    for (size_t i = 1; i < count; i++) {
+        if (strcmp(listed[i], listed[i - 1]) == 0)
+            return weft_fail(error, WEFT_BAD_INPUT, "directions.csv lists '%s' twice", listed[i]);
+    }
+    return WEFT_OK;
+}
+
+/* Says which photographs the table does not list, and fails where it lists one twice. */
 static weft_code note_unlisted(const char *folder, weft_collection *collection, weft_error *error)
 {
     weft_lines images;
@@ -75,8 +85,10 @@ static weft_code note_unlisted(const char *folder, weft_collection *collection, 
     weft_code code = listed ? WEFT_OK : weft_fail_memory(error, "names", count * sizeof *listed);
     for (size_t i = 0; listed && i < count; i++)
         listed[i] = collection->photograph[i].name;
-    if (listed)
+    if (listed) {
         qsort(listed, count, sizeof *listed, by_text);
+        code = check_once(listed, count, error);
+    }
     for (int i = 0; code == WEFT_OK && i < images.count; i++) {
         if (!bsearch(&images.line[i], listed, count, sizeof *listed, by_text))
             code = weft_lines_add(&collection->notes, error, "left out '%s': not in directions.csv", images.line[i]);

@@ -46,8 +46,8 @@ static weft_code add_lit(const weft_light_list *list, const weft_listed_light *r
 }
 
 /* Every row with the image that it names; photographs that no row names are told. */
-static weft_code add_rows(const weft_light_list *list, const weft_lines *images, weft_collection *collection,
-                          weft_error *error)
+static weft_code add_rows(const char *folder, const weft_light_list *list, const weft_lines *images,
+                          weft_collection *collection, weft_error *error)
 {
     const char **of_row = calloc((size_t)list->count, sizeof *of_row);
     if (!of_row)
@@ -57,6 +57,9 @@ static weft_code add_rows(const weft_light_list *list, const weft_lines *images,
         int row = weft_light_list_find(list, images->line[i]);
         if (row < 0)
             code = weft_lines_add(&collection->notes, error, "left out '%s': not in '%s'", images->line[i], list->path);
+        else if (of_row[row] && weft_folder_holds_copies(folder, of_row[row], images->line[i]))
+            code = weft_lines_add(&collection->notes, error, "left out '%s': it is a copy of '%s'", images->line[i],
+                                  of_row[row]);
         else if (of_row[row])
             code = weft_fail(error, WEFT_BAD_INPUT, "%s:%d: '%s' and '%s' both have this name", list->path,
                              list->row[row].line, of_row[row], images->line[i]);
@@ -84,7 +87,7 @@ static weft_code add_listed(const char *folder, const weft_light_list *list, wef
     weft_lines images;
     WEFT_TRY(check_lights(list, error));
     WEFT_TRY(weft_images_list(folder, &images, error));
-    weft_code code = add_rows(list, &images, collection, error);
+    weft_code code = add_rows(folder, list, &images, collection, error);
     weft_lines_free(&images);
     return code;
 }

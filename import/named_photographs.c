@@ -8,7 +8,11 @@ static weft_code add_named(const char *folder, const weft_lines *names, weft_col
     int unreadable = 0;
     for (int i = 0; i < names->count; i++) {
         weft_named_angles angles;
-        if (weft_angle_name_parse(names->line[i], &angles))
+        bool is_named = weft_angle_name_parse(names->line[i], &angles);
+        const char *doubt = is_named ? weft_angle_name_doubt(names->line[i]) : NULL;
+        if (doubt)
+            return weft_fail(error, WEFT_BAD_INPUT, "'%s': %s", names->line[i], doubt);
+        if (is_named)
             WEFT_TRY(weft_collection_add_far(collection, names->line[i], 0, &angles, error));
         else if (unreadable++ == 0)
             WEFT_TRY(weft_lines_add(&collection->notes, error, "left out '%s': no tl, pl, tv and pv in its name",

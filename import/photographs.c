@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-static weft_code put_photograph(const weft_import_run *run, int index, size_t *saturated, weft_error *error)
+static weft_code put_photograph(const weft_import_run *run, int index, weft_decoded *decoded, weft_error *error)
 {
     const weft_photograph *photograph = &run->collection->photograph[index];
     size_t texels = (size_t)run->decoding.width * (size_t)run->decoding.height;
@@ -14,7 +14,7 @@ static weft_code put_photograph(const weft_import_run *run, int index, size_t *s
     if (!samples || !mask || !path)
         code = weft_fail_memory(error, "photograph", 3 * texels * sizeof *samples);
     if (code == WEFT_OK)
-        code = weft_photograph_decode(&run->decoding, path, photograph, samples, mask, saturated, error);
+        code = weft_photograph_decode(&run->decoding, path, photograph, samples, mask, decoded, error);
     if (code == WEFT_OK)
         code = weft_dataset_writer_put_image(run->writer, index, samples, mask, error);
     free(samples);
@@ -30,10 +30,10 @@ void weft_import_photographs(weft_import_run *run)
         if (weft_import_has_stopped(run))
             continue;
         weft_error error = {0};
-        size_t saturated = 0;
+        weft_decoded decoded = {0};
         weft_code code = WEFT_OK;
         if (!run->collection->photograph[i].missing)
-            code = put_photograph(run, i, &saturated, &error);
-        weft_import_count(run, i, code, &error, saturated);
+            code = put_photograph(run, i, &decoded, &error);
+        weft_import_count(run, i, code, &error, &decoded);
     }
 }

@@ -20,6 +20,13 @@ weft_code weft_reduced_size(int source_width, int source_height, int asked, int 
     return WEFT_OK;
 }
 
+void weft_divide_by_white(double white, weft_image *image)
+{
+    size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count && white != 1; i++)
+        image->pixels[i] = (float)((double)image->pixels[i] / white);
+}
+
 bool weft_find_unstorable(const weft_image *image, size_t *index)
 {
     size_t count = 3 * (size_t)image->width * (size_t)image->height;

@@ -12,6 +12,9 @@
  * Errors: WEFT_BAD_USAGE for more than there are, or for a height that does not come out whole. */
 weft_code weft_reduced_size(int source_width, int source_height, int asked, int *width, int *height, weft_error *error);
 
+/* Makes what is `white` 1, before it is stored as half floats. */
+void weft_divide_by_white(double white, weft_image *image);
+
 /* The first number of a picture that a half float cannot hold: its index, false where there is none. Pure. */
 bool weft_find_unstorable(const weft_image *image, size_t *index);
 

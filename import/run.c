@@ -9,7 +9,8 @@ static weft_code note_photograph(weft_import_run *run, int count, const char *wh
 }
 
 /* Called in the critical section. */
-static void count_image(weft_import_run *run, int index, weft_code code, const weft_error *error, size_t saturated)
+static void count_image(weft_import_run *run, int index, weft_code code, const weft_error *error,
+                        const weft_decoded *decoded)
 {
     const weft_photograph *photograph = &run->collection->photograph[index];
     weft_import_report *report = run->report;
@@ -21,7 +22,10 @@ static void count_image(weft_import_run *run, int index, weft_code code, const w
         run->code = code;
         run->error = *error;
     } else {
-        run->saturated += saturated;
+        weft_colour_remarks_add(&run->remarks, index, photograph->name, decoded);
+        run->saturated += decoded->saturated;
+        run->outside += decoded->outside;
+        run->sum += decoded->sum;
         run->samples += (size_t)run->decoding.width * (size_t)run->decoding.height;
     }
     weft_progress_report(run->progress, "reading photographs", ++run->done, run->collection->count);
@@ -35,9 +39,10 @@ bool weft_import_has_stopped(const weft_import_run *run)
     return stopped != WEFT_OK;
 }
 
-void weft_import_count(weft_import_run *run, int index, weft_code code, const weft_error *error, size_t saturated)
+void weft_import_count(weft_import_run *run, int index, weft_code code, const weft_error *error,
+                       const weft_decoded *decoded)
 {
 #pragma omp critical(weft_import)
     if (run->code == WEFT_OK)
-        count_image(run, index, code, error, saturated);
+        count_image(run, index, code, error, decoded);
 }

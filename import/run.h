@@ -3,6 +3,7 @@
 #define WEFT_IMPORT_RUN_H
 
 #include "import/bonn/file.h"
+#include "import/colour_remarks.h"
 #include "import/decode.h"
 #include "import/import.h"
 
@@ -17,14 +18,17 @@ typedef struct weft_import_run {
     weft_code code; /* of the first failure; guarded, with everything below, by the critical section */
     weft_error error;
     long done;
-    size_t saturated, samples;
+    size_t saturated, outside, samples;
+    double sum;
+    weft_colour_remarks remarks;
 } weft_import_run;
 
 /* Whether a worker has failed. Thread-safe. */
 bool weft_import_has_stopped(const weft_import_run *run);
 
 /* Takes note of what came of an image of the collection. Thread-safe. */
-void weft_import_count(weft_import_run *run, int index, weft_code code, const weft_error *error, size_t saturated);
+void weft_import_count(weft_import_run *run, int index, weft_code code, const weft_error *error,
+                       const weft_decoded *decoded);
 
 /* Puts all images of the collection: photographs in files of their own, or those of one file of Bonn. What failed is in
  * run->code. */

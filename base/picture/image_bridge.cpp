@@ -322,5 +322,5 @@ weft_code snapshot_write(const char *path, const weft_image *image, const weft_c
 
 extern "C" const weft_image_library weft_image_library_table = {
     image_read,      image_write,    image_read_settings,   photograph_write,
-    photograph_read, snapshot_write, weft_exif_bridge_read,
+    photograph_read, snapshot_write, weft_exif_bridge_read, weft_colour_tags_bridge_read,
 };

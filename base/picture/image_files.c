@@ -2,6 +2,7 @@
 #include "base/picture/png.h"
 
 #include <stddef.h>
+#include <stdlib.h>
 
 weft_code weft_image_read(const char *path, weft_image *image, weft_image_kind *kind, weft_error *error)
 {
@@ -71,4 +72,18 @@ weft_code weft_exif_read(const char *path, weft_exif *exif, weft_error *error)
     const weft_image_library *library;
     WEFT_TRY(weft_image_library_open(&library, error));
     return library->exif_read(path, exif, error);
+}
+
+weft_code weft_colour_tags_read(const char *path, weft_colour_tags *tags, weft_error *error)
+{
+    const weft_image_library *library;
+    *tags = (weft_colour_tags){0};
+    WEFT_TRY(weft_image_library_open(&library, error));
+    return library->colour_tags_read(path, tags, error);
+}
+
+void weft_colour_tags_free(weft_colour_tags *tags)
+{
+    free(tags->profile);
+    *tags = (weft_colour_tags){0};
 }

@@ -3,6 +3,7 @@
 #ifndef WEFT_BASE_PICTURE_IMAGE_LIBRARY_H
 #define WEFT_BASE_PICTURE_IMAGE_LIBRARY_H
 
+#include "base/picture/colour_tags.h"
 #include "base/picture/exif.h"
 #include "base/picture/image.h"
 
@@ -23,6 +24,7 @@ typedef struct weft_image_library {
     weft_code (*snapshot_write)(const char *path, const weft_image *image, const weft_camera_notes *notes,
                                 weft_error *error);
     weft_code (*exif_read)(const char *path, weft_exif *exif, weft_error *error);
+    weft_code (*colour_tags_read)(const char *path, weft_colour_tags *tags, weft_error *error);
 } weft_image_library;
 
 /* What the module exports under this name. */
@@ -30,6 +32,8 @@ extern const weft_image_library weft_image_library_table;
 
 /* The entry exif_read of the module. */
 weft_code weft_exif_bridge_read(const char *path, weft_exif *exif, weft_error *error);
+/* The entry colour_tags_read. */
+weft_code weft_colour_tags_bridge_read(const char *path, weft_colour_tags *tags, weft_error *error);
 
 /* Loads the module at the first call, from the folders that the program was linked to search, and keeps it. Errors:
  * WEFT_SYSTEM where it is missing or damaged. Thread-safe. */

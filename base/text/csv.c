@@ -107,6 +107,13 @@ static weft_code split_lines(weft_csv *csv, bool has_header, weft_error *error)
     return WEFT_OK;
 }
 
+/* Spreadsheets put a mark of the byte order before UTF-8, which has none. */
+static void drop_byte_order_mark(char *text)
+{
+    if (strncmp(text, "\xef\xbb\xbf", 3) == 0)
+        memmove(text, text + 3, strlen(text + 3) + 1);
+}
+
 weft_code weft_csv_read(const char *path, bool has_header, weft_csv *csv, weft_error *error)
 {
     *csv = (weft_csv){0};
@@ -118,8 +125,10 @@ weft_code weft_csv_read(const char *path, bool has_header, weft_csv *csv, weft_e
         code = weft_fail_memory(error, "path", strlen(path));
     else if (strlen(csv->text) != size)
         code = weft_fail(error, WEFT_BAD_INPUT, "'%s' is not text", path);
-    else
+    else {
+        drop_byte_order_mark(csv->text);
         code = split_lines(csv, has_header, error);
+    }
     if (code != WEFT_OK)
         weft_csv_free(csv);
     return code;

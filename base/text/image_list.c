@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const image_extension[] = {".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff", ".dng", ".cr2", ".cr3",
-                                              ".nef", ".arw", ".raf",  ".orf", ".rw2", ".pef",  ".srw", NULL};
+static const char *const image_extension[] = {".png",  ".jpg", ".jpeg", ".exr", ".hdr", ".bmp", ".tif",
+                                              ".tiff", ".dng", ".cr2",  ".cr3", ".nef", ".arw", ".raf",
+                                              ".orf",  ".rw2", ".pef",  ".srw", NULL};
 static const char *const film_extension[] = {".mov", ".mp4", ".m4v", ".avi", ".mkv", ".mts", ".3gp", ".webm", NULL};
 static const char *const heif_extension[] = {".heic", ".heif", ".hif", ".avif", NULL};
 
@@ -18,6 +19,16 @@ static bool ends_in(const char *name, const char *const *extension)
     while (*extension && strcasecmp(dot, *extension) != 0)
         extension++;
     return *extension != NULL;
+}
+
+/* What file systems, servers and other systems keep in a folder of their own: thumbnails, deleted files. */
+static bool is_of_a_system(const char *folder)
+{
+    static const char *const name[] = {"@eaDir", "#recycle", "$RECYCLE.BIN", "__MACOSX", "lost+found", NULL};
+    bool is = folder[0] == '.';
+    for (int i = 0; name[i]; i++)
+        is = is || strcasecmp(folder, name[i]) == 0;
+    return is;
 }
 
 /* ---- The files of a folder and of the folders in it ---- */
@@ -40,9 +51,11 @@ static weft_code visit_tree(FTS *tree, size_t folder_length, visitor visit, void
                              strerror(entry->fts_errno));
         if (entry->fts_info == FTS_F && is_folder_itself)
             return weft_fail(error, WEFT_BAD_INPUT, "'%s' is a file, not a folder", entry->fts_path);
-        if (entry->fts_info == FTS_D && entry->fts_level > 1)
+        if (entry->fts_info == FTS_D &&
+            (entry->fts_level > 1 || (!is_folder_itself && is_of_a_system(entry->fts_name))))
             fts_set(tree, entry, FTS_SKIP);
-        if (entry->fts_info == FTS_F)
+        /* A link to nowhere is a photograph that is missing: whoever reads it says so. */
+        if (entry->fts_info == FTS_F || (entry->fts_info == FTS_SLNONE && !is_folder_itself))
             WEFT_TRY(visit(into, entry->fts_path + folder_length + 1, error));
     }
     return WEFT_OK;
@@ -103,7 +116,7 @@ static weft_code count_file(void *into, const char *name, weft_error *error)
 
 weft_code weft_images_missing(const char *folder, weft_error *error)
 {
-    static const char *const holds = "holds no photograph (JPEG, PNG, TIFF, EXR or camera raw)";
+    static const char *const holds = "holds no photograph (JPEG, PNG, TIFF, BMP, EXR, HDR or camera raw)";
     census seen = {0};
     WEFT_TRY(visit_files(folder, count_file, &seen, error));
     if (seen.files == 0)

@@ -1,5 +1,7 @@
 #include "registration/colour/difference.h"
 
+#include "base/picture/cie.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -7,18 +9,8 @@ static const double pi = 3.14159265358979323846;
 
 /* ---- Lab ---- */
 
-static const double d50[3] = {0.9642, 1, 0.8249}, d65[3] = {0.95047, 1, 1.08883};
-
 static const double xyz_of_rgb[3][3] = {
     {0.4124564, 0.3575761, 0.1804375}, {0.2126729, 0.7151522, 0.0721750}, {0.0193339, 0.1191920, 0.9503041}};
-static const double rgb_of_xyz[3][3] = {
-    {3.2404542, -1.5371385, -0.4985314}, {-0.9692660, 1.8760108, 0.0415560}, {0.0556434, -0.2040259, 1.0572252}};
-
-/* Bradford's cone responses of XYZ, and back. */
-static const double cones_of_xyz[3][3] = {
-    {0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}};
-static const double xyz_of_cones[3][3] = {
-    {0.9869929, -0.1470543, 0.1599627}, {0.4323053, 0.5183603, 0.0492912}, {-0.0085287, 0.0400428, 0.9684867}};
 
 static void multiply(const double m[3][3], const double v[3], double product[3])
 {
@@ -43,7 +35,7 @@ void weft_lab_of_linear_srgb(const double rgb[3], double lab[3])
     double xyz[3], f[3];
     multiply(xyz_of_rgb, rgb, xyz);
     for (int i = 0; i < 3; i++)
-        f[i] = response(xyz[i] / d65[i]);
+        f[i] = response(xyz[i] / weft_d65[i]);
     lab[0] = 116 * f[1] - 16;
     lab[1] = 500 * (f[0] - f[1]);
     lab[2] = 200 * (f[1] - f[2]);
@@ -52,16 +44,10 @@ void weft_lab_of_linear_srgb(const double rgb[3], double lab[3])
 void weft_linear_srgb_of_lab_d50(const double lab[3], double rgb[3])
 {
     double middle = (lab[0] + 16) / 116, f[3] = {middle + lab[1] / 500, middle, middle - lab[2] / 200};
-    double xyz[3], cones[3], from[3], to[3];
+    double xyz[3];
     for (int i = 0; i < 3; i++)
-        xyz[i] = d50[i] * inverse_response(f[i]);
-    multiply(cones_of_xyz, xyz, cones);
-    multiply(cones_of_xyz, d50, from);
-    multiply(cones_of_xyz, d65, to);
-    for (int i = 0; i < 3; i++)
-        cones[i] *= to[i] / from[i];
-    multiply(xyz_of_cones, cones, xyz);
-    multiply(rgb_of_xyz, xyz, rgb);
+        xyz[i] = weft_d50[i] * inverse_response(f[i]);
+    weft_linear_srgb_of_xyz(xyz, weft_d50, rgb);
 }
 
 /* ---- CIEDE2000 ---- */

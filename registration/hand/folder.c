@@ -1,6 +1,7 @@
 #include "registration/hand/folder.h"
 
 #include "base/text/image_list.h"
+#include "registration/hand/file_colours.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +17,8 @@ static void read_exif(const char *folder, weft_hand_photograph *photograph)
     }
     if (weft_exif_read(path, &photograph->exif, &error) != WEFT_OK)
         snprintf(photograph->remark, sizeof photograph->remark, "%.180s", error.message);
+    else
+        weft_hand_read_colours(path, photograph);
     free(path);
 }
 

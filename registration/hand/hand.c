@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "registration/hand/certainty.h"
 #include "registration/hand/corners.h"
+#include "registration/hand/file_colours.h"
 #include "registration/hand/folder.h"
 #include "registration/hand/material.h"
 #include "registration/hand/pose.h"
@@ -375,6 +376,8 @@ static weft_code run(work *w, const char *output, weft_error *error)
     leave_out_underexposed(hand);
     weft_hand_leave_out_twins(hand);
     WEFT_TRY(weft_hand_note(hand, error));
+    if (!w->settings->colour)
+        WEFT_TRY(weft_hand_note_colours(hand, error));
     if (w->settings->lights)
         WEFT_TRY(weft_listed_compare(w->settings->lights, hand->photograph, hand->count, &hand->notes, error));
     WEFT_TRY(check_enough(w, "can be used", what_helps, error));

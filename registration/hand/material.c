@@ -79,11 +79,13 @@ static weft_code invert_vignetting(work *w, weft_error *error)
 }
 
 /* Divides weighted sums of light by what a perfect white diffuser would show at each texel, and turns the colours of
- * the camera into linear sRGB where they are known; sets the mask where the quotient is beyond half floats. */
+ * the camera into linear sRGB where they are known, else those that the file says; sets the mask where the quotient is
+ * beyond half floats. */
 static void normalise(const weft_hand_settings *settings, const weft_flash *flash, const weft_hand_photograph *p,
                       const float *texel, weft_half *half, uint8_t *mask)
 {
     const weft_lamp_place *lamp = &p->lamp;
+    const weft_colour *colour = settings->colour ? settings->colour : &p->file_colour;
     weft_vec3 l = lamp->position_mm;
     double beam_middle = weft_flash_log_beam(flash, &p->pose, 0, 0);
     for (int y = 0; y < settings->height; y++) {
@@ -96,8 +98,7 @@ static void normalise(const weft_hand_settings *settings, const weft_flash *flas
             float rgb[3];
             for (int c = 0; c < 3; c++)
                 rgb[c] = (float)((double)texel[3 * at + c] / (lamp->level[c] * nearness));
-            if (settings->colour)
-                weft_colour_apply(settings->colour, rgb, 1);
+            weft_colour_apply(colour, rgb, 1);
             for (int c = 0; c < 3; c++) {
                 half[3 * at + c] = weft_half_of_float(rgb[c]);
                 if (!isfinite(weft_float_of_half(half[3 * at + c])))

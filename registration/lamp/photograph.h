@@ -5,6 +5,7 @@
 #include "base/picture/exif.h"
 #include "base/picture/image.h"
 #include "btf/session/camera.h"
+#include "btf/session/colour.h"
 #include "btf/session/target.h"
 #include "registration/pose/prediction.h"
 
@@ -34,8 +35,10 @@ typedef struct weft_lamp_place {
 typedef struct weft_hand_photograph {
     char *name; /* of the file, in its folder */
     weft_exif exif;
-    char remark[192]; /* why it is left out; empty where it is used */
-    bool is_twin;     /* left out as the darker one of a pair, and sound otherwise */
+    char remark[192];        /* why it is left out; empty where it is used */
+    char colours[200];       /* what the file says of its colours; empty where it is sRGB, or nothing is said */
+    weft_colour file_colour; /* to linear sRGB, by that; no terms where there is nothing to do */
+    bool is_twin;            /* left out as the darker one of a pair, and sound otherwise */
 
     int marker_count;                                                 /* found; each has four corners */
     int corner_count;                                                 /* of them, that lie on the plane of the sheet */

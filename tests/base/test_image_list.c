@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static void touch(const char *path)
 {
@@ -18,7 +19,8 @@ static void images_are_listed_by_name_one_folder_deep(void **state)
 {
     (void)state;
     assert_int_equal(mkdir("deep", 0755) + mkdir("deep/below", 0755) + mkdir("deep/below/lower", 0755), 0);
-    const char *const file[] = {"b.JPG", "a.nef", ".hidden.jpg", "note.txt", "jpg", "below/c.tif", "below/lower/d.jpg"};
+    const char *const file[] = {
+        "b.JPG", "e.HDR", "d.bmp", "a.nef", ".hidden.jpg", "note.txt", "jpg", "below/c.tif", "below/lower/d.jpg"};
     char path[64];
     for (size_t i = 0; i < sizeof file / sizeof *file; i++) {
         snprintf(path, sizeof path, "deep/%s", file[i]);
@@ -27,10 +29,37 @@ static void images_are_listed_by_name_one_folder_deep(void **state)
     weft_lines names;
     weft_error error = {0};
     expect_ok(weft_images_list("deep//", &names, &error), &error);
+    static const char *const expected[] = {"a.nef", "b.JPG", "below/c.tif", "d.bmp", "e.HDR"};
+    assert_int_equal(names.count, 5);
+    for (int i = 0; i < names.count; i++)
+        assert_string_equal(names.line[i], expected[i]);
+    weft_lines_free(&names);
+}
+
+static void what_systems_leave_behind_is_no_photograph(void **state)
+{
+    (void)state;
+    static const char *const folder[] = {"left",          "left/@eaDir",   "left/.thumbnails", "left/__MACOSX",
+                                         "left/#recycle", "left/view@eaD", "left/$Recycle.bin"};
+    static const char *const file[] = {"a.jpg",          "._a.jpg",           "Thumbs.db",      ".DS_Store",
+                                       "@eaDir/a.jpg",   ".thumbnails/a.jpg", "__MACOSX/a.jpg", "#recycle/a.jpg",
+                                       "view@eaD/b.jpg", "$Recycle.bin/a.jpg"};
+    char path[64];
+    for (size_t i = 0; i < sizeof folder / sizeof *folder; i++)
+        assert_int_equal(mkdir(folder[i], 0755), 0);
+    for (size_t i = 0; i < sizeof file / sizeof *file; i++) {
+        snprintf(path, sizeof path, "left/%s", file[i]);
+        touch(path);
+    }
+    /* A link that is broken is a photograph that was meant to be there. */
+    assert_int_equal(symlink("nowhere", "left/to-nowhere.png"), 0);
+    weft_lines names;
+    weft_error error = {0};
+    expect_ok(weft_images_list("left", &names, &error), &error);
     assert_int_equal(names.count, 3);
-    assert_string_equal(names.line[0], "a.nef");
-    assert_string_equal(names.line[1], "b.JPG");
-    assert_string_equal(names.line[2], "below/c.tif");
+    assert_string_equal(names.line[0], "a.jpg");
+    assert_string_equal(names.line[1], "to-nowhere.png");
+    assert_string_equal(names.line[2], "view@eaD/b.jpg");
     weft_lines_free(&names);
 }
 
@@ -69,6 +98,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(images_are_listed_by_name_one_folder_deep),
+        cmocka_unit_test(what_systems_leave_behind_is_no_photograph),
         cmocka_unit_test(what_is_no_folder_is_refused),
         cmocka_unit_test(a_folder_without_images_is_described),
     };

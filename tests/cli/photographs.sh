@@ -66,6 +66,17 @@ echo "{\"weft_colour\": 1, \"model\": \"linear\", \"ciede2000\": {\"fitted\": $r
 grep -q "colours: linear sRGB" said || fail "nobody spoke of colours: $(cat said)"
 "$python" "$here/coloured.py" linear.btf.h5 coloured.btf.h5 colour.json || fail "the colour is not that of colour.json"
 
+# Of files that say Display P3 the colours are turned into sRGB, unless the colours of the camera are known better.
+cp -r linear wide
+"$python" "$here/../import/exr_primaries.py" wide/*.exr
+echo "{\"matrix\": [[1.22494, -0.22494, 0], [-0.04206, 1.04206, 0], [-0.01964, -0.07864, 1.09828]]}" >wide.json
+"$weft" photographs wide -o wide.btf.h5 --opening 40 --size 32x32 >said 2>/dev/null
+grep -q "chromaticities say .*; turned into sRGB ([0-9] of [0-9] photographs)" said || fail "nobody spoke of Display P3: $(cat said)"
+"$python" "$here/coloured.py" linear.btf.h5 wide.btf.h5 wide.json file || fail "Display P3 was not turned into sRGB"
+"$weft" photographs wide -o known.btf.h5 --opening 40 --size 32x32 --colour colour.json >said 2>/dev/null
+! grep -q "turned into sRGB" said || fail "two colours were applied: $(cat said)"
+"$python" "$here/coloured.py" linear.btf.h5 known.btf.h5 colour.json || fail "colour.json counts less than the files"
+
 mkdir empty
 touch file
 refused "cannot create folder" free --report file/report

@@ -37,6 +37,7 @@ expect_says "texel_pitch_mm: 3" info small.btf.h5
 echo "1" >dirs.lp
 echo "a.png 0 0 1" >>dirs.lp
 expect_error 2 "--lights" import cloth.btf --lights dirs.lp -o small.btf.h5
+expect_error 2 "--colours" import cloth.btf --colours xyz -o small.btf.h5
 expect_error 2 "17 texels asked for" import cloth.btf --size 17 -o five.btf.h5
 expect_error 1 "weft import" compress cloth.btf -o small.weft
 expect_error 1 "weft import" info cloth.btf

@@ -145,6 +145,24 @@ static void a_table_of_directions_wins_over_names(void **state)
     folder_remove(&folder);
 }
 
+/* Excel's mark of the byte order before the first name, and its ends of lines. */
+static void a_table_of_a_spreadsheet_is_read_and_lists_a_photograph_once(void **state)
+{
+    (void)state;
+    test_folder folder = folder_make();
+    folder_put_grey(&folder, "a.png", 2, 2, 0.5f);
+    folder_put_text(&folder, "directions.csv",
+                    "\xef\xbb\xbf"
+                    "file,theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\r\na.png,10,0,0,0\r\n");
+    assert_int_equal(folder_import(&folder, NULL, NULL), WEFT_OK);
+    folder_put_text(&folder, "directions.csv",
+                    "file,theta_light_deg,phi_light_deg,theta_view_deg,phi_view_deg\na.png,10,0,0,0\na.png,20,0,0,0\n");
+    weft_error error = {0};
+    assert_int_equal(folder_import(&folder, NULL, &error), WEFT_BAD_INPUT);
+    assert_string_equal(error.message, "directions.csv lists 'a.png' twice");
+    folder_remove(&folder);
+}
+
 static void a_table_cannot_reach_outside_its_folder(void **state)
 {
     (void)state;
@@ -345,6 +363,7 @@ int main(void)
         cmocka_unit_test(rows_and_channels_keep_their_place),
         cmocka_unit_test(a_hole_in_a_grid_becomes_a_masked_image),
         cmocka_unit_test(a_table_of_directions_wins_over_names),
+        cmocka_unit_test(a_table_of_a_spreadsheet_is_read_and_lists_a_photograph_once),
         cmocka_unit_test(a_table_cannot_reach_outside_its_folder),
         cmocka_unit_test(a_clipped_pixel_masks_the_texel_it_falls_into),
         cmocka_unit_test(areas_that_divide_pixels_keep_the_mean),

@@ -45,6 +45,21 @@ static void names_without_all_four_angles_are_left_out(void **state)
     }
 }
 
+static void half_degrees_need_a_point(void **state)
+{
+    (void)state;
+    static const char *const clear[] = {"tl011.5_pl007.5_tv023.5_pv000.png", "00008 tl000 pl000 tv030 pv030.jpg",
+                                        "tl030_pl120_tv045_pv090_1.png", "2026_tl030_pl120_tv045_pv090_0002.png"};
+    static const char *const doubtful[] = {"tl0235_pl000_tv000_pv000.png", "tl000_pl000_tv000_pv0075.png",
+                                           "tl011-5-pl000-tv000-pv000.png", "a/tl011_5_pl000_tv000_pv000.jpg"};
+    for (size_t i = 0; i < sizeof clear / sizeof *clear; i++)
+        assert_null(weft_angle_name_doubt(clear[i]));
+    for (size_t i = 0; i < sizeof doubtful / sizeof *doubtful; i++) {
+        if (!weft_angle_name_doubt(doubtful[i]))
+            fail_msg("'%s' was believed", doubtful[i]);
+    }
+}
+
 static void names_written_are_names_read(void **state)
 {
     (void)state;
@@ -61,6 +76,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_of_the_public_sets_are_read),
         cmocka_unit_test(names_without_all_four_angles_are_left_out),
+        cmocka_unit_test(half_degrees_need_a_point),
         cmocka_unit_test(names_written_are_names_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

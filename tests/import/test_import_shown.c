@@ -120,12 +120,12 @@ static void a_list_of_what_is_not_there_is_named(void **state)
 {
     (void)state;
     test_folder folder = folder_make();
-    folder_put_text(&folder, "stones.lp", "2\na.bmp 0 0 1\nb.bmp 0.5 0 0.866\n");
-    folder_put_text(&folder, "a.bmp", "BM");
+    folder_put_text(&folder, "stones.lp", "2\na.psd 0 0 1\nb.psd 0.5 0 0.866\n");
+    folder_put_text(&folder, "a.psd", "8BPS");
     weft_error error = {0};
     assert_int_equal(folder_import(&folder, NULL, &error), WEFT_BAD_INPUT);
     assert_non_null(strstr(error.message, "none of the 2 photographs that are listed"));
-    assert_non_null(strstr(error.message, "'a.bmp'"));
+    assert_non_null(strstr(error.message, "'a.psd'"));
     assert_null(strstr(error.message, "nor an .lp file"));
     folder_remove(&folder);
 }
