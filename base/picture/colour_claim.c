@@ -51,7 +51,7 @@ static void of_gamma(double gamma, weft_colour_claim *claim)
     if (fabs(gamma - 2.2) < 0.03)
         return;
     for (int c = 0; c < 3; c++) {
-        weft_curve curve = {.kind = WEFT_CURVE_FORMULA, .gamma = gamma, .a = 1};
+        weft_curve curve = {.kind = WEFT_CURVE_POWER, .gamma = gamma};
         claim->space.curve[c] = curve;
     }
     snprintf(claim->space.name, sizeof claim->space.name, "gamma %.3g", gamma);

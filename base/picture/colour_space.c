@@ -8,11 +8,6 @@
 
 /* ---- Curves ---- */
 
-static double formula_at(const weft_curve *curve, double x)
-{
-    return x >= curve->d ? pow(fmax(curve->a * x + curve->b, 0), curve->gamma) + curve->e : curve->c * x + curve->f;
-}
-
 static double table_at(const weft_curve *curve, double x)
 {
     double place = fmin(x, 1) * (curve->count - 1);
@@ -26,13 +21,13 @@ float weft_curve_compute(const weft_curve *curve, float encoded)
     double size = fabs((double)encoded);
     if (!isfinite(size))
         return encoded;
-    double light = curve->kind == WEFT_CURVE_FORMULA ? formula_at(curve, size) : table_at(curve, size);
+    double light = curve->kind == WEFT_CURVE_POWER ? pow(size, curve->gamma) : table_at(curve, size);
     return (float)copysign(light, (double)encoded);
 }
 
 static weft_curve power(double gamma)
 {
-    return (weft_curve){.kind = WEFT_CURVE_FORMULA, .gamma = gamma, .a = 1};
+    return (weft_curve){.kind = WEFT_CURVE_POWER, .gamma = gamma};
 }
 
 /* Within what tables of 1024 steps and gammas of 16 bits are off; 2.2 for sRGB is farther off. */

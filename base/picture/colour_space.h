@@ -9,18 +9,13 @@
 
 enum { WEFT_CURVE_STEPS = 4096 };
 
-typedef enum weft_curve_kind {
-    WEFT_CURVE_LINEAR,
-    WEFT_CURVE_SRGB,
-    WEFT_CURVE_FORMULA,
-    WEFT_CURVE_TABLE
-} weft_curve_kind;
+typedef enum weft_curve_kind { WEFT_CURVE_LINEAR, WEFT_CURVE_SRGB, WEFT_CURVE_POWER, WEFT_CURVE_TABLE } weft_curve_kind;
 
 /* From an encoded value in 0..1 to linear light. */
 typedef struct weft_curve {
     weft_curve_kind kind;
-    double gamma, a, b, c, d, e, f; /* of a formula: (a x + b)^gamma + e from d on, c x + f below */
-    int count;                      /* of a table: its entries, 2 or more, evenly from 0 to 1 */
+    double gamma; /* of a power: x^gamma */
+    int count;    /* of a table: its entries, 2 or more, evenly from 0 to 1 */
     float table[WEFT_CURVE_STEPS];
 } weft_curve;
 

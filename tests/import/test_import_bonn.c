@@ -166,7 +166,13 @@ static void the_user_knows_better_than_the_file(void **state)
     made = import(GOOD "rgb.btf", &options);
     assert_int_equal(made.layout->values, WEFT_REFLECTANCE_COSINE);
     assert_float_equal(made.layout->texel_pitch_mm, 3, 1e-12);
+    float whole = sample(&made, 1, 1, 2, 1);
     drop(&made);
+    options.white = 2;
+    made = import(GOOD "rgb.btf", &options);
+    assert_float_equal(sample(&made, 1, 1, 2, 1), whole / 2, 1e-3 * whole);
+    drop(&made);
+    options.white = 1;
     options.values = WEFT_REFLECTANCE;
     made = import(GOOD "rgb_cosine.btf", &options);
     assert_int_equal(made.layout->values, WEFT_REFLECTANCE);
