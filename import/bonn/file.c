@@ -311,8 +311,8 @@ static weft_code read_all(weft_bonn_reader *reader, weft_bonn_file *file, weft_e
     else
         WEFT_TRY(read_joint(reader, signature->kind == JOINT_WITH_HEADER, file, error));
     if (reader->left > 0)
-        return weft_fail(error, WEFT_BAD_INPUT, "'%s': bytes behind its last matrix: %llu", reader->path,
-                         (unsigned long long)reader->left);
+        return weft_lines_add(&file->notes, error, "left out: %llu bytes behind the last matrix",
+                              (unsigned long long)reader->left);
     return WEFT_OK;
 }
 
