@@ -1,5 +1,6 @@
 #include "base/picture/colour_tags.h"
 #include "base/picture/image_library.h"
+#include "base/picture/open_bridge.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -45,12 +46,9 @@ void copy_model(const OIIO::ImageSpec &spec, weft_colour_tags *tags)
 weft_code read_tags(const char *path, weft_colour_tags *tags, weft_error *error)
 {
     constexpr int uncalibrated = 65535;
-    auto input = OIIO::ImageInput::open(path);
-    if (!input) {
-        const std::string why = OIIO::geterror();
-        return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path,
-                         why.empty() ? "damaged, or of no known format" : why.substr(0, why.find('\n')).c_str());
-    }
+    weft_code code;
+    auto input = weft_image_open(path, nullptr, &code, error);
+    WEFT_TRY(code);
     const OIIO::ImageSpec &spec = input->spec();
     tags->is_float = spec.format.is_floating_point();
     tags->is_raw = strcmp(input->format_name(), "raw") == 0;
@@ -73,6 +71,6 @@ weft_code weft_colour_tags_bridge_read(const char *path, weft_colour_tags *tags,
     try {
         return read_tags(path, tags, error);
     } catch (const std::exception &failure) {
-        return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path, failure.what());
+        return weft_image_unreadable(error, path, failure.what());
     }
 }

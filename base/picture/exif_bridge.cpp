@@ -1,4 +1,5 @@
 #include "base/picture/image_library.h"
+#include "base/picture/open_bridge.h"
 #include "base/picture/tiff_sensitivity.h"
 
 #include <OpenImageIO/imageio.h>
@@ -27,12 +28,9 @@ double number_of(const OIIO::ImageSpec &spec, std::initializer_list<const char *
 
 weft_code read_head(const char *path, weft_exif *exif, weft_error *error)
 {
-    auto input = OIIO::ImageInput::open(path);
-    if (!input) {
-        const std::string why = OIIO::geterror();
-        return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path,
-                         why.empty() ? "damaged, or of no known format" : why.substr(0, why.find('\n')).c_str());
-    }
+    weft_code code;
+    auto input = weft_image_open(path, nullptr, &code, error);
+    WEFT_TRY(code);
     const OIIO::ImageSpec &spec = input->spec();
     *exif = {};
     exif->width = spec.width;
@@ -59,6 +57,6 @@ weft_code weft_exif_bridge_read(const char *path, weft_exif *exif, weft_error *e
     try {
         return read_head(path, exif, error);
     } catch (const std::exception &failure) {
-        return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path, failure.what());
+        return weft_image_unreadable(error, path, failure.what());
     }
 }

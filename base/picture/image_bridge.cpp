@@ -1,6 +1,7 @@
 #include "base/atomic_file.h"
 #include "base/picture/exr_bridge.h"
 #include "base/picture/image_library.h"
+#include "base/picture/open_bridge.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -19,19 +20,6 @@ namespace
 constexpr long long max_pixels = 1ll << 28;
 constexpr const char *settings_name = "weft:settings";
 constexpr const char *no_time = "0000:00:00 00:00:00";
-
-/* One line of OpenImageIO's last message. */
-std::string first_line(const std::string &text)
-{
-    return text.substr(0, text.find('\n'));
-}
-
-weft_code unreadable(weft_error *error, const char *path, const std::string &why)
-{
-    std::string line = first_line(why);
-    return weft_fail(error, WEFT_BAD_INPUT, "cannot read image '%s': %s", path,
-                     line.empty() ? "damaged, or of no known format" : line.c_str());
-}
 
 /* Camera raw as the sensor counted: no curve, no white balance, no brightness of each picture's own. The shape of the
  * colour filters is interpolated all the same. */
@@ -53,9 +41,7 @@ OIIO::ImageSpec input_hints()
 std::unique_ptr<OIIO::ImageInput> open_input(const char *path, weft_code *code, weft_error *error)
 {
     const OIIO::ImageSpec hints = input_hints();
-    auto input = OIIO::ImageInput::open(path, &hints);
-    *code = input ? WEFT_OK : unreadable(error, path, OIIO::geterror());
-    return input;
+    return weft_image_open(path, &hints, code, error);
 }
 
 bool is_exr(const OIIO::ImageInput &input)
@@ -73,7 +59,7 @@ weft_code read_floats(OIIO::ImageInput &input, const char *path, weft_image *ima
     WEFT_TRY(weft_image_create(spec.width, spec.height, image, error));
     weft_code code = WEFT_OK;
     if (!input.read_image(0, 0, first, first + channels, OIIO::TypeDesc::FLOAT, image->pixels, 3 * sizeof(float)))
-        code = unreadable(error, path, input.geterror());
+        code = weft_image_unreadable(error, path, input.geterror());
     for (size_t i = 0; code == WEFT_OK && channels == 1 && i < pixel_count; i++)
         image->pixels[3 * i + 1] = image->pixels[3 * i + 2] = image->pixels[3 * i];
     if (code == WEFT_OK && is_exr(input))
@@ -146,7 +132,7 @@ weft_code encode(const char *path, const OIIO::ImageSpec &spec, const OIIO::Type
         return weft_fail(error, WEFT_BAD_USAGE, "cannot write image '%s': use .png, .exr or .tif", path);
     if (!output->open(path, spec) || !output->write_image(type, pixels) || !output->close())
         return weft_fail(error, WEFT_SYSTEM, "cannot write image '%s': %s", path,
-                         first_line(output->geterror()).c_str());
+                         weft_first_line(output->geterror()).c_str());
     *bytes = memory.buffer();
     return WEFT_OK;
 }
@@ -201,7 +187,7 @@ weft_code read_photograph(const char *path, int width, int height, int bits, uin
         return weft_fail(error, WEFT_BAD_INPUT, "photograph '%s' has %d bits a sample, not %d", path, stored_bits,
                          bits);
     if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT16, samples))
-        return unreadable(error, path, input->geterror());
+        return weft_image_unreadable(error, path, input->geterror());
     size_t count = size_t(width) * size_t(height) * 3;
     for (size_t i = 0; i < count; i++)
         samples[i] = uint16_t(samples[i] >> (16 - bits));
@@ -238,7 +224,7 @@ weft_code write_to(const char *path, const OIIO::ImageSpec &spec, const weft_ima
     if (!output || !output->open(path, spec) || !output->write_image(OIIO::TypeDesc::FLOAT, image->pixels) ||
         !output->close())
         return weft_fail(error, WEFT_SYSTEM, "cannot write image '%s': %s", path,
-                         first_line(output ? output->geterror() : OIIO::geterror()).c_str());
+                         weft_first_line(output ? output->geterror() : OIIO::geterror()).c_str());
     /* The library keeps silent where a disk is full. */
     if (weft_file_bytes(path) < spec.image_bytes(true))
         return weft_fail(error, WEFT_SYSTEM, "cannot write image '%s': it was cut short", path);
@@ -282,7 +268,7 @@ template <typename Action> weft_code guarded(const char *path, weft_error *error
     } catch (const std::bad_alloc &) {
         return weft_fail_memory(error, path, 0);
     } catch (const std::exception &exception) {
-        return weft_fail(error, WEFT_BAD_INPUT, "image '%s': %s", path, first_line(exception.what()).c_str());
+        return weft_fail(error, WEFT_BAD_INPUT, "image '%s': %s", path, weft_first_line(exception.what()).c_str());
     }
 }
 
