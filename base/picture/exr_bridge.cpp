@@ -67,14 +67,15 @@ weft_code weft_exr_colour_channels(const OIIO::ImageSpec &spec, const char *path
 
 weft_code weft_exr_show_window(const OIIO::ImageSpec &spec, weft_image *image, weft_error *error)
 {
-    int left = spec.x - spec.full_x, top = spec.y - spec.full_y;
+    /* Both lie anywhere within 31 bits. */
+    long long left = (long long)spec.x - spec.full_x, top = (long long)spec.y - spec.full_y;
     if (left == 0 && top == 0 && spec.full_width == spec.width && spec.full_height == spec.height)
         return WEFT_OK;
     weft_image shown;
     WEFT_TRY(weft_image_create(spec.full_width, spec.full_height, &shown, error));
-    int begin = std::max(0, left), end = std::min(spec.full_width, left + spec.width);
-    int last = std::min(spec.full_height, top + spec.height);
-    for (int y = std::max(0, top); begin < end && y < last; y++)
+    long long begin = std::max(0ll, left), end = std::min<long long>(spec.full_width, left + spec.width);
+    long long last = std::min<long long>(spec.full_height, top + spec.height);
+    for (long long y = std::max(0ll, top); begin < end && y < last; y++)
         memcpy(shown.pixels + 3 * (size_t(y) * size_t(shown.width) + size_t(begin)),
                image->pixels + 3 * (size_t(y - top) * size_t(image->width) + size_t(begin - left)),
                3 * size_t(end - begin) * sizeof(float));

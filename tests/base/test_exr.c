@@ -228,6 +228,19 @@ static void what_is_shown_counts_not_what_is_stored(void **state)
     assert_refused("display window");
 }
 
+/* As far apart as the library lets them be: nothing of what is stored is shown. */
+static void windows_far_apart_show_black(void **state)
+{
+    (void)state;
+    const int far = 1073741815;
+    write_exr(3, (const char *const[]){"B", "G", "R"}, (window){far, 0, far + 5, 1}, (window){-far, 0, -far + 2, 1});
+    weft_image image = read_exr();
+    assert_int_equal(image.width, 3);
+    for (int i = 0; i < 3 * 3 * 2; i++)
+        assert_float_equal(image.pixels[i], 0, 0);
+    weft_image_free(&image);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -236,6 +249,7 @@ int main(void)
         cmocka_unit_test(the_only_layer_is_the_picture),
         cmocka_unit_test(what_is_no_picture_is_refused_and_named),
         cmocka_unit_test(what_is_shown_counts_not_what_is_stored),
+        cmocka_unit_test(windows_far_apart_show_black),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
